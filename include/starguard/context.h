@@ -1,0 +1,109 @@
+/* The context: what every call shares (memory, threads, seed, callbacks) and the detail of the
+ * last error.
+ *
+ * Thread rule: one thread at a time may use a context; different contexts are independent.
+ * starg_context_cancel is the exception: any thread and any signal handler may call it.
+ * Finished objects (meshes, matrices, results) are immutable and may be shared freely. An object
+ * must be freed before the context that made it, because it returns its memory there. */
+#ifndef STARGUARD_CONTEXT_H
+#define STARGUARD_CONTEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "export.h"
+#include "status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct starg_context starg_context;
+
+/* Memory hooks. Both may be called from several threads at once.
+ * allocate: a block of at least `size` (> 0) bytes aligned for any type, or NULL.
+ * release: frees a block of allocate; never called with NULL. */
+typedef struct starg_allocator {
+    void *(*allocate)(void *user, size_t size);
+    void (*release)(void *user, void *block);
+    void *user;
+} starg_allocator;
+
+typedef enum starg_log_level { STARG_LOG_NOTICE = 0, STARG_LOG_WARNING = 1 } starg_log_level;
+
+/* Receives one line of text without a newline; called on the calling thread. */
+typedef void starg_log_fn(void *user, starg_log_level level, const char *message);
+
+/* Called on the calling thread while a stage runs. `stage` is a static lower-case name, `fraction`
+ * lies in [0, 1]. Returning false cancels: the call returns STARG_ERROR_CANCELLED soon. */
+typedef bool starg_progress_fn(void *user, const char *stage, double fraction);
+
+typedef struct starg_context_options {
+    starg_allocator allocator; /* all zero: malloc and free                                   */
+    int threads;               /* 0: as many as the machine has; at most 1024                 */
+    uint64_t seed;             /* every random choice comes from it                           */
+    starg_log_fn *log;         /* NULL: notices and warnings are dropped                      */
+    void *log_user;
+    starg_progress_fn *progress; /* NULL: none                                                */
+    void *progress_user;
+} starg_context_options;
+
+/* Fills `options` with the defaults: malloc, all threads, seed 1, no callbacks. */
+STARG_API void starg_context_options_default(starg_context_options *options);
+
+/* Makes a context. `options` may be NULL for the defaults. *out is NULL on failure.
+ * Errors: ARGUMENT (threads below 0 or above 1024, only one memory hook set), MEMORY. */
+STARG_API starg_status starg_context_create(const starg_context_options *options,
+                                            starg_context **out);
+
+/* Frees the context; NULL is fine. */
+STARG_API void starg_context_free(starg_context *context);
+
+/* Asks the running call to stop, or the next one if none runs. Async-signal-safe. */
+STARG_API void starg_context_cancel(starg_context *context);
+
+/* Forgets an earlier cancellation, so that the context can be used again. */
+STARG_API void starg_context_reset(starg_context *context);
+
+/* Wall-clock limit for the calls that follow, in seconds from now; 0 or less means none.
+ * A search that the limit stops returns the best it has found and says so in its result. */
+STARG_API void starg_context_set_time_limit(starg_context *context, double seconds);
+
+/* Memory that the context has handed out: bytes at the peak, and blocks not yet returned. */
+STARG_API size_t starg_context_peak_bytes(const starg_context *context);
+STARG_API size_t starg_context_live_blocks(const starg_context *context);
+
+/* What the indices of an error count. */
+typedef enum starg_element {
+    STARG_ELEMENT_NONE = 0,
+    STARG_ELEMENT_VERTEX = 1,
+    STARG_ELEMENT_FACE = 2,
+    STARG_ELEMENT_EDGE = 3, /* pairs of vertex indices */
+    STARG_ELEMENT_LINE = 4, /* of a text file, from 1 */
+    STARG_ELEMENT_BYTE = 5, /* of a binary file, from 0 */
+    STARG_ELEMENT_GUARD = 6,
+    STARG_ELEMENT_CANDIDATE = 7
+} starg_element;
+
+enum { STARG_ERROR_INDICES = 8 };
+
+/* Detail of the last failed call on a context. */
+typedef struct starg_error {
+    starg_status status;
+    const char *stage;   /* static lower-case name of the part that failed */
+    const char *message; /* one or two sentences: what, where, what to do  */
+    starg_element element;
+    size_t index_count; /* used entries of indices, at most STARG_ERROR_INDICES */
+    uint64_t indices[STARG_ERROR_INDICES];
+} starg_error;
+
+/* The detail of the last failure; status is STARG_OK if none has happened yet.
+ * Owned by the context and valid until its next call. */
+STARG_API const starg_error *starg_context_error(const starg_context *context);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

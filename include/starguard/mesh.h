@@ -1,0 +1,78 @@
+/* Triangle surface meshes: an immutable indexed face set, and files of it. */
+#ifndef STARGUARD_MESH_H
+#define STARGUARD_MESH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "context.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A mesh owns vertex_count x 3 coordinates and face_count x 3 vertex indices. Every coordinate is
+ * finite and below 1e100 in magnitude, every index is below vertex_count. Nothing else is
+ * promised: whether it bounds a solid is what starg_mesh_check tells. */
+typedef struct starg_mesh starg_mesh;
+
+/* Copies the arrays: `vertices` is vertex_count x 3 doubles, `faces` is face_count x 3 indices,
+ * counter-clockwise seen from outside. Either count may be 0.
+ * Errors: ARGUMENT (an index out of range, more than 2^31 - 1 elements), RANGE, MEMORY. */
+STARG_API starg_status starg_mesh_create(starg_context *context, const double *vertices,
+                                         size_t vertex_count, const uint32_t *faces,
+                                         size_t face_count, starg_mesh **out);
+STARG_API void starg_mesh_free(starg_mesh *mesh);
+
+STARG_API size_t starg_mesh_vertex_count(const starg_mesh *mesh);
+STARG_API size_t starg_mesh_face_count(const starg_mesh *mesh);
+/* vertex_count x 3, owned by the mesh. */
+STARG_API const double *starg_mesh_vertices(const starg_mesh *mesh);
+/* face_count x 3, owned by the mesh. */
+STARG_API const uint32_t *starg_mesh_faces(const starg_mesh *mesh);
+
+/* Lower and upper corner of the bounding box of all vertices; zeros for an empty mesh. */
+STARG_API void starg_mesh_bounds(const starg_mesh *mesh, double lower[3], double upper[3]);
+/* Sum of the face areas, in squared units of the coordinates. */
+STARG_API double starg_mesh_area(const starg_mesh *mesh);
+/* Signed volume by the divergence theorem: positive when faces point outward. */
+STARG_API double starg_mesh_volume(const starg_mesh *mesh);
+
+typedef enum starg_mesh_format {
+    STARG_MESH_AUTO = 0, /* reading: by content, then by name; writing: by name */
+    STARG_MESH_OFF = 1,
+    STARG_MESH_OBJ = 2,
+    STARG_MESH_PLY_ASCII = 3,
+    STARG_MESH_PLY_BINARY = 4, /* little endian when written; both orders are read */
+    STARG_MESH_STL_ASCII = 5,
+    STARG_MESH_STL_BINARY = 6
+} starg_mesh_format;
+
+/* Reads a mesh; path "-" is standard input. Polygons are cut into triangles in place (the faces
+ * that result keep the file's order); STL corners at exactly equal positions become one vertex.
+ * Errors: READ, FORMAT (with the line or byte), RANGE, MEMORY. */
+STARG_API starg_status starg_mesh_read(starg_context *context, const char *path, starg_mesh **out);
+
+/* The same from `size` bytes in memory; `name` is used in messages and as a format hint. */
+STARG_API starg_status starg_mesh_read_memory(starg_context *context, const void *bytes,
+                                              size_t size, const char *name, starg_mesh **out);
+
+/* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY and OFF keep them. */
+typedef struct starg_mesh_write_options {
+    starg_mesh_format format;
+    const uint8_t *face_colors; /* face_count x 3, or NULL */
+} starg_mesh_write_options;
+
+STARG_API void starg_mesh_write_options_default(starg_mesh_write_options *options);
+
+/* Writes a mesh; path "-" is standard output. A file appears whole or not at all. Reals are
+ * written with 17 significant digits (binary STL holds single precision only, by its definition).
+ * `options` may be NULL. Errors: ARGUMENT (name has no known ending), WRITE, MEMORY. */
+STARG_API starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh,
+                                        const char *path, const starg_mesh_write_options *options);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,45 @@
+/* Pictures of meshes with points in them, drawn by a small software renderer into a PNG. */
+#ifndef STARGUARD_PICTURE_H
+#define STARGUARD_PICTURE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "context.h"
+#include "mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct starg_picture_options {
+    size_t width, height;       /* pixels, 16 to 8192 each                                    */
+    double azimuth, elevation;  /* degrees; where the camera stands as seen from the centre   */
+    int up;                     /* axis that points up: 0, 1 or 2                             */
+    double opacity;             /* of the surface, 0 to 1; 1 hides what is inside             */
+    const uint8_t *face_colors; /* face_count x 3 RGB, or NULL for a neutral grey             */
+    const double *points;       /* point_count x 3; drawn as shaded balls                     */
+    size_t point_count;
+    const uint8_t *point_colors; /* point_count x 3, or NULL for distinct colours             */
+    double point_radius;         /* as a fraction of the bounding box's diagonal              */
+} starg_picture_options;
+
+/* 1200 x 900, azimuth 35, elevation 20, up axis 1 (y), opacity 0.35, radius 0.012. */
+STARG_API void starg_picture_options_default(starg_picture_options *options);
+
+/* Draws `mesh` in an orthographic view that fits it, and writes a PNG with a white background.
+ * `options` may be NULL. The same input gives the same bytes.
+ * Errors: ARGUMENT, WRITE, MEMORY, CANCELLED. */
+STARG_API starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
+                                           const starg_picture_options *options,
+                                           const char *path);
+
+/* The i-th of a sequence of colours that are easy to tell apart; used for guards and pieces. */
+STARG_API void starg_distinct_color(size_t index, uint8_t rgb[3]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

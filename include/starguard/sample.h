@@ -1,0 +1,43 @@
+/* Procedural closed solids for demonstrations, tests and benchmarks. */
+#ifndef STARGUARD_SAMPLE_H
+#define STARGUARD_SAMPLE_H
+
+#include <stddef.h>
+
+#include "context.h"
+#include "mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One entry of the catalogue; static storage. */
+typedef struct starg_sample_info {
+    const char *name;        /* lower case, for example "horse"                             */
+    const char *description; /* one line                                                    */
+    int poses;               /* 1 for rigid solids; poses of one sample share connectivity  */
+} starg_sample_info;
+
+STARG_API size_t starg_sample_count(void);
+/* NULL when `index` is not below starg_sample_count(). */
+STARG_API const starg_sample_info *starg_sample_at(size_t index);
+
+typedef struct starg_sample_options {
+    int pose;            /* 0 to poses - 1                                                  */
+    size_t vertex_count; /* 500 to 1,000,000; met within a few per cent (rigid polyhedra
+                            come in steps of their own)                                     */
+} starg_sample_options;
+
+/* Pose 0, 5,000 vertices. */
+STARG_API void starg_sample_options_default(starg_sample_options *options);
+
+/* Makes the sample called `name`: a closed, outward, embedded mesh. `options` may be NULL.
+ * Errors: ARGUMENT (unknown name, pose or size out of range), MEMORY, CANCELLED. */
+STARG_API starg_status starg_sample_create(starg_context *context, const char *name,
+                                           const starg_sample_options *options, starg_mesh **out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

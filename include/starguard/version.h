@@ -1,0 +1,22 @@
+/* Version of the library and the header that it was compiled with. */
+#ifndef STARGUARD_VERSION_H
+#define STARGUARD_VERSION_H
+
+#include "export.h"
+
+#define STARG_VERSION_MAJOR 0
+#define STARG_VERSION_MINOR 1
+#define STARG_VERSION_PATCH 0
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* "major.minor.patch" of the library that is linked. Static string; any thread. */
+STARG_API const char *starg_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

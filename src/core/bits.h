@@ -1,0 +1,51 @@
+/* Inside of the public bit matrix, and word-wise helpers for bit rows. */
+#ifndef STARG_CORE_BITS_H
+#define STARG_CORE_BITS_H
+
+#include "core/context.h"
+#include "starguard/bits.h"
+
+struct starg_bits {
+    starg_context *context;
+    size_t rows, columns, words;
+    uint64_t *data;
+};
+
+static inline uint64_t *starg_bits_row_mutable(starg_bits *bits, size_t row) {
+    return bits->data + row * bits->words;
+}
+
+static inline size_t starg_bit_words(size_t columns) {
+    return (columns + 63) / 64;
+}
+
+static inline bool starg_bit_test(const uint64_t *row, size_t column) {
+    return (row[column / 64] >> (column % 64)) & 1;
+}
+
+static inline void starg_bit_set(uint64_t *row, size_t column) {
+    row[column / 64] |= (uint64_t)1 << (column % 64);
+}
+
+static inline void starg_bit_clear(uint64_t *row, size_t column) {
+    row[column / 64] &= ~((uint64_t)1 << (column % 64));
+}
+
+static inline int starg_bit_lowest(uint64_t word) {
+    return __builtin_ctzll(word);
+}
+
+static inline size_t starg_bit_count(const uint64_t *row, size_t words) {
+    size_t count = 0;
+    for (size_t w = 0; w < words; w++)
+        count += (size_t)__builtin_popcountll(row[w]);
+    return count;
+}
+
+/* Loops BIT over the ones of WORD, a copy of which is consumed. */
+#define STARG_FOR_BITS(BIT, WORD)                                                                  \
+    for (uint64_t starg_word_ = (WORD), BIT = 0;                                                   \
+         starg_word_ != 0 && (BIT = (uint64_t)starg_bit_lowest(starg_word_), 1);                   \
+         starg_word_ &= starg_word_ - 1)
+
+#endif

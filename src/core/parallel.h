@@ -1,0 +1,29 @@
+/* Parallel loops whose result does not depend on the number of threads: each item writes only to
+ * outputs of its own index. */
+#ifndef STARG_CORE_PARALLEL_H
+#define STARG_CORE_PARALLEL_H
+
+#include "core/context.h"
+
+/* Works on one item. `scratch` belongs to the running thread. Allocation is allowed; logging,
+ * progress and error detail are not (the calling thread does that). */
+typedef starg_status starg_parallel_item(starg_context *context, void *shared, void *scratch,
+                                         size_t item);
+
+typedef struct starg_parallel_loop {
+    const char *stage; /* static; named in progress and errors */
+    size_t count;
+    void *shared;
+    starg_parallel_item *item;
+    /* Scratch memory of each thread; both may be NULL. make sets *scratch or fails. */
+    starg_status (*make_scratch)(starg_context *context, void *shared, void **scratch);
+    void (*free_scratch)(starg_context *context, void *scratch);
+    bool stop_at_deadline; /* give up with STARG_ERROR_TIME when the time limit passes */
+} starg_parallel_loop;
+
+/* Runs the items 0 to count - 1 on up to the context's threads, the calling one among them.
+ * Fails with the status of the lowest item that failed, or when cancelled; then some items have
+ * not been run. */
+starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop);
+
+#endif

@@ -1,0 +1,39 @@
+/* Random numbers that depend on (seed, stage, item) only, never on the order of calls or threads:
+ * the splitmix64 finaliser over a counter. */
+#ifndef STARG_CORE_RNG_H
+#define STARG_CORE_RNG_H
+
+#include <stdint.h>
+
+typedef struct starg_rng {
+    uint64_t state;
+} starg_rng;
+
+static inline uint64_t starg_hash64(uint64_t x) {
+    x ^= x >> 30;
+    x *= UINT64_C(0xbf58476d1ce4e5b9);
+    x ^= x >> 27;
+    x *= UINT64_C(0x94d049bb133111eb);
+    return x ^ (x >> 31);
+}
+
+static inline starg_rng starg_rng_make(uint64_t seed, uint64_t stage, uint64_t item) {
+    return (starg_rng){starg_hash64(starg_hash64(starg_hash64(seed) + stage) + item)};
+}
+
+static inline uint64_t starg_rng_next(starg_rng *rng) {
+    rng->state += UINT64_C(0x9e3779b97f4a7c15);
+    return starg_hash64(rng->state);
+}
+
+/* Uniform in [0, 1) with 53 bits. */
+static inline double starg_rng_unit(starg_rng *rng) {
+    return (double)(starg_rng_next(rng) >> 11) * 0x1p-53;
+}
+
+/* Uniform in [0, bound); bound > 0. The bias is below bound / 2^64. */
+static inline uint64_t starg_rng_below(starg_rng *rng, uint64_t bound) {
+    return (uint64_t)(((unsigned __int128)starg_rng_next(rng) * bound) >> 64);
+}
+
+#endif

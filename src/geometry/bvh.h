@@ -1,0 +1,56 @@
+/* A bounding volume hierarchy over the triangles of a mesh. Box tests only compare coordinates, so
+ * that nothing is lost to rounding; what is found in the leaves is decided by predicates. */
+#ifndef STARG_GEOMETRY_BVH_H
+#define STARG_GEOMETRY_BVH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/context.h"
+
+typedef struct bvh_box {
+    double lower[3], upper[3];
+} bvh_box;
+
+/* An inner node has count 0 and its children at `first` and `first` + 1; a leaf holds the
+ * triangles order[first .. first + count - 1]. */
+typedef struct bvh_node {
+    bvh_box box;
+    uint32_t first, count;
+} bvh_node;
+
+typedef struct bvh {
+    starg_context *context;
+    size_t node_count, triangle_count;
+    bvh_node *nodes;  /* root at 0 */
+    uint32_t *order;  /* triangle indices, leaf by leaf: a spatial order of the mesh */
+    const double *vertices;
+    const uint32_t *faces; /* both borrowed: must outlive the tree */
+} bvh;
+
+/* Builds the tree. Errors: MEMORY. */
+starg_status bvh_create(starg_context *context, const double *vertices, const uint32_t *faces,
+                        size_t face_count, bvh **out);
+void bvh_free(bvh *tree);
+
+/* Calls visit for every triangle whose box meets `box`, in a fixed order, until it returns false.
+ * Returns false exactly if visit did. */
+typedef bool bvh_visit(void *user, uint32_t triangle);
+bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *user);
+
+/* Calls visit(a, b) once for each unordered pair of triangles whose boxes meet. */
+typedef bool bvh_visit_pair(void *user, uint32_t a, uint32_t b);
+bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user);
+
+/* Winding number of the mesh about p, and whether p lies on a triangle (then the number means
+ * nothing). Exact for closed meshes: a vertical line, shaken symbolically off every edge. */
+int bvh_winding(const bvh *tree, const double p[3], bool *on_surface);
+
+/* Some triangle that blocks the view from p to q, or UINT32_MAX (see segment_meets_triangle). */
+uint32_t bvh_blocker(const bvh *tree, const double p[3], const double q[3]);
+
+/* Distance from p to the nearest triangle, rounded (not a decision); infinity without triangles. */
+double bvh_distance(const bvh *tree, const double p[3]);
+
+#endif

@@ -1,0 +1,27 @@
+/* Segments, triangles and points against each other, every degenerate case decided exactly. */
+#ifndef STARG_GEOMETRY_INTERSECT_H
+#define STARG_GEOMETRY_INTERSECT_H
+
+#include <stdbool.h>
+
+/* Is there a point of the closed triangle a b c on the half-open segment [p, q)? This is what
+ * blocks the view from p to q: contact in q alone does not [YL11, section 3]. Triangles without
+ * area count as the segments or points that they are. False when p equals q. */
+bool segment_meets_triangle(const double p[3], const double q[3], const double a[3],
+                            const double b[3], const double c[3]);
+
+/* Does point p lie on the closed triangle a b c? */
+bool point_on_triangle(const double p[3], const double a[3], const double b[3], const double c[3]);
+
+/* Do the closed segments a b and c d have a point in common? */
+bool segments_meet(const double a[3], const double b[3], const double c[3], const double d[3]);
+
+/* How two closed triangles meet. Corners count by position, not by index. */
+typedef enum triangle_contact {
+    TRIANGLES_APART = 0,  /* no common point                                                 */
+    TRIANGLES_SHARE = 1,  /* exactly a common corner, or exactly a common edge               */
+    TRIANGLES_TOUCH = 2,  /* other contact in which neither passes through the other's plane */
+    TRIANGLES_CROSS = 3   /* the interiors cross, or coplanar triangles overlap              */
+} triangle_contact;
+
+#endif

@@ -1,0 +1,75 @@
+/* Vectors of three doubles. Nothing here decides a sign: see predicates.h. */
+#ifndef STARG_GEOMETRY_VEC3_H
+#define STARG_GEOMETRY_VEC3_H
+
+#include <math.h>
+
+static inline void vec3_copy(const double a[3], double out[3]) {
+    out[0] = a[0];
+    out[1] = a[1];
+    out[2] = a[2];
+}
+
+static inline void vec3_subtract(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[0] - b[0];
+    out[1] = a[1] - b[1];
+    out[2] = a[2] - b[2];
+}
+
+/* out = a + t b */
+static inline void vec3_along(const double a[3], double t, const double b[3], double out[3]) {
+    out[0] = a[0] + t * b[0];
+    out[1] = a[1] + t * b[1];
+    out[2] = a[2] + t * b[2];
+}
+
+static inline double vec3_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void vec3_cross(const double a[3], const double b[3], double out[3]) {
+    double x = a[1] * b[2] - a[2] * b[1];
+    double y = a[2] * b[0] - a[0] * b[2];
+    double z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+/* a . (b x c), six times the volume of the tetrahedron (0, a, b, c). */
+static inline double vec3_triple(const double a[3], const double b[3], const double c[3]) {
+    double n[3];
+    vec3_cross(b, c, n);
+    return vec3_dot(a, n);
+}
+
+static inline double vec3_length(const double a[3]) {
+    return sqrt(vec3_dot(a, a));
+}
+
+static inline double vec3_distance_squared(const double a[3], const double b[3]) {
+    double d[3];
+    vec3_subtract(a, b, d);
+    return vec3_dot(d, d);
+}
+
+static inline double vec3_distance(const double a[3], const double b[3]) {
+    return sqrt(vec3_distance_squared(a, b));
+}
+
+/* Twice the area vector of a triangle: its length is twice the area, its direction the normal. */
+static inline void vec3_triangle_normal(const double a[3], const double b[3], const double c[3],
+                                        double out[3]) {
+    double u[3], v[3];
+    vec3_subtract(b, a, u);
+    vec3_subtract(c, a, v);
+    vec3_cross(u, v, out);
+}
+
+static inline double vec3_triangle_area(const double a[3], const double b[3], const double c[3]) {
+    double n[3];
+    vec3_triangle_normal(a, b, c, n);
+    return 0.5 * vec3_length(n);
+}
+
+#endif

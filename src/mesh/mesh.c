@@ -1,0 +1,146 @@
+#include "mesh/mesh.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+
+static const double COORDINATE_LIMIT = 1e100;
+
+static starg_status check_counts(starg_context *context, size_t vertex_count, size_t face_count) {
+    if (vertex_count > STARG_MESH_LIMIT || face_count > STARG_MESH_LIMIT)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, "mesh",
+                          "%zu vertices and %zu faces are more than the 2147483647 of each that a "
+                          "mesh can hold",
+                          vertex_count, face_count);
+    return STARG_OK;
+}
+
+static starg_status check_vertices(starg_context *context, const double *vertices, size_t count) {
+    for (size_t i = 0; i < 3 * count; i++) {
+        if (fabs(vertices[i]) < COORDINATE_LIMIT)
+            continue; /* false for NaN as well */
+        uint64_t vertex = i / 3;
+        return starg_fail_at(context, STARG_ERROR_RANGE, "mesh", STARG_ELEMENT_VERTEX, &vertex, 1,
+                             "coordinate %c of vertex %zu is %g; coordinates must be finite and "
+                             "below 1e100 in magnitude",
+                             "xyz"[i % 3], i / 3, vertices[i]);
+    }
+    return STARG_OK;
+}
+
+static starg_status check_faces(starg_context *context, const uint32_t *faces, size_t face_count,
+                                size_t vertex_count) {
+    for (size_t i = 0; i < 3 * face_count; i++) {
+        if (faces[i] < vertex_count)
+            continue;
+        uint64_t face = i / 3;
+        return starg_fail_at(context, STARG_ERROR_ARGUMENT, "mesh", STARG_ELEMENT_FACE, &face, 1,
+                             "face %zu names vertex %u, but there are only %zu vertices", i / 3,
+                             faces[i], vertex_count);
+    }
+    return STARG_OK;
+}
+
+starg_status starg_mesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
+                              uint32_t *faces, size_t face_count, starg_mesh **out) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    *out = NULL;
+    STARG_TRY(check_counts(context, vertex_count, face_count));
+    STARG_TRY(check_vertices(context, vertices, vertex_count));
+    STARG_TRY(check_faces(context, faces, face_count, vertex_count));
+    STARG_NEW(context, "mesh", mesh, 1);
+    *mesh = (starg_mesh){.context = context,
+                         .vertex_count = vertex_count,
+                         .face_count = face_count,
+                         .vertices = vertices,
+                         .faces = faces};
+    *out = mesh;
+done:
+    return status;
+}
+
+starg_status starg_mesh_create(starg_context *context, const double *vertices, size_t vertex_count,
+                               const uint32_t *faces, size_t face_count, starg_mesh **out) {
+    starg_status status = STARG_OK;
+    double *own_vertices = NULL;
+    uint32_t *own_faces = NULL;
+    *out = NULL;
+    STARG_TRY(check_counts(context, vertex_count, face_count));
+    STARG_NEW(context, "mesh", own_vertices, 3 * vertex_count);
+    STARG_NEW(context, "mesh", own_faces, 3 * face_count);
+    if (vertex_count != 0)
+        memcpy(own_vertices, vertices, 3 * vertex_count * sizeof *vertices);
+    if (face_count != 0)
+        memcpy(own_faces, faces, 3 * face_count * sizeof *faces);
+    STARG_TRY(starg_mesh_adopt(context, own_vertices, vertex_count, own_faces, face_count, out));
+done:
+    if (status != STARG_OK) {
+        starg_release(context, own_vertices);
+        starg_release(context, own_faces);
+    }
+    return status;
+}
+
+void starg_mesh_free(starg_mesh *mesh) {
+    if (mesh == NULL)
+        return;
+    starg_context *context = mesh->context;
+    starg_release(context, mesh->vertices);
+    starg_release(context, mesh->faces);
+    starg_release(context, mesh);
+}
+
+size_t starg_mesh_vertex_count(const starg_mesh *mesh) {
+    return mesh->vertex_count;
+}
+
+size_t starg_mesh_face_count(const starg_mesh *mesh) {
+    return mesh->face_count;
+}
+
+const double *starg_mesh_vertices(const starg_mesh *mesh) {
+    return mesh->vertices;
+}
+
+const uint32_t *starg_mesh_faces(const starg_mesh *mesh) {
+    return mesh->faces;
+}
+
+void starg_mesh_bounds(const starg_mesh *mesh, double lower[3], double upper[3]) {
+    for (int k = 0; k < 3; k++)
+        lower[k] = upper[k] = mesh->vertex_count ? mesh->vertices[k] : 0;
+    for (size_t i = 3; i < 3 * mesh->vertex_count; i++) {
+        double x = mesh->vertices[i];
+        if (x < lower[i % 3])
+            lower[i % 3] = x;
+        if (x > upper[i % 3])
+            upper[i % 3] = x;
+    }
+}
+
+double starg_mesh_area(const starg_mesh *mesh) {
+    double sum = 0;
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        const double *a = mesh->vertices + 3 * (size_t)mesh->faces[3 * f];
+        const double *b = mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 1];
+        const double *c = mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 2];
+        sum += vec3_triangle_area(a, b, c);
+    }
+    return sum;
+}
+
+double starg_mesh_volume(const starg_mesh *mesh) {
+    double sum = 0;
+    const double *origin = mesh->vertices; /* any point does; a near one keeps digits */
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        double a[3], b[3], c[3];
+        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f], origin, a);
+        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 1], origin, b);
+        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 2], origin, c);
+        sum += vec3_triple(a, b, c);
+    }
+    return sum / 6;
+}

@@ -1,0 +1,36 @@
+#include "support.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+starg_context *test_context(int threads) {
+    starg_context_options options;
+    starg_context_options_default(&options);
+    options.threads = threads;
+    starg_context *context = NULL;
+    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+    return context;
+}
+
+void test_context_free(starg_context *context) {
+    assert_int_equal(starg_context_live_blocks(context), 0);
+    starg_context_free(context);
+}
+
+const char *test_shared_data(void) {
+    static char path[4096];
+    const char *shared = getenv("STARGUARD_SHARED");
+    struct stat info;
+    snprintf(path, sizeof path, "%s/data", shared ? shared : "../shared");
+    if (stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+        return path;
+    printf("skipped: there is no shared data at %s\n", path);
+    return NULL;
+}
+
+void test_ok(starg_context *context, starg_status status) {
+    if (status != STARG_OK)
+        print_error("%s\n", starg_context_error(context)->message);
+    assert_int_equal(status, STARG_OK);
+}
