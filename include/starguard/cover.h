@@ -52,20 +52,19 @@ STARG_API void starg_cover_options_default(starg_cover_options *options);
 typedef struct starg_cover {
     size_t count;
     uint32_t *rows;
-    uint64_t weight;       /* weight of the columns that `rows` cover                              */
-    uint64_t weight_bound; /* no choice of max_rows rows (0: of all) covers more than this         */
-    size_t lower_bound;    /* no fewer rows cover min(target, coverable, weight) : proven          */
-    bool optimal;          /* count == lower_bound                                                 */
-    bool target_reached;   /* weight is at least min(target, coverable weight)                     */
-    bool time_limited;     /* the context's time limit cut the search short                        */
-    size_t nodes;          /* branch-and-bound nodes that were used                                */
+    uint64_t weight; /* weight of the columns that `rows` cover                              */
+    uint64_t weight_bound; /* no choice of max_rows rows (0: of all) covers more than this */
+    size_t lower_bound;  /* no fewer rows cover min(target, coverable, weight) : proven          */
+    bool optimal;        /* count == lower_bound                                                 */
+    bool target_reached; /* weight is at least min(target, coverable weight)                     */
+    bool time_limited;   /* the context's time limit cut the search short                        */
+    size_t nodes;        /* branch-and-bound nodes that were used                                */
 } starg_cover;
 
 /* Solves `problem`. `options` may be NULL for the defaults. Free the result with
  * starg_cover_free. Errors: ARGUMENT, MEMORY, CANCELLED. The solver library's failure is none:
  * the incumbent and the bound that were known by then are returned. */
-STARG_API starg_status starg_cover_solve(starg_context *context,
-                                         const starg_cover_problem *problem,
+STARG_API starg_status starg_cover_solve(starg_context *context, const starg_cover_problem *problem,
                                          const starg_cover_options *options, starg_cover **out);
 STARG_API void starg_cover_free(starg_cover *cover);
 

@@ -32,8 +32,7 @@ STARG_API void starg_picture_options_default(starg_picture_options *options);
  * `options` may be NULL. The same input gives the same bytes.
  * Errors: ARGUMENT, WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
-                                           const starg_picture_options *options,
-                                           const char *path);
+                                           const starg_picture_options *options, const char *path);
 
 /* The i-th of a sequence of colours that are easy to tell apart; used for guards and pieces. */
 STARG_API void starg_distinct_color(size_t index, uint8_t rgb[3]);

@@ -8,10 +8,8 @@ starg_status starg_bits_create(starg_context *context, size_t rows, size_t colum
     starg_bits *bits = NULL;
     *out = NULL;
     STARG_NEW_ZERO(context, "bits", bits, 1);
-    *bits = (starg_bits){.context = context,
-                         .rows = rows,
-                         .columns = columns,
-                         .words = starg_bit_words(columns)};
+    *bits = (starg_bits){
+        .context = context, .rows = rows, .columns = columns, .words = starg_bit_words(columns)};
     bits->data = starg_allocate_zero(context, rows, bits->words * sizeof *bits->data);
     if (bits->data == NULL) {
         status = starg_fail_memory(context, "bits");

@@ -9,7 +9,7 @@
 #include "starguard/version.h"
 
 #define TEXT_(X) #X
-#define TEXT(X) TEXT_(X)
+#define TEXT(X)  TEXT_(X)
 
 enum { MAX_THREADS = 1024 };
 

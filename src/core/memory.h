@@ -52,9 +52,8 @@ void starg_release(starg_context *context, void *block);
     do {                                                                                           \
         if ((ARRAY)->count == (ARRAY)->capacity) {                                                 \
             size_t starg_capacity_ = (ARRAY)->capacity ? 2 * (ARRAY)->capacity : 16;               \
-            void *starg_data_ =                                                                    \
-                starg_reallocate((CONTEXT), (ARRAY)->data, (ARRAY)->count, starg_capacity_,        \
-                                 sizeof *(ARRAY)->data);                                           \
+            void *starg_data_ = starg_reallocate((CONTEXT), (ARRAY)->data, (ARRAY)->count,         \
+                                                 starg_capacity_, sizeof *(ARRAY)->data);          \
             if (starg_data_ == NULL) {                                                             \
                 status = starg_fail_memory((CONTEXT), (STAGE));                                    \
                 goto done;                                                                         \

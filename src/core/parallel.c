@@ -99,8 +99,7 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
 
     /* A thread that cannot be started is no failure: the others do its share. */
     size_t started = 0;
-    while (started < helpers &&
-           thrd_create(&threads[started], helper_main, &crew) == thrd_success)
+    while (started < helpers && thrd_create(&threads[started], helper_main, &crew) == thrd_success)
         started++;
     work(&crew, true);
     for (size_t i = 0; i < started; i++)

@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "core/int128.h"
+
 typedef struct starg_rng {
     uint64_t state;
 } starg_rng;
@@ -33,7 +35,7 @@ static inline double starg_rng_unit(starg_rng *rng) {
 
 /* Uniform in [0, bound); bound > 0. The bias is below bound / 2^64. */
 static inline uint64_t starg_rng_below(starg_rng *rng, uint64_t bound) {
-    return (uint64_t)(((unsigned __int128)starg_rng_next(rng) * bound) >> 64);
+    return (uint64_t)(((starg_uint128)starg_rng_next(rng) * bound) >> 64);
 }
 
 #endif

@@ -23,8 +23,8 @@ typedef struct bvh_node {
 typedef struct bvh {
     starg_context *context;
     size_t node_count, triangle_count;
-    bvh_node *nodes;  /* root at 0 */
-    uint32_t *order;  /* triangle indices, leaf by leaf: a spatial order of the mesh */
+    bvh_node *nodes; /* root at 0 */
+    uint32_t *order; /* triangle indices, leaf by leaf: a spatial order of the mesh */
     const double *vertices;
     const uint32_t *faces; /* both borrowed: must outlive the tree */
 } bvh;

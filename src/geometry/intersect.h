@@ -16,12 +16,15 @@ bool point_on_triangle(const double p[3], const double a[3], const double b[3], 
 /* Do the closed segments a b and c d have a point in common? */
 bool segments_meet(const double a[3], const double b[3], const double c[3], const double d[3]);
 
-/* How two closed triangles meet. Corners count by position, not by index. */
+/* How two closed triangles of a mesh meet. */
 typedef enum triangle_contact {
-    TRIANGLES_APART = 0,  /* no common point                                                 */
-    TRIANGLES_SHARE = 1,  /* exactly a common corner, or exactly a common edge               */
-    TRIANGLES_TOUCH = 2,  /* other contact in which neither passes through the other's plane */
-    TRIANGLES_CROSS = 3   /* the interiors cross, or coplanar triangles overlap              */
+    TRIANGLES_APART = 0, /* no common point                                                      */
+    TRIANGLES_SHARE = 1, /* nothing but the corner or the edge that they share                   */
+    TRIANGLES_TOUCH = 2, /* other common points, but no edge passes through the other triangle   */
+    TRIANGLES_CROSS = 3  /* an edge of one passes through the other, or they lie on one another  */
 } triangle_contact;
+
+/* Contact of two triangles whose first `shared` corners (0 to 3) are the same mesh vertices. */
+triangle_contact triangles_contact(const double *const s[3], const double *const t[3], int shared);
 
 #endif

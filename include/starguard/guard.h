@@ -1,0 +1,108 @@
+/* The main job: a small set of points inside a solid that together see its whole boundary, with a
+ * proven lower bound [YL11, section 3]. */
+#ifndef STARGUARD_GUARD_H
+#define STARGUARD_GUARD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "context.h"
+#include "solid.h"
+#include "visibility.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum starg_guard_method { STARG_GUARD_ILP = 0, STARG_GUARD_GREEDY = 1 } starg_guard_method;
+
+/* Where guards may stand. */
+typedef enum starg_candidates {
+    STARG_CANDIDATES_MEDIAL = 0,   /* centres of maximal balls                       */
+    STARG_CANDIDATES_INTERIOR = 1, /* a lattice of points inside                     */
+    STARG_CANDIDATES_GIVEN = 2     /* the points of the options, and no others       */
+} starg_candidates;
+
+typedef struct starg_guard_options {
+    starg_guard_method method;
+    starg_candidates candidates;
+    size_t candidate_count; /* about how many to make, at least 1; more are added for faces
+                               that none of them sees                                      */
+    const double *points;   /* STARG_CANDIDATES_GIVEN: point_count x 3                     */
+    size_t point_count;
+    starg_visibility_options visibility;
+    double coverage;     /* fraction in (0, 1] of the coverable area that must be seen
+                            (of the coverable vertices, when they are the target)       */
+    size_t max_guards;   /* 0: no limit; else the best area that so many guards see     */
+    uint32_t redundancy; /* every face by so many guards, as far as candidates allow    */
+    double clearance;    /* guards at least this far from the boundary                  */
+    size_t max_nodes;    /* branch-and-bound nodes for each block                       */
+} starg_guard_options;
+
+/* ILP, 1,000 medial candidates, grid, faces by vertices, all of it once, no clearance. */
+STARG_API void starg_guard_options_default(starg_guard_options *options);
+
+/* A set of guards and what is known about it. Faces are indices into the solid's mesh. */
+typedef struct starg_guards {
+    char *file; /* the model's path as given; NULL if made in memory          */
+    size_t vertex_count, face_count; /* of the model                                          */
+    starg_guard_options options;     /* as used; `points` is NULL                             */
+
+    size_t count;
+    double *positions;  /* count x 3                                                  */
+    size_t *seen_faces; /* faces that each guard sees                                 */
+    int *levels;        /* level of detail that asked for the guard; 0: the coarsest  */
+
+    double coverage_faces;  /* seen fraction of all faces                                 */
+    double coverage_area;   /* seen fraction of the area of all faces                     */
+    size_t coverable_faces; /* faces that some candidate sees                             */
+    size_t uncovered_count;
+    uint32_t *uncovered; /* faces that no guard sees, ascending                        */
+
+    /* only for STARG_TARGET_VERTICES, else 0 */
+    double coverage_vertices; /* seen fraction of the vertices that faces use               */
+    size_t coverable_vertices;
+    size_t uncovered_vertex_count;
+    uint32_t *uncovered_vertices;
+
+    size_t candidate_count; /* in the end, with those added                               */
+    size_t lower_bound;     /* no fewer candidates see as much (of what was asked for)    */
+    bool optimal;           /* count == lower_bound                                       */
+    double area_bound;      /* max_guards: no choice of so many sees a larger fraction of
+                               all area; else 1                                           */
+    bool time_limited;      /* the time limit cut the search short                        */
+} starg_guards;
+
+/* Places guards. `options` may be NULL for the defaults. Faces that nothing can see are no error:
+ * they are listed. Errors: ARGUMENT, MESH (no candidate inside), MEMORY, CANCELLED, TIME. */
+STARG_API starg_status starg_guard(starg_context *context, const starg_solid *solid,
+                                   const starg_guard_options *options, starg_guards **out);
+STARG_API void starg_guards_free(starg_context *context, starg_guards *guards);
+
+/* Points where guards may stand: count x 3 doubles in a block that starg_points_free frees, every
+ * one strictly inside and at least `clearance` from the boundary. May give fewer than wanted. */
+STARG_API starg_status starg_candidate_points(starg_context *context, const starg_solid *solid,
+                                              starg_candidates source, size_t wanted,
+                                              double clearance, double **points, size_t *count);
+STARG_API void starg_points_free(starg_context *context, double *points);
+
+/* Writes GUARDS.json (docs/formats.md); path "-" is standard output. Sets nothing in `guards`;
+ * `model_file` is stored as the model's path, NULL leaves it empty. */
+STARG_API starg_status starg_guards_write(starg_context *context, const starg_guards *guards,
+                                          const char *model_file, const char *path);
+
+/* Reads GUARDS.json. Errors: READ, FORMAT (what and which key), MEMORY. */
+STARG_API starg_status starg_guards_read(starg_context *context, const char *path,
+                                         starg_guards **out);
+
+/* Reads candidate points: text of three numbers a line (an optional leading "v", comments by #),
+ * or the positions in a GUARDS.json. Free with starg_points_free. */
+STARG_API starg_status starg_points_read(starg_context *context, const char *path, double **points,
+                                         size_t *count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

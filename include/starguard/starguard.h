@@ -1,0 +1,20 @@
+/* Everything. Each header also stands alone. */
+#ifndef STARGUARD_STARGUARD_H
+#define STARGUARD_STARGUARD_H
+
+#include "bits.h"
+#include "check.h"
+#include "context.h"
+#include "cover.h"
+#include "guard.h"
+#include "mesh.h"
+#include "picture.h"
+#include "repair.h"
+#include "sample.h"
+#include "solid.h"
+#include "status.h"
+#include "verify.h"
+#include "version.h"
+#include "visibility.h"
+
+#endif

@@ -1,0 +1,54 @@
+/* Which vertices and faces of a solid does a point see? [YL11, section 3.1]
+ *
+ * A vertex q is visible from p when the segment p q meets the boundary in q alone. A face is
+ * visible when its three vertices are and p lies strictly on its inner side; under the stricter
+ * rule "whole" every point of it must be visible. A point that is not strictly inside the solid
+ * sees nothing. All of it is decided exactly: every engine gives the same bits. */
+#ifndef STARGUARD_VISIBILITY_H
+#define STARGUARD_VISIBILITY_H
+
+#include <stddef.h>
+
+#include "bits.h"
+#include "context.h"
+#include "solid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum starg_visibility_engine {
+    STARG_VISIBILITY_GRID = 0, /* a grid over the directions from the point          */
+    STARG_VISIBILITY_BVH = 1,  /* each segment against a bounding volume hierarchy   */
+    STARG_VISIBILITY_SWEEP = 2 /* the paper's sweep by angle                         */
+} starg_visibility_engine;
+
+typedef enum starg_target { STARG_TARGET_FACES = 0, STARG_TARGET_VERTICES = 1 } starg_target;
+
+typedef enum starg_face_rule {
+    STARG_FACES_VERTICES = 0, /* the three vertices are visible                      */
+    STARG_FACES_WHOLE = 1     /* every point of the face is visible                  */
+} starg_face_rule;
+
+typedef struct starg_visibility_options {
+    starg_visibility_engine engine;
+    starg_target target;       /* what a column of the result stands for            */
+    starg_face_rule face_rule; /* for STARG_TARGET_FACES                            */
+    double range;              /* vertices (all three of a face) at most this far; INFINITY: any */
+} starg_visibility_options;
+
+/* Grid, faces, by vertices, any distance. */
+STARG_API void starg_visibility_options_default(starg_visibility_options *options);
+
+/* Computes what each of `count` points (count x 3 doubles) sees: a matrix of count rows with one
+ * column per face (or vertex). `options` may be NULL. Parallel over the points.
+ * Errors: ARGUMENT (range negative or NaN, a point that is not finite), MEMORY, CANCELLED, TIME. */
+STARG_API starg_status starg_visibility(starg_context *context, const starg_solid *solid,
+                                        const double *points, size_t count,
+                                        const starg_visibility_options *options, starg_bits **out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

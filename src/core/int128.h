@@ -1,0 +1,8 @@
+/* 128-bit integers: an extension that gcc and clang share. */
+#ifndef STARG_CORE_INT128_H
+#define STARG_CORE_INT128_H
+
+__extension__ typedef __int128 starg_int128;
+__extension__ typedef unsigned __int128 starg_uint128;
+
+#endif

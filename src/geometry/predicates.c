@@ -1,0 +1,223 @@
+/* Exact predicates in three steps: a floating-point filter, 128-bit integers where the inputs are
+ * short (lattice-like coordinates), integers of many limbs otherwise.
+ *
+ * Source: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
+ * predicates, 1997: the formulas of the filters and their bounds (his "A" stages), widened by one
+ * unit roundoff of the permanent. That slack absorbs underflow, which his analysis leaves out, as
+ * long as the permanent is not tiny: each filter names its threshold. The exact steps replace his
+ * expansions because those overflow and underflow at the ends of the range that we promise.
+ *
+ * Cost: 5-10 ns when the filter decides, about 30 ns in 128 bits, 0.2-2 us in limbs. */
+#include "geometry/predicates.h"
+
+#include <math.h>
+
+#include "core/int128.h"
+#include "geometry/exact.h"
+
+static const double EPSILON = 0x1p-53; /* unit roundoff */
+
+static int sign_of(double x) {
+    return (x > 0) - (x < 0);
+}
+
+static int sign_of_wide(starg_int128 x) {
+    return (x > 0) - (x < 0);
+}
+
+/* out = a b - c d */
+static void exact_minor(exact *out, const exact *a, const exact *b, const exact *c,
+                        const exact *d) {
+    exact ab, cd;
+    exact_multiply(&ab, a, b);
+    exact_multiply(&cd, c, d);
+    exact_subtract(out, &ab, &cd);
+}
+
+/* out = the determinant of three rows, by its third column as the filters do. */
+static void exact_determinant(exact *out, const exact a[3], const exact b[3], const exact c[3]) {
+    exact minor, term[3], sum;
+    exact_minor(&minor, &b[0], &c[1], &c[0], &b[1]);
+    exact_multiply(&term[0], &a[2], &minor);
+    exact_minor(&minor, &c[0], &a[1], &a[0], &c[1]);
+    exact_multiply(&term[1], &b[2], &minor);
+    exact_minor(&minor, &a[0], &b[1], &b[0], &a[1]);
+    exact_multiply(&term[2], &c[2], &minor);
+    exact_add(&sum, &term[0], &term[1]);
+    exact_add(out, &sum, &term[2]);
+}
+
+/* out = p - q, all in units of 2^scale */
+static void exact_difference(exact out[3], const double p[3], const double q[3], int scale) {
+    for (int k = 0; k < 3; k++) {
+        exact x, y;
+        exact_set(&x, p[k], scale);
+        exact_set(&y, q[k], scale);
+        exact_subtract(&out[k], &x, &y);
+    }
+}
+
+static void gather(double *values, const double *const *points, int count) {
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            values[3 * i + k] = points[i][k];
+}
+
+static int orient3d_short(const double values[12], int scale) {
+    starg_int128 m[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            m[i][k] = exact_small(values[3 * i + k], scale) - exact_small(values[9 + k], scale);
+    return sign_of_wide(m[0][2] * (m[1][0] * m[2][1] - m[2][0] * m[1][1]) +
+                        m[1][2] * (m[2][0] * m[0][1] - m[0][0] * m[2][1]) +
+                        m[2][2] * (m[0][0] * m[1][1] - m[1][0] * m[0][1]));
+}
+
+static __attribute__((noinline)) int orient3d_exact(const double a[3], const double b[3],
+                                                    const double c[3], const double d[3]) {
+    double values[12];
+    gather(values, (const double *const[]){a, b, c, d}, 4);
+    int bits, scale = exact_scale(values, 12, &bits);
+    if (bits <= 40) /* 3 x 41 bits and six terms: below 127 */
+        return orient3d_short(values, scale);
+    exact ad[3], bd[3], cd[3], determinant;
+    exact_difference(ad, a, d, scale);
+    exact_difference(bd, b, d, scale);
+    exact_difference(cd, c, d, scale);
+    exact_determinant(&determinant, ad, bd, cd);
+    return determinant.sign;
+}
+
+int orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    double adx = a[0] - d[0], ady = a[1] - d[1], adz = a[2] - d[2];
+    double bdx = b[0] - d[0], bdy = b[1] - d[1], bdz = b[2] - d[2];
+    double cdx = c[0] - d[0], cdy = c[1] - d[1], cdz = c[2] - d[2];
+    double bdxcdy = bdx * cdy, cdxbdy = cdx * bdy;
+    double cdxady = cdx * ady, adxcdy = adx * cdy;
+    double adxbdy = adx * bdy, bdxady = bdx * ady;
+    double determinant =
+        adz * (bdxcdy - cdxbdy) + bdz * (cdxady - adxcdy) + cdz * (adxbdy - bdxady);
+    double permanent = (fabs(bdxcdy) + fabs(cdxbdy)) * fabs(adz) +
+                       (fabs(cdxady) + fabs(adxcdy)) * fabs(bdz) +
+                       (fabs(adxbdy) + fabs(bdxady)) * fabs(cdz);
+    /* An underflow costs at most 2^-1074 x 2e100; above 1e-200 the slack is larger than six. */
+    double bound = 8 * EPSILON * permanent;
+    if (permanent > 1e-200 && fabs(determinant) > bound)
+        return sign_of(determinant);
+    return orient3d_exact(a, b, c, d);
+}
+
+static __attribute__((noinline)) int orient2d_exact(const double a[3], const double b[3],
+                                                    const double c[3], int u, int v) {
+    const double values[6] = {a[u], a[v], b[u], b[v], c[u], c[v]};
+    int bits, scale = exact_scale(values, 6, &bits);
+    exact x[6], acu, acv, bcu, bcv, determinant;
+    for (int i = 0; i < 6; i++)
+        exact_set(&x[i], values[i], scale);
+    exact_subtract(&acu, &x[0], &x[4]);
+    exact_subtract(&acv, &x[1], &x[5]);
+    exact_subtract(&bcu, &x[2], &x[4]);
+    exact_subtract(&bcv, &x[3], &x[5]);
+    exact_minor(&determinant, &acu, &bcv, &acv, &bcu);
+    return determinant.sign;
+}
+
+int orient2d(const double a[3], const double b[3], const double c[3], int u, int v) {
+    double left = (a[u] - c[u]) * (b[v] - c[v]);
+    double right = (a[v] - c[v]) * (b[u] - c[u]);
+    double determinant = left - right, permanent = fabs(left) + fabs(right);
+    if (permanent > 1e-290 && fabs(determinant) > 4 * EPSILON * permanent)
+        return sign_of(determinant);
+    return orient2d_exact(a, b, c, u, v);
+}
+
+/* out = x^2 + y^2 + z^2 */
+static void exact_square(exact *out, const exact v[3]) {
+    exact square, sum, partial;
+    exact_multiply(&sum, &v[0], &v[0]);
+    exact_multiply(&square, &v[1], &v[1]);
+    exact_add(&partial, &sum, &square);
+    exact_multiply(&square, &v[2], &v[2]);
+    exact_add(out, &partial, &square);
+}
+
+static __attribute__((noinline)) int insphere_exact(const double *const points[5]) {
+    double values[15];
+    gather(values, points, 5);
+    int bits, scale = exact_scale(values, 15, &bits);
+    exact v[4][3], sum = {0}, total, lift, volume, term;
+    for (int i = 0; i < 4; i++)
+        exact_difference(v[i], points[i], points[4], scale);
+    /* expanded by the column of squares: the rows keep their order, the signs alternate */
+    static const int rows[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
+    for (int i = 0; i < 4; i++) {
+        exact_determinant(&volume, v[rows[i][0]], v[rows[i][1]], v[rows[i][2]]);
+        exact_square(&lift, v[i]);
+        exact_multiply(&term, &lift, &volume);
+        if (i % 2 == 0)
+            exact_subtract(&total, &sum, &term);
+        else
+            exact_add(&total, &sum, &term);
+        sum = total;
+    }
+    return sum.sign;
+}
+
+int insphere(const double a[3], const double b[3], const double c[3], const double d[3],
+             const double e[3]) {
+    double aex = a[0] - e[0], aey = a[1] - e[1], aez = a[2] - e[2];
+    double bex = b[0] - e[0], bey = b[1] - e[1], bez = b[2] - e[2];
+    double cex = c[0] - e[0], cey = c[1] - e[1], cez = c[2] - e[2];
+    double dex = d[0] - e[0], dey = d[1] - e[1], dez = d[2] - e[2];
+    double aexbey = aex * bey, bexaey = bex * aey, bexcey = bex * cey, cexbey = cex * bey;
+    double cexdey = cex * dey, dexcey = dex * cey, dexaey = dex * aey, aexdey = aex * dey;
+    double aexcey = aex * cey, cexaey = cex * aey, bexdey = bex * dey, dexbey = dex * bey;
+    double ab = aexbey - bexaey, bc = bexcey - cexbey, cd = cexdey - dexcey;
+    double da = dexaey - aexdey, ac = aexcey - cexaey, bd = bexdey - dexbey;
+    double abc = aez * bc - bez * ac + cez * ab, bcd = bez * cd - cez * bd + dez * bc;
+    double cda = cez * da + dez * ac + aez * cd, dab = dez * ab + aez * bd + bez * da;
+    double alift = aex * aex + aey * aey + aez * aez, blift = bex * bex + bey * bey + bez * bez;
+    double clift = cex * cex + cey * cey + cez * cez, dlift = dex * dex + dey * dey + dez * dez;
+    double determinant = (dlift * abc - clift * dab) + (blift * cda - alift * bcd);
+
+    double xab = fabs(aexbey) + fabs(bexaey), xbc = fabs(bexcey) + fabs(cexbey);
+    double xcd = fabs(cexdey) + fabs(dexcey), xda = fabs(dexaey) + fabs(aexdey);
+    double xac = fabs(aexcey) + fabs(cexaey), xbd = fabs(bexdey) + fabs(dexbey);
+    double za = fabs(aez), zb = fabs(bez), zc = fabs(cez), zd = fabs(dez);
+    double permanent =
+        (xcd * zb + xbd * zc + xbc * zd) * alift + (xda * zc + xac * zd + xcd * za) * blift +
+        (xab * zd + xbd * za + xda * zb) * clift + (xbc * za + xac * zb + xab * zc) * dlift;
+    /* An underflow costs 2^-1074 times at most the cube of the largest difference. */
+    double largest = alift + blift + clift + dlift;
+    double tiny = 1e-290 * (1 + largest * sqrt(largest));
+    if (permanent > tiny && fabs(determinant) > 17 * EPSILON * permanent)
+        return sign_of(determinant);
+    return insphere_exact((const double *const[]){a, b, c, d, e});
+}
+
+static __attribute__((noinline)) int compare_distance_exact(const double p[3], const double q[3],
+                                                            double radius) {
+    const double values[7] = {p[0], p[1], p[2], q[0], q[1], q[2], radius};
+    int bits, scale = exact_scale(values, 7, &bits);
+    exact difference[3], distance, r, square, result;
+    exact_difference(difference, p, q, scale);
+    exact_square(&distance, difference);
+    exact_set(&r, radius, scale);
+    exact_multiply(&square, &r, &r);
+    exact_subtract(&result, &distance, &square);
+    return result.sign;
+}
+
+int compare_distance(const double p[3], const double q[3], double radius) {
+    double dx = p[0] - q[0], dy = p[1] - q[1], dz = p[2] - q[2];
+    double distance = dx * dx + dy * dy + dz * dz, square = radius * radius;
+    double difference = distance - square, permanent = distance + square;
+    if (permanent > 1e-290 && fabs(difference) > 8 * EPSILON * permanent)
+        return sign_of(difference);
+    return compare_distance_exact(p, q, radius);
+}
+
+bool collinear(const double a[3], const double b[3], const double c[3]) {
+    return orient2d(a, b, c, 0, 1) == 0 && orient2d(a, b, c, 1, 2) == 0 &&
+           orient2d(a, b, c, 2, 0) == 0;
+}
