@@ -59,7 +59,7 @@ STARG_API starg_status starg_mesh_check(starg_context *context, const starg_mesh
                                         starg_check **out);
 STARG_API void starg_check_free(starg_context *context, starg_check *check);
 
-/* A phrase for a kind, for example "open edge"; static. */
+/* A phrase for a kind in the plural, for example "open edges"; static. */
 STARG_API const char *starg_finding_name(starg_finding_kind kind);
 
 #ifdef __cplusplus

@@ -220,9 +220,10 @@ static int shaken_turn(const double a[3], const double b[3], const double p[3]) 
     return turn;
 }
 
-/* What the triangle adds to the winding number about p: the line upwards leaves through it (1),
- * enters (-1) or misses it (0). */
-static int crossing(const double *a, const double *b, const double *c, const double p[3]) {
+int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]) {
+    const double *a = corner(tree, triangle, 0);
+    const double *b = corner(tree, triangle, 1);
+    const double *c = corner(tree, triangle, 2);
     int ab = shaken_turn(a, b, p), bc = shaken_turn(b, c, p), ca = shaken_turn(c, a, p);
     if (ab == 0 || ab != bc || bc != ca)
         return 0;
@@ -247,12 +248,12 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
             continue;
         }
         for (uint32_t i = node->first; i < node->first + node->count; i++) {
-            const double *a = corner(tree, tree->order[i], 0);
-            const double *b = corner(tree, tree->order[i], 1);
-            const double *c = corner(tree, tree->order[i], 2);
-            if (p[2] >= box->lower[2] && point_on_triangle(p, a, b, c))
+            uint32_t triangle = tree->order[i];
+            winding += bvh_crossing(tree, triangle, p);
+            if (p[2] >= box->lower[2] &&
+                point_on_triangle(p, corner(tree, triangle, 0), corner(tree, triangle, 1),
+                                  corner(tree, triangle, 2)))
                 *on_surface = true;
-            winding += crossing(a, b, c, p);
         }
     }
     return winding;

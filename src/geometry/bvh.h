@@ -47,6 +47,10 @@ bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user);
  * nothing). Exact for closed meshes: a vertical line, shaken symbolically off every edge. */
 int bvh_winding(const bvh *tree, const double p[3], bool *on_surface);
 
+/* What one triangle adds to the winding number about p: 1 when the line upwards leaves through
+ * it, -1 when it enters, 0 when it misses. */
+int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
+
 /* Some triangle that blocks the view from p to q, or UINT32_MAX (see segment_meets_triangle). */
 uint32_t bvh_blocker(const bvh *tree, const double p[3], const double q[3]);
 

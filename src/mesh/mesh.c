@@ -6,8 +6,6 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 
-static const double COORDINATE_LIMIT = 1e100;
-
 static starg_status check_counts(starg_context *context, size_t vertex_count, size_t face_count) {
     if (vertex_count > STARG_MESH_LIMIT || face_count > STARG_MESH_LIMIT)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "mesh",
@@ -19,7 +17,7 @@ static starg_status check_counts(starg_context *context, size_t vertex_count, si
 
 static starg_status check_vertices(starg_context *context, const double *vertices, size_t count) {
     for (size_t i = 0; i < 3 * count; i++) {
-        if (fabs(vertices[i]) < COORDINATE_LIMIT)
+        if (fabs(vertices[i]) < STARG_COORDINATE_LIMIT)
             continue; /* false for NaN as well */
         uint64_t vertex = i / 3;
         return starg_fail_at(context, STARG_ERROR_RANGE, "mesh", STARG_ELEMENT_VERTEX, &vertex, 1,

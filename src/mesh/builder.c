@@ -1,0 +1,155 @@
+#include <math.h>
+#include <stdarg.h>
+
+#include "mesh/io.h"
+
+/* Concave polygons beyond this many corners are refused: ear clipping is quadratic. */
+enum { MAX_CONCAVE_CORNERS = 4096 };
+
+/* Items between two looks at the clock and the cancellation flag; a power of two. */
+enum { TICKS = 1 << 14 };
+
+/* "'cube.off', line 7: " */
+static void describe_place(const starg_source *source, starg_place place, char *text, size_t size) {
+    if (place.element == STARG_ELEMENT_LINE)
+        snprintf(text, size, "'%s', line %zu", source->name, place.at);
+    else if (place.element == STARG_ELEMENT_BYTE)
+        snprintf(text, size, "'%s', byte %zu", source->name, place.at);
+    else
+        snprintf(text, size, "'%s'", source->name);
+}
+
+starg_status starg_source_fail(const starg_source *source, starg_place place, const char *format,
+                               ...) {
+    char where[320], what[400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    describe_place(source, place, where, sizeof where);
+    uint64_t at = place.at;
+    return starg_fail_at(source->context, STARG_ERROR_FORMAT, STARG_MESH_FILE, place.element, &at,
+                         place.element != STARG_ELEMENT_NONE, "%s: %s", where, what);
+}
+
+starg_status starg_builder_reserve(starg_mesh_builder *builder, size_t vertices, size_t faces) {
+    starg_context *context = builder->source->context;
+    void *points = starg_reallocate(context, builder->vertices.data, builder->vertices.count,
+                                    3 * vertices, sizeof *builder->vertices.data);
+    if (points == NULL)
+        return starg_fail_memory(context, STARG_MESH_FILE);
+    builder->vertices.data = points;
+    builder->vertices.capacity = 3 * vertices;
+    void *triangles = starg_reallocate(context, builder->faces.data, builder->faces.count,
+                                       3 * faces, sizeof *builder->faces.data);
+    if (triangles == NULL)
+        return starg_fail_memory(context, STARG_MESH_FILE);
+    builder->faces.data = triangles;
+    builder->faces.capacity = 3 * faces;
+    return STARG_OK;
+}
+
+static starg_status fail_range(starg_mesh_builder *builder, size_t axis, double value,
+                               starg_place place) {
+    char where[320];
+    describe_place(builder->source, place, where, sizeof where);
+    uint64_t vertex = starg_builder_vertex_count(builder);
+    return starg_fail_at(builder->source->context, STARG_ERROR_RANGE, STARG_MESH_FILE,
+                         STARG_ELEMENT_VERTEX, &vertex, 1,
+                         "%s: coordinate %c of vertex %zu is %g; coordinates must be finite and "
+                         "below 1e100 in magnitude",
+                         where, "xyz"[axis], (size_t)vertex, value);
+}
+
+starg_status starg_builder_vertex(starg_mesh_builder *builder, const double point[3],
+                                  starg_place place) {
+    starg_status status = STARG_OK;
+    for (size_t k = 0; k < 3; k++)
+        if (!(fabs(point[k]) < STARG_COORDINATE_LIMIT)) /* true for NaN as well */
+            return fail_range(builder, k, point[k], place);
+    for (size_t k = 0; k < 3; k++)
+        STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->vertices, point[k]);
+done:
+    return status;
+}
+
+starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, starg_place place) {
+    starg_status status = STARG_OK;
+    size_t count = starg_builder_vertex_count(builder);
+    if (vertex < 0 || (uint64_t)vertex >= count || vertex > UINT32_MAX)
+        return starg_source_fail(builder->source, place,
+                                 "a face names vertex %lld (counted from 0), but there are only "
+                                 "%zu vertices",
+                                 (long long)vertex, count);
+    STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->corners, (uint32_t)vertex);
+done:
+    return status;
+}
+
+/* Room for `count` more face indices. */
+static starg_status make_room(starg_mesh_builder *builder, size_t count) {
+    size_t needed = builder->faces.count + count;
+    if (needed <= builder->faces.capacity)
+        return STARG_OK;
+    size_t capacity = needed > 2 * builder->faces.capacity ? needed : 2 * builder->faces.capacity;
+    uint32_t *grown = starg_reallocate(builder->source->context, builder->faces.data,
+                                       builder->faces.count, capacity, sizeof *grown);
+    if (grown == NULL)
+        return starg_fail_memory(builder->source->context, STARG_MESH_FILE);
+    builder->faces.data = grown;
+    builder->faces.capacity = capacity;
+    return STARG_OK;
+}
+
+starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place) {
+    starg_status status = STARG_OK;
+    const uint32_t *corners = builder->corners.data;
+    size_t count = builder->corners.count;
+    if (count < 3)
+        return starg_source_fail(builder->source, place,
+                                 "a face has %zu corner%s; it needs at least 3", count,
+                                 count == 1 ? "" : "s");
+    STARG_TRY(make_room(builder, 3 * (count - 2)));
+    uint32_t *triangles = builder->faces.data + builder->faces.count;
+    if (!starg_polygon_fan(builder->vertices.data, corners, count, triangles)) {
+        if (count > MAX_CONCAVE_CORNERS)
+            return starg_source_fail(builder->source, place,
+                                     "a face that is not convex has %zu corners; up to %d can be "
+                                     "cut into triangles, so cut it up before",
+                                     count, MAX_CONCAVE_CORNERS);
+        STARG_TRY(starg_polygon_clip(builder->source->context, builder->vertices.data, corners,
+                                     count, triangles));
+    }
+    builder->faces.count += 3 * (count - 2);
+    builder->corners.count = 0;
+done:
+    return status;
+}
+
+starg_status starg_builder_tick(starg_mesh_builder *builder, size_t done) {
+    if (++builder->ticks % TICKS != 0)
+        return STARG_OK;
+    starg_progress_step(builder->source->context, done, builder->source->size);
+    return starg_check_cancel(builder->source->context, STARG_MESH_FILE);
+}
+
+starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out) {
+    if (builder->faces.count == 0)
+        return starg_source_fail(builder->source, starg_at_file(),
+                                 "the file has no faces; a surface of triangles or polygons is "
+                                 "needed");
+    starg_status status = starg_mesh_adopt(builder->source->context, builder->vertices.data,
+                                           builder->vertices.count / 3, builder->faces.data,
+                                           builder->faces.count / 3, out);
+    if (status == STARG_OK) {
+        builder->vertices.data = NULL;
+        builder->faces.data = NULL;
+    }
+    return status;
+}
+
+void starg_builder_free(starg_mesh_builder *builder) {
+    STARG_ARRAY_FREE(builder->source->context, &builder->vertices);
+    STARG_ARRAY_FREE(builder->source->context, &builder->faces);
+    STARG_ARRAY_FREE(builder->source->context, &builder->corners);
+}

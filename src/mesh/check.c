@@ -1,0 +1,361 @@
+/* The check of a mesh as the boundary of a solid.
+ *
+ * Stages: corners, edges, vertices (fans), positions, duplicate faces, degenerate faces,
+ * intersections by the tree over all pairs whose boxes meet, shells. All decisions are exact.
+ * Cost: O(n log n) plus the number of box pairs. */
+#include "starguard/check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/bvh.h"
+#include "geometry/intersect.h"
+#include "geometry/predicates.h"
+#include "mesh/examine.h"
+#include "mesh/mesh.h"
+
+typedef struct checker {
+    starg_context *context;
+    const starg_mesh *mesh;
+    starg_check *check;
+    mesh_topology *topology;
+    bvh *tree;
+    mesh_shell *shells;
+} checker;
+
+const char *starg_finding_name(starg_finding_kind kind) {
+    static const char *const names[STARG_FINDING_KINDS] = {
+        "open edges",         "non-manifold edges", "non-manifold vertices", "inconsistent edges",
+        "repeated corners",   "inward shells",      "degenerate faces",      "duplicate faces",
+        "duplicate vertices", "isolated vertices",  "self-intersections",    "self-contacts"};
+    return kind < STARG_FINDING_KINDS ? names[kind] : "unknown findings";
+}
+
+static void mark_face(checker *c, starg_finding_kind kind, size_t face) {
+    uint8_t *mark = &c->check->face_marks[face];
+    if (*mark == 0 || *mark > kind + 1)
+        *mark = (uint8_t)(kind + 1);
+}
+
+static void find_one(checker *c, starg_finding_kind kind, starg_element element, uint64_t index) {
+    starg_finding *finding = &c->check->findings[kind];
+    finding->count++;
+    finding->element = element;
+    if (finding->shown < STARG_ERROR_INDICES)
+        finding->first[finding->shown++] = index;
+}
+
+static void find_pair(checker *c, starg_finding_kind kind, starg_element element, uint64_t a,
+                      uint64_t b) {
+    starg_finding *finding = &c->check->findings[kind];
+    find_one(c, kind, element, a);
+    if (finding->shown < STARG_ERROR_INDICES)
+        finding->first[finding->shown++] = b;
+}
+
+static const double *position(const checker *c, uint32_t vertex) {
+    return c->mesh->vertices + 3 * (size_t)vertex;
+}
+
+static void check_corners(checker *c) {
+    const uint32_t *f = c->mesh->faces;
+    for (size_t i = 0; i < c->mesh->face_count; i++, f += 3) {
+        if (f[0] != f[1] && f[1] != f[2] && f[2] != f[0])
+            continue;
+        find_one(c, STARG_FINDING_REPEATED_CORNER, STARG_ELEMENT_FACE, i);
+        mark_face(c, STARG_FINDING_REPEATED_CORNER, i);
+    }
+}
+
+static void check_edge(checker *c, uint32_t halfedge) {
+    const uint32_t *faces = c->mesh->faces;
+    uint32_t a = faces[halfedge], b = faces[corner_next(halfedge)];
+    size_t count = topology_edge_faces(c->topology, halfedge);
+    starg_finding_kind kind;
+    if (count == 1)
+        kind = STARG_FINDING_OPEN_EDGE;
+    else if (count > 2)
+        kind = STARG_FINDING_NONMANIFOLD_EDGE;
+    else if (faces[c->topology->ring[halfedge]] == a)
+        kind = STARG_FINDING_INCONSISTENT_EDGE;
+    else
+        return;
+    find_pair(c, kind, STARG_ELEMENT_EDGE, a < b ? a : b, a < b ? b : a);
+    for (size_t i = 0; i < count; i++, halfedge = c->topology->ring[halfedge])
+        mark_face(c, kind, halfedge / 3);
+}
+
+static void check_edges(checker *c) {
+    for (uint32_t h = 0; h < 3 * c->mesh->face_count; h++) {
+        bool lowest = true;
+        for (uint32_t o = c->topology->ring[h]; o != h && lowest; o = c->topology->ring[o])
+            lowest = h < o;
+        if (lowest)
+            check_edge(c, h);
+    }
+}
+
+/* The corners at a vertex that are linked across edges of two faces form a fan. */
+static void link_fans(const checker *c, uint32_t *fan) {
+    const uint32_t *faces = c->mesh->faces;
+    for (uint32_t h = 0; h < 3 * c->mesh->face_count; h++) {
+        uint32_t twin = c->topology->twin[h];
+        if (twin == TOPOLOGY_NONE || twin < h)
+            continue;
+        uint32_t other_end = corner_next(twin);
+        bool opposite = faces[twin] != faces[h];
+        sets_join(fan, h, opposite ? other_end : twin);
+        sets_join(fan, corner_next(h), opposite ? twin : other_end);
+    }
+}
+
+static starg_status check_vertices(checker *c) {
+    starg_status status = STARG_OK;
+    size_t corners = 3 * c->mesh->face_count;
+    uint32_t *fan = NULL, *fans = NULL;
+    STARG_NEW(c->context, "check", fan, corners);
+    STARG_NEW_ZERO(c->context, "check", fans, c->mesh->vertex_count);
+    sets_make(fan, corners);
+    link_fans(c, fan);
+    for (uint32_t h = 0; h < corners; h++)
+        if (sets_find(fan, h) == h)
+            fans[c->mesh->faces[h]]++;
+    for (size_t v = 0; v < c->mesh->vertex_count; v++) {
+        if (fans[v] == 0)
+            find_one(c, STARG_FINDING_ISOLATED_VERTEX, STARG_ELEMENT_VERTEX, v);
+        else if (fans[v] > 1)
+            find_one(c, STARG_FINDING_NONMANIFOLD_VERTEX, STARG_ELEMENT_VERTEX, v);
+    }
+    for (size_t h = 0; h < corners; h++)
+        if (fans[c->mesh->faces[h]] > 1)
+            mark_face(c, STARG_FINDING_NONMANIFOLD_VERTEX, h / 3);
+done:
+    starg_release(c->context, fan);
+    starg_release(c->context, fans);
+    return status;
+}
+
+typedef struct place {
+    double p[3];
+    uint32_t vertex;
+} place;
+
+static int compare_places(const void *left, const void *right) {
+    const place *a = left, *b = right;
+    for (int k = 0; k < 3; k++)
+        if (a->p[k] != b->p[k])
+            return a->p[k] < b->p[k] ? -1 : 1;
+    return (a->vertex > b->vertex) - (a->vertex < b->vertex);
+}
+
+static int compare_indices(const void *left, const void *right) {
+    const uint32_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+static starg_status check_positions(checker *c) {
+    starg_status status = STARG_OK;
+    size_t count = c->mesh->vertex_count, doubled = 0;
+    place *places = NULL;
+    uint32_t *found = NULL;
+    STARG_NEW(c->context, "check", places, count);
+    STARG_NEW(c->context, "check", found, count);
+    for (size_t v = 0; v < count; v++) {
+        memcpy(places[v].p, position(c, (uint32_t)v), sizeof places[v].p);
+        places[v].vertex = (uint32_t)v;
+    }
+    qsort(places, count, sizeof *places, compare_places);
+    for (size_t i = 1; i < count; i++) {
+        const double *p = places[i].p, *q = places[i - 1].p;
+        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
+            found[doubled++] = places[i].vertex;
+    }
+    qsort(found, doubled, sizeof *found, compare_indices);
+    for (size_t i = 0; i < doubled; i++)
+        find_one(c, STARG_FINDING_DUPLICATE_VERTEX, STARG_ELEMENT_VERTEX, found[i]);
+done:
+    starg_release(c->context, places);
+    starg_release(c->context, found);
+    return status;
+}
+
+static bool same_corners(const uint32_t *a, const uint32_t *b) {
+    int common = 0;
+    for (int i = 0; i < 3; i++)
+        common += a[i] == b[0] || a[i] == b[1] || a[i] == b[2];
+    return common == 3;
+}
+
+/* A duplicate shares all its edges: it is found in the ring of its first one. */
+static void check_duplicates(checker *c) {
+    const uint32_t *faces = c->mesh->faces;
+    for (uint32_t f = 0; f < c->mesh->face_count; f++) {
+        bool doubled = false;
+        for (uint32_t h = c->topology->ring[3 * f]; h != 3 * f && !doubled;
+             h = c->topology->ring[h])
+            doubled = h / 3 < f && same_corners(faces + 3 * (size_t)f, faces + h / 3 * (size_t)3);
+        if (!doubled)
+            continue;
+        find_one(c, STARG_FINDING_DUPLICATE_FACE, STARG_ELEMENT_FACE, f);
+        mark_face(c, STARG_FINDING_DUPLICATE_FACE, f);
+    }
+}
+
+static void check_areas(checker *c) {
+    const uint32_t *f = c->mesh->faces;
+    for (size_t i = 0; i < c->mesh->face_count; i++, f += 3) {
+        if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0])
+            continue;
+        if (!collinear(position(c, f[0]), position(c, f[1]), position(c, f[2])))
+            continue;
+        find_one(c, STARG_FINDING_DEGENERATE_FACE, STARG_ELEMENT_FACE, i);
+        mark_face(c, STARG_FINDING_DEGENERATE_FACE, i);
+    }
+}
+
+/* Puts the corners that two faces share first, in the same order in both; returns their number. */
+static int align_shared(const checker *c, uint32_t a, uint32_t b, const double *s[3],
+                        const double *t[3]) {
+    uint32_t u[3], v[3];
+    int shared = 0;
+    memcpy(u, c->mesh->faces + 3 * (size_t)a, sizeof u);
+    memcpy(v, c->mesh->faces + 3 * (size_t)b, sizeof v);
+    for (int i = 0; i < 3; i++)
+        for (int j = shared; j < 3; j++)
+            if (i >= shared && u[i] == v[j]) {
+                uint32_t swap_u = u[i], swap_v = v[j];
+                u[i] = u[shared];
+                v[j] = v[shared];
+                u[shared] = swap_u;
+                v[shared] = swap_v;
+                shared++;
+                break;
+            }
+    for (int k = 0; k < 3; k++) {
+        s[k] = position(c, u[k]);
+        t[k] = position(c, v[k]);
+    }
+    return shared;
+}
+
+static bool check_pair(void *user, uint32_t a, uint32_t b) {
+    checker *c = user;
+    const double *s[3], *t[3];
+    int shared = align_shared(c, a, b, s, t);
+    triangle_contact contact = triangles_contact(s, t, shared);
+    if (contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS) {
+        starg_finding_kind kind = contact == TRIANGLES_CROSS ? STARG_FINDING_SELF_INTERSECTION
+                                                             : STARG_FINDING_SELF_CONTACT;
+        find_pair(c, kind, STARG_ELEMENT_FACE, a, b);
+        mark_face(c, kind, a);
+        mark_face(c, kind, b);
+        uint32_t first = c->topology->component[a], second = c->topology->component[b];
+        if (kind == STARG_FINDING_SELF_INTERSECTION && first != second)
+            c->shells[first].crossed = c->shells[second].crossed = true;
+    }
+    return !atomic_load_explicit(&c->context->cancelled, memory_order_relaxed);
+}
+
+static starg_status check_intersections(checker *c) {
+    starg_progress_begin(c->context, "check");
+    bvh_query_pairs(c->tree, check_pair, c);
+    starg_progress_end(c->context);
+    return starg_check_cancel(c->context, "check");
+}
+
+static size_t count_of(const checker *c, starg_finding_kind kind) {
+    return c->check->findings[kind].count;
+}
+
+static starg_status check_shells(checker *c) {
+    starg_check *check = c->check;
+    starg_status status = shells_classify(c->context, c->mesh, c->topology, c->tree, c->shells);
+    if (status != STARG_OK)
+        return status;
+    for (size_t i = 0; i < c->topology->component_count; i++) {
+        const mesh_shell *own = &c->shells[i];
+        check->cavities += own->cavity;
+        check->volume += own->turn ? -own->volume : own->volume;
+        if (own->turn)
+            find_one(c, STARG_FINDING_INWARD_COMPONENT, STARG_ELEMENT_FACE, own->first_face);
+    }
+    return STARG_OK;
+}
+
+static void summarise(checker *c) {
+    starg_check *check = c->check;
+    double lower[3], upper[3];
+    starg_mesh_bounds(c->mesh, lower, upper);
+    check->vertices = c->mesh->vertex_count;
+    check->faces = c->mesh->face_count;
+    check->edges = c->topology->edge_count;
+    check->components = c->topology->component_count;
+    check->area = starg_mesh_area(c->mesh);
+    check->diagonal = hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+    check->manifold = count_of(c, STARG_FINDING_NONMANIFOLD_EDGE) == 0 &&
+                      count_of(c, STARG_FINDING_NONMANIFOLD_VERTEX) == 0 &&
+                      count_of(c, STARG_FINDING_REPEATED_CORNER) == 0;
+    check->closed = count_of(c, STARG_FINDING_OPEN_EDGE) == 0 && check->faces > 0;
+    check->oriented = count_of(c, STARG_FINDING_INCONSISTENT_EDGE) == 0;
+    check->embedded = count_of(c, STARG_FINDING_DEGENERATE_FACE) == 0 &&
+                      count_of(c, STARG_FINDING_SELF_INTERSECTION) == 0 &&
+                      count_of(c, STARG_FINDING_SELF_CONTACT) == 0 && check->manifold;
+    check->genus = -1;
+    if (check->closed && check->manifold) {
+        int64_t used = (int64_t)(check->vertices - count_of(c, STARG_FINDING_ISOLATED_VERTEX));
+        int64_t euler = used - (int64_t)check->edges + (int64_t)check->faces;
+        check->genus = (int64_t)check->components - euler / 2;
+    }
+}
+
+starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_examination *out) {
+    starg_status status = STARG_OK;
+    checker c = {.context = context, .mesh = mesh};
+    STARG_NEW_ZERO(context, "check", c.check, 1);
+    STARG_NEW_ZERO(context, "check", c.check->face_marks, mesh->face_count);
+    STARG_TRY(topology_create(context, mesh, &c.topology));
+    STARG_TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &c.tree));
+    STARG_NEW_ZERO(context, "check", c.shells, c.topology->component_count);
+    check_corners(&c);
+    check_edges(&c);
+    STARG_TRY(check_vertices(&c));
+    STARG_TRY(check_positions(&c));
+    check_duplicates(&c);
+    check_areas(&c);
+    STARG_TRY(check_intersections(&c));
+    summarise(&c);
+    if (c.check->closed && c.check->manifold && c.check->oriented)
+        STARG_TRY(check_shells(&c));
+    c.check->usable = c.check->volume > 0;
+done:
+    *out = (mesh_examination){c.check, c.topology, c.tree, c.shells};
+    return status;
+}
+
+void mesh_examination_free(starg_context *context, mesh_examination *examination) {
+    starg_check_free(context, examination->check);
+    topology_free(examination->topology);
+    bvh_free(examination->tree);
+    starg_release(context, examination->shells);
+}
+
+starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, starg_check **out) {
+    mesh_examination all;
+    starg_status status = mesh_examine(context, mesh, &all);
+    *out = NULL;
+    if (status == STARG_OK) {
+        *out = all.check;
+        all.check = NULL;
+    }
+    mesh_examination_free(context, &all);
+    return status;
+}
+
+void starg_check_free(starg_context *context, starg_check *check) {
+    if (check == NULL)
+        return;
+    starg_release(context, check->face_marks);
+    starg_release(context, check);
+}

@@ -1,0 +1,21 @@
+/* The check together with the tables that it was made from, for callers that go on with them. */
+#ifndef STARG_MESH_EXAMINE_H
+#define STARG_MESH_EXAMINE_H
+
+#include "geometry/bvh.h"
+#include "mesh/shells.h"
+#include "mesh/topology.h"
+#include "starguard/check.h"
+
+typedef struct mesh_examination {
+    starg_check *check;
+    mesh_topology *topology;
+    bvh *tree;          /* borrows the mesh's arrays */
+    mesh_shell *shells; /* topology->component_count; classified only if closed and consistent */
+} mesh_examination;
+
+/* Examines a mesh; release with mesh_examination_free, whatever the status. */
+starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_examination *out);
+void mesh_examination_free(starg_context *context, mesh_examination *examination);
+
+#endif

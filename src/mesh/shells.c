@@ -1,0 +1,64 @@
+/* The depth of a shell is the number of other shells that have a winding number other than 0
+ * about one of its corners, counted along a vertical line: O(log n) per shell as a rule. */
+#include "mesh/shells.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+
+typedef struct line_query {
+    const bvh *tree;
+    const mesh_topology *topology;
+    const double *p;
+    int *winding; /* per mesh_shell */
+} line_query;
+
+static bool count_crossing(void *user, uint32_t triangle) {
+    line_query *query = user;
+    query->winding[query->topology->component[triangle]] +=
+        bvh_crossing(query->tree, triangle, query->p);
+    return true;
+}
+
+static size_t nesting_depth(const bvh *tree, const mesh_topology *topology, const double *p,
+                            uint32_t own, int *winding) {
+    line_query query = {tree, topology, p, winding};
+    bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
+    size_t depth = 0;
+    memset(winding, 0, topology->component_count * sizeof *winding);
+    bvh_query_box(tree, &line, count_crossing, &query);
+    for (size_t c = 0; c < topology->component_count; c++)
+        depth += c != own && winding[c] != 0;
+    return depth;
+}
+
+static void sum_volumes(const starg_mesh *mesh, const mesh_topology *topology, mesh_shell *shells) {
+    for (size_t f = mesh->face_count; f-- > 0;) {
+        mesh_shell *own = &shells[topology->component[f]];
+        double a[3], b[3], c[3];
+        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f], mesh->vertices, a);
+        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 1], mesh->vertices, b);
+        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 2], mesh->vertices, c);
+        own->volume += vec3_triple(a, b, c) / 6;
+        own->first_face = (uint32_t)f;
+    }
+}
+
+starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
+                             const mesh_topology *topology, const bvh *tree, mesh_shell *shells) {
+    starg_status status = STARG_OK;
+    int *winding = NULL;
+    STARG_NEW(context, "check", winding, topology->component_count);
+    sum_volumes(mesh, topology, shells);
+    for (size_t c = 0; c < topology->component_count; c++) {
+        mesh_shell *own = &shells[c];
+        const double *p = mesh->vertices + 3 * (size_t)mesh->faces[3 * (size_t)own->first_face];
+        if (!own->crossed)
+            own->cavity = nesting_depth(tree, topology, p, (uint32_t)c, winding) % 2 == 1;
+        own->turn = own->cavity ? own->volume > 0 : own->volume < 0;
+    }
+done:
+    starg_release(context, winding);
+    return status;
+}

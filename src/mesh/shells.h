@@ -1,0 +1,27 @@
+/* How the closed shells of a mesh lie in one another, and which of them must be turned so that
+ * all faces point out of the solid. */
+#ifndef STARG_MESH_SHELLS_H
+#define STARG_MESH_SHELLS_H
+
+#include <stdbool.h>
+
+#include "geometry/bvh.h"
+#include "mesh/mesh.h"
+#include "mesh/topology.h"
+
+typedef struct mesh_shell {
+    uint32_t first_face;
+    double volume; /* signed, as given       */
+    bool crossed;  /* intersects other shells; set by the caller */
+    bool cavity;   /* bounds a hole: it lies in an odd number of other shells */
+    bool turn;     /* faces must be reversed */
+} mesh_shell;
+
+/* Fills volume, cavity and turn of topology->component_count shells of a closed, oriented mesh.
+ * Shells nest: one inside an even number of others bounds the solid from outside (positive
+ * volume), one inside an odd number bounds a cavity (negative). Where shells intersect nesting
+ * has no meaning; those all get positive volume. Errors: MEMORY. */
+starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
+                             const mesh_topology *topology, const bvh *tree, mesh_shell *shells);
+
+#endif

@@ -1,0 +1,122 @@
+#include "mesh/solid.h"
+
+#include <stdio.h>
+
+#include "core/memory.h"
+#include "mesh/examine.h"
+
+/* Findings that no solid may have, in the order in which they are told. */
+static const starg_finding_kind FATAL[] = {
+    STARG_FINDING_REPEATED_CORNER, STARG_FINDING_OPEN_EDGE, STARG_FINDING_NONMANIFOLD_EDGE,
+    STARG_FINDING_NONMANIFOLD_VERTEX, STARG_FINDING_INCONSISTENT_EDGE};
+
+static starg_status fail_unusable(starg_context *context, const starg_check *check) {
+    char list[256] = "";
+    size_t used = 0;
+    const starg_finding *first = NULL;
+    for (size_t i = 0; i < sizeof FATAL / sizeof *FATAL; i++) {
+        const starg_finding *finding = &check->findings[FATAL[i]];
+        if (finding->count == 0)
+            continue;
+        if (first == NULL)
+            first = finding;
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s: %zu", used ? ", " : "",
+                                 starg_finding_name(FATAL[i]), finding->count);
+    }
+    if (first != NULL)
+        return starg_fail_at(context, STARG_ERROR_MESH, "solid", first->element, first->first,
+                             first->shown,
+                             "the mesh does not bound a solid (%s); 'starguard check' shows where, "
+                             "'starguard repair' may mend it",
+                             list);
+    if (check->faces == 0)
+        return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh has no faces");
+    return starg_fail(context, STARG_ERROR_MESH, "solid",
+                      "the mesh is closed but encloses no volume: its shells are flat or doubled");
+}
+
+static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const mesh_shell *shells) {
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        if (!shells[topology->component[f]].turn)
+            continue;
+        uint32_t *corner = mesh->faces + 3 * f, swap = corner[1];
+        corner[1] = corner[2];
+        corner[2] = swap;
+    }
+}
+
+static void tell(starg_context *context, const starg_check *check) {
+    size_t turned = check->findings[STARG_FINDING_INWARD_COMPONENT].count;
+    size_t crossing = check->findings[STARG_FINDING_SELF_INTERSECTION].count;
+    size_t flat = check->findings[STARG_FINDING_DEGENERATE_FACE].count;
+    if (turned > 0)
+        starg_log(context, STARG_LOG_NOTICE, "%zu of %zu shells faced the wrong way and %s turned",
+                  turned, check->components, turned == 1 ? "was" : "were");
+    if (crossing > 0)
+        starg_log(context, STARG_LOG_WARNING,
+                  "%zu pairs of faces intersect (first: %llu and %llu); every one of them still "
+                  "blocks the view",
+                  crossing,
+                  (unsigned long long)check->findings[STARG_FINDING_SELF_INTERSECTION].first[0],
+                  (unsigned long long)check->findings[STARG_FINDING_SELF_INTERSECTION].first[1]);
+    if (flat > 0)
+        starg_log(context, STARG_LOG_WARNING,
+                  "%zu faces have no area (first: %llu); nothing can see them", flat,
+                  (unsigned long long)check->findings[STARG_FINDING_DEGENERATE_FACE].first[0]);
+}
+
+starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    mesh_examination all = {0};
+    *out = NULL;
+    STARG_NEW_ZERO(context, "solid", solid, 1);
+    solid->context = context;
+    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
+                                mesh->face_count, &solid->mesh));
+    STARG_TRY(mesh_examine(context, solid->mesh, &all));
+    if (!all.check->usable) {
+        status = fail_unusable(context, all.check);
+        goto done;
+    }
+    turn_shells(solid->mesh, all.topology, all.shells);
+    tell(context, all.check);
+    solid->check = all.check;
+    solid->tree = all.tree;
+    all.check = NULL;
+    all.tree = NULL;
+    *out = solid;
+done:
+    mesh_examination_free(context, &all);
+    if (status != STARG_OK)
+        starg_solid_free(solid);
+    return status;
+}
+
+void starg_solid_free(starg_solid *solid) {
+    if (solid == NULL)
+        return;
+    starg_context *context = solid->context;
+    starg_mesh_free(solid->mesh);
+    starg_check_free(context, solid->check);
+    bvh_free(solid->tree);
+    starg_release(context, solid);
+}
+
+const starg_mesh *starg_solid_mesh(const starg_solid *solid) {
+    return solid->mesh;
+}
+
+const starg_check *starg_solid_check(const starg_solid *solid) {
+    return solid->check;
+}
+
+bool starg_solid_contains(const starg_solid *solid, const double p[3]) {
+    bool on_surface;
+    int winding = bvh_winding(solid->tree, p, &on_surface);
+    return winding > 0 && !on_surface;
+}
+
+double starg_solid_distance(const starg_solid *solid, const double p[3]) {
+    return bvh_distance(solid->tree, p);
+}

@@ -1,0 +1,44 @@
+/* Which faces meet along which edges, and the connected parts that follow from it. */
+#ifndef STARG_MESH_TOPOLOGY_H
+#define STARG_MESH_TOPOLOGY_H
+
+#include "mesh/mesh.h"
+
+#define TOPOLOGY_NONE UINT32_MAX
+
+/* Corner k of face f has number 3 f + k and stands also for the halfedge from it to the next
+ * corner of f. */
+static inline uint32_t corner_next(uint32_t corner) {
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+static inline uint32_t corner_previous(uint32_t corner) {
+    return corner % 3 == 0 ? corner + 2 : corner - 1;
+}
+
+typedef struct mesh_topology {
+    starg_context *context;
+    size_t vertex_count, face_count, edge_count;
+    size_t component_count;
+    /* The halfedge on the other side of an edge of exactly two faces, else TOPOLOGY_NONE. */
+    uint32_t *twin;
+    /* Faces on each edge are chained: the next halfedge on the same edge, cyclic. */
+    uint32_t *ring;
+    /* Component of each face, numbered by their lowest face. */
+    uint32_t *component;
+} mesh_topology;
+
+/* Builds the tables in O(n log d) for vertices of degree d. Errors: MEMORY. */
+starg_status topology_create(starg_context *context, const starg_mesh *mesh, mesh_topology **out);
+void topology_free(mesh_topology *topology);
+
+/* Number of halfedges on the edge of `halfedge`. */
+size_t topology_edge_faces(const mesh_topology *topology, uint32_t halfedge);
+
+/* Disjoint sets over 0 .. count - 1 in a caller's array of parents. */
+void sets_make(uint32_t *parent, size_t count);
+uint32_t sets_find(uint32_t *parent, uint32_t item);
+/* The smaller root becomes the root. */
+void sets_join(uint32_t *parent, uint32_t a, uint32_t b);
+
+#endif

@@ -1,0 +1,19 @@
+/* Welding: points at exactly equal positions become one vertex. */
+#ifndef STARG_MESH_WELD_H
+#define STARG_MESH_WELD_H
+
+#include "mesh/io.h"
+
+typedef struct starg_weld {
+    starg_mesh_builder *builder;
+    uint32_t *slots; /* vertex + 1, or 0 for a free slot; open addressing, at most half full */
+    size_t size;     /* a power of two */
+} starg_weld;
+
+/* The builder's vertex at `point`, which is appended when it is new; vertices keep the order of
+ * their first appearance, and -0 counts as 0. Errors: RANGE, MEMORY. */
+starg_status starg_weld_point(starg_weld *weld, const double point[3], starg_place place,
+                              uint32_t *vertex);
+void starg_weld_free(starg_weld *weld);
+
+#endif
