@@ -1,0 +1,592 @@
+/* Signs are determinants of rationals. Intersections are systems of linear equations and
+ * inequalities in the parameters of the shapes, whose solvability is decided by Gauss elimination
+ * and then Fourier-Motzkin elimination: no case of position is special, so none can be missed.
+ * The winding number counts the crossings of a ray whose random direction is replaced whenever it
+ * meets a triangle anywhere but in its open inside. */
+#include "exact_oracle.h"
+
+#include <gmp.h>
+#include <stdlib.h>
+
+#include "core/rng.h"
+
+/* ---- rational vectors and determinants ---- */
+
+typedef struct vector {
+    mpq_t x[3];
+} vector;
+
+static void vector_init(vector *v) {
+    for (int k = 0; k < 3; k++)
+        mpq_init(v->x[k]);
+}
+
+static void vector_clear(vector *v) {
+    for (int k = 0; k < 3; k++)
+        mpq_clear(v->x[k]);
+}
+
+static void vector_set(vector *v, const double a[3]) {
+    for (int k = 0; k < 3; k++)
+        mpq_set_d(v->x[k], a[k]);
+}
+
+/* v = a - b */
+static void vector_difference(vector *v, const double a[3], const double b[3]) {
+    mpq_t t;
+    mpq_init(t);
+    for (int k = 0; k < 3; k++) {
+        mpq_set_d(v->x[k], a[k]);
+        mpq_set_d(t, b[k]);
+        mpq_sub(v->x[k], v->x[k], t);
+    }
+    mpq_clear(t);
+}
+
+/* out = a b - c d */
+static void two_by_two(mpq_t out, const mpq_t a, const mpq_t b, const mpq_t c, const mpq_t d) {
+    mpq_t s, t;
+    mpq_inits(s, t, (mpq_ptr)NULL);
+    mpq_mul(s, a, b);
+    mpq_mul(t, c, d);
+    mpq_sub(out, s, t);
+    mpq_clears(s, t, (mpq_ptr)NULL);
+}
+
+/* out = a x b; out is neither. */
+static void vector_cross(vector *out, const vector *a, const vector *b) {
+    for (int k = 0; k < 3; k++) {
+        int u = (k + 1) % 3, v = (k + 2) % 3;
+        two_by_two(out->x[k], a->x[u], b->x[v], a->x[v], b->x[u]);
+    }
+}
+
+static void vector_dot(mpq_t out, const vector *a, const vector *b) {
+    mpq_t sum, t;
+    mpq_inits(sum, t, (mpq_ptr)NULL);
+    for (int k = 0; k < 3; k++) {
+        mpq_mul(t, a->x[k], b->x[k]);
+        mpq_add(sum, sum, t);
+    }
+    mpq_set(out, sum);
+    mpq_clears(sum, t, (mpq_ptr)NULL);
+}
+
+/* out = det(a, b, c) */
+static void determinant(mpq_t out, const vector *a, const vector *b, const vector *c) {
+    vector n;
+    vector_init(&n);
+    vector_cross(&n, b, c);
+    vector_dot(out, a, &n);
+    vector_clear(&n);
+}
+
+static int determinant_sign(const vector *a, const vector *b, const vector *c) {
+    mpq_t d;
+    mpq_init(d);
+    determinant(d, a, b, c);
+    int sign = mpq_sgn(d);
+    mpq_clear(d);
+    return sign;
+}
+
+/* ---- predicates ---- */
+
+int oracle_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]) {
+    vector u, v, w;
+    vector_init(&u);
+    vector_init(&v);
+    vector_init(&w);
+    vector_difference(&u, a, d);
+    vector_difference(&v, b, d);
+    vector_difference(&w, c, d);
+    int sign = determinant_sign(&u, &v, &w);
+    vector_clear(&u);
+    vector_clear(&v);
+    vector_clear(&w);
+    return sign;
+}
+
+/* (b - a) x (c - a) */
+static void normal(vector *n, const double a[3], const double b[3], const double c[3]) {
+    vector s, t;
+    vector_init(&s);
+    vector_init(&t);
+    vector_difference(&s, b, a);
+    vector_difference(&t, c, a);
+    vector_cross(n, &s, &t);
+    vector_clear(&s);
+    vector_clear(&t);
+}
+
+int oracle_orient2d(const double a[3], const double b[3], const double c[3], int u, int v) {
+    vector n;
+    vector_init(&n);
+    normal(&n, (double[3]){a[u], a[v], 0}, (double[3]){b[u], b[v], 0}, (double[3]){c[u], c[v], 0});
+    int sign = mpq_sgn(n.x[2]);
+    vector_clear(&n);
+    return sign;
+}
+
+bool oracle_collinear(const double a[3], const double b[3], const double c[3]) {
+    vector n;
+    vector_init(&n);
+    normal(&n, a, b, c);
+    bool none = mpq_sgn(n.x[0]) == 0 && mpq_sgn(n.x[1]) == 0 && mpq_sgn(n.x[2]) == 0;
+    vector_clear(&n);
+    return none;
+}
+
+/* The determinant of the rows (x - e, |x - e|^2) for x = a, b, c, d, expanded by its last column.
+ * Its sign is that of a point inside for a positive orient3d(a, b, c, d): with e at the centre of
+ * a regular tetrahedron all four squares are r^2, and the cofactors sum to det(a - d, ...). */
+int oracle_insphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                    const double e[3]) {
+    const double *points[4] = {a, b, c, d};
+    vector rows[4];
+    for (int i = 0; i < 4; i++) {
+        vector_init(&rows[i]);
+        vector_difference(&rows[i], points[i], e);
+    }
+    mpq_t sum, square, minor;
+    mpq_inits(sum, square, minor, (mpq_ptr)NULL);
+    for (int i = 0; i < 4; i++) {
+        const vector *others[3];
+        for (int j = 0, n = 0; j < 4; j++)
+            if (j != i)
+                others[n++] = &rows[j];
+        determinant(minor, others[0], others[1], others[2]);
+        vector_dot(square, &rows[i], &rows[i]);
+        mpq_mul(minor, minor, square);
+        if (i % 2 == 1) /* the sign of cofactor (i, 3) is (-1)^(i + 1), turned as a whole */
+            mpq_sub(sum, sum, minor);
+        else
+            mpq_add(sum, sum, minor);
+    }
+    int sign = -mpq_sgn(sum);
+    mpq_clears(sum, square, minor, (mpq_ptr)NULL);
+    for (int i = 0; i < 4; i++)
+        vector_clear(&rows[i]);
+    return sign;
+}
+
+int oracle_compare_distance(const double p[3], const double q[3], double radius) {
+    vector v;
+    vector_init(&v);
+    vector_difference(&v, p, q);
+    mpq_t square, limit;
+    mpq_inits(square, limit, (mpq_ptr)NULL);
+    vector_dot(square, &v, &v);
+    mpq_set_d(limit, radius);
+    mpq_mul(limit, limit, limit);
+    int sign = mpq_cmp(square, limit);
+    mpq_clears(square, limit, (mpq_ptr)NULL);
+    vector_clear(&v);
+    return (sign > 0) - (sign < 0);
+}
+
+/* ---- linear systems ---- */
+
+enum { VARIABLES = 5 }; /* the most that any pair of shapes needs */
+
+typedef enum relation { EQUAL_ZERO, AT_LEAST_ZERO, ABOVE_ZERO } relation;
+
+/* sum of k[i] x[i] over the variables, plus k[VARIABLES], stands in `relation` to zero. */
+typedef struct row {
+    mpq_t k[VARIABLES + 1];
+    relation relation;
+} row;
+
+typedef struct linear_system {
+    row *rows;
+    size_t count, capacity;
+} linear_system;
+
+static row *new_row(linear_system *s, relation r) {
+    if (s->count == s->capacity) {
+        s->capacity = s->capacity ? 2 * s->capacity : 16;
+        s->rows = realloc(s->rows, s->capacity * sizeof *s->rows);
+        if (s->rows == NULL)
+            abort();
+    }
+    row *added = &s->rows[s->count++];
+    for (int i = 0; i <= VARIABLES; i++)
+        mpq_init(added->k[i]);
+    added->relation = r;
+    return added;
+}
+
+static void clear_row(row *r) {
+    for (int i = 0; i <= VARIABLES; i++)
+        mpq_clear(r->k[i]);
+}
+
+static void clear_system(linear_system *s) {
+    for (size_t i = 0; i < s->count; i++)
+        clear_row(&s->rows[i]);
+    free(s->rows);
+    *s = (linear_system){0};
+}
+
+/* out += factor x r */
+static void add_multiple(row *out, const mpq_t factor, const row *r) {
+    mpq_t t;
+    mpq_init(t);
+    for (int i = 0; i <= VARIABLES; i++)
+        if (mpq_sgn(r->k[i]) != 0) {
+            mpq_mul(t, factor, r->k[i]);
+            mpq_add(out->k[i], out->k[i], t);
+        }
+    mpq_clear(t);
+}
+
+/* Takes the equation `from` out of the system and removes `variable` from all others with it. */
+static void substitute(linear_system *s, size_t from, int variable) {
+    row equation = s->rows[from];
+    s->rows[from] = s->rows[--s->count];
+    mpq_t factor;
+    mpq_init(factor);
+    for (size_t i = 0; i < s->count; i++) {
+        row *r = &s->rows[i];
+        if (mpq_sgn(r->k[variable]) == 0)
+            continue;
+        mpq_div(factor, r->k[variable], equation.k[variable]);
+        mpq_neg(factor, factor);
+        add_multiple(r, factor, &equation);
+    }
+    mpq_clear(factor);
+    clear_row(&equation);
+}
+
+/* Fourier-Motzkin: every lower bound of `variable` must lie below every upper bound. */
+static void eliminate(linear_system *s, int variable) {
+    linear_system rest = {0};
+    mpq_t factor;
+    mpq_init(factor);
+    for (size_t i = 0; i < s->count; i++) {
+        const row *low = &s->rows[i];
+        int side = mpq_sgn(low->k[variable]);
+        if (side == 0)
+            for (int j = 0; j <= VARIABLES; j++) {
+                if (j == 0)
+                    new_row(&rest, low->relation);
+                mpq_set(rest.rows[rest.count - 1].k[j], low->k[j]);
+            }
+        if (side <= 0)
+            continue;
+        for (size_t j = 0; j < s->count; j++) {
+            const row *high = &s->rows[j];
+            if (mpq_sgn(high->k[variable]) >= 0)
+                continue;
+            bool strict = low->relation == ABOVE_ZERO || high->relation == ABOVE_ZERO;
+            row *sum = new_row(&rest, strict ? ABOVE_ZERO : AT_LEAST_ZERO);
+            mpq_neg(factor, high->k[variable]);
+            add_multiple(sum, factor, low);
+            add_multiple(sum, low->k[variable], high);
+        }
+    }
+    mpq_clear(factor);
+    clear_system(s);
+    *s = rest;
+}
+
+static bool constants_hold(const linear_system *s) {
+    for (size_t i = 0; i < s->count; i++) {
+        int sign = mpq_sgn(s->rows[i].k[VARIABLES]);
+        relation r = s->rows[i].relation;
+        if (r == EQUAL_ZERO ? sign != 0 : r == AT_LEAST_ZERO ? sign < 0 : sign <= 0)
+            return false;
+    }
+    return true;
+}
+
+/* Has the system a solution? Consumes it. */
+static bool solvable(linear_system *s) {
+    for (int variable = 0; variable < VARIABLES; variable++)
+        for (size_t i = 0; i < s->count; i++)
+            if (s->rows[i].relation == EQUAL_ZERO && mpq_sgn(s->rows[i].k[variable]) != 0) {
+                substitute(s, i, variable);
+                break;
+            }
+    for (int variable = 0; variable < VARIABLES; variable++)
+        eliminate(s, variable);
+    bool yes = constants_hold(s);
+    clear_system(s);
+    return yes;
+}
+
+/* ---- shapes as systems ----
+ *
+ * A simplex takes the variables first, first + 1, ...: its points are corner[0] plus the sum of
+ * x[first + i] times (corner[i + 1] - corner[0]), where the variables are at least zero and their
+ * sum is at most one. */
+typedef struct simplex {
+    const double *corner[4];
+    int dimension, first;
+} simplex;
+
+/* Adds the inequalities of a simplex; `open` demands a sum below one, that is, leaves out the face
+ * opposite corner 0. */
+static void add_simplex(linear_system *s, const simplex *shape, bool open) {
+    for (int i = 0; i < shape->dimension; i++)
+        mpq_set_ui(new_row(s, AT_LEAST_ZERO)->k[shape->first + i], 1, 1);
+    row *sum = new_row(s, open ? ABOVE_ZERO : AT_LEAST_ZERO);
+    for (int i = 0; i < shape->dimension; i++)
+        mpq_set_si(sum->k[shape->first + i], -1, 1);
+    mpq_set_ui(sum->k[VARIABLES], 1, 1);
+}
+
+/* Adds `sign` times coordinate k of the shape's point to a row. */
+static void add_coordinate(row *r, const simplex *shape, int k, int sign) {
+    mpq_t base, t;
+    mpq_inits(base, t, (mpq_ptr)NULL);
+    mpq_set_d(base, sign * shape->corner[0][k]);
+    mpq_add(r->k[VARIABLES], r->k[VARIABLES], base);
+    for (int i = 0; i < shape->dimension; i++) {
+        mpq_ptr out = r->k[shape->first + i];
+        mpq_set_d(t, sign * shape->corner[i + 1][k]);
+        mpq_sub(t, t, base);
+        mpq_add(out, out, t);
+    }
+    mpq_clears(base, t, (mpq_ptr)NULL);
+}
+
+/* The points that a and b have in common. */
+static linear_system common_points(const simplex *a, bool open, const simplex *b) {
+    linear_system s = {0};
+    add_simplex(&s, a, open);
+    add_simplex(&s, b, false);
+    for (int k = 0; k < 3; k++) {
+        row *equation = new_row(&s, EQUAL_ZERO);
+        add_coordinate(equation, a, k, 1);
+        add_coordinate(equation, b, k, -1);
+    }
+    return s;
+}
+
+static bool shapes_meet(const simplex *a, bool open, const simplex *b) {
+    linear_system s = common_points(a, open, b);
+    return solvable(&s);
+}
+
+static bool same_point(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* ---- intersections ---- */
+
+bool oracle_segment_meets_triangle(const double p[3], const double q[3], const double a[3],
+                                   const double b[3], const double c[3]) {
+    if (same_point(p, q))
+        return false;
+    simplex segment = {{p, q}, 1, 0}, triangle = {{a, b, c}, 2, 1};
+    return shapes_meet(&segment, true, &triangle);
+}
+
+bool oracle_point_on_triangle(const double p[3], const double a[3], const double b[3],
+                              const double c[3]) {
+    simplex point = {{p}, 0, 0}, triangle = {{a, b, c}, 2, 0};
+    return shapes_meet(&point, false, &triangle);
+}
+
+bool oracle_segments_meet(const double a[3], const double b[3], const double c[3],
+                          const double d[3]) {
+    simplex first = {{a, b}, 1, 0}, second = {{c, d}, 1, 1};
+    return shapes_meet(&first, false, &second);
+}
+
+bool oracle_tetrahedron_meets_triangle(const double p[3], const double *const face[3],
+                                       const double *const t[3]) {
+    simplex tetrahedron = {{p, face[0], face[1], face[2]}, 3, 0};
+    simplex triangle = {{t[0], t[1], t[2]}, 2, 3};
+    return shapes_meet(&tetrahedron, true, &triangle);
+}
+
+/* Have s and t a common point x with direction . (x - origin) > 0? */
+static bool meet_beyond(const simplex *s, const simplex *t, const vector *direction,
+                        const double origin[3]) {
+    linear_system system = common_points(s, false, t);
+    row *beyond = new_row(&system, ABOVE_ZERO);
+    vector from;
+    vector_init(&from);
+    vector_set(&from, origin);
+    mpq_t offset;
+    mpq_init(offset);
+    vector_dot(offset, direction, &from);
+    mpq_neg(beyond->k[VARIABLES], offset);
+    for (int k = 0; k < 3; k++) {
+        linear_system one = {0};
+        row *coordinate = new_row(&one, EQUAL_ZERO);
+        add_coordinate(coordinate, s, k, 1);
+        add_multiple(beyond, direction->x[k], coordinate);
+        clear_system(&one);
+    }
+    mpq_clear(offset);
+    vector_clear(&from);
+    return solvable(&system);
+}
+
+/* The same for the direction and for its opposite. */
+static bool meet_off_plane(const simplex *s, const simplex *t, vector *direction,
+                           const double origin[3]) {
+    if (meet_beyond(s, t, direction, origin))
+        return true;
+    for (int k = 0; k < 3; k++)
+        mpq_neg(direction->x[k], direction->x[k]);
+    return meet_beyond(s, t, direction, origin);
+}
+
+/* Have they a common point other than `point`? */
+static bool meet_off_point(const simplex *s, const simplex *t, const double point[3]) {
+    bool found = false;
+    vector axis;
+    vector_init(&axis);
+    for (int k = 0; k < 3 && !found; k++) {
+        for (int j = 0; j < 3; j++)
+            mpq_set_ui(axis.x[j], j == k, 1);
+        found = meet_off_plane(s, t, &axis, point);
+    }
+    vector_clear(&axis);
+    return found;
+}
+
+/* Have they a common point off the segment a b (a is not b)? Off its line means on one side of one
+ * of three planes through it; on the line, before a or behind b. */
+static bool meet_off_segment(const simplex *s, const simplex *t, const double a[3],
+                             const double b[3]) {
+    vector axis, along, side;
+    vector_init(&axis);
+    vector_init(&along);
+    vector_init(&side);
+    vector_difference(&along, b, a);
+    bool found = meet_beyond(s, t, &along, b);
+    for (int k = 0; k < 3 && !found; k++) {
+        for (int j = 0; j < 3; j++)
+            mpq_set_ui(axis.x[j], j == k, 1);
+        vector_cross(&side, &along, &axis);
+        found = meet_off_plane(s, t, &side, a);
+    }
+    vector_difference(&along, a, b);
+    found = found || meet_beyond(s, t, &along, a);
+    vector_clear(&axis);
+    vector_clear(&along);
+    vector_clear(&side);
+    return found;
+}
+
+bool oracle_triangles_contact(const double *const s[3], const double *const t[3], int shared) {
+    simplex first = {{s[0], s[1], s[2]}, 2, 0}, second = {{t[0], t[1], t[2]}, 2, 2};
+    if (shared == 0)
+        return shapes_meet(&first, false, &second);
+    if (shared == 1 || (shared == 2 && same_point(s[0], s[1])))
+        return meet_off_point(&first, &second, s[0]);
+    if (shared == 2)
+        return meet_off_segment(&first, &second, s[0], s[1]);
+    return false;
+}
+
+/* ---- winding number ---- */
+
+typedef enum crossing { RAY_MISSES, RAY_CROSSES, RAY_GRAZES } crossing;
+
+/* How the ray from p along d meets a triangle that p is not on; *side is 1 when p lies on the
+ * inner side. d is in the open cone of the corners when it is a positive combination of them. */
+static crossing cross_triangle(const double p[3], const vector *d, const double *const t[3],
+                               int *side) {
+    vector corner[3];
+    for (int i = 0; i < 3; i++) {
+        vector_init(&corner[i]);
+        vector_difference(&corner[i], t[i], p);
+    }
+    *side = determinant_sign(&corner[0], &corner[1], &corner[2]);
+    int weight[3] = {determinant_sign(d, &corner[1], &corner[2]) * *side,
+                     determinant_sign(&corner[0], d, &corner[2]) * *side,
+                     determinant_sign(&corner[0], &corner[1], d) * *side};
+    for (int i = 0; i < 3; i++)
+        vector_clear(&corner[i]);
+    if (*side == 0)
+        return RAY_GRAZES; /* the caller looks closer */
+    if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0)
+        return RAY_MISSES;
+    return weight[0] > 0 && weight[1] > 0 && weight[2] > 0 ? RAY_CROSSES : RAY_GRAZES;
+}
+
+/* Does the closed ray from p along d meet the triangle, in whose plane p lies? */
+static bool ray_meets_flat(const double p[3], const double d[3], const double *const t[3]) {
+    linear_system s = {0};
+    simplex triangle = {{t[0], t[1], t[2]}, 2, 1};
+    add_simplex(&s, &triangle, false);
+    mpq_set_ui(new_row(&s, AT_LEAST_ZERO)->k[0], 1, 1);
+    mpq_t x;
+    mpq_init(x);
+    for (int k = 0; k < 3; k++) {
+        row *equation = new_row(&s, EQUAL_ZERO);
+        add_coordinate(equation, &triangle, k, 1);
+        mpq_set_d(x, -p[k]);
+        mpq_add(equation->k[VARIABLES], equation->k[VARIABLES], x);
+        mpq_set_d(equation->k[0], -d[k]);
+    }
+    mpq_clear(x);
+    return solvable(&s);
+}
+
+static void corners(const double *vertices, const uint32_t *faces, size_t f, const double *t[3]) {
+    for (int i = 0; i < 3; i++)
+        t[i] = vertices + 3 * (size_t)faces[3 * f + (size_t)i];
+}
+
+/* Sums the crossings of one ray; false when it grazes a triangle. */
+static bool count_crossings(const double *vertices, const uint32_t *faces, size_t face_count,
+                            const double p[3], const double d[3], int *sum) {
+    bool clean = true;
+    vector direction;
+    vector_init(&direction);
+    vector_set(&direction, d);
+    *sum = 0;
+    for (size_t f = 0; f < face_count && clean; f++) {
+        const double *t[3];
+        int side;
+        corners(vertices, faces, f, t);
+        switch (cross_triangle(p, &direction, t, &side)) {
+        case RAY_CROSSES:
+            *sum += side;
+            break;
+        case RAY_GRAZES:
+            clean = side == 0 && !ray_meets_flat(p, d, t);
+            break;
+        case RAY_MISSES:
+            break;
+        }
+    }
+    vector_clear(&direction);
+    return clean;
+}
+
+static bool box_holds(const double *const t[3], const double p[3]) {
+    for (int k = 0; k < 3; k++)
+        if ((p[k] < t[0][k] && p[k] < t[1][k] && p[k] < t[2][k]) ||
+            (p[k] > t[0][k] && p[k] > t[1][k] && p[k] > t[2][k]))
+            return false;
+    return true;
+}
+
+int oracle_winding(const double *vertices, const uint32_t *faces, size_t face_count,
+                   const double p[3], bool *on_surface) {
+    *on_surface = false;
+    for (size_t f = 0; f < face_count && !*on_surface; f++) {
+        const double *t[3];
+        corners(vertices, faces, f, t);
+        *on_surface = box_holds(t, p) && oracle_point_on_triangle(p, t[0], t[1], t[2]);
+    }
+    if (*on_surface)
+        return 0;
+    starg_rng rng = starg_rng_make(1, 2, 3);
+    int sum;
+    double d[3];
+    do {
+        for (int k = 0; k < 3; k++)
+            d[k] = (double)starg_rng_below(&rng, 2001) - 1000;
+    } while ((d[0] == 0 && d[1] == 0 && d[2] == 0) ||
+             !count_crossings(vertices, faces, face_count, p, d, &sum));
+    return sum;
+}

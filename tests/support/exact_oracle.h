@@ -1,0 +1,40 @@
+/* Slow, exact answers for tests: rationals of GMP and methods that share nothing with the library.
+ * Everything works for all finite doubles. Triangles without area count as the segments or points
+ * that they are. */
+#ifndef TESTS_EXACT_ORACLE_H
+#define TESTS_EXACT_ORACLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* The contracts of geometry/predicates.h. */
+int oracle_orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
+int oracle_orient2d(const double a[3], const double b[3], const double c[3], int u, int v);
+int oracle_insphere(const double a[3], const double b[3], const double c[3], const double d[3],
+                    const double e[3]);
+int oracle_compare_distance(const double p[3], const double q[3], double radius);
+bool oracle_collinear(const double a[3], const double b[3], const double c[3]);
+
+/* The contracts of geometry/intersect.h. */
+bool oracle_segment_meets_triangle(const double p[3], const double q[3], const double a[3],
+                                   const double b[3], const double c[3]);
+bool oracle_point_on_triangle(const double p[3], const double a[3], const double b[3],
+                              const double c[3]);
+bool oracle_segments_meet(const double a[3], const double b[3], const double c[3],
+                          const double d[3]);
+
+/* Have the closed triangles s and t, whose first `shared` corners are the same, a common point
+ * outside of the simplex that these corners span? */
+bool oracle_triangles_contact(const double *const s[3], const double *const t[3], int shared);
+
+/* Has the closed triangle t a point in the tetrahedron (p, face) that is not on the face? */
+bool oracle_tetrahedron_meets_triangle(const double p[3], const double *const face[3],
+                                       const double *const t[3]);
+
+/* Winding number of a closed mesh about p; *on_surface: p lies on a triangle (then the result is
+ * 0 and means nothing). */
+int oracle_winding(const double *vertices, const uint32_t *faces, size_t face_count,
+                   const double p[3], bool *on_surface);
+
+#endif
