@@ -17,22 +17,22 @@
 #include "mesh/io.h"
 
 /* The two coordinates in which the polygon turns counter-clockwise. */
-typedef struct view {
+typedef struct plane_view {
     const double *vertices;
     const uint32_t *corners;
     int u, v;
-} view;
+} plane_view;
 
-static const double *corner_at(const view *view, size_t i) {
+static const double *corner_at(const plane_view *view, size_t i) {
     return view->vertices + 3 * (size_t)view->corners[i];
 }
 
-static int turn(const view *view, size_t a, size_t b, size_t c) {
+static int turn(const plane_view *view, size_t a, size_t b, size_t c) {
     return orient2d(corner_at(view, a), corner_at(view, b), corner_at(view, c), view->u, view->v);
 }
 
 /* Largest distance of a corner from the first one along any axis. */
-static double extent(const view *view, size_t count) {
+static double extent(const plane_view *view, size_t count) {
     const double *origin = corner_at(view, 0);
     double largest = 0;
     for (size_t i = 1; i < count; i++)
@@ -42,7 +42,7 @@ static double extent(const view *view, size_t count) {
 }
 
 /* Newell's normal of the polygon scaled to unit size, so that nothing under- or overflows. */
-static void newell_normal(const view *view, size_t count, double normal[3]) {
+static void newell_normal(const plane_view *view, size_t count, double normal[3]) {
     const double *origin = corner_at(view, 0);
     double size = extent(view, count);
     normal[0] = normal[1] = normal[2] = 0;
@@ -59,8 +59,8 @@ static void newell_normal(const view *view, size_t count, double normal[3]) {
     }
 }
 
-static view look_at(const double *vertices, const uint32_t *corners, size_t count) {
-    view view = {.vertices = vertices, .corners = corners};
+static plane_view look_at(const double *vertices, const uint32_t *corners, size_t count) {
+    plane_view view = {.vertices = vertices, .corners = corners};
     double normal[3];
     newell_normal(&view, count, normal);
     int axis = 0;
@@ -83,7 +83,7 @@ bool starg_polygon_fan(const double *vertices, const uint32_t *corners, size_t c
     put(triangles, corners[0], corners[1], corners[2]);
     if (count == 3)
         return true;
-    view view = look_at(vertices, corners, count);
+    plane_view view = look_at(vertices, corners, count);
     for (size_t i = 1; i + 1 < count; i++) {
         if (turn(&view, 0, i, i + 1) <= 0)
             return false;
@@ -93,29 +93,29 @@ bool starg_polygon_fan(const double *vertices, const uint32_t *corners, size_t c
 }
 
 /* The corners that are left, in a ring. */
-typedef struct ring {
-    view view;
+typedef struct corner_ring {
+    plane_view view;
     size_t left;
     uint32_t *before, *after;
     bool *outward; /* turns to the outer side: all others may lie in an ear's way */
     bool *ear;
-} ring;
+} corner_ring;
 
-static bool same_place(const view *view, size_t a, size_t b) {
+static bool same_place(const plane_view *view, size_t a, size_t b) {
     const double *p = corner_at(view, a), *q = corner_at(view, b);
     return p[view->u] == q[view->u] && p[view->v] == q[view->v];
 }
 
 /* True when corner j lies in the closed triangle of corner i and its neighbours. Corners at the
  * same place as one of the three do not count: polygons with bridges to their holes have them. */
-static bool in_the_way(const ring *ring, size_t i, size_t j) {
-    const view *view = &ring->view;
+static bool in_the_way(const corner_ring *ring, size_t i, size_t j) {
+    const plane_view *view = &ring->view;
     size_t a = ring->before[i], b = ring->after[i];
     return turn(view, a, i, j) >= 0 && turn(view, i, b, j) >= 0 && turn(view, b, a, j) >= 0 &&
            !same_place(view, j, a) && !same_place(view, j, i) && !same_place(view, j, b);
 }
 
-static void look_again(ring *ring, size_t i) {
+static void look_again(corner_ring *ring, size_t i) {
     size_t before = ring->before[i], after = ring->after[i];
     ring->outward[i] = turn(&ring->view, before, i, after) > 0;
     ring->ear[i] = ring->outward[i];
@@ -124,7 +124,7 @@ static void look_again(ring *ring, size_t i) {
             ring->ear[i] = false;
 }
 
-static void fill(ring *ring, size_t count) {
+static void fill(corner_ring *ring, size_t count) {
     ring->left = count;
     for (size_t i = 0; i < count; i++) {
         ring->before[i] = (uint32_t)(i == 0 ? count - 1 : i - 1);
@@ -136,14 +136,14 @@ static void fill(ring *ring, size_t count) {
 }
 
 /* The next ear from corner i on; i itself when there is none. */
-static size_t next_ear(const ring *ring, size_t i) {
+static size_t next_ear(const corner_ring *ring, size_t i) {
     for (size_t step = 0; step < ring->left && !ring->ear[i]; step++)
         i = ring->after[i];
     return i;
 }
 
 /* Cuts off corner i. Only its neighbours can become ears by that, or cease to be. */
-static void cut(ring *ring, size_t i, uint32_t *triangle) {
+static void cut(corner_ring *ring, size_t i, uint32_t *triangle) {
     size_t before = ring->before[i], after = ring->after[i];
     const uint32_t *corners = ring->view.corners;
     put(triangle, corners[before], corners[i], corners[after]);
@@ -157,7 +157,7 @@ static void cut(ring *ring, size_t i, uint32_t *triangle) {
 starg_status starg_polygon_clip(starg_context *context, const double *vertices,
                                 const uint32_t *corners, size_t count, uint32_t *triangles) {
     starg_status status = STARG_OK;
-    ring ring = {.view = look_at(vertices, corners, count)};
+    corner_ring ring = {.view = look_at(vertices, corners, count)};
     STARG_NEW(context, STARG_MESH_FILE, ring.before, count);
     STARG_NEW(context, STARG_MESH_FILE, ring.after, count);
     STARG_NEW(context, STARG_MESH_FILE, ring.outward, count);

@@ -6,12 +6,12 @@
 
 #include "mesh/scan.h"
 
-typedef struct header {
+typedef struct off_header {
     bool vertex_extras; /* normals, colours or texture coordinates follow each position */
     bool homogeneous;   /* 4OFF: four coordinates   */
     bool dimension;     /* nOFF: a number of coordinates of its own */
     size_t length;      /* of the keyword */
-} header;
+} off_header;
 
 static bool take(const char **at, const char *end, const char *prefix) {
     size_t length = strlen(prefix);
@@ -22,7 +22,7 @@ static bool take(const char **at, const char *end, const char *prefix) {
 }
 
 /* [ST][C][N][4][n]OFF, and then nothing; or a digit, which can only belong to the first count. */
-static bool parse_keyword(starg_word word, header *header) {
+static bool parse_keyword(starg_word word, off_header *header) {
     const char *at = word.text, *end = word.text + word.length;
     bool texture = take(&at, end, "ST");
     bool color = take(&at, end, "C");
@@ -39,12 +39,12 @@ static bool parse_keyword(starg_word word, header *header) {
 bool starg_off_matches(const starg_source *source) {
     starg_scan scan = starg_scan_make(source);
     starg_word word;
-    header ignored;
+    off_header ignored;
     return starg_scan_word(&scan, &word) && parse_keyword(word, &ignored);
 }
 
 /* Reads the keyword and leaves the scanner behind its last letter. */
-static starg_status read_keyword(starg_scan *scan, header *header) {
+static starg_status read_keyword(starg_scan *scan, off_header *header) {
     starg_word word;
     starg_status status = starg_scan_expect(scan, "the keyword OFF", &word);
     if (status != STARG_OK)
@@ -105,7 +105,7 @@ done:
     return status;
 }
 
-static starg_status read_vertices(starg_scan *scan, const header *header, size_t count,
+static starg_status read_vertices(starg_scan *scan, const off_header *header, size_t count,
                                   starg_mesh_builder *builder) {
     enum { MOST_EXTRAS = 11 }; /* normal 3, colour 4, texture 4 */
     starg_status status = STARG_OK;
@@ -144,7 +144,7 @@ done:
 starg_status starg_off_read(starg_mesh_builder *builder) {
     starg_status status = STARG_OK;
     starg_scan scan = starg_scan_make(builder->source);
-    header header;
+    off_header header;
     size_t vertices = 0, faces = 0;
     STARG_TRY(read_keyword(&scan, &header));
     STARG_TRY(read_counts(&scan, &vertices, &faces));
