@@ -1,0 +1,165 @@
+/* Every predicate against rational arithmetic, on families of input that break careless ones. */
+#include <math.h>
+
+#include "adversarial.h"
+#include "exact_oracle.h"
+#include "geometry/predicates.h"
+#include "support.h"
+
+enum { ROUNDS = 1500, POINTS = 5 };
+
+typedef double (*points)[3];
+
+/* Prints the input and fails. */
+static void refute(const char *what, point_family family, points x, int expected, int found) {
+    for (int i = 0; i < POINTS; i++)
+        print_error("  {%a, %a, %a}\n", x[i][0], x[i][1], x[i][2]);
+    fail_msg("%s, %s: expected %d, found %d", what, point_family_name(family), expected, found);
+}
+
+/* Calls `check` with many inputs of every family. */
+static void for_all(void check(point_family family, points x)) {
+    for (int family = 0; family < POINT_FAMILIES; family++)
+        for (uint64_t round = 0; round < ROUNDS; round++) {
+            starg_rng rng = starg_rng_make(11, (uint64_t)family, round);
+            double x[POINTS][3];
+            adversarial_points(&rng, (point_family)family, x, POINTS);
+            check((point_family)family, x);
+        }
+}
+
+static void check_orient3d(point_family family, points x) {
+    int expected = oracle_orient3d(x[0], x[1], x[2], x[3]);
+    int found = orient3d(x[0], x[1], x[2], x[3]);
+    if (found != expected)
+        refute("orient3d", family, x, expected, found);
+    if (orient3d(x[1], x[0], x[2], x[3]) != -found || orient3d(x[0], x[2], x[1], x[3]) != -found ||
+        orient3d(x[0], x[1], x[3], x[2]) != -found || orient3d(x[1], x[2], x[0], x[3]) != found ||
+        orient3d(x[3], x[2], x[1], x[0]) != found)
+        refute("orient3d of a permutation", family, x, expected, found);
+}
+
+static void test_orient3d(void **state) {
+    (void)state;
+    for_all(check_orient3d);
+}
+
+static void check_orient2d(point_family family, points x) {
+    for (int u = 0; u < 3; u++)
+        for (int v = 0; v < 3; v++) {
+            if (u == v)
+                continue;
+            int expected = oracle_orient2d(x[0], x[1], x[2], u, v);
+            int found = orient2d(x[0], x[1], x[2], u, v);
+            if (found != expected)
+                refute("orient2d", family, x, expected, found);
+            if (orient2d(x[1], x[2], x[0], u, v) != found ||
+                orient2d(x[1], x[0], x[2], u, v) != -found ||
+                orient2d(x[0], x[1], x[2], v, u) != -found)
+                refute("orient2d of a permutation", family, x, expected, found);
+        }
+}
+
+static void test_orient2d(void **state) {
+    (void)state;
+    for_all(check_orient2d);
+}
+
+static void check_insphere(point_family family, points x) {
+    int expected = oracle_insphere(x[0], x[1], x[2], x[3], x[4]);
+    int found = insphere(x[0], x[1], x[2], x[3], x[4]);
+    if (found != expected)
+        refute("insphere", family, x, expected, found);
+    if (insphere(x[1], x[0], x[2], x[3], x[4]) != -found ||
+        insphere(x[0], x[1], x[3], x[2], x[4]) != -found ||
+        insphere(x[1], x[2], x[3], x[0], x[4]) != -found ||
+        insphere(x[1], x[0], x[3], x[2], x[4]) != found)
+        refute("insphere of a permutation", family, x, expected, found);
+}
+
+static void test_insphere(void **state) {
+    (void)state;
+    for_all(check_insphere);
+}
+
+static void check_distance(point_family family, points x) {
+    double exact = hypot(hypot(x[0][0] - x[1][0], x[0][1] - x[1][1]), x[0][2] - x[1][2]);
+    const double radii[] = {exact,         nextafter(exact, INFINITY), nextafter(exact, 0),
+                            fabs(x[2][0]), fabs(x[0][0] - x[1][0]),    0};
+    for (size_t i = 0; i < sizeof radii / sizeof *radii; i++) {
+        if (radii[i] >= 1e100)
+            continue;
+        int expected = oracle_compare_distance(x[0], x[1], radii[i]);
+        int found = compare_distance(x[0], x[1], radii[i]);
+        if (found != expected)
+            refute("compare_distance", family, x, expected, found);
+        if (compare_distance(x[1], x[0], radii[i]) != found)
+            refute("compare_distance turned round", family, x, expected, found);
+    }
+}
+
+static void test_compare_distance(void **state) {
+    (void)state;
+    for_all(check_distance);
+}
+
+static void check_collinear(point_family family, points x) {
+    int expected = oracle_collinear(x[0], x[1], x[2]);
+    int found = collinear(x[0], x[1], x[2]);
+    if (found != expected || collinear(x[2], x[0], x[1]) != expected ||
+        collinear(x[1], x[0], x[2]) != expected)
+        refute("collinear", family, x, expected, found);
+}
+
+static void test_collinear(void **state) {
+    (void)state;
+    for_all(check_collinear);
+}
+
+/* The meaning of the signs, on input where it is plain to see. */
+static void test_meaning(void **state) {
+    (void)state;
+    const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0};
+    const double below[3] = {0.2, 0.2, -1}, above[3] = {0.2, 0.2, 1}, on[3] = {7, -3, 0};
+    assert_int_equal(orient3d(a, b, c, below), 1);
+    assert_int_equal(orient3d(a, b, c, above), -1);
+    assert_int_equal(orient3d(a, b, c, on), 0);
+    assert_int_equal(orient2d(a, b, c, 0, 1), 1);
+    assert_int_equal(orient2d(a, b, c, 1, 0), -1);
+    const double inside[3] = {0.2, 0.2, -0.1}, outside[3] = {5, 5, 5}, cospherical[3] = {1, 1, 0};
+    assert_int_equal(insphere(a, b, c, below, inside), 1);
+    assert_int_equal(insphere(a, b, c, below, outside), -1);
+    assert_int_equal(insphere(a, b, c, below, cospherical), 0);
+    assert_int_equal(insphere(b, a, c, below, inside), -1);
+    assert_int_equal(compare_distance(a, cospherical, 1.4), 1);
+    assert_int_equal(compare_distance(a, cospherical, 1.5), -1);
+    assert_int_equal(compare_distance(a, b, 1), 0);
+}
+
+/* The families must reach zeros and both signs, or the comparisons above show little. */
+static void test_families_reach_every_sign(void **state) {
+    (void)state;
+    for (int family = 0; family < POINT_FAMILIES; family++) {
+        int seen[3] = {0};
+        for (uint64_t round = 0; round < ROUNDS; round++) {
+            starg_rng rng = starg_rng_make(11, (uint64_t)family, round);
+            double x[POINTS][3];
+            adversarial_points(&rng, (point_family)family, x, POINTS);
+            seen[orient3d(x[0], x[1], x[2], x[3]) + 1]++;
+        }
+        assert_true(seen[0] > 10 && seen[1] > 10 && seen[2] > 10);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_orient3d),
+        cmocka_unit_test(test_orient2d),
+        cmocka_unit_test(test_insphere),
+        cmocka_unit_test(test_compare_distance),
+        cmocka_unit_test(test_collinear),
+        cmocka_unit_test(test_meaning),
+        cmocka_unit_test(test_families_reach_every_sign),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
