@@ -293,6 +293,12 @@ static starg_place place_of(const ply_reader *ply) {
                                  : starg_at_byte((size_t)(ply->scan.at - ply->source->bytes));
 }
 
+/* The place of what was just read, given that of the cursor before: a scanner of text reaches the
+ * line of a word only when it reads it. */
+static starg_place place_since(const ply_reader *ply, starg_place before) {
+    return ply->encoding == TEXT ? place_of(ply) : before;
+}
+
 static starg_status need(const ply_reader *ply, size_t bytes) {
     if (bytes <= (size_t)(ply->scan.end - ply->scan.at))
         return STARG_OK;
@@ -350,12 +356,12 @@ static starg_status read_real(ply_reader *ply, ply_type type, const char *what, 
 static starg_status read_integer(ply_reader *ply, ply_type type, const char *what, int64_t *value) {
     if (type >= FLOAT32) {
         double real;
-        starg_place place = place_of(ply);
+        starg_place before = place_of(ply);
         starg_status status = read_real(ply, type, what, &real);
         if (status != STARG_OK)
             return status;
         if (!(fabs(real) <= 0x1p53) || real != floor(real))
-            return starg_source_fail(ply->source, place,
+            return starg_source_fail(ply->source, place_since(ply, before),
                                      "%g is not a whole number; %s should stand here", real, what);
         *value = (int64_t)real;
         return STARG_OK;
@@ -387,18 +393,17 @@ done:
 static starg_status read_list(ply_reader *ply, const ply_property *property, bool skip) {
     starg_status status = STARG_OK;
     int64_t count, vertex;
-    starg_place place = place_of(ply);
+    starg_place before = place_of(ply);
     STARG_TRY(read_integer(ply, property->count_type, "the size of a list", &count));
     if (count < 0)
-        return starg_source_fail(ply->source, place, "the size of a list is negative");
+        return starg_source_fail(ply->source, place_since(ply, before),
+                                 "the size of a list is negative");
     if (property->role != CORNERS || skip)
         return skip_values(ply, property->type, (uint64_t)count);
     for (int64_t i = 0; i < count; i++) {
-        starg_place corner = place_of(ply);
+        before = place_of(ply);
         STARG_TRY(read_integer(ply, property->type, "a vertex index", &vertex));
-        if (ply->encoding == TEXT)
-            corner = place_of(ply); /* only now the scanner has reached its line */
-        STARG_TRY(starg_builder_corner(ply->builder, vertex, corner));
+        STARG_TRY(starg_builder_corner(ply->builder, vertex, place_since(ply, before)));
     }
 done:
     return status;
@@ -407,7 +412,7 @@ done:
 /* One item of an element; its values are used unless `skip`. */
 static starg_status read_item(ply_reader *ply, const ply_element *element, bool skip) {
     starg_status status = STARG_OK;
-    starg_place place = place_of(ply);
+    starg_place before = place_of(ply);
     double point[3] = {0, 0, 0};
     for (size_t i = 0; i < element->properties; i++) {
         const ply_property *property = &ply->properties.data[element->first + i];
@@ -419,8 +424,7 @@ static starg_status read_item(ply_reader *ply, const ply_element *element, bool 
         else
             STARG_TRY(skip_values(ply, property->type, 1));
     }
-    if (ply->encoding == TEXT)
-        place = place_of(ply);
+    starg_place place = place_since(ply, before);
     if (element->kind == VERTICES)
         STARG_TRY(starg_builder_vertex(ply->builder, point, place));
     if (element->kind == FACES && !skip)

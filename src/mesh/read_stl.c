@@ -63,14 +63,16 @@ static starg_status expect_keyword(starg_scan *scan, const char *keyword) {
                              keyword);
 }
 
-/* Behind "facet": normal, outer loop, three points, endloop, endfacet. */
+/* Behind "facet": normal, outer loop, three points, endloop, endfacet. Normals of facets without
+ * area are written in many ways, so anything passes for their numbers. */
 static starg_status read_facet(starg_scan *scan, starg_weld *weld) {
     starg_status status = STARG_OK;
     starg_place place = starg_at_line(scan->line);
+    starg_word ignored;
     double point[3];
     STARG_TRY(expect_keyword(scan, "normal"));
     for (int k = 0; k < 3; k++)
-        STARG_TRY(starg_scan_real(scan, "a coordinate of a normal", &point[k]));
+        STARG_TRY(starg_scan_expect(scan, "a coordinate of a normal", &ignored));
     STARG_TRY(expect_keyword(scan, "outer"));
     STARG_TRY(expect_keyword(scan, "loop"));
     for (int corner = 0; corner < 3; corner++) {
