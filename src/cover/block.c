@@ -1,0 +1,252 @@
+/* Covering everything: reductions, blocks, and for each block
+ *   1. a greedy cover, improved by swaps;
+ *   2. rounds of: Lagrangian bound (with covers from its costs), the linear relaxation's bound if
+ *      that is not enough, rows fixed by their reduced costs, reductions of the rest;
+ *   3. branch and bound on what is left.
+ * Each ends as soon as the bound meets the cover.
+ *
+ * Invariant of a block: every cover with fewer rows than the best one consists of the forced rows
+ * and a cover of the rest. */
+#include "cover/solve.h"
+
+#include "cover/dual.h"
+#include "cover/greedy.h"
+#include "cover/ilp.h"
+#include "cover/reduce.h"
+
+typedef struct block_solve {
+    cover_run *run;
+    cover_instance rest;
+    cover_names forced; /* rows that every better cover holds    */
+    cover_names best;   /* the best cover of the block           */
+    size_t lower_bound;
+} block_solve;
+
+static bool is_closed(const block_solve *block) {
+    return block->lower_bound >= block->best.count;
+}
+
+/* No cover has fewer than `rows` rows besides the forced ones, unless the best one is as good. */
+static void raise_bound(block_solve *block, size_t rows) {
+    size_t bound = block->forced.count + rows;
+    if (bound > block->best.count)
+        bound = block->best.count;
+    if (bound > block->lower_bound)
+        block->lower_bound = bound;
+}
+
+/* Takes the forced rows and a cover of the rest as the best cover if that is smaller. */
+static starg_status offer_cover(block_solve *block, const cover_state *cover) {
+    starg_status status = STARG_OK;
+    if (block->forced.count + cover->count >= block->best.count)
+        return STARG_OK;
+    block->best.count = 0;
+    for (size_t i = 0; i < block->forced.count; i++)
+        STARG_PUSH(block->run->context, "cover", &block->best, block->forced.data[i]);
+    for (size_t i = 0; i < cover->count; i++)
+        STARG_PUSH(block->run->context, "cover", &block->best,
+                   block->rest.row_names[cover->rows[i]]);
+done:
+    return status;
+}
+
+static starg_status find_first_cover(cover_run *run, const cover_instance *instance,
+                                     cover_state *cover) {
+    starg_status status = STARG_OK;
+    STARG_TRY(cover_greedy(run, cover, instance->total, instance->rows));
+    cover_drop_needless(cover, instance->total);
+    STARG_TRY(cover_shrink(run, cover, instance->total));
+done:
+    return status;
+}
+
+/* The linear relaxation's multipliers, where the subgradient method has not been enough. */
+static starg_status bound_by_lp(block_solve *block, cover_dual *dual) {
+    starg_status status = STARG_OK;
+    starg_context *context = block->run->context;
+    int64_t *multipliers = NULL, *scratch = NULL;
+    bool found;
+    STARG_NEW(context, "bound", multipliers, block->rest.columns);
+    STARG_NEW(context, "bound", scratch, block->rest.rows);
+    STARG_TRY(cover_lp_multipliers(block->run, &block->rest, multipliers, &found));
+    if (found)
+        cover_dual_offer(&block->rest, dual, multipliers, scratch);
+done:
+    starg_release(context, multipliers);
+    starg_release(context, scratch);
+    return status;
+}
+
+static starg_status bound_rest(block_solve *block, cover_dual *dual, cover_state *cover) {
+    starg_status status = STARG_OK;
+    STARG_TRY(cover_lagrange(block->run, &block->rest, dual, cover));
+    STARG_TRY(offer_cover(block, cover));
+    raise_bound(block, cover_dual_rows(dual->value));
+    if (is_closed(block) || cover_time_is_over(block->run))
+        goto done;
+    STARG_TRY(bound_by_lp(block, dual));
+    raise_bound(block, cover_dual_rows(dual->value));
+done:
+    return status;
+}
+
+/* Fixes rows by reduced costs and reduces the rest; *again tells whether another round pays: one
+ * row in twenty has gone, or all of them. */
+static starg_status fix_rest(block_solve *block, const cover_dual *dual, bool *again) {
+    starg_status status = STARG_OK;
+    starg_context *context = block->run->context;
+    uint64_t *keep = NULL, *take = NULL;
+    bool feasible;
+    size_t before = block->rest.rows;
+    STARG_NEW(context, "bound", keep, block->rest.column_words);
+    STARG_NEW_ZERO(context, "bound", take, block->rest.column_words);
+    cover_mask_fill(keep, block->rest.rows);
+    size_t most = block->best.count - 1 - block->forced.count;
+    if (!cover_dual_fix(&block->rest, dual, most, keep, take))
+        goto done;
+    STARG_TRY(cover_take_rows(&block->rest, take, keep, &block->forced));
+    STARG_TRY(cover_reduce_full(block->run, &block->rest, &block->forced, &feasible));
+    if (!feasible) /* no better cover exists */
+        block->lower_bound = block->best.count;
+    raise_bound(block, 0);
+    *again = block->rest.columns == 0 || 20 * block->rest.rows <= 19 * before;
+done:
+    starg_release(context, keep);
+    starg_release(context, take);
+    return status;
+}
+
+static starg_status run_round(block_solve *block, bool *again) {
+    starg_status status = STARG_OK;
+    cover_dual dual = {0};
+    cover_state cover = {0};
+    *again = false;
+    STARG_TRY(cover_state_create(&block->rest, &cover));
+    STARG_TRY(find_first_cover(block->run, &block->rest, &cover));
+    STARG_TRY(offer_cover(block, &cover));
+    STARG_TRY(cover_dual_create(&block->rest, &dual));
+    STARG_TRY(bound_rest(block, &dual, &cover));
+    if (is_closed(block) || cover_time_is_over(block->run))
+        goto done;
+    cover_state_free(&cover); /* the rest is about to change */
+    STARG_TRY(fix_rest(block, &dual, again));
+done:
+    cover_state_free(&cover);
+    cover_dual_free(&block->rest, &dual);
+    return status;
+}
+
+static starg_status branch_and_bound(block_solve *block) {
+    starg_status status = STARG_OK;
+    cover_state cover = {0};
+    bool found;
+    size_t bound, most = block->best.count - 1 - block->forced.count;
+    STARG_TRY(cover_state_create(&block->rest, &cover));
+    STARG_TRY(cover_ilp_solve(block->run, &block->rest, most, &cover, &found, &bound));
+    if (found)
+        STARG_TRY(offer_cover(block, &cover));
+    raise_bound(block, bound);
+done:
+    cover_state_free(&cover);
+    return status;
+}
+
+/* `block->rest` holds the block; `block->best` ends as its cover. */
+static starg_status solve_block(block_solve *block) {
+    starg_status status = STARG_OK;
+    starg_context *context = block->run->context;
+    for (size_t i = 0; i < block->rest.rows; i++)
+        STARG_PUSH(context, "cover", &block->best, block->rest.row_names[i]);
+    bool again;
+    starg_progress_begin(context, "bound");
+    do {
+        STARG_TRY(run_round(block, &again));
+    } while (again && !is_closed(block));
+    starg_progress_end(context);
+    if (is_closed(block) || cover_time_is_over(block->run))
+        goto done;
+    starg_progress_begin(context, "ilp");
+    STARG_TRY(branch_and_bound(block));
+    starg_progress_end(context);
+done:
+    return status;
+}
+
+static starg_status append(starg_context *context, const cover_names *from, cover_names *to) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < from->count; i++)
+        STARG_PUSH(context, "cover", to, from->data[i]);
+done:
+    return status;
+}
+
+/* Cuts block number `number` out of the instance. */
+static starg_status cut_block(const cover_instance *instance, const uint32_t *block,
+                              uint32_t number, cover_instance *out) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    uint64_t *rows = NULL, *columns = NULL;
+    STARG_NEW_ZERO(context, "reduce", rows, instance->column_words);
+    STARG_NEW_ZERO(context, "reduce", columns, instance->row_words);
+    for (size_t i = 0; i < instance->rows; i++) {
+        if (block[i] != number)
+            continue;
+        starg_bit_set(rows, i);
+        for (size_t w = 0; w < instance->row_words; w++)
+            columns[w] |= cover_row(instance, i)[w];
+    }
+    STARG_TRY(cover_instance_select(instance, rows, columns, out));
+done:
+    starg_release(context, rows);
+    starg_release(context, columns);
+    return status;
+}
+
+static starg_status solve_number(cover_run *run, const cover_instance *instance,
+                                 const uint32_t *blocks, uint32_t number, cover_answer *answer) {
+    starg_status status = STARG_OK;
+    block_solve block = {.run = run};
+    STARG_TRY(cut_block(instance, blocks, number, &block.rest));
+    STARG_TRY(solve_block(&block));
+    STARG_TRY(append(run->context, &block.best, &answer->rows));
+    answer->lower_bound += block.lower_bound;
+done:
+    cover_instance_free(&block.rest);
+    STARG_ARRAY_FREE(run->context, &block.forced);
+    STARG_ARRAY_FREE(run->context, &block.best);
+    return status;
+}
+
+starg_status cover_solve_full(cover_run *run, cover_instance *instance, cover_answer *answer) {
+    starg_status status = STARG_OK;
+    uint32_t *blocks = NULL;
+    size_t count;
+    bool feasible; /* always: the problem leaves out what cannot be covered */
+    starg_progress_begin(run->context, "reduce");
+    STARG_TRY(cover_reduce_full(run, instance, &answer->rows, &feasible));
+    starg_progress_end(run->context);
+    answer->lower_bound = answer->rows.count;
+    STARG_NEW(run->context, "reduce", blocks, instance->rows);
+    STARG_TRY(cover_find_blocks(instance, blocks, &count));
+    for (uint32_t number = 0; number < count; number++)
+        STARG_TRY(solve_number(run, instance, blocks, number, answer));
+done:
+    starg_release(run->context, blocks);
+    return status;
+}
+
+starg_status cover_solve_greedy(cover_run *run, const cover_instance *instance,
+                                cover_answer *answer) {
+    starg_status status = STARG_OK;
+    cover_state cover = {0};
+    cover_dual dual = {0};
+    STARG_TRY(cover_state_create(instance, &cover));
+    STARG_TRY(find_first_cover(run, instance, &cover));
+    STARG_TRY(cover_state_names(&cover, &answer->rows));
+    STARG_TRY(cover_dual_create(instance, &dual));
+    answer->lower_bound = cover_dual_rows(dual.value);
+done:
+    cover_state_free(&cover);
+    cover_dual_free(instance, &dual);
+    return status;
+}

@@ -1,0 +1,207 @@
+/* The public call: the problem is checked, brought into its working form, solved for its target,
+ * and, where max_rows rows cannot reach that, solved for the most weight. */
+#include "starguard/cover.h"
+
+#include "cover/greedy.h"
+#include "cover/reduce.h"
+#include "cover/solve.h"
+
+static const uint64_t WEIGHT_LIMIT = (uint64_t)1 << 62;
+
+enum { MOST_REDUNDANCY = 1000 };
+
+/* What the caller gets, and the context that its memory goes back to. */
+typedef struct owned_cover {
+    starg_cover cover; /* first: a pointer to it is a pointer to the whole */
+    starg_context *context;
+} owned_cover;
+
+void starg_cover_problem_default(starg_cover_problem *problem) {
+    *problem = (starg_cover_problem){.target = UINT64_MAX, .redundancy = 1};
+}
+
+void starg_cover_options_default(starg_cover_options *options) {
+    *options = (starg_cover_options){.method = STARG_COVER_ILP, .max_nodes = 100000};
+}
+
+static starg_status check_weights(starg_context *context, const starg_cover_problem *problem) {
+    uint64_t left = WEIGHT_LIMIT - 1;
+    for (size_t j = 0; problem->weights != NULL && j < problem->rows->columns; j++) {
+        if (problem->weights[j] > left)
+            return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
+                              "the weights up to column %zu sum to 2^62 or more; scale them down",
+                              j);
+        left -= problem->weights[j];
+    }
+    return STARG_OK;
+}
+
+static starg_status check(starg_context *context, const starg_cover_problem *problem,
+                          const starg_cover_options *options) {
+    if (problem->rows == NULL)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, "cover", "the problem has no rows");
+    if (problem->rows->rows >= UINT32_MAX || problem->rows->columns >= UINT32_MAX)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
+                          "%zu rows and %zu columns are too many: 4294967294 of each is the limit",
+                          problem->rows->rows, problem->rows->columns);
+    if (problem->redundancy < 1 || problem->redundancy > MOST_REDUNDANCY)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
+                          "redundancy is %u; it must lie between 1 and %d", problem->redundancy,
+                          MOST_REDUNDANCY);
+    if (options->method != STARG_COVER_GREEDY && options->method != STARG_COVER_ILP)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, "cover", "unknown method %d",
+                          (int)options->method);
+    return check_weights(context, problem);
+}
+
+static starg_status solve_all(cover_run *run, const cover_instance *instance, bool exact,
+                              cover_answer *answer) {
+    starg_status status = STARG_OK;
+    cover_instance rest = {.context = run->context};
+    if (!exact)
+        return cover_solve_greedy(run, instance, answer);
+    STARG_TRY(cover_instance_select(instance, NULL, NULL, &rest));
+    STARG_TRY(cover_solve_full(run, &rest, answer));
+done:
+    cover_instance_free(&rest);
+    return status;
+}
+
+/* The instance without needless rows, for a partial target or a limit. */
+static starg_status reduce_rows(cover_run *run, const cover_instance *instance,
+                                cover_instance *rest) {
+    starg_status status = STARG_OK;
+    STARG_TRY(cover_instance_select(instance, NULL, NULL, rest));
+    starg_progress_begin(run->context, "reduce");
+    STARG_TRY(cover_reduce_partial(run, rest));
+    starg_progress_end(run->context);
+done:
+    return status;
+}
+
+static starg_status solve_part(cover_run *run, const cover_instance *instance, uint64_t goal,
+                               bool exact, cover_answer *answer) {
+    starg_status status = STARG_OK;
+    cover_instance rest = {.context = run->context};
+    STARG_TRY(reduce_rows(run, instance, &rest));
+    STARG_TRY(cover_solve_partial(run, &rest, goal, exact, answer));
+done:
+    cover_instance_free(&rest);
+    return status;
+}
+
+/* The fewest rows for the goal, whatever max_rows says. */
+static starg_status solve_goal(cover_run *run, const cover_instance *instance, uint64_t goal,
+                               bool exact, cover_answer *answer) {
+    if (goal == 0)
+        return STARG_OK;
+    if (goal == instance->total)
+        return solve_all(run, instance, exact, answer);
+    return solve_part(run, instance, goal, exact, answer);
+}
+
+/* The most weight with `limit` rows, when the answer for the goal has more. */
+static starg_status solve_limit(cover_run *run, const cover_instance *instance, size_t limit,
+                                uint64_t goal, bool exact, cover_answer *answer, uint64_t *most) {
+    starg_status status = STARG_OK;
+    cover_instance rest = {.context = run->context};
+    cover_answer limited = {0};
+    bool unreachable = answer->lower_bound > limit;
+    STARG_TRY(reduce_rows(run, instance, &rest));
+    STARG_TRY(cover_solve_limited(run, &rest, limit, goal, exact, &limited, most));
+    if (unreachable && *most >= goal)
+        *most = goal - 1;
+    if (limited.weight >= goal && limited.lower_bound < answer->lower_bound)
+        limited.lower_bound = answer->lower_bound;
+    STARG_ARRAY_FREE(run->context, &answer->rows);
+    *answer = limited;
+    limited = (cover_answer){0};
+done:
+    STARG_ARRAY_FREE(run->context, &limited.rows);
+    cover_instance_free(&rest);
+    return status;
+}
+
+/* The chosen rows in the order of what each adds; rows that add nothing are left out. */
+static starg_status order_rows(cover_run *run, const cover_instance *instance,
+                               const cover_names *names, starg_cover *cover) {
+    starg_status status = STARG_OK;
+    starg_context *context = run->context;
+    uint64_t *mask = NULL;
+    cover_instance chosen = {.context = context};
+    cover_state state = {0};
+    STARG_NEW_ZERO(context, "cover", mask, instance->column_words);
+    for (size_t i = 0; i < names->count; i++)
+        starg_bit_set(mask, names->data[i]); /* the full instance holds all rows: name = index */
+    STARG_TRY(cover_instance_select(instance, mask, NULL, &chosen));
+    STARG_TRY(cover_state_create(&chosen, &state));
+    STARG_TRY(cover_greedy(run, &state, UINT64_MAX, chosen.rows));
+    STARG_NEW(context, "cover", cover->rows, state.count);
+    for (size_t i = 0; i < state.count; i++)
+        cover->rows[i] = chosen.row_names[state.rows[i]];
+    cover->count = state.count;
+    cover->weight = state.weight;
+done:
+    cover_state_free(&state);
+    cover_instance_free(&chosen);
+    starg_release(context, mask);
+    return status;
+}
+
+static starg_status finish(cover_run *run, const cover_instance *instance,
+                           const cover_answer *answer, uint64_t goal, uint64_t most,
+                           starg_cover **out) {
+    starg_status status = STARG_OK;
+    owned_cover *owned = NULL;
+    STARG_NEW_ZERO(run->context, "cover", owned, 1);
+    owned->context = run->context;
+    starg_cover *cover = &owned->cover;
+    STARG_TRY(order_rows(run, instance, &answer->rows, cover));
+    cover->weight_bound = most;
+    cover->lower_bound = answer->lower_bound;
+    cover->optimal = cover->count == cover->lower_bound;
+    cover->target_reached = cover->weight >= goal;
+    cover->time_limited = run->time_limited;
+    cover->nodes = run->nodes;
+    *out = cover;
+done:
+    if (status != STARG_OK && owned != NULL)
+        starg_cover_free(&owned->cover);
+    return status;
+}
+
+starg_status starg_cover_solve(starg_context *context, const starg_cover_problem *problem,
+                               const starg_cover_options *options, starg_cover **out) {
+    starg_status status = STARG_OK;
+    starg_cover_options defaults;
+    cover_instance instance = {.context = context};
+    cover_answer answer = {0};
+    *out = NULL;
+    starg_cover_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    STARG_TRY(check(context, problem, options));
+    STARG_TRY(starg_check_cancel(context, "cover"));
+
+    cover_run run = {.context = context, .max_nodes = options->max_nodes};
+    bool exact = options->method == STARG_COVER_ILP;
+    STARG_TRY(cover_instance_build(context, problem, &instance));
+    uint64_t goal = problem->target < instance.total ? problem->target : instance.total;
+    uint64_t most = instance.total;
+    STARG_TRY(solve_goal(&run, &instance, goal, exact, &answer));
+    if (problem->max_rows != 0 && answer.rows.count > problem->max_rows)
+        STARG_TRY(solve_limit(&run, &instance, problem->max_rows, goal, exact, &answer, &most));
+    STARG_TRY(finish(&run, &instance, &answer, goal, most, out));
+done:
+    STARG_ARRAY_FREE(context, &answer.rows);
+    cover_instance_free(&instance);
+    return status;
+}
+
+void starg_cover_free(starg_cover *cover) {
+    if (cover == NULL)
+        return;
+    owned_cover *owned = (owned_cover *)cover;
+    starg_release(owned->context, cover->rows);
+    starg_release(owned->context, owned);
+}

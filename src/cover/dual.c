@@ -1,0 +1,121 @@
+#include "cover/dual.h"
+
+#include <stdlib.h>
+
+int64_t cover_dual_value(const cover_instance *instance, const int64_t *multipliers,
+                         int64_t *reduced) {
+    int64_t value = 0;
+    for (size_t j = 0; j < instance->columns; j++)
+        value += multipliers[j] * instance->demands[j];
+    for (size_t i = 0; i < instance->rows; i++) {
+        int64_t sum = 0;
+        for (size_t w = 0; w < instance->row_words; w++) {
+            STARG_FOR_BITS (bit, cover_row(instance, i)[w])
+                sum += multipliers[64 * w + bit];
+        }
+        reduced[i] = COVER_ONE - sum;
+        if (reduced[i] < 0)
+            value += reduced[i];
+    }
+    return value;
+}
+
+/* The multiplier of one column that uses up the smallest reduced cost among its rows. */
+static int64_t raise_column(const cover_instance *instance, size_t column, int64_t *left) {
+    int64_t least = COVER_ONE;
+    const uint64_t *rows = cover_column(instance, column);
+    for (size_t w = 0; w < instance->column_words; w++) {
+        STARG_FOR_BITS (bit, rows[w]) {
+            if (left[64 * w + bit] < least)
+                least = left[64 * w + bit];
+        }
+    }
+    if (least == 0)
+        return 0;
+    for (size_t w = 0; w < instance->column_words; w++) {
+        STARG_FOR_BITS (bit, rows[w])
+            left[64 * w + bit] -= least;
+    }
+    return least;
+}
+
+typedef struct rare_column {
+    size_t supply, column;
+} rare_column;
+
+static int compare_rare(const void *a, const void *b) {
+    const rare_column *x = a, *y = b;
+    if (x->supply != y->supply)
+        return x->supply < y->supply ? -1 : 1;
+    return (x->column > y->column) - (x->column < y->column);
+}
+
+starg_status cover_dual_ascent(const cover_instance *instance, int64_t *multipliers) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    int64_t *left = NULL;
+    rare_column *order = NULL;
+    STARG_NEW(context, "bound", left, instance->rows);
+    STARG_NEW(context, "bound", order, instance->columns);
+    for (size_t i = 0; i < instance->rows; i++)
+        left[i] = COVER_ONE;
+    for (size_t j = 0; j < instance->columns; j++)
+        order[j] =
+            (rare_column){starg_bit_count(cover_column(instance, j), instance->column_words), j};
+    qsort(order, instance->columns, sizeof *order, compare_rare);
+    for (size_t k = 0; k < instance->columns; k++)
+        multipliers[order[k].column] = raise_column(instance, order[k].column, left);
+done:
+    starg_release(context, left);
+    starg_release(context, order);
+    return status;
+}
+
+starg_status cover_dual_create(const cover_instance *instance, cover_dual *out) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    *out = (cover_dual){0};
+    STARG_NEW(context, "bound", out->multipliers, instance->columns);
+    STARG_NEW(context, "bound", out->reduced, instance->rows);
+    STARG_TRY(cover_dual_ascent(instance, out->multipliers));
+    out->value = cover_dual_value(instance, out->multipliers, out->reduced);
+done:
+    if (status != STARG_OK)
+        cover_dual_free(instance, out);
+    return status;
+}
+
+void cover_dual_free(const cover_instance *instance, cover_dual *dual) {
+    starg_release(instance->context, dual->multipliers);
+    starg_release(instance->context, dual->reduced);
+    *dual = (cover_dual){0};
+}
+
+void cover_dual_offer(const cover_instance *instance, cover_dual *dual, const int64_t *multipliers,
+                      int64_t *scratch) {
+    int64_t value = cover_dual_value(instance, multipliers, scratch);
+    if (value <= dual->value)
+        return;
+    dual->value = value;
+    for (size_t j = 0; j < instance->columns; j++)
+        dual->multipliers[j] = multipliers[j];
+    for (size_t i = 0; i < instance->rows; i++)
+        dual->reduced[i] = scratch[i];
+}
+
+bool cover_dual_fix(const cover_instance *instance, const cover_dual *dual, size_t most,
+                    uint64_t *keep, uint64_t *take) {
+    /* Forcing row i in (or out) raises the bound by its positive (negative) reduced cost. */
+    int64_t slack = (int64_t)most * COVER_ONE - dual->value;
+    bool any = false;
+    for (size_t i = 0; i < instance->rows; i++) {
+        if (dual->reduced[i] > slack)
+            starg_bit_clear(keep, i);
+        else if (-dual->reduced[i] > slack)
+            starg_bit_set(take, i);
+        else
+            continue;
+        any = true;
+    }
+    return any;
+}

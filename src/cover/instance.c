@@ -1,0 +1,232 @@
+#include "cover/instance.h"
+
+#include <stdlib.h>
+
+/* The rows of a 64 x 64 block of bits become its columns: halves swapped, then quarters, ... */
+static void transpose_block(uint64_t block[64]) {
+    uint64_t mask = UINT64_C(0x00000000ffffffff);
+    for (unsigned step = 32; step != 0; step >>= 1, mask ^= mask << step) {
+        for (unsigned k = 0; k < 64; k = ((k | step) + 1) & ~step) {
+            uint64_t swap = ((block[k] >> step) ^ block[k | step]) & mask;
+            block[k | step] ^= swap;
+            block[k] ^= swap << step;
+        }
+    }
+}
+
+/* `to` has one row of to_words words for each of the `columns` columns of `from`. */
+static void transpose(const uint64_t *from, size_t rows, size_t columns, size_t from_words,
+                      uint64_t *to, size_t to_words) {
+    for (size_t w = 0; w < from_words; w++) {
+        size_t width = columns - 64 * w < 64 ? columns - 64 * w : 64;
+        for (size_t v = 0; v < to_words; v++) {
+            size_t height = rows - 64 * v < 64 ? rows - 64 * v : 64;
+            uint64_t block[64] = {0};
+            for (size_t i = 0; i < height; i++)
+                block[i] = from[(64 * v + i) * from_words + w];
+            transpose_block(block);
+            for (size_t j = 0; j < width; j++)
+                to[(64 * w + j) * to_words + v] = block[j];
+        }
+    }
+}
+
+void cover_mask_fill(uint64_t *mask, size_t count) {
+    size_t words = starg_bit_words(count);
+    for (size_t w = 0; w < words; w++)
+        mask[w] = UINT64_MAX;
+    if (count % 64 != 0)
+        mask[words - 1] = ((uint64_t)1 << (count % 64)) - 1;
+}
+
+void cover_instance_free(cover_instance *instance) {
+    starg_release(instance->context, instance->row_bits);
+    starg_release(instance->context, instance->column_bits);
+    starg_release(instance->context, instance->weights);
+    starg_release(instance->context, instance->demands);
+    starg_release(instance->context, instance->row_names);
+    *instance = (cover_instance){.context = instance->context};
+}
+
+/* Sets the sizes and allocates everything; the contents are undefined. */
+static starg_status shape(starg_context *context, size_t rows, size_t columns,
+                          cover_instance *out) {
+    starg_status status = STARG_OK;
+    *out = (cover_instance){.context = context,
+                            .rows = rows,
+                            .columns = columns,
+                            .row_words = starg_bit_words(columns),
+                            .column_words = starg_bit_words(rows)};
+    STARG_NEW(context, "cover", out->weights, columns);
+    STARG_NEW(context, "cover", out->demands, columns);
+    STARG_NEW(context, "cover", out->row_names, rows);
+    out->row_bits = starg_allocate(context, rows, out->row_words * sizeof *out->row_bits);
+    out->column_bits =
+        starg_allocate(context, columns, out->column_words * sizeof *out->column_bits);
+    if (out->row_bits == NULL || out->column_bits == NULL)
+        status = starg_fail_memory(context, "cover");
+done:
+    if (status != STARG_OK)
+        cover_instance_free(out);
+    return status;
+}
+
+/* The indices of the ones of a mask (NULL: of all) of `count` bits. */
+static starg_status list_kept(starg_context *context, const uint64_t *mask, size_t count,
+                              uint32_t **list, size_t *kept) {
+    starg_status status = STARG_OK;
+    *kept = 0;
+    STARG_NEW(context, "cover", *list, count);
+    for (size_t i = 0; i < count; i++) {
+        if (mask == NULL || starg_bit_test(mask, i))
+            (*list)[(*kept)++] = (uint32_t)i;
+    }
+done:
+    return status;
+}
+
+starg_status cover_instance_select(const cover_instance *from, const uint64_t *rows,
+                                   const uint64_t *columns, cover_instance *out) {
+    starg_status status = STARG_OK;
+    starg_context *context = from->context;
+    uint32_t *kept_rows = NULL, *kept_columns = NULL;
+    uint64_t *tall = NULL, *wide = NULL; /* the kept columns, with all rows: by column, by row */
+    size_t row_count, column_count;
+    *out = (cover_instance){.context = context};
+    STARG_TRY(list_kept(context, rows, from->rows, &kept_rows, &row_count));
+    STARG_TRY(list_kept(context, columns, from->columns, &kept_columns, &column_count));
+    STARG_TRY(shape(context, row_count, column_count, out));
+
+    STARG_NEW(context, "cover", tall, column_count * from->column_words);
+    for (size_t j = 0; j < column_count; j++) {
+        if (from->column_words != 0)
+            memcpy(tall + j * from->column_words, cover_column(from, kept_columns[j]),
+                   from->column_words * sizeof *tall);
+        out->weights[j] = from->weights[kept_columns[j]];
+        out->demands[j] = from->demands[kept_columns[j]];
+        out->total += out->weights[j];
+    }
+    STARG_NEW(context, "cover", wide, from->rows * out->row_words);
+    transpose(tall, column_count, from->rows, from->column_words, wide, out->row_words);
+    for (size_t i = 0; i < row_count; i++) {
+        if (out->row_words != 0)
+            memcpy(out->row_bits + i * out->row_words, wide + kept_rows[i] * out->row_words,
+                   out->row_words * sizeof *wide);
+        out->row_names[i] = from->row_names[kept_rows[i]];
+    }
+    transpose(out->row_bits, row_count, column_count, out->row_words, out->column_bits,
+              out->column_words);
+done:
+    starg_release(context, kept_rows);
+    starg_release(context, kept_columns);
+    starg_release(context, tall);
+    starg_release(context, wide);
+    if (status != STARG_OK)
+        cover_instance_free(out);
+    return status;
+}
+
+/* The caller's matrix as it is, seen as an instance. */
+static starg_status import(starg_context *context, const starg_cover_problem *problem,
+                           cover_instance *out) {
+    const starg_bits *bits = problem->rows;
+    starg_status status = shape(context, bits->rows, bits->columns, out);
+    if (status != STARG_OK)
+        return status;
+    if (bits->rows * bits->words != 0)
+        memcpy(out->row_bits, bits->data, bits->rows * bits->words * sizeof *bits->data);
+    transpose(out->row_bits, out->rows, out->columns, out->row_words, out->column_bits,
+              out->column_words);
+    for (size_t i = 0; i < out->rows; i++)
+        out->row_names[i] = (uint32_t)i;
+    for (size_t j = 0; j < out->columns; j++) {
+        size_t supply = starg_bit_count(cover_column(out, j), out->column_words);
+        out->weights[j] = problem->weights ? problem->weights[j] : 1;
+        out->demands[j] = (uint32_t)(supply < problem->redundancy ? supply : problem->redundancy);
+    }
+    return STARG_OK;
+}
+
+typedef struct hashed_column {
+    uint64_t hash;
+    uint32_t column;
+} hashed_column;
+
+static int compare_hashed(const void *a, const void *b) {
+    const hashed_column *x = a, *y = b;
+    if (x->hash != y->hash)
+        return x->hash < y->hash ? -1 : 1;
+    return (x->column > y->column) - (x->column < y->column);
+}
+
+static uint64_t hash_words(const uint64_t *words, size_t count) {
+    uint64_t hash = UINT64_C(0x9e3779b97f4a7c15);
+    for (size_t w = 0; w < count; w++) {
+        hash = (hash ^ words[w]) * UINT64_C(0xff51afd7ed558ccd);
+        hash ^= hash >> 32;
+    }
+    return hash;
+}
+
+static bool same_column(const cover_instance *instance, size_t a, size_t b) {
+    return memcmp(cover_column(instance, a), cover_column(instance, b),
+                  instance->column_words * sizeof(uint64_t)) == 0;
+}
+
+/* Adds the weight of each column in a run of equal hashes to the first one equal to it. */
+static void merge_run(cover_instance *instance, const hashed_column *run, size_t count,
+                      uint64_t *keep) {
+    for (size_t a = 0; a < count; a++) {
+        uint32_t first = run[a].column;
+        if (!starg_bit_test(keep, first))
+            continue;
+        for (size_t b = a + 1; b < count; b++) {
+            uint32_t other = run[b].column;
+            if (!starg_bit_test(keep, other) || !same_column(instance, first, other))
+                continue;
+            instance->weights[first] += instance->weights[other];
+            starg_bit_clear(keep, other);
+        }
+    }
+}
+
+/* Marks the columns that count, one for each set of identical ones, and sums their weights. */
+static starg_status merge_columns(cover_instance *instance, uint64_t *keep) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    hashed_column *order = NULL;
+    size_t count = 0;
+    STARG_NEW(context, "cover", order, instance->columns);
+    for (size_t j = 0; j < instance->columns; j++) {
+        if (instance->demands[j] == 0 || instance->weights[j] == 0)
+            continue;
+        uint64_t hash = hash_words(cover_column(instance, j), instance->column_words);
+        order[count++] = (hashed_column){hash, (uint32_t)j};
+        starg_bit_set(keep, j);
+    }
+    qsort(order, count, sizeof *order, compare_hashed);
+    for (size_t begin = 0, end; begin < count; begin = end) {
+        for (end = begin + 1; end < count && order[end].hash == order[begin].hash;)
+            end++;
+        merge_run(instance, order + begin, end - begin, keep);
+    }
+done:
+    starg_release(context, order);
+    return status;
+}
+
+starg_status cover_instance_build(starg_context *context, const starg_cover_problem *problem,
+                                  cover_instance *out) {
+    starg_status status = STARG_OK;
+    cover_instance all = {.context = context};
+    uint64_t *keep = NULL;
+    *out = (cover_instance){.context = context};
+    STARG_TRY(import(context, problem, &all));
+    STARG_NEW_ZERO(context, "cover", keep, all.row_words);
+    STARG_TRY(merge_columns(&all, keep));
+    STARG_TRY(cover_instance_select(&all, NULL, keep, out));
+done:
+    starg_release(context, keep);
+    cover_instance_free(&all);
+    return status;
+}

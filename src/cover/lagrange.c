@@ -1,0 +1,167 @@
+/* The subgradient method for the Lagrangian dual, with covers built from its reduced costs, after
+ * [CFT99]. Floating point only steers: every step's multipliers are rounded to whole numbers and
+ * evaluated exactly. Cost of a step: the ones of the matrix, twice. */
+#include <stdlib.h>
+
+#include "cover/dual.h"
+#include "cover/greedy.h"
+
+enum {
+    MOST_STEPS = 400,
+    STEPS_PER_REVIEW = 20, /* the step factor is reviewed this often          */
+    STEPS_PER_COVER = 10   /* and a cover is built from the reduced costs     */
+};
+
+typedef struct priced_row {
+    int64_t price;
+    uint32_t row;
+} priced_row;
+
+typedef struct lagrange {
+    const cover_instance *instance;
+    cover_dual *dual;
+    cover_state *best, *trial;
+    double *point;              /* multipliers, in rows                        */
+    double *slope;              /* subgradient per column                      */
+    int64_t *rounded, *reduced; /* multipliers of this step, and their costs   */
+    priced_row *order;
+    int64_t value;     /* exact value of this step                    */
+    int64_t low, high; /* values since the last review                */
+    double factor;
+} lagrange;
+
+static int compare_priced(const void *a, const void *b) {
+    const priced_row *x = a, *y = b;
+    if (x->price != y->price)
+        return x->price < y->price ? -1 : 1;
+    return (x->row > y->row) - (x->row < y->row);
+}
+
+static bool is_closed(const lagrange *search) {
+    return cover_dual_rows(search->dual->value) >= search->best->count;
+}
+
+static void evaluate(lagrange *search) {
+    const cover_instance *instance = search->instance;
+    for (size_t j = 0; j < instance->columns; j++)
+        search->rounded[j] = (int64_t)(search->point[j] * (double)COVER_ONE);
+    search->value = cover_dual_value(instance, search->rounded, search->reduced);
+    if (search->value > search->dual->value)
+        cover_dual_offer(instance, search->dual, search->rounded, search->reduced);
+    if (search->value < search->low)
+        search->low = search->value;
+    if (search->value > search->high)
+        search->high = search->value;
+}
+
+/* The subgradient: what each column lacks when the rows of negative cost are chosen. Returns its
+ * squared length; components that would push a zero multiplier below zero do not count. */
+static double find_slope(lagrange *search) {
+    const cover_instance *instance = search->instance;
+    double square = 0;
+    for (size_t j = 0; j < instance->columns; j++)
+        search->slope[j] = instance->demands[j];
+    for (size_t i = 0; i < instance->rows; i++) {
+        if (search->reduced[i] >= 0)
+            continue;
+        for (size_t w = 0; w < instance->row_words; w++) {
+            STARG_FOR_BITS (bit, cover_row(instance, i)[w])
+                search->slope[64 * w + bit] -= 1;
+        }
+    }
+    for (size_t j = 0; j < instance->columns; j++) {
+        if (search->slope[j] < 0 && search->point[j] <= 0)
+            search->slope[j] = 0;
+        square += search->slope[j] * search->slope[j];
+    }
+    return square;
+}
+
+static void take_step(lagrange *search, double square) {
+    double most = (double)COVER_MOST / (double)COVER_ONE;
+    double gap = (double)search->best->count - (double)search->value / (double)COVER_ONE;
+    double length = search->factor * gap / square;
+    for (size_t j = 0; j < search->instance->columns; j++) {
+        double next = search->point[j] + length * search->slope[j];
+        search->point[j] = next < 0 ? 0 : next > most ? most : next;
+    }
+}
+
+/* Shorter steps when the values jump about, longer ones when they hardly move. */
+static void review(lagrange *search) {
+    double spread = (double)(search->high - search->low);
+    double size = (double)(search->dual->value > COVER_ONE ? search->dual->value : COVER_ONE);
+    if (spread > 0.01 * size)
+        search->factor *= 0.5;
+    else if (spread < 0.001 * size)
+        search->factor *= 1.5;
+    search->low = INT64_MAX;
+    search->high = INT64_MIN;
+}
+
+/* A cover from the cheapest rows, needless ones dropped. */
+static void build_cover(lagrange *search) {
+    const cover_instance *instance = search->instance;
+    cover_state *trial = search->trial;
+    for (size_t i = 0; i < instance->rows; i++)
+        search->order[i] = (priced_row){search->reduced[i], (uint32_t)i};
+    qsort(search->order, instance->rows, sizeof *search->order, compare_priced);
+    cover_state_clear(trial);
+    for (size_t k = 0; k < instance->rows && trial->weight < instance->total; k++) {
+        if (cover_state_need(trial, search->order[k].row) != 0)
+            cover_state_add(trial, search->order[k].row);
+    }
+    cover_drop_needless(trial, instance->total);
+    if (trial->count < search->best->count)
+        cover_state_copy(search->best, trial);
+}
+
+static starg_status iterate(cover_run *run, lagrange *search) {
+    for (size_t step = 1; step <= MOST_STEPS && !is_closed(search); step++) {
+        starg_status status = starg_check_cancel(run->context, "bound");
+        if (status != STARG_OK || cover_time_is_over(run))
+            return status;
+        starg_progress_step(run->context, step, MOST_STEPS);
+        evaluate(search);
+        double square = find_slope(search);
+        if (step % STEPS_PER_COVER == 0 || square == 0)
+            build_cover(search);
+        if (square == 0)
+            break; /* a maximum */
+        if (step % STEPS_PER_REVIEW == 0)
+            review(search);
+        take_step(search, square);
+    }
+    return STARG_OK;
+}
+
+starg_status cover_lagrange(cover_run *run, const cover_instance *instance, cover_dual *dual,
+                            cover_state *best) {
+    starg_status status = STARG_OK;
+    starg_context *context = run->context;
+    cover_state trial = {0};
+    lagrange search = {.instance = instance,
+                       .dual = dual,
+                       .best = best,
+                       .trial = &trial,
+                       .low = INT64_MAX,
+                       .high = INT64_MIN,
+                       .factor = 0.1};
+    STARG_TRY(cover_state_create(instance, &trial));
+    STARG_NEW(context, "bound", search.point, instance->columns);
+    STARG_NEW(context, "bound", search.slope, instance->columns);
+    STARG_NEW(context, "bound", search.rounded, instance->columns);
+    STARG_NEW(context, "bound", search.reduced, instance->rows);
+    STARG_NEW(context, "bound", search.order, instance->rows);
+    for (size_t j = 0; j < instance->columns; j++)
+        search.point[j] = (double)dual->multipliers[j] / (double)COVER_ONE;
+    STARG_TRY(iterate(run, &search));
+done:
+    cover_state_free(&trial);
+    starg_release(context, search.point);
+    starg_release(context, search.slope);
+    starg_release(context, search.rounded);
+    starg_release(context, search.reduced);
+    starg_release(context, search.order);
+    return status;
+}

@@ -1,0 +1,141 @@
+/* A partial target, or a limit on the rows: bounds by weight_bound.h, exact search by search.h. The
+ * fewest rows for a target are found by asking for each number of rows from the bound upwards
+ * whether so many can reach it. */
+#include "cover/solve.h"
+
+#include "cover/greedy.h"
+#include "cover/search.h"
+
+/* A good choice of the fewest rows that reach the goal, by greedy, dropping and swaps. */
+static starg_status find_first_choice(cover_run *run, cover_state *choice, uint64_t goal) {
+    starg_status status = STARG_OK;
+    STARG_TRY(cover_greedy(run, choice, goal, choice->instance->rows));
+    cover_drop_needless(choice, goal);
+    STARG_TRY(cover_shrink(run, choice, goal));
+done:
+    return status;
+}
+
+/* Asks for `rows` rows; leaves `best` alone unless they reach the goal. */
+static starg_status try_rows(cover_run *run, const cover_instance *instance, size_t rows,
+                             cover_weight_bound *bound, cover_state *best, bool *decided) {
+    starg_status status = STARG_OK;
+    cover_state found = {0};
+    uint64_t goal = bound->goal;
+    STARG_TRY(cover_state_create(instance, &found));
+    starg_progress_begin(run->context, "bound");
+    cover_weight_bound_restart(instance, bound, rows);
+    STARG_TRY(cover_weight_bound_improve(run, instance, goal - 1, bound));
+    starg_progress_end(run->context);
+    *decided = bound->most < goal;
+    if (*decided || cover_time_is_over(run))
+        goto done;
+    starg_progress_begin(run->context, "ilp");
+    STARG_TRY(cover_search(run, instance, bound, goal - 1, goal, &found, decided));
+    starg_progress_end(run->context);
+    if (found.weight >= goal) {
+        cover_state_copy(best, &found);
+        *decided = true;
+    }
+done:
+    cover_state_free(&found);
+    return status;
+}
+
+/* Closes the gap between the bound and the choice from below. */
+static starg_status close_gap(cover_run *run, const cover_instance *instance,
+                              cover_weight_bound *bound, cover_state *choice) {
+    starg_status status = STARG_OK;
+    starg_progress_begin(run->context, "bound");
+    STARG_TRY(cover_weight_bound_improve(run, instance, bound->goal - 1, bound));
+    starg_progress_end(run->context);
+    while (bound->least < choice->count && !cover_time_is_over(run)) {
+        size_t rows = bound->least;
+        bool decided;
+        STARG_TRY(try_rows(run, instance, rows, bound, choice, &decided));
+        if (!decided)
+            break;
+        if (choice->count > rows && bound->least <= rows)
+            bound->least = rows + 1;
+    }
+done:
+    return status;
+}
+
+starg_status cover_solve_partial(cover_run *run, const cover_instance *instance, uint64_t goal,
+                                 bool exact, cover_answer *answer) {
+    starg_status status = STARG_OK;
+    cover_state choice = {0};
+    cover_weight_bound bound = {0};
+    STARG_TRY(cover_state_create(instance, &choice));
+    STARG_TRY(find_first_choice(run, &choice, goal));
+    STARG_TRY(cover_weight_bound_create(instance, choice.count - 1, goal, &bound));
+    if (exact)
+        STARG_TRY(close_gap(run, instance, &bound, &choice));
+    answer->lower_bound = bound.least;
+    STARG_TRY(cover_state_names(&choice, &answer->rows));
+done:
+    cover_weight_bound_free(instance, &bound);
+    cover_state_free(&choice);
+    return status;
+}
+
+/* Raises the weight of the choice, or lowers the bound on it, until they meet. */
+static starg_status close_weight_gap(cover_run *run, const cover_instance *instance, uint64_t goal,
+                                     cover_weight_bound *bound, cover_state *choice) {
+    starg_status status = STARG_OK;
+    bool exhausted;
+    starg_progress_begin(run->context, "bound");
+    STARG_TRY(cover_weight_bound_improve(run, instance, choice->weight, bound));
+    starg_progress_end(run->context);
+    if (bound->most <= choice->weight || cover_time_is_over(run))
+        goto done;
+    starg_progress_begin(run->context, "ilp");
+    STARG_TRY(cover_search(run, instance, bound, 0, goal, choice, &exhausted));
+    starg_progress_end(run->context);
+    if (exhausted && choice->weight < goal)
+        bound->most = choice->weight;
+done:
+    return status;
+}
+
+/* The bound on the rows for the weight that has been reached, the goal at most. */
+static starg_status bound_rows(cover_run *run, const cover_instance *instance,
+                               const cover_state *choice, uint64_t goal, bool exact,
+                               size_t *least) {
+    starg_status status = STARG_OK;
+    cover_weight_bound bound = {0};
+    *least = 0;
+    if (choice->count == 0)
+        goto done;
+    uint64_t reached = choice->weight < goal ? choice->weight : goal;
+    STARG_TRY(cover_weight_bound_create(instance, choice->count - 1, reached, &bound));
+    if (exact)
+        STARG_TRY(cover_weight_bound_improve(run, instance, reached - 1, &bound));
+    *least = bound.least;
+done:
+    cover_weight_bound_free(instance, &bound);
+    return status;
+}
+
+starg_status cover_solve_limited(cover_run *run, const cover_instance *instance, size_t limit,
+                                 uint64_t goal, bool exact, cover_answer *answer, uint64_t *most) {
+    starg_status status = STARG_OK;
+    cover_state choice = {0};
+    cover_weight_bound bound = {0};
+    STARG_TRY(cover_state_create(instance, &choice));
+    STARG_TRY(cover_greedy(run, &choice, instance->total, limit));
+    STARG_TRY(cover_swap(run, &choice, goal));
+    STARG_TRY(cover_weight_bound_create(instance, limit, goal, &bound));
+    if (exact && choice.weight < goal)
+        STARG_TRY(close_weight_gap(run, instance, goal, &bound, &choice));
+    cover_drop_needless(&choice, choice.weight < goal ? choice.weight : goal);
+    STARG_TRY(bound_rows(run, instance, &choice, goal, exact, &answer->lower_bound));
+    STARG_TRY(cover_state_names(&choice, &answer->rows));
+    answer->weight = choice.weight;
+    *most = bound.most;
+done:
+    cover_weight_bound_free(instance, &bound);
+    cover_state_free(&choice);
+    return status;
+}

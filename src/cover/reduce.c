@@ -1,0 +1,384 @@
+#include "cover/reduce.h"
+
+static size_t supply(const cover_instance *instance, size_t column) {
+    return starg_bit_count(cover_column(instance, column), instance->column_words);
+}
+
+static bool is_subset(const uint64_t *a, const uint64_t *b, size_t words) {
+    for (size_t w = 0; w < words; w++) {
+        if (a[w] & ~b[w])
+            return false;
+    }
+    return true;
+}
+
+size_t cover_mark_essential(const cover_instance *instance, uint64_t *rows) {
+    for (size_t j = 0; j < instance->columns; j++) {
+        if (supply(instance, j) != instance->demands[j])
+            continue;
+        for (size_t w = 0; w < instance->column_words; w++)
+            rows[w] |= cover_column(instance, j)[w];
+    }
+    return starg_bit_count(rows, instance->column_words);
+}
+
+/* Largest demand and rarest column of a row; false when it holds none. */
+static bool survey_row(const cover_instance *instance, const size_t *supplies, size_t row,
+                       size_t *demand, size_t *rarest) {
+    bool any = false;
+    *demand = 0;
+    for (size_t w = 0; w < instance->row_words; w++) {
+        STARG_FOR_BITS (bit, cover_row(instance, row)[w]) {
+            size_t column = 64 * w + bit;
+            if (instance->demands[column] > *demand)
+                *demand = instance->demands[column];
+            if (!any || supplies[column] < supplies[*rarest])
+                *rarest = column;
+            any = true;
+        }
+    }
+    return any;
+}
+
+/* True when at least `demand` other rows of the mask hold all columns of `row`. All of them hold
+ * its rarest column, so only the rows of that are looked at. */
+static bool is_needless(const cover_instance *instance, const uint64_t *rows, size_t row,
+                        size_t demand, size_t rarest) {
+    const uint64_t *bits = cover_row(instance, row), *holders = cover_column(instance, rarest);
+    size_t found = 0;
+    for (size_t w = 0; w < instance->column_words; w++) {
+        STARG_FOR_BITS (bit, holders[w] & rows[w]) {
+            size_t other = 64 * w + bit;
+            if (other == row || !is_subset(bits, cover_row(instance, other), instance->row_words))
+                continue;
+            if (++found == demand)
+                return true;
+        }
+    }
+    return false;
+}
+
+starg_status cover_drop_dominated_rows(cover_run *run, const cover_instance *instance,
+                                       uint64_t *rows, size_t *dropped) {
+    starg_status status = STARG_OK;
+    size_t *supplies = NULL;
+    *dropped = 0;
+    STARG_NEW(run->context, "reduce", supplies, instance->columns);
+    for (size_t j = 0; j < instance->columns; j++)
+        supplies[j] = supply(instance, j);
+    /* From the last row on, so that of identical rows the first stays. */
+    for (size_t i = instance->rows; i-- > 0;) {
+        STARG_TRY(starg_check_cancel(run->context, "reduce"));
+        if (i % 64 == 0 && cover_time_is_over(run))
+            break;
+        size_t demand, rarest = 0;
+        if (survey_row(instance, supplies, i, &demand, &rarest) &&
+            !is_needless(instance, rows, i, demand, rarest))
+            continue;
+        starg_bit_clear(rows, i);
+        ++*dropped;
+    }
+done:
+    starg_release(run->context, supplies);
+    return status;
+}
+
+/* What column dominance looks at before it touches the bits of a column. */
+typedef struct column_order {
+    uint32_t *by_supply; /* columns, those with few rows first      */
+    uint32_t *supply;    /* per column                              */
+    uint64_t *signature; /* per column: its bits of 64 spread rows  */
+    size_t *row_size;    /* per row: columns it holds               */
+} column_order;
+
+static void column_order_free(starg_context *context, column_order *order) {
+    starg_release(context, order->by_supply);
+    starg_release(context, order->supply);
+    starg_release(context, order->signature);
+    starg_release(context, order->row_size);
+}
+
+static uint64_t sign_column(const cover_instance *instance, size_t column) {
+    uint64_t signature = 0;
+    for (size_t b = 0; b < 64 && b < instance->rows; b++) {
+        size_t row = instance->rows < 64 ? b : b * instance->rows / 64;
+        signature |= (uint64_t)starg_bit_test(cover_column(instance, column), row) << b;
+    }
+    return signature;
+}
+
+/* Counting sort by supply keeps the order of the columns among equals. */
+static starg_status sort_by_supply(const cover_instance *instance, column_order *order) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    size_t *start = NULL;
+    STARG_NEW_ZERO(context, "reduce", start, instance->rows + 2);
+    for (size_t j = 0; j < instance->columns; j++)
+        start[order->supply[j] + 1]++;
+    for (size_t s = 0; s <= instance->rows; s++)
+        start[s + 1] += start[s];
+    for (size_t j = 0; j < instance->columns; j++)
+        order->by_supply[start[order->supply[j]]++] = (uint32_t)j;
+done:
+    starg_release(context, start);
+    return status;
+}
+
+static starg_status column_order_make(const cover_instance *instance, column_order *order) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    *order = (column_order){0};
+    STARG_NEW(context, "reduce", order->by_supply, instance->columns);
+    STARG_NEW(context, "reduce", order->supply, instance->columns);
+    STARG_NEW(context, "reduce", order->signature, instance->columns);
+    STARG_NEW(context, "reduce", order->row_size, instance->rows);
+    for (size_t j = 0; j < instance->columns; j++) {
+        order->supply[j] = (uint32_t)supply(instance, j);
+        order->signature[j] = sign_column(instance, j);
+    }
+    for (size_t i = 0; i < instance->rows; i++)
+        order->row_size[i] = starg_bit_count(cover_row(instance, i), instance->row_words);
+    STARG_TRY(sort_by_supply(instance, order));
+done:
+    return status;
+}
+
+static size_t smallest_row_of(const cover_instance *instance, const column_order *order,
+                              size_t column) {
+    size_t best = SIZE_MAX;
+    for (size_t w = 0; w < instance->column_words; w++) {
+        STARG_FOR_BITS (bit, cover_column(instance, column)[w]) {
+            size_t row = 64 * w + bit;
+            if (best == SIZE_MAX || order->row_size[row] < order->row_size[best])
+                best = row;
+        }
+    }
+    return best;
+}
+
+/* Clears the columns that hold all rows of `column` and demand no more. They all lie in any row
+ * of `column`: its smallest one is scanned. */
+static size_t drop_supersets(const cover_instance *instance, const column_order *order,
+                             size_t column, uint64_t *columns) {
+    size_t row = smallest_row_of(instance, order, column), dropped = 0;
+    if (row == SIZE_MAX)
+        return 0;
+    uint64_t signature = order->signature[column];
+    uint32_t size = order->supply[column], demand = instance->demands[column];
+    for (size_t w = 0; w < instance->row_words; w++) {
+        STARG_FOR_BITS (bit, cover_row(instance, row)[w] & columns[w]) {
+            size_t other = 64 * w + bit;
+            if ((signature & ~order->signature[other]) != 0 || order->supply[other] < size ||
+                instance->demands[other] > demand || other == column)
+                continue;
+            if (!is_subset(cover_column(instance, column), cover_column(instance, other),
+                           instance->column_words))
+                continue;
+            starg_bit_clear(columns, other);
+            dropped++;
+        }
+    }
+    return dropped;
+}
+
+starg_status cover_drop_dominated_columns(cover_run *run, const cover_instance *instance,
+                                          uint64_t *columns, size_t *dropped) {
+    starg_status status = STARG_OK;
+    column_order order;
+    *dropped = 0;
+    STARG_TRY(column_order_make(instance, &order));
+    for (size_t k = 0; k < instance->columns; k++) {
+        size_t column = order.by_supply[k];
+        if (!starg_bit_test(columns, column))
+            continue;
+        STARG_TRY(starg_check_cancel(run->context, "reduce"));
+        if (k % 64 == 0 && cover_time_is_over(run))
+            break;
+        starg_progress_step(run->context, k, instance->columns);
+        *dropped += drop_supersets(instance, &order, column, columns);
+    }
+done:
+    column_order_free(run->context, &order);
+    return status;
+}
+
+/* Lowers the demands by what the taken rows give; clears the columns that are covered by that. */
+static void serve_columns(cover_instance *instance, const uint64_t *taken, uint64_t *columns) {
+    for (size_t j = 0; j < instance->columns; j++) {
+        uint32_t given = 0;
+        for (size_t w = 0; w < instance->column_words; w++)
+            given += (uint32_t)__builtin_popcountll(cover_column(instance, j)[w] & taken[w]);
+        if (given >= instance->demands[j])
+            starg_bit_clear(columns, j);
+        else
+            instance->demands[j] -= given;
+    }
+}
+
+static starg_status replace_by_part(cover_instance *instance, const uint64_t *rows,
+                                    const uint64_t *columns) {
+    cover_instance part;
+    starg_status status = cover_instance_select(instance, rows, columns, &part);
+    if (status != STARG_OK)
+        return status;
+    cover_instance_free(instance);
+    *instance = part;
+    return STARG_OK;
+}
+
+starg_status cover_take_rows(cover_instance *instance, const uint64_t *taken, const uint64_t *keep,
+                             cover_names *forced) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    uint64_t *rows = NULL, *columns = NULL;
+    STARG_NEW(context, "reduce", rows, instance->column_words);
+    STARG_NEW(context, "reduce", columns, instance->row_words);
+    cover_mask_fill(columns, instance->columns);
+    cover_mask_fill(rows, instance->rows);
+    for (size_t w = 0; w < instance->column_words; w++) {
+        rows[w] &= ~taken[w] & (keep ? keep[w] : UINT64_MAX);
+        STARG_FOR_BITS (bit, taken[w])
+            STARG_PUSH(context, "reduce", forced, instance->row_names[64 * w + bit]);
+    }
+    serve_columns(instance, taken, columns);
+    STARG_TRY(replace_by_part(instance, rows, columns));
+done:
+    starg_release(context, rows);
+    starg_release(context, columns);
+    return status;
+}
+
+static starg_status take_essentials(cover_instance *instance, cover_names *forced, bool *changed) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    uint64_t *rows = NULL;
+    STARG_NEW_ZERO(context, "reduce", rows, instance->column_words);
+    if (cover_mark_essential(instance, rows) != 0) {
+        STARG_TRY(cover_take_rows(instance, rows, NULL, forced));
+        *changed = true;
+    }
+done:
+    starg_release(context, rows);
+    return status;
+}
+
+static starg_status apply_column_dominance(cover_run *run, cover_instance *instance,
+                                           bool *changed) {
+    starg_status status = STARG_OK;
+    uint64_t *columns = NULL;
+    size_t dropped;
+    STARG_NEW(run->context, "reduce", columns, instance->row_words);
+    cover_mask_fill(columns, instance->columns);
+    STARG_TRY(cover_drop_dominated_columns(run, instance, columns, &dropped));
+    if (dropped != 0) {
+        STARG_TRY(replace_by_part(instance, NULL, columns));
+        *changed = true;
+    }
+done:
+    starg_release(run->context, columns);
+    return status;
+}
+
+static starg_status apply_row_dominance(cover_run *run, cover_instance *instance, bool *changed) {
+    starg_status status = STARG_OK;
+    uint64_t *rows = NULL;
+    size_t dropped;
+    STARG_NEW(run->context, "reduce", rows, instance->column_words);
+    cover_mask_fill(rows, instance->rows);
+    STARG_TRY(cover_drop_dominated_rows(run, instance, rows, &dropped));
+    if (dropped != 0) {
+        STARG_TRY(replace_by_part(instance, rows, NULL));
+        *changed = true;
+    }
+done:
+    starg_release(run->context, rows);
+    return status;
+}
+
+static bool every_demand_can_be_met(const cover_instance *instance) {
+    for (size_t j = 0; j < instance->columns; j++) {
+        if (supply(instance, j) < instance->demands[j])
+            return false;
+    }
+    return true;
+}
+
+starg_status cover_reduce_full(cover_run *run, cover_instance *instance, cover_names *forced,
+                               bool *feasible) {
+    starg_status status = STARG_OK;
+    *feasible = every_demand_can_be_met(instance);
+    for (bool changed = *feasible; changed;) {
+        changed = false;
+        STARG_TRY(take_essentials(instance, forced, &changed));
+        if (cover_time_is_over(run))
+            break;
+        STARG_TRY(apply_column_dominance(run, instance, &changed));
+        STARG_TRY(apply_row_dominance(run, instance, &changed));
+    }
+done:
+    return status;
+}
+
+starg_status cover_reduce_partial(cover_run *run, cover_instance *instance) {
+    bool changed;
+    return apply_row_dominance(run, instance, &changed);
+}
+
+/* A walk over the rows and columns of one block. */
+typedef struct block_walk {
+    const cover_instance *instance;
+    uint64_t *unseen; /* columns whose rows have not been gathered */
+    uint32_t *block, *queue;
+    uint32_t number;
+    size_t tail;
+} block_walk;
+
+static void reach_row(block_walk *walk, size_t row) {
+    if (walk->block[row] != UINT32_MAX)
+        return;
+    walk->block[row] = walk->number;
+    walk->queue[walk->tail++] = (uint32_t)row;
+}
+
+static void reach_rows_of(block_walk *walk, size_t column) {
+    for (size_t w = 0; w < walk->instance->column_words; w++) {
+        STARG_FOR_BITS (bit, cover_column(walk->instance, column)[w])
+            reach_row(walk, 64 * w + bit);
+    }
+}
+
+static void walk_block(block_walk *walk, size_t first) {
+    walk->tail = 0;
+    reach_row(walk, first);
+    for (size_t head = 0; head < walk->tail; head++) {
+        const uint64_t *row = cover_row(walk->instance, walk->queue[head]);
+        for (size_t w = 0; w < walk->instance->row_words; w++) {
+            uint64_t fresh = row[w] & walk->unseen[w];
+            walk->unseen[w] &= ~fresh;
+            STARG_FOR_BITS (bit, fresh)
+                reach_rows_of(walk, 64 * w + bit);
+        }
+    }
+}
+
+starg_status cover_find_blocks(const cover_instance *instance, uint32_t *block, size_t *count) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    block_walk walk = {.instance = instance, .block = block};
+    *count = 0;
+    STARG_NEW(context, "reduce", walk.unseen, instance->row_words);
+    STARG_NEW(context, "reduce", walk.queue, instance->rows);
+    cover_mask_fill(walk.unseen, instance->columns);
+    for (size_t i = 0; i < instance->rows; i++)
+        block[i] = UINT32_MAX;
+    for (size_t i = 0; i < instance->rows; i++) {
+        if (block[i] != UINT32_MAX)
+            continue;
+        walk.number = (uint32_t)(*count)++;
+        walk_block(&walk, i);
+    }
+done:
+    starg_release(context, walk.unseen);
+    starg_release(context, walk.queue);
+    return status;
+}

@@ -1,0 +1,17 @@
+/* Branch and bound for partial targets and limited rows: the most weight that K rows can cover.
+ * Exact in integers. */
+#ifndef STARG_COVER_SEARCH_H
+#define STARG_COVER_SEARCH_H
+
+#include "cover/weight_bound.h"
+
+/* Looks for at most `bound->rows` rows that cover more than `best` does, or than `floor` if that
+ * is more, and stores the heaviest in `best`; stops once one covers `goal`. *exhausted tells that
+ * the search has ended by itself: if it stored nothing there is no such choice, and if it did not
+ * reach the goal nothing is heavier. Nodes are limited by the run's max_nodes, and the steps on
+ * matrix words to 4,096 for each of them. Errors: MEMORY, CANCELLED. */
+starg_status cover_search(cover_run *run, const cover_instance *instance,
+                          const cover_weight_bound *bound, uint64_t floor, uint64_t goal,
+                          cover_state *best, bool *exhausted);
+
+#endif

@@ -1,0 +1,49 @@
+/* Upper bound on the weight that a number of rows can cover, in whole numbers; the other way round
+ * a lower bound on the rows that a weight takes.
+ *
+ * For any multipliers u >= 0, K rows cover at most
+ *     U(K, u) = sum_j max(0, w(j) - demand(j) u(j)) + the K largest sums of u over a row:
+ * a covered column pays demand(j) u(j) to its chosen rows and keeps the rest. So the smallest K
+ * with U(K, u) >= T is a proven lower bound for covering the weight T. All in integers: weights
+ * and multipliers are scaled by 2^shift, chosen so that the scaled weights sum to below 2^62. */
+#ifndef STARG_COVER_WEIGHT_BOUND_H
+#define STARG_COVER_WEIGHT_BOUND_H
+
+#include "cover/state.h"
+
+/* A row with the sum of its multipliers. */
+typedef struct cover_score {
+    uint64_t score;
+    uint32_t row;
+} cover_score;
+
+/* Sorts by score, largest first, ties by index. */
+void cover_sort_scores(cover_score *scores, size_t count);
+
+typedef struct cover_weight_bound {
+    unsigned shift;
+    uint64_t *multipliers; /* those of the lowest bound found for `rows` rows */
+    size_t rows;           /* K */
+    uint64_t most;         /* no K rows cover more                            */
+    uint64_t goal;         /* T */
+    size_t least;          /* no fewer rows cover T                           */
+    uint64_t *trial;       /* scratch: multipliers, scores                    */
+    cover_score *scores;
+} cover_weight_bound;
+
+/* Bounds for `rows` rows and for the weight `goal`, from u(j) = w(j) / demand(j): the sum of the
+ * heaviest rows. Errors: MEMORY. */
+starg_status cover_weight_bound_create(const cover_instance *instance, size_t rows, uint64_t goal,
+                                       cover_weight_bound *out);
+void cover_weight_bound_free(const cover_instance *instance, cover_weight_bound *bound);
+
+/* Turns to another number of rows; what is known of the goal stays. */
+void cover_weight_bound_restart(const cover_instance *instance, cover_weight_bound *bound,
+                                size_t rows);
+
+/* Improves both by the subgradient method until `most` is at most `enough`. Errors: MEMORY,
+ * CANCELLED. */
+starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *instance,
+                                        uint64_t enough, cover_weight_bound *bound);
+
+#endif

@@ -1,0 +1,24 @@
+/* Set cover by trying all choices of rows: the tests' independent answer. */
+#ifndef TESTS_COVER_ORACLE_H
+#define TESTS_COVER_ORACLE_H
+
+#include "starguard/cover.h"
+
+enum { COVER_ORACLE_ROWS = 16 };
+
+/* Weight that a choice of rows covers, column by column as the header of cover.h defines it. */
+uint64_t cover_oracle_weight(const starg_cover_problem *problem, const uint32_t *rows,
+                             size_t count);
+
+/* Weight of all coverable columns. */
+uint64_t cover_oracle_coverable(const starg_cover_problem *problem);
+
+/* best[c]: the most weight that exactly c rows cover, for c from 0 to the number of rows, which is
+ * at most COVER_ORACLE_ROWS. */
+void cover_oracle_best(const starg_cover_problem *problem, uint64_t best[COVER_ORACLE_ROWS + 1]);
+
+/* The fewest rows that cover `weight`, from cover_oracle_best's answer; more than `rows` if none.
+ */
+size_t cover_oracle_fewest(const uint64_t *best, size_t rows, uint64_t weight);
+
+#endif
