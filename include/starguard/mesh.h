@@ -48,12 +48,18 @@ typedef enum starg_mesh_format {
     STARG_MESH_STL_BINARY = 6
 } starg_mesh_format;
 
-/* Reads a mesh; path "-" is standard input. Polygons are cut into triangles in place (the faces
- * that result keep the file's order); STL corners at exactly equal positions become one vertex.
- * Errors: READ, FORMAT (with the line or byte), RANGE, MEMORY. */
+/* Reads a mesh; path "-" is standard input. The content tells the format, and only if it does not
+ * the name's ending. Polygons are cut into triangles in place (the faces that result keep the
+ * file's order): by the fan about the first corner, or by clipping ears where that fan does not do
+ * (then of at most 4,096 corners). STL corners at exactly equal positions become one vertex. Faces
+ * with repeated corners are kept. Normals, colours and materials are ignored, and no other file is
+ * opened. A file without faces is an error.
+ * Errors: READ, FORMAT (with the line of a text or the byte of a binary file), RANGE (with the
+ * vertex), MEMORY, CANCELLED. Messages of all but MEMORY and CANCELLED name the file. */
 STARG_API starg_status starg_mesh_read(starg_context *context, const char *path, starg_mesh **out);
 
-/* The same from `size` bytes in memory; `name` is used in messages and as a format hint. */
+/* The same from `size` bytes in memory (NULL if 0); `name` is used in messages and as a format
+ * hint. */
 STARG_API starg_status starg_mesh_read_memory(starg_context *context, const void *bytes,
                                               size_t size, const char *name, starg_mesh **out);
 
@@ -65,9 +71,11 @@ typedef struct starg_mesh_write_options {
 
 STARG_API void starg_mesh_write_options_default(starg_mesh_write_options *options);
 
-/* Writes a mesh; path "-" is standard output. A file appears whole or not at all. Reals are
- * written with 17 significant digits (binary STL holds single precision only, by its definition).
- * `options` may be NULL. Errors: ARGUMENT (name has no known ending), WRITE, MEMORY. */
+/* Writes a mesh; path "-" is standard output, for which a format must be named. A file appears
+ * whole or not at all. Reals are written with 17 significant digits (binary STL holds single
+ * precision only, by its definition). By name, .ply and .stl become binary.
+ * `options` may be NULL. Errors: ARGUMENT (name has no known ending), RANGE (a coordinate beyond
+ * single precision, binary STL only), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh,
                                         const char *path, const starg_mesh_write_options *options);
 

@@ -1,3 +1,6 @@
+/* The mesh that a reader builds up, and the messages that name places in its file. Counts and
+ * indices have been checked when they arrive here or are checked here, so that what finish hands
+ * over cannot be refused for its contents. */
 #include <math.h>
 #include <stdarg.h>
 

@@ -1,5 +1,5 @@
-/* What the mesh readers and writers share: the bytes to read with their place in messages, the
- * builder that readers feed, and the two tables of formats. */
+/* What the mesh readers and writers share: bytes with their place in messages, the builder that
+ * readers feed, and the functions of each format. */
 #ifndef STARG_MESH_IO_H
 #define STARG_MESH_IO_H
 
@@ -103,6 +103,9 @@ void starg_ply_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *
 void starg_ply_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
 void starg_stl_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
 void starg_stl_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
+
+/* The vertices and the faces of a mesh as lines of text, which OFF and PLY have in common. */
+void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
 
 /* True when `name` ends with `ending`, in any case. */
 bool starg_has_ending(const char *name, const char *ending);

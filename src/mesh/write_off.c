@@ -3,8 +3,7 @@
 
 #include "mesh/io.h"
 
-void starg_off_write(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
-    fprintf(stream, "OFF\n%zu %zu 0\n", mesh->vertex_count, mesh->face_count);
+void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
     for (size_t i = 0; i < mesh->vertex_count; i++) {
         const double *p = mesh->vertices + 3 * i;
         fprintf(stream, "%.17g %.17g %.17g\n", p[0], p[1], p[2]);
@@ -16,4 +15,9 @@ void starg_off_write(FILE *stream, const starg_mesh *mesh, const uint8_t *colors
             fprintf(stream, " %d %d %d", colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]);
         fputc('\n', stream);
     }
+}
+
+void starg_off_write(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
+    fprintf(stream, "OFF\n%zu %zu 0\n", mesh->vertex_count, mesh->face_count);
+    starg_write_lines(stream, mesh, colors);
 }

@@ -1,6 +1,4 @@
 /* PLY: double coordinates, lists of int, and the colours of faces as uchar red, green, blue. */
-#include <inttypes.h>
-
 #include "mesh/io.h"
 #include "mesh/pack.h"
 
@@ -17,17 +15,7 @@ static void write_header(FILE *stream, const char *encoding, const starg_mesh *m
 
 void starg_ply_write_ascii(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
     write_header(stream, "ascii", mesh, colors != NULL);
-    for (size_t i = 0; i < mesh->vertex_count; i++) {
-        const double *p = mesh->vertices + 3 * i;
-        fprintf(stream, "%.17g %.17g %.17g\n", p[0], p[1], p[2]);
-    }
-    for (size_t i = 0; i < mesh->face_count; i++) {
-        const uint32_t *f = mesh->faces + 3 * i;
-        fprintf(stream, "3 %" PRIu32 " %" PRIu32 " %" PRIu32, f[0], f[1], f[2]);
-        if (colors != NULL)
-            fprintf(stream, " %d %d %d", colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]);
-        fputc('\n', stream);
-    }
+    starg_write_lines(stream, mesh, colors);
 }
 
 void starg_ply_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t *colors) {
