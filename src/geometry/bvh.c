@@ -261,8 +261,8 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
 
 /* A segment p + t d, 0 <= t <= 1, made ready for slab tests. */
 typedef struct slab_segment {
-    double origin[3], inverse[3];
-    bool still[3]; /* no extent along the axis */
+    double origin[3], extent[3], inverse[3];
+    bool flat[3]; /* the extent is zero, or so small that its inverse overflows */
 } slab_segment;
 
 static slab_segment slab_prepare(const double p[3], const double q[3]) {
@@ -270,20 +270,21 @@ static slab_segment slab_prepare(const double p[3], const double q[3]) {
     for (int k = 0; k < 3; k++) {
         double d = q[k] - p[k];
         s.origin[k] = p[k];
-        s.still[k] = d == 0;
-        s.inverse[k] = s.still[k] ? 0 : 1 / d;
+        s.extent[k] = d;
+        s.inverse[k] = d == 0 ? 0 : 1 / d;
+        s.flat[k] = d == 0 || isinf(s.inverse[k]);
     }
     return s;
 }
 
 /* Never false when the exact segment meets the box: each bound carries at most three roundings,
- * a relative error below 4 x 2^-53. NaN (0 x infinity) fails the comparisons and is ignored. */
+ * a relative error below 4 x 2^-53. */
 static bool slab_meets(const slab_segment *s, const bvh_box *box) {
     double enter = 0, leave = 1;
     for (int k = 0; k < 3; k++) {
         double low = box->lower[k] - s->origin[k], high = box->upper[k] - s->origin[k];
-        if (s->still[k]) {
-            if (low > 0 || high < 0)
+        if (s->flat[k]) {
+            if (low > fmax(s->extent[k], 0) || high < fmin(s->extent[k], 0))
                 return false;
             continue;
         }
@@ -297,7 +298,8 @@ static bool slab_meets(const slab_segment *s, const bvh_box *box) {
     return enter <= leave * (1 + 0x1p-48) + 0x1p-1000;
 }
 
-uint32_t bvh_blocker(const bvh *tree, const double p[3], const double q[3]) {
+bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
+                       void *user) {
     uint32_t stack[STACK_SIZE];
     int depth = 0;
     slab_segment s = slab_prepare(p, q);
@@ -311,14 +313,31 @@ uint32_t bvh_blocker(const bvh *tree, const double p[3], const double q[3]) {
             stack[depth++] = node->first;
             continue;
         }
-        for (uint32_t i = node->first; i < node->first + node->count; i++) {
-            uint32_t triangle = tree->order[i];
-            if (segment_meets_triangle(p, q, corner(tree, triangle, 0), corner(tree, triangle, 1),
-                                       corner(tree, triangle, 2)))
-                return triangle;
-        }
+        for (uint32_t i = node->first; i < node->first + node->count; i++)
+            if (!visit(user, i))
+                return false;
     }
-    return UINT32_MAX;
+    return true;
+}
+
+bool bvh_query(const bvh *tree, bvh_box_test *may_meet, bvh_visit_rank *visit, void *user) {
+    uint32_t stack[STACK_SIZE];
+    int depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+        const bvh_node *node = &tree->nodes[stack[--depth]];
+        if (!may_meet(user, &node->box))
+            continue;
+        if (node->count == 0 && tree->triangle_count > LEAF_SIZE) {
+            stack[depth++] = node->first + 1;
+            stack[depth++] = node->first;
+            continue;
+        }
+        for (uint32_t i = node->first; i < node->first + node->count; i++)
+            if (!visit(user, i))
+                return false;
+    }
+    return true;
 }
 
 /* Squared distance from p to the segment a b. */

@@ -51,8 +51,17 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface);
  * it, -1 when it enters, 0 when it misses. */
 int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
 
-/* Some triangle that blocks the view from p to q, or UINT32_MAX (see segment_meets_triangle). */
-uint32_t bvh_blocker(const bvh *tree, const double p[3], const double q[3]);
+/* Calls visit with the position in `order` of every triangle whose leaf the segment from p to q
+ * may meet (none that it meets is left out), until it returns false. Returns false exactly if
+ * visit did. */
+typedef bool bvh_visit_rank(void *user, size_t rank);
+bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
+                       void *user);
+
+/* The same for whatever has a box test of its own, which may say no only where none of a box's
+ * triangles matters. */
+typedef bool bvh_box_test(void *user, const bvh_box *box);
+bool bvh_query(const bvh *tree, bvh_box_test *may_meet, bvh_visit_rank *visit, void *user);
 
 /* Distance from p to the nearest triangle, rounded (not a decision); infinity without triangles. */
 double bvh_distance(const bvh *tree, const double p[3]);

@@ -1,0 +1,81 @@
+/* Inside of the direction grid (visibility/grid.c): its tables, and the stage that is compiled
+ * once for each instruction set. */
+#ifndef STARG_VISIBILITY_GRID_H
+#define STARG_VISIBILITY_GRID_H
+
+#include "visibility/scene.h"
+
+enum { CHUNK = 128, CUBE_FACES = 6, BINS = 1024, LANES = 8, RIM = 8 };
+
+/* Far above the rounding of a projected coordinate in single precision (2^-23). */
+static const float CELL_MARGIN = 0x1p-20f;
+
+/* Where a direction meets the cube: face 2 k or 2 k + 1 for the largest coordinate k, positive or
+ * negative; u and v in [-1, 1] are the next two coordinates over it. */
+typedef struct cube_point {
+    float u;
+    uint32_t face;              /* plus RIM where rounding could put it on another face */
+    uint32_t row_low, row_high; /* rows of v - margin and v + margin; one, as a rule */
+} cube_point;
+
+/* A row of cells: vertices of nearly the same v, cut evenly between their extremes of u. */
+typedef struct grid_row {
+    float u_low, u_high, scale;
+    uint32_t first_cell, cell_count, vertices;
+} grid_row;
+
+typedef struct chunk_distance {
+    double distance;
+    uint32_t chunk;
+} chunk_distance;
+
+typedef struct grid_scratch {
+    uint32_t row_count;
+    uint32_t row_of_bin[CUBE_FACES][BINS];
+    grid_row *rows; /* row_limit at most */
+    size_t row_limit;
+    uint32_t *cell_start; /* two cells a vertex and one a row, and the end */
+    cube_point *cube;     /* by slot */
+    double *x, *y, *z;    /* relative to p, by slot */
+    float *v;             /* by slot */
+    uint8_t *in_use;      /* slot has a kept face */
+    uint32_t *used;       /* the slots in use */
+    size_t used_count;
+    uint32_t *kept; /* ranks of the kept faces, chunk by chunk, near ones first */
+    size_t kept_count;
+    /* Vertices in use, by cell. */
+    uint32_t *place;      /* slot -> position */
+    uint32_t *slot;       /* position -> slot */
+    double *sx, *sy, *sz; /* LANES more than there are vertices, of any value */
+    uint64_t *hidden;     /* bits by position, one word more than it takes */
+    chunk_distance *chunks;
+    double bound; /* of the error of a determinant; infinite: always exact */
+} grid_scratch;
+
+/* Index among `count` equal parts of `scale` each from 0; values outside (and NaN) go to the ends.
+ * Monotone, which is all that correctness asks of it. */
+static inline uint32_t part_of(float distance, float scale, uint32_t count) {
+    float t = distance * scale;
+    if (!(t > 0))
+        return 0;
+    return t >= (float)count ? count - 1 : (uint32_t)t;
+}
+
+static inline uint32_t bin_of(float v) {
+    return part_of(v + 1, BINS / 2, BINS);
+}
+
+static inline uint32_t cell_of(const grid_row *row, float u) {
+    return row->first_cell + part_of(u - row->u_low, row->scale, row->cell_count);
+}
+
+/* Hides the vertices that the kept faces hide, taking them in their order. */
+typedef void grid_test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
+                             grid_scratch *g);
+
+grid_test_faces grid_test_faces_plain;
+#if defined(__x86_64__)
+grid_test_faces grid_test_faces_avx2, grid_test_faces_avx512;
+#endif
+
+#endif

@@ -1,0 +1,208 @@
+/* Stage 3 of the direction grid, written once over LANES doubles at a time and compiled for each
+ * instruction set: the including file names the function and chooses the lanes. */
+#include <math.h>
+#include <string.h>
+
+#include "core/bits.h"
+#include "visibility/grid.h"
+#include "visibility/lanes.h"
+
+/* Positions that are tested at once: what can be cut out of the bits of `hidden` in one piece. */
+enum { RUN = 56 };
+
+/* A face as the inner loop needs it. */
+typedef struct blocker {
+    size_t rank;
+    int side;
+    const uint32_t *corner;
+    bool prepared;
+    double w0[3], w1[3], w2[3]; /* planes through p and an edge, positive inside the cone */
+    double volume;              /* D */
+} blocker;
+
+static void cross(const grid_scratch *g, uint32_t a, uint32_t b, double sign, double out[3]) {
+    out[0] = sign * (g->y[a] * g->z[b] - g->z[a] * g->y[b]);
+    out[1] = sign * (g->z[a] * g->x[b] - g->x[a] * g->z[b]);
+    out[2] = sign * (g->x[a] * g->y[b] - g->y[a] * g->x[b]);
+}
+
+/* With the sign of the side D is positive, and so are the planes inside the cone. */
+static void prepare(const grid_scratch *g, blocker *f) {
+    double sign = f->side > 0 ? 1 : -1;
+    const uint32_t *c = f->corner;
+    cross(g, c[1], c[2], sign, f->w0);
+    cross(g, c[2], c[0], sign, f->w1);
+    cross(g, c[0], c[1], sign, f->w2);
+    f->volume = f->w0[0] * g->x[c[0]] + f->w0[1] * g->y[c[0]] + f->w0[2] * g->z[c[0]];
+    f->prepared = true;
+}
+
+/* Which of LANES vertices from `i` on are certainly hidden, and which may be? */
+static inline void test_lanes(const grid_scratch *g, const blocker *f, size_t i, uint64_t *sure,
+                              uint64_t *maybe) {
+    lanes x = lanes_load(g->sx + i), y = lanes_load(g->sy + i), z = lanes_load(g->sz + i);
+    lanes w0 = lanes_dot(f->w0, x, y, z), w1 = lanes_dot(f->w1, x, y, z);
+    lanes w2 = lanes_dot(f->w2, x, y, z);
+    lanes beyond = lanes_beyond(w0, w1, w2, f->volume);
+    lanes least = lanes_min(lanes_min(w0, w1), lanes_min(w2, beyond));
+    *sure = lanes_above(least, g->bound);
+    *maybe = lanes_above(least, -g->bound);
+}
+
+/* The same for a face in whose plane p lies: off that plane it hides nothing. */
+static inline uint64_t test_coplanar_lanes(const grid_scratch *g, const blocker *f, size_t i) {
+    lanes x = lanes_load(g->sx + i), y = lanes_load(g->sy + i), z = lanes_load(g->sz + i);
+    double e = g->bound;
+    return ~(lanes_beyond_either(lanes_dot(f->w0, x, y, z), e) |
+             lanes_beyond_either(lanes_dot(f->w1, x, y, z), e) |
+             lanes_beyond_either(lanes_dot(f->w2, x, y, z), e)) &
+           ((UINT64_C(1) << LANES) - 1);
+}
+
+/* `count` <= RUN bits of the hidden ones from position `begin` on. */
+static inline uint64_t hidden_bits(const grid_scratch *g, size_t begin) {
+    uint64_t word;
+    memcpy(&word, (const uint8_t *)g->hidden + begin / 8, sizeof word);
+    return word >> (begin % 8);
+}
+
+static void decide_exactly(const visibility_scene *scene, const double p[3], grid_scratch *g,
+                           const blocker *f, size_t begin, uint64_t maybe) {
+    if (f->side != 0)
+        for (int k = 0; k < 3; k++) {
+            size_t own = g->place[f->corner[k]] - begin;
+            if (own < RUN)
+                maybe &= ~(UINT64_C(1) << own);
+        }
+    STARG_FOR_BITS (bit, maybe) {
+        if (scene_blocks(scene, f->rank, f->side, p, g->slot[begin + bit]))
+            starg_bit_set(g->hidden, begin + bit);
+    }
+}
+
+static void test_run(const visibility_scene *scene, const double p[3], grid_scratch *g, blocker *f,
+                     size_t begin, size_t count) {
+    uint64_t live = ~hidden_bits(g, begin) & ((UINT64_C(1) << count) - 1), sure = 0, maybe = 0;
+    if (live == 0)
+        return;
+    if (!f->prepared)
+        prepare(g, f);
+    for (size_t i = 0; i < count; i += LANES) {
+        uint64_t s = 0, m;
+        if (f->side != 0)
+            test_lanes(g, f, begin + i, &s, &m);
+        else
+            m = test_coplanar_lanes(g, f, begin + i);
+        sure |= s << i;
+        maybe |= m << i;
+    }
+    sure &= live;
+    maybe &= live & ~sure;
+    STARG_FOR_BITS (bit, sure) {
+        starg_bit_set(g->hidden, begin + bit);
+    }
+    if (maybe != 0)
+        decide_exactly(scene, p, g, f, begin, maybe);
+}
+
+/* Tests the cells between two values of u in some rows. */
+static inline void test_rows(const visibility_scene *scene, const double p[3], grid_scratch *g,
+                             blocker *f, uint32_t row, uint32_t last_row, float u_low,
+                             float u_high) {
+    for (; row <= last_row; row++) {
+        const grid_row *r = &g->rows[row];
+        size_t begin = g->cell_start[cell_of(r, u_low - CELL_MARGIN)];
+        size_t end = g->cell_start[cell_of(r, u_high + CELL_MARGIN) + 1];
+        for (; begin < end; begin += RUN)
+            test_run(scene, p, g, f, begin, end - begin < RUN ? end - begin : RUN);
+    }
+}
+
+/* A box on one cube face. */
+typedef struct cell_box {
+    float u_low, u_high, v_low, v_high;
+} cell_box;
+
+static float min3(float a, float b, float c) {
+    float m = a < b ? a : b;
+    return m < c ? m : c;
+}
+
+static float max3(float a, float b, float c) {
+    float m = a > b ? a : b;
+    return m > c ? m : c;
+}
+
+/* What a face that does not project into one cube face covers of `cube_face`; false if nothing.
+ * Where all corners lie well before the cube face the projection is a triangle still; else the
+ * whole cube face is taken. */
+static bool clip_to_cube_face(const grid_scratch *g, const uint32_t *corner, uint32_t cube_face,
+                              cell_box *box) {
+    const double *axis[3] = {g->x, g->y, g->z};
+    const double *major = axis[cube_face / 2];
+    const double *first = axis[(cube_face / 2 + 1) % 3], *second = axis[(cube_face / 2 + 2) % 3];
+    double sign = cube_face % 2 ? -1 : 1, slack = 1 + 0x1p-20;
+    int behind = 0, left = 0, right = 0, below = 0, above = 0;
+    bool before = true;
+    *box = (cell_box){1, -1, 1, -1};
+    for (int k = 0; k < 3; k++) {
+        double m = sign * major[corner[k]], u = first[corner[k]], v = second[corner[k]];
+        behind += m <= 0;
+        left += u < -m * slack && m > 0;
+        right += u > m * slack && m > 0;
+        below += v < -m * slack && m > 0;
+        above += v > m * slack && m > 0;
+        before = before && m > 0x1p-10 * (fabs(u) + fabs(v));
+        if (before) {
+            float pu = (float)(u / m), pv = (float)(v / m);
+            box->u_low = pu < box->u_low ? pu : box->u_low;
+            box->u_high = pu > box->u_high ? pu : box->u_high;
+            box->v_low = pv < box->v_low ? pv : box->v_low;
+            box->v_high = pv > box->v_high ? pv : box->v_high;
+        }
+    }
+    if (behind == 3 || left == 3 || right == 3 || below == 3 || above == 3)
+        return false;
+    if (!before)
+        *box = (cell_box){-1, 1, -1, 1};
+    /* coordinates up to 2^10 carry a rounding beyond the margin of those within the cube */
+    float wide = CELL_MARGIN * 1024;
+    *box = (cell_box){box->u_low - wide, box->u_high + wide, box->v_low - wide, box->v_high + wide};
+    return true;
+}
+
+static uint32_t least_row(const cube_point *a, const cube_point *b, const cube_point *c) {
+    uint32_t row = a->row_low < b->row_low ? a->row_low : b->row_low;
+    return row < c->row_low ? row : c->row_low;
+}
+
+static uint32_t last_row(const cube_point *a, const cube_point *b, const cube_point *c) {
+    uint32_t row = a->row_high > b->row_high ? a->row_high : b->row_high;
+    return row > c->row_high ? row : c->row_high;
+}
+
+static void test_clipped(const visibility_scene *scene, const double p[3], grid_scratch *g,
+                         blocker *f) {
+    for (uint32_t cube_face = 0; cube_face < CUBE_FACES; cube_face++) {
+        const uint32_t *rows = g->row_of_bin[cube_face];
+        cell_box box;
+        if (clip_to_cube_face(g, f->corner, cube_face, &box))
+            test_rows(scene, p, g, f, rows[bin_of(box.v_low)], rows[bin_of(box.v_high)], box.u_low,
+                      box.u_high);
+    }
+}
+
+void GRID_TEST_FACES(const visibility_scene *scene, const double p[3], const int8_t *side,
+                     grid_scratch *g) {
+    for (size_t i = 0; i < g->kept_count; i++) {
+        size_t rank = g->kept[i];
+        blocker f = {.rank = rank, .side = side[rank], .corner = scene->corners + 3 * rank};
+        const cube_point *a = &g->cube[f.corner[0]], *b = &g->cube[f.corner[1]];
+        const cube_point *c = &g->cube[f.corner[2]];
+        if (a->face == b->face && b->face == c->face && a->face < RIM)
+            test_rows(scene, p, g, &f, least_row(a, b, c), last_row(a, b, c),
+                      min3(a->u, b->u, c->u), max3(a->u, b->u, c->u));
+        else
+            test_clipped(scene, p, g, &f);
+    }
+}

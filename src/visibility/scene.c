@@ -1,0 +1,130 @@
+#include "visibility/scene.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/intersect.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+
+/* Vertices get their slots in the order in which the faces, taken leaf by leaf, name them. */
+static void order_vertices(visibility_scene *scene) {
+    const starg_mesh *mesh = scene->mesh;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        scene->slot_of[v] = SCENE_NONE;
+    for (size_t rank = 0; rank < scene->face_count; rank++)
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t vertex = mesh->faces[3 * (size_t)scene->face_of[rank] + k];
+            uint32_t slot = scene->slot_of[vertex];
+            if (slot == SCENE_NONE) {
+                slot = scene->slot_of[vertex] = (uint32_t)scene->vertex_count++;
+                const double *p = mesh->vertices + 3 * (size_t)vertex;
+                scene->vertex_of[slot] = vertex;
+                scene->x[slot] = p[0];
+                scene->y[slot] = p[1];
+                scene->z[slot] = p[2];
+            }
+            scene->corners[3 * rank + k] = slot;
+        }
+}
+
+/* The error bound: with e the longest extent of an edge and h half that of the box, a normal's
+ * components are below 2 e^2 and carry 4 roundings, the products another 4; there are six terms
+ * with factors up to h (which itself carries a rounding). 128 covers the sum. */
+static void compute_planes(visibility_scene *scene) {
+    double lower[3], upper[3], edge = 0, half = 0;
+    starg_mesh_bounds(scene->mesh, lower, upper);
+    for (int k = 0; k < 3; k++) {
+        scene->centre[k] = 0.5 * lower[k] + 0.5 * upper[k];
+        half = fmax(half, upper[k] - lower[k]);
+    }
+    for (size_t rank = 0; rank < scene->face_count; rank++) {
+        const double *a = scene_corner(scene, rank, 0), *b = scene_corner(scene, rank, 1);
+        const double *c = scene_corner(scene, rank, 2);
+        double normal[3], from_centre[3];
+        vec3_triangle_normal(a, b, c, normal);
+        vec3_subtract(a, scene->centre, from_centre);
+        scene->nx[rank] = normal[0];
+        scene->ny[rank] = normal[1];
+        scene->nz[rank] = normal[2];
+        scene->offset[rank] = vec3_dot(normal, from_centre);
+        for (int k = 0; k < 3; k++)
+            edge = fmax(edge, fmax(fabs(b[k] - a[k]), fabs(c[k] - a[k])));
+    }
+    scene->side_bound = 128 * 0x1p-53 * edge * edge * half;
+    if (!(scene->side_bound > 1e-250))
+        scene->side_bound = INFINITY; /* too small for the analysis: always decide exactly */
+}
+
+starg_status scene_create(starg_context *context, const starg_solid *solid,
+                          visibility_scene **out) {
+    starg_status status = STARG_OK;
+    visibility_scene *scene = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, "visibility", scene, 1);
+    scene->context = context;
+    scene->solid = solid;
+    scene->mesh = solid->mesh;
+    scene->cull = solid->check->embedded;
+    scene->face_count = solid->mesh->face_count;
+    scene->face_of = solid->tree->order;
+    size_t n = solid->mesh->vertex_count, m = scene->face_count;
+    STARG_NEW(context, "visibility", scene->vertex_of, n);
+    STARG_NEW(context, "visibility", scene->slot_of, n);
+    STARG_NEW(context, "visibility", scene->x, n);
+    STARG_NEW(context, "visibility", scene->y, n);
+    STARG_NEW(context, "visibility", scene->z, n);
+    STARG_NEW(context, "visibility", scene->corners, 3 * m);
+    STARG_NEW(context, "visibility", scene->nx, m);
+    STARG_NEW(context, "visibility", scene->ny, m);
+    STARG_NEW(context, "visibility", scene->nz, m);
+    STARG_NEW(context, "visibility", scene->offset, m);
+    order_vertices(scene);
+    compute_planes(scene);
+    *out = scene;
+done:
+    if (status != STARG_OK)
+        scene_free(scene);
+    return status;
+}
+
+void scene_free(visibility_scene *scene) {
+    if (scene == NULL)
+        return;
+    starg_context *context = scene->context;
+    starg_release(context, scene->vertex_of);
+    starg_release(context, scene->slot_of);
+    starg_release(context, scene->x);
+    starg_release(context, scene->y);
+    starg_release(context, scene->z);
+    starg_release(context, scene->corners);
+    starg_release(context, scene->nx);
+    starg_release(context, scene->ny);
+    starg_release(context, scene->nz);
+    starg_release(context, scene->offset);
+    starg_release(context, scene);
+}
+
+void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side) {
+    double x = p[0] - scene->centre[0], y = p[1] - scene->centre[1], z = p[2] - scene->centre[2];
+    double bound = scene->side_bound;
+    for (size_t rank = 0; rank < scene->face_count; rank++) {
+        double s =
+            scene->offset[rank] - (scene->nx[rank] * x + scene->ny[rank] * y + scene->nz[rank] * z);
+        side[rank] = (int8_t)((s > bound) - (s < -bound));
+    }
+    for (size_t rank = 0; rank < scene->face_count; rank++)
+        if (side[rank] == 0)
+            side[rank] =
+                (int8_t)orient3d(scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                                 scene_corner(scene, rank, 2), p);
+}
+
+bool scene_blocks(const visibility_scene *scene, size_t rank, int side, const double p[3],
+                  uint32_t slot) {
+    if (side != 0 && scene_has_corner(scene, rank, slot))
+        return false;
+    return segment_meets_triangle(p, scene->mesh->vertices + 3 * (size_t)scene->vertex_of[slot],
+                                  scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                                  scene_corner(scene, rank, 2));
+}

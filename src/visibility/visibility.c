@@ -1,0 +1,162 @@
+#include "starguard/visibility.h"
+
+#include <math.h>
+
+#include "core/bits.h"
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "geometry/predicates.h"
+#include "visibility/scene.h"
+
+static const char STAGE[] = "visibility";
+
+typedef struct job {
+    const visibility_scene *scene;
+    const visibility_engine *engine;
+    const starg_visibility_options *options;
+    const double *points;
+    starg_bits *rows;
+} job;
+
+/* What one thread needs to work on a point. */
+typedef struct worker {
+    void *engine_scratch;
+    const job *job;
+    int8_t *side;     /* by rank */
+    uint8_t *visible; /* by slot */
+} worker;
+
+void starg_visibility_options_default(starg_visibility_options *options) {
+    *options = (starg_visibility_options){.range = INFINITY};
+}
+
+static void free_worker(starg_context *context, void *scratch) {
+    worker *w = scratch;
+    if (w == NULL)
+        return;
+    w->job->engine->free_scratch(w->job->scene, w->engine_scratch);
+    starg_release(context, w->side);
+    starg_release(context, w->visible);
+    starg_release(context, w);
+}
+
+static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
+    const job *all = shared;
+    worker *w = starg_allocate_zero(context, 1, sizeof *w);
+    *scratch = NULL;
+    if (w == NULL)
+        return STARG_ERROR_MEMORY;
+    w->job = all;
+    w->side = starg_allocate(context, all->scene->face_count, sizeof *w->side);
+    w->visible = starg_allocate(context, all->scene->vertex_count, sizeof *w->visible);
+    starg_status status = STARG_ERROR_MEMORY;
+    if (w->side != NULL && w->visible != NULL)
+        status = all->engine->make_scratch(all->scene, &w->engine_scratch);
+    if (status != STARG_OK) {
+        free_worker(context, w);
+        return status;
+    }
+    *scratch = w;
+    return STARG_OK;
+}
+
+static void drop_out_of_range(const job *all, const double p[3], uint8_t *visible) {
+    if (all->options->range >= 1e100)
+        return;
+    const visibility_scene *scene = all->scene;
+    for (size_t slot = 0; slot < scene->vertex_count; slot++) {
+        const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
+        if (visible[slot] && compare_distance(p, q, all->options->range) > 0)
+            visible[slot] = 0;
+    }
+}
+
+static void write_vertices(const job *all, const worker *w, uint64_t *row) {
+    for (size_t slot = 0; slot < all->scene->vertex_count; slot++)
+        if (w->visible[slot])
+            starg_bit_set(row, all->scene->vertex_of[slot]);
+}
+
+static void write_faces(const job *all, const worker *w, const double p[3], uint64_t *row) {
+    const visibility_scene *scene = all->scene;
+    bool whole = all->options->face_rule == STARG_FACES_WHOLE;
+    for (size_t rank = 0; rank < scene->face_count; rank++) {
+        const uint32_t *c = scene->corners + 3 * rank;
+        if (w->side[rank] <= 0 || !(w->visible[c[0]] & w->visible[c[1]] & w->visible[c[2]]))
+            continue;
+        if (!whole || face_is_wholly_visible(scene, p, rank))
+            starg_bit_set(row, scene->face_of[rank]);
+    }
+}
+
+static starg_status find_row(starg_context *context, void *shared, void *scratch, size_t item) {
+    const job *all = shared;
+    worker *w = scratch;
+    const double *p = all->points + 3 * item;
+    uint64_t *row = starg_bits_row_mutable(all->rows, item);
+    (void)context;
+    if (!starg_solid_contains(all->scene->solid, p))
+        return STARG_OK;
+    scene_sides(all->scene, p, w->side);
+    all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
+    drop_out_of_range(all, p, w->visible);
+    if (all->options->target == STARG_TARGET_VERTICES)
+        write_vertices(all, w, row);
+    else
+        write_faces(all, w, p, row);
+    return STARG_OK;
+}
+
+static starg_status check_arguments(starg_context *context, const double *points, size_t count,
+                                    const starg_visibility_options *options) {
+    if (!(options->range >= 0))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the range is %g; it must be zero or more", options->range);
+    if (options->engine > STARG_VISIBILITY_SWEEP || options->target > STARG_TARGET_VERTICES ||
+        options->face_rule > STARG_FACES_WHOLE)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "an option holds a number that its enum does not have");
+    for (size_t i = 0; i < 3 * count; i++) {
+        uint64_t point = i / 3;
+        if (!(fabs(points[i]) < 1e100))
+            return starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_CANDIDATE,
+                                 &point, 1, "coordinate %c of point %zu is %g; it must be finite",
+                                 "xyz"[i % 3], i / 3, points[i]);
+    }
+    return STARG_OK;
+}
+
+starg_status starg_visibility(starg_context *context, const starg_solid *solid,
+                              const double *points, size_t count,
+                              const starg_visibility_options *options, starg_bits **out) {
+    static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
+                                                       &visibility_sweep};
+    starg_status status = STARG_OK;
+    starg_visibility_options defaults;
+    visibility_scene *scene = NULL;
+    starg_bits *rows = NULL;
+    *out = NULL;
+    starg_visibility_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    STARG_TRY(check_arguments(context, points, count, options));
+    STARG_TRY(scene_create(context, solid, &scene));
+    size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
+                                                              : solid->mesh->face_count;
+    STARG_TRY(starg_bits_create(context, count, columns, &rows));
+    job all = {scene, engines[options->engine], options, points, rows};
+    starg_parallel_loop loop = {.stage = STAGE,
+                                .count = count,
+                                .shared = &all,
+                                .item = find_row,
+                                .make_scratch = make_worker,
+                                .free_scratch = free_worker,
+                                .stop_at_deadline = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    *out = rows;
+done:
+    scene_free(scene);
+    if (status != STARG_OK)
+        starg_bits_free(rows);
+    return status;
+}
