@@ -96,6 +96,23 @@ static void random_polygons(void **state) {
     test_context_free(context);
 }
 
+/* A strip that winds five times about the origin: nearly every triangle is in some ear's way. */
+static void spirals(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    static test_polygon p = {.count = MOST};
+    for (size_t i = 0; i < MOST; i++) {
+        bool inner = i >= MOST / 2;
+        double t = (double)(inner ? MOST - 1 - i : i) / (MOST / 2);
+        double angle = 31 * t, radius = (inner ? 1 : 1.1) + 2 * t;
+        p.vertices[i][1] = radius * cos(angle);
+        p.vertices[i][2] = radius * sin(angle);
+    }
+    assert_false(cut(context, &p));
+    expect_triangulation(&p, 1, 2);
+    test_context_free(context);
+}
+
 /* The outline that a walk to the north, east, south and west by one each leaves. */
 static void walk(test_polygon *p, const char *text) {
     double x = 0, y = 0;
@@ -208,6 +225,7 @@ static void tiny_and_huge_polygons(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_polygons),
+        cmocka_unit_test(spirals),
         cmocka_unit_test(lattice_polygons),
         cmocka_unit_test(a_bridge_to_a_hole),
         cmocka_unit_test(quadrilaterals),
