@@ -1,0 +1,24 @@
+/* What a picture of a mesh needs besides its triangles: normals at the corners and lines along the
+ * edges where it bends sharply. Both are decoration: every mesh is accepted. */
+#ifndef STARG_EXPORT_FEATURES_H
+#define STARG_EXPORT_FEATURES_H
+
+#include <stdint.h>
+
+#include "core/context.h"
+#include "core/memory.h"
+
+typedef STARG_ARRAY(uint32_t) starg_index_array;
+
+typedef struct starg_features {
+    float *normals;          /* face_count x 3 corners x 3, unit length                    */
+    starg_index_array lines; /* pairs of vertex indices                                    */
+} starg_features;
+
+/* Finds both for `vertices`, of any orthonormal frame. Errors: MEMORY. */
+starg_status starg_features_create(starg_context *context, const double *vertices,
+                                   size_t vertex_count, const uint32_t *faces, size_t face_count,
+                                   starg_features *out);
+void starg_features_free(starg_context *context, starg_features *features);
+
+#endif

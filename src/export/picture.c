@@ -1,0 +1,209 @@
+/* Pictures: checks the options, looks at the mesh from the camera, draws, writes.
+ *
+ * The frame of the camera is x to the right, y up, z towards the viewer. The model is moved and
+ * scaled to unit size first, so that models of any size (1e-300 or 1e+90) give the same picture.
+ * Cost: O(faces x bands) for the cheap test that skips a triangle, plus the samples covered. */
+#include "starguard/picture.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "export/features.h"
+#include "export/png.h"
+#include "export/raster.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
+
+static const char STAGE[] = "picture";
+static const double DEGREE = 0.01745329251994329577;
+
+enum { MIN_SIZE = 16, MAX_SIZE = 8192 };
+
+void starg_picture_options_default(starg_picture_options *options) {
+    *options = (starg_picture_options){.width = 1200,
+                                       .height = 900,
+                                       .azimuth = 35,
+                                       .elevation = 20,
+                                       .up = 1,
+                                       .opacity = 0.35,
+                                       .point_radius = 0.012};
+}
+
+static starg_status check_options(starg_context *context, const starg_picture_options *o) {
+    if (o->width < MIN_SIZE || o->width > MAX_SIZE || o->height < MIN_SIZE || o->height > MAX_SIZE)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a picture of %zu x %zu pixels; each side must be 16 to 8192", o->width,
+                          o->height);
+    if (!isfinite(o->azimuth) || !isfinite(o->elevation))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the azimuth and the elevation must be finite angles in degrees");
+    if (o->up < 0 || o->up > 2)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "up axis %d; it must be 0 (x), 1 (y) or 2 (z)", o->up);
+    if (!(o->opacity >= 0 && o->opacity <= 1))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "opacity %g; it must lie in [0, 1]",
+                          o->opacity);
+    if (!(o->point_radius > 0 && o->point_radius <= 1))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "point radius %g; it must be above 0 and at most 1, as a fraction of the "
+                          "model's diagonal",
+                          o->point_radius);
+    for (size_t i = 0; i < 3 * o->point_count; i++)
+        if (!(fabs(o->points[i]) < 1e100))
+            return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                              "point %zu has the coordinate %g; it must be finite and below 1e100",
+                              i / 3, o->points[i]);
+    return STARG_OK;
+}
+
+/* From model coordinates to the camera's frame: axes . ((p - center) / size). */
+typedef struct camera {
+    double axes[3][3]; /* right, up, towards the viewer */
+    double center[3], size;
+} camera;
+
+static void grow_box(const double *points, size_t count, double lower[3], double upper[3]) {
+    for (size_t i = 0; i < 3 * count; i++) {
+        lower[i % 3] = fmin(lower[i % 3], points[i]);
+        upper[i % 3] = fmax(upper[i % 3], points[i]);
+    }
+}
+
+static void aim_camera(const starg_mesh *mesh, const starg_picture_options *o, camera *c) {
+    double lower[3], upper[3], span[3];
+    starg_mesh_bounds(mesh, lower, upper);
+    if (mesh->vertex_count == 0 && o->point_count != 0) {
+        vec3_copy(o->points, lower);
+        vec3_copy(o->points, upper);
+    }
+    grow_box(o->points, o->point_count, lower, upper);
+    vec3_subtract(upper, lower, span);
+    /* hypot does not overflow or underflow on the way */
+    c->size = hypot(hypot(span[0], span[1]), span[2]);
+    if (c->size == 0)
+        c->size = 1;
+    for (int k = 0; k < 3; k++)
+        c->center[k] = lower[k] + 0.5 * span[k];
+
+    int first = (o->up + 1) % 3, second = (o->up + 2) % 3;
+    double ca = cos(DEGREE * o->azimuth), sa = sin(DEGREE * o->azimuth);
+    double ce = cos(DEGREE * o->elevation), se = sin(DEGREE * o->elevation);
+    double *right = c->axes[0], *up = c->axes[1], *towards = c->axes[2];
+    right[first] = -sa;
+    right[second] = ca;
+    right[o->up] = 0;
+    towards[first] = ce * ca;
+    towards[second] = ce * sa;
+    towards[o->up] = se;
+    vec3_cross(towards, right, up);
+}
+
+static void look(const camera *c, const double *points, size_t count, double *out) {
+    for (size_t i = 0; i < count; i++) {
+        double p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = (points[3 * i + (size_t)k] - c->center[k]) / c->size;
+        for (int k = 0; k < 3; k++)
+            out[3 * i + (size_t)k] = vec3_dot(c->axes[k], p);
+    }
+}
+
+/* Where the camera's frame lands on the samples: x = ox + scale x', y = oy - scale y'. */
+typedef struct frame {
+    double ox, oy, scale;
+} frame;
+
+static frame fit_frame(const starg_picture_options *o, const double *vertices, size_t vertex_count,
+                       const double *points, double line_margin) {
+    double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
+    const double *some = vertex_count ? vertices : points;
+    if (vertex_count + o->point_count != 0) {
+        vec3_copy(some, lower);
+        vec3_copy(some, upper);
+    }
+    grow_box(vertices, vertex_count, lower, upper);
+    grow_box(points, o->point_count, lower, upper);
+    double margin = o->point_count ? o->point_radius : 0.001;
+    double width = (double)(o->width * STARG_RASTER_SAMPLES);
+    double height = (double)(o->height * STARG_RASTER_SAMPLES);
+    double room = 0.94;
+    double across = (room * width - line_margin) / (upper[0] - lower[0] + 2 * margin);
+    double down = (room * height - line_margin) / (upper[1] - lower[1] + 2 * margin);
+    double scale = fmin(across, down);
+    return (frame){.ox = 0.5 * width - scale * 0.5 * (lower[0] + upper[0]),
+                   .oy = 0.5 * height + scale * 0.5 * (lower[1] + upper[1]),
+                   .scale = scale};
+}
+
+static void to_samples(const frame *f, double *positions, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double *p = positions + 3 * i;
+        p[0] = f->ox + f->scale * p[0];
+        p[1] = f->oy - f->scale * p[1];
+        p[2] = f->scale * p[2];
+    }
+}
+
+static void make_balls(const starg_picture_options *o, const double *centers,
+                       starg_raster_ball *balls) {
+    for (size_t i = 0; i < o->point_count; i++) {
+        vec3_copy(centers + 3 * i, balls[i].center);
+        if (o->point_colors == NULL)
+            starg_distinct_color(i, balls[i].rgb);
+        else
+            memcpy(balls[i].rgb, o->point_colors + 3 * i, 3);
+    }
+}
+
+starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
+                                 const starg_picture_options *options, const char *path) {
+    starg_status status = STARG_OK;
+    starg_picture_options defaults;
+    starg_features features = {0};
+    double *positions = NULL, *centers = NULL;
+    starg_raster_ball *balls = NULL;
+    uint8_t *rgb = NULL;
+    camera c;
+    starg_picture_options_default(&defaults);
+    const starg_picture_options *o = options ? options : &defaults;
+    STARG_TRY(check_options(context, o));
+    STARG_NEW(context, STAGE, positions, 3 * mesh->vertex_count);
+    STARG_NEW(context, STAGE, centers, 3 * o->point_count);
+    STARG_NEW(context, STAGE, balls, o->point_count);
+    STARG_NEW(context, STAGE, rgb, 3 * o->width * o->height);
+
+    aim_camera(mesh, o, &c);
+    look(&c, mesh->vertices, mesh->vertex_count, positions);
+    look(&c, o->points, o->point_count, centers);
+    STARG_TRY(starg_features_create(context, positions, mesh->vertex_count, mesh->faces,
+                                    mesh->face_count, &features));
+    double line_radius = fmax(1.0, 0.0008 * STARG_RASTER_SAMPLES * (double)o->height);
+    frame f = fit_frame(o, positions, mesh->vertex_count, centers, 2 * line_radius);
+    to_samples(&f, positions, mesh->vertex_count);
+    to_samples(&f, centers, o->point_count);
+    make_balls(o, centers, balls);
+
+    starg_raster_scene scene = {.width = o->width,
+                                .height = o->height,
+                                .positions = positions,
+                                .faces = mesh->faces,
+                                .face_count = mesh->face_count,
+                                .normals = features.normals,
+                                .face_colors = o->face_colors,
+                                .opacity = o->opacity,
+                                .lines = features.lines.data,
+                                .line_count = features.lines.count / 2,
+                                .line_radius = line_radius,
+                                .balls = balls,
+                                .ball_count = o->point_count,
+                                .ball_radius = o->point_radius * f.scale};
+    STARG_TRY(starg_raster_draw(context, &scene, rgb));
+    STARG_TRY(starg_png_write(context, path, rgb, o->width, o->height));
+done:
+    starg_features_free(context, &features);
+    starg_release(context, positions);
+    starg_release(context, centers);
+    starg_release(context, balls);
+    starg_release(context, rgb);
+    return status;
+}

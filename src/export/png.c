@@ -1,0 +1,121 @@
+/* PNG, as far as pictures need it: 8-bit RGB, one IDAT chunk, every row with the Paeth filter
+ * (shaded surfaces on a plain background leave little else to gain). */
+#include "export/png.h"
+
+#include <stdlib.h>
+#include <zlib.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+
+static const char STAGE[] = "png";
+
+enum { PAETH = 4, BYTES_PER_PIXEL = 3 };
+
+static uint8_t paeth(int left, int above, int corner) {
+    int estimate = left + above - corner;
+    int to_left = abs(estimate - left), to_above = abs(estimate - above);
+    int to_corner = abs(estimate - corner);
+    if (to_left <= to_above && to_left <= to_corner)
+        return (uint8_t)left;
+    return (uint8_t)(to_above <= to_corner ? above : corner);
+}
+
+/* Filter byte and filtered bytes of one row; `above` is NULL for the first. */
+static void filter_row(const uint8_t *row, const uint8_t *above, size_t bytes, uint8_t *out) {
+    *out++ = PAETH;
+    for (size_t i = 0; i < bytes; i++) {
+        int left = i < BYTES_PER_PIXEL ? 0 : row[i - BYTES_PER_PIXEL];
+        int up = above == NULL ? 0 : above[i];
+        int corner = above == NULL || i < BYTES_PER_PIXEL ? 0 : above[i - BYTES_PER_PIXEL];
+        out[i] = (uint8_t)(row[i] - paeth(left, up, corner));
+    }
+}
+
+static voidpf zlib_allocate(voidpf context, uInt count, uInt size) {
+    return starg_allocate(context, count, size);
+}
+
+static void zlib_release(voidpf context, voidpf block) {
+    starg_release(context, block);
+}
+
+/* Deflates `input` into a new block. */
+static starg_status deflate_block(starg_context *context, uint8_t *input, size_t size,
+                                  uint8_t **out, size_t *out_size) {
+    starg_status status = STARG_OK;
+    uint8_t *block = NULL;
+    z_stream stream = {.zalloc = zlib_allocate, .zfree = zlib_release, .opaque = context};
+    if (deflateInit(&stream, Z_DEFAULT_COMPRESSION) != Z_OK)
+        return starg_fail_memory(context, STAGE);
+    size_t bound = deflateBound(&stream, size);
+    STARG_NEW(context, STAGE, block, bound);
+    stream.next_in = input;
+    stream.avail_in = (uInt)size;
+    stream.next_out = block;
+    stream.avail_out = (uInt)bound;
+    if (deflate(&stream, Z_FINISH) != Z_STREAM_END) {
+        status = starg_fail(context, STARG_ERROR_WRITE, STAGE, "the picture cannot be compressed");
+        goto done;
+    }
+    *out = block;
+    *out_size = stream.total_out;
+done:
+    deflateEnd(&stream);
+    if (status != STARG_OK)
+        starg_release(context, block);
+    return status;
+}
+
+static void store_big_endian(uint32_t value, uint8_t out[4]) {
+    for (int k = 0; k < 4; k++)
+        out[k] = (uint8_t)(value >> (24 - 8 * k));
+}
+
+/* Errors of the stream are found when the output is committed. */
+static void write_chunk(FILE *stream, const char type[4], const uint8_t *data, size_t size) {
+    uint8_t word[4];
+    store_big_endian((uint32_t)size, word);
+    fwrite(word, 1, 4, stream);
+    fwrite(type, 1, 4, stream);
+    if (size != 0)
+        fwrite(data, 1, size, stream);
+    uLong sum = crc32(0, (const Bytef *)type, 4);
+    if (size != 0)
+        sum = crc32(sum, data, (uInt)size);
+    store_big_endian((uint32_t)sum, word);
+    fwrite(word, 1, 4, stream);
+}
+
+static void write_file(FILE *stream, size_t width, size_t height, const uint8_t *data,
+                       size_t size) {
+    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    uint8_t header[13] = {[8] = 8 /* bits */, [9] = 2 /* RGB */};
+    store_big_endian((uint32_t)width, header);
+    store_big_endian((uint32_t)height, header + 4);
+    fwrite(signature, 1, sizeof signature, stream);
+    write_chunk(stream, "IHDR", header, sizeof header);
+    write_chunk(stream, "IDAT", data, size);
+    write_chunk(stream, "IEND", NULL, 0);
+}
+
+starg_status starg_png_write(starg_context *context, const char *path, const uint8_t *rgb,
+                             size_t width, size_t height) {
+    starg_status status = STARG_OK;
+    uint8_t *filtered = NULL, *packed = NULL;
+    size_t packed_size = 0, row = BYTES_PER_PIXEL * width;
+    starg_output output = {0};
+
+    STARG_NEW(context, STAGE, filtered, height * (row + 1));
+    for (size_t y = 0; y < height; y++)
+        filter_row(rgb + y * row, y == 0 ? NULL : rgb + (y - 1) * row, row,
+                   filtered + y * (row + 1));
+    STARG_TRY(deflate_block(context, filtered, height * (row + 1), &packed, &packed_size));
+    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    write_file(output.stream, width, height, packed, packed_size);
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_release(context, filtered);
+    starg_release(context, packed);
+    return status;
+}

@@ -1,0 +1,14 @@
+/* Writes an image as a PNG file. */
+#ifndef STARG_EXPORT_PNG_H
+#define STARG_EXPORT_PNG_H
+
+#include <stdint.h>
+
+#include "core/context.h"
+
+/* `rgb` holds height rows of width x 3 bytes, top row first; width and height are 1 to 2^20.
+ * Errors: WRITE, MEMORY. */
+starg_status starg_png_write(starg_context *context, const char *path, const uint8_t *rgb,
+                             size_t width, size_t height);
+
+#endif

@@ -1,0 +1,84 @@
+/* The catalogue: which samples there are, and who makes them. */
+#include <string.h>
+
+#include "core/context.h"
+#include "sample/figure.h"
+#include "sample/solids.h"
+#include "starguard/sample.h"
+
+static const char STAGE[] = "sample";
+
+enum { MIN_VERTICES = 500, MAX_VERTICES = 1000000, RIGID = -1 };
+
+typedef starg_status make_solid(starg_context *context, size_t vertex_count, starg_mesh **out);
+
+typedef struct entry {
+    starg_sample_info info;
+    int figure; /* or RIGID */
+    make_solid *make;
+} entry;
+
+static const entry CATALOGUE[] = {
+    {{"horse", "a horse", FIGURE_POSES}, FIGURE_HORSE, NULL},
+    {{"dog", "a dog with hanging ears", FIGURE_POSES}, FIGURE_DOG, NULL},
+    {{"cat", "a cat", FIGURE_POSES}, FIGURE_CAT, NULL},
+    {{"giraffe", "a giraffe", FIGURE_POSES}, FIGURE_GIRAFFE, NULL},
+    {{"dinosaur", "a dinosaur on two legs", FIGURE_POSES}, FIGURE_DINOSAUR, NULL},
+    {{"bird", "a bird with spread wings", FIGURE_POSES}, FIGURE_BIRD, NULL},
+    {{"human", "a person", FIGURE_POSES}, FIGURE_HUMAN, NULL},
+    {{"octopus", "an octopus", FIGURE_POSES}, FIGURE_OCTOPUS, NULL},
+    {{"l-room", "an L-shaped room", 1}, RIGID, solid_l_room},
+    {{"gallery", "a hall with niches and eight round columns", 1}, RIGID, solid_gallery},
+    {{"labyrinth", "a corridor wound into a spiral", 1}, RIGID, solid_labyrinth},
+    {{"plate", "a plate with six round holes", 1}, RIGID, solid_plate},
+    {{"knot", "a tube tied into a trefoil knot", 1}, RIGID, solid_knot},
+    {{"torus", "a torus", 1}, RIGID, solid_torus},
+    {{"star", "an icosahedron with a spike on every face", 1}, RIGID, solid_star},
+    {{"shell", "a ball with a ball-shaped cavity", 1}, RIGID, solid_shell},
+    {{"sphere", "a ball", 1}, RIGID, solid_sphere},
+};
+
+enum { COUNT = sizeof CATALOGUE / sizeof *CATALOGUE };
+
+size_t starg_sample_count(void) {
+    return COUNT;
+}
+
+const starg_sample_info *starg_sample_at(size_t index) {
+    return index < COUNT ? &CATALOGUE[index].info : NULL;
+}
+
+void starg_sample_options_default(starg_sample_options *options) {
+    *options = (starg_sample_options){.pose = 0, .vertex_count = 5000};
+}
+
+static const entry *find_entry(const char *name) {
+    for (size_t i = 0; i < COUNT; i++)
+        if (strcmp(CATALOGUE[i].info.name, name) == 0)
+            return &CATALOGUE[i];
+    return NULL;
+}
+
+starg_status starg_sample_create(starg_context *context, const char *name,
+                                 const starg_sample_options *options, starg_mesh **out) {
+    *out = NULL;
+    starg_sample_options defaults;
+    starg_sample_options_default(&defaults);
+    const starg_sample_options *o = options ? options : &defaults;
+    const entry *e = find_entry(name);
+    if (e == NULL)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "there is no sample called '%s'; the list of samples has the names",
+                          name);
+    if (o->pose < 0 || o->pose >= e->info.poses)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "'%s' has no pose %d; its poses are 0 to %d", name, o->pose,
+                          e->info.poses - 1);
+    if (o->vertex_count < MIN_VERTICES || o->vertex_count > MAX_VERTICES)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu vertices are asked for; a sample has %d to %d of them",
+                          o->vertex_count, MIN_VERTICES, MAX_VERTICES);
+    if (e->figure == RIGID)
+        return e->make(context, o->vertex_count, out);
+    return solid_figure(context, (figure_kind)e->figure, o->pose, o->vertex_count, out);
+}

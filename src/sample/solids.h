@@ -1,0 +1,28 @@
+/* The families of solids that the catalogue is made of. Each takes the wanted number of vertices
+ * and comes as near to it as its structure allows. Errors: MEMORY, CANCELLED. */
+#ifndef STARG_SAMPLE_SOLIDS_H
+#define STARG_SAMPLE_SOLIDS_H
+
+#include "mesh/mesh.h"
+#include "sample/figure.h"
+
+/* Articulated figures (figure.h): an isosurface, posed. */
+starg_status solid_figure(starg_context *context, figure_kind kind, int pose, size_t vertex_count,
+                          starg_mesh **out);
+
+/* Upright solids over a plan of squares (prism.c). */
+starg_status solid_l_room(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_gallery(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_labyrinth(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_plate(starg_context *context, size_t vertex_count, starg_mesh **out);
+
+/* Tubes around closed curves (tube.c). */
+starg_status solid_torus(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_knot(starg_context *context, size_t vertex_count, starg_mesh **out);
+
+/* Subdivided polyhedra (polyhedron.c). */
+starg_status solid_sphere(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_shell(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_star(starg_context *context, size_t vertex_count, starg_mesh **out);
+
+#endif
