@@ -1,0 +1,38 @@
+#include "verify/claims.h"
+
+#include <stdio.h>
+
+#include "core/memory.h"
+
+starg_status verify_verdict_create(starg_context *context, starg_verdict **out) {
+    starg_status status = STARG_OK;
+    starg_verdict *verdict = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, "verify", verdict, 1);
+    verdict->passed = true;
+    STARG_NEW_ZERO(context, "verify", verdict->claims, VERIFY_CLAIMS);
+    *out = verdict;
+done:
+    if (status != STARG_OK)
+        starg_verdict_free(context, verdict);
+    return status;
+}
+
+void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {
+    if (verdict->count == VERIFY_CLAIMS)
+        return;
+    starg_claim *claim = &verdict->claims[verdict->count++];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(claim->text, sizeof claim->text, format, arguments);
+    va_end(arguments);
+    claim->holds = holds;
+    verdict->passed = verdict->passed && holds;
+}
+
+void starg_verdict_free(starg_context *context, starg_verdict *verdict) {
+    if (verdict == NULL)
+        return;
+    starg_release(context, verdict->claims);
+    starg_release(context, verdict);
+}

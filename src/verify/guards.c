@@ -1,0 +1,413 @@
+/* Verification of a guards result. First the facts: each guard looks around anew (verify/sight.h),
+ * in parallel. Then the claims of the result are held against them, one by one. What depends on
+ * the candidates, which a result does not hold (which faces are coverable, the proof of the lower
+ * bound), is checked for consistency only.
+ *
+ * Invariant: facts are sums and unions over the guards, so that the order in which threads work
+ * does not show. Cost: see verify/sight.h for each guard. */
+#include <math.h>
+#include <stdio.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "verify/claims.h"
+#include "verify/measure.h"
+#include "verify/sight.h"
+
+static const char STAGE[] = "verify";
+
+static const double TOLERANCE = 1e-9; /* relative; for lengths, areas and fractions */
+
+/* ---- facts ---- */
+
+typedef struct facts {
+    const verify_surface *surface;
+    const starg_guards *guards;
+    int scale;
+    bool *inside;         /* each guard                      */
+    double *distance;     /* from each guard to the surface; only with a clearance */
+    size_t *seen;         /* faces that each guard sees      */
+    atomic_uchar *vertex; /* 1: some guard sees it           */
+    atomic_uchar *face;
+    uint8_t *used; /* vertices that faces name        */
+    double *area;  /* of each face, in scaled units   */
+
+    size_t covered_faces, used_vertices, covered_vertices;
+    double covered_area, total_area;
+} facts;
+
+static bool is_finite_point(const double p[3]) {
+    return fabs(p[0]) < 1e100 && fabs(p[1]) < 1e100 && fabs(p[2]) < 1e100;
+}
+
+static starg_status make_sight(starg_context *context, void *shared, void **scratch) {
+    (void)context;
+    const facts *known = shared;
+    verify_sight *sight;
+    starg_status status = verify_sight_create(known->surface, &sight);
+    *scratch = sight;
+    return status;
+}
+
+static void free_sight(starg_context *context, void *scratch) {
+    (void)context;
+    verify_sight_free(scratch);
+}
+
+static void unite(atomic_uchar *all, const uint8_t *own, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (own[i])
+            atomic_store_explicit(&all[i], 1, memory_order_relaxed);
+}
+
+/* Finds out about one guard. One that is not inside sees nothing. */
+static starg_status examine_guard(starg_context *context, void *shared, void *scratch, size_t g) {
+    (void)context;
+    facts *known = shared;
+    const verify_surface *surface = known->surface;
+    const starg_guard_options *options = &known->guards->options;
+    const double *p = known->guards->positions + 3 * g;
+    if (!is_finite_point(p))
+        return STARG_OK;
+    if (options->clearance > 0)
+        known->distance[g] = verify_distance(surface, p, known->scale);
+    bool on_surface;
+    int winding = verify_winding(surface, NULL, surface->face_count, p, &on_surface);
+    known->inside[g] = !on_surface && winding >= 1;
+    if (!known->inside[g])
+        return STARG_OK;
+
+    const uint8_t *vertices, *faces;
+    const starg_visibility_options *view = &options->visibility;
+    starg_status status = verify_look(scratch, p, view->range, view->face_rule, &vertices, &faces);
+    if (status != STARG_OK)
+        return status;
+    for (size_t f = 0; f < surface->face_count; f++)
+        known->seen[g] += faces[f];
+    unite(known->vertex, vertices, surface->vertex_count);
+    unite(known->face, faces, surface->face_count);
+    return STARG_OK;
+}
+
+static void sum_up(facts *known) {
+    const verify_surface *surface = known->surface;
+    for (size_t i = 0; i < 3 * surface->face_count; i++)
+        known->used[surface->faces[i]] = 1;
+    for (size_t v = 0; v < surface->vertex_count; v++) {
+        known->used_vertices += known->used[v];
+        known->covered_vertices += known->vertex[v];
+    }
+    for (size_t f = 0; f < surface->face_count; f++) {
+        known->area[f] = verify_area(surface, f, known->scale);
+        known->total_area += known->area[f];
+        if (!known->face[f])
+            continue;
+        known->covered_faces++;
+        known->covered_area += known->area[f];
+    }
+}
+
+static starg_status find_facts(starg_context *context, facts *known) {
+    starg_status status = STARG_OK;
+    size_t guards = known->guards->count;
+    known->scale = verify_scale(known->surface);
+    STARG_NEW_ZERO(context, STAGE, known->inside, guards);
+    STARG_NEW_ZERO(context, STAGE, known->distance, guards);
+    STARG_NEW_ZERO(context, STAGE, known->seen, guards);
+    STARG_NEW_ZERO(context, STAGE, known->vertex, known->surface->vertex_count);
+    STARG_NEW_ZERO(context, STAGE, known->used, known->surface->vertex_count);
+    STARG_NEW_ZERO(context, STAGE, known->face, known->surface->face_count);
+    STARG_NEW(context, STAGE, known->area, known->surface->face_count);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = guards,
+                                      .shared = known,
+                                      .item = examine_guard,
+                                      .make_scratch = make_sight,
+                                      .free_scratch = free_sight};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    sum_up(known);
+done:
+    return status;
+}
+
+static void free_facts(starg_context *context, facts *known) {
+    starg_release(context, known->inside);
+    starg_release(context, known->distance);
+    starg_release(context, known->seen);
+    starg_release(context, known->vertex);
+    starg_release(context, known->used);
+    starg_release(context, known->face);
+    starg_release(context, known->area);
+}
+
+/* ---- claims about the input ---- */
+
+static void claim_model(starg_verdict *verdict, const facts *known) {
+    const starg_guards *guards = known->guards;
+    const verify_surface *surface = known->surface;
+    verify_claim(
+        verdict,
+        guards->vertex_count == surface->vertex_count && guards->face_count == surface->face_count,
+        "the model has %zu vertices and %zu faces (the mesh: %zu and %zu)", guards->vertex_count,
+        guards->face_count, surface->vertex_count, surface->face_count);
+}
+
+static void claim_options(starg_verdict *verdict, const starg_guard_options *options) {
+    verify_claim(verdict,
+                 options->visibility.range >= 0 && options->coverage > 0 &&
+                     options->coverage <= 1 && options->clearance >= 0,
+                 "the options make sense: range %g, coverage %g, clearance %g",
+                 options->visibility.range, options->coverage, options->clearance);
+}
+
+/* ---- claims about single guards ---- */
+
+static void claim_inside(starg_verdict *verdict, const facts *known) {
+    const starg_guards *guards = known->guards;
+    size_t bad = 0, first = 0;
+    for (size_t g = guards->count; g-- > 0;)
+        if (!known->inside[g]) {
+            bad++;
+            first = g;
+        }
+    if (bad == 0) {
+        verify_claim(verdict, true, "all %zu guards are strictly inside", guards->count);
+        return;
+    }
+    const double *p = guards->positions + 3 * first;
+    verify_claim(verdict, false,
+                 "all %zu guards are strictly inside: %zu are not, first guard %zu at "
+                 "(%.17g, %.17g, %.17g)",
+                 guards->count, bad, first, p[0], p[1], p[2]);
+}
+
+static void claim_clearance(starg_verdict *verdict, const facts *known) {
+    const starg_guards *guards = known->guards;
+    double wanted = guards->options.clearance;
+    size_t bad = 0, first = 0;
+    if (!(wanted > 0))
+        return;
+    for (size_t g = guards->count; g-- > 0;)
+        if (!(known->distance[g] >= wanted * (1 - TOLERANCE))) {
+            bad++;
+            first = g;
+        }
+    if (bad == 0)
+        verify_claim(verdict, true, "guards keep a clearance of %.17g", wanted);
+    else
+        verify_claim(verdict, false,
+                     "guards keep a clearance of %.17g: %zu do not, first guard %zu at a distance "
+                     "of %.17g",
+                     wanted, bad, first, known->distance[first]);
+}
+
+static void claim_seen(starg_verdict *verdict, const facts *known) {
+    const starg_guards *guards = known->guards;
+    size_t bad = 0, first = 0;
+    for (size_t g = guards->count; g-- > 0;)
+        if (guards->seen_faces[g] != known->seen[g]) {
+            bad++;
+            first = g;
+        }
+    if (bad == 0)
+        verify_claim(verdict, true, "each guard sees as many faces as claimed");
+    else
+        verify_claim(verdict, false,
+                     "each guard sees as many faces as claimed: %zu do not, first guard %zu, "
+                     "claimed %zu, found %zu",
+                     bad, first, guards->seen_faces[first], known->seen[first]);
+}
+
+/* ---- claims about coverage ---- */
+
+/* A list of elements that should be exactly those that are relevant and not seen, ascending. */
+typedef struct unseen_list {
+    const char *name;
+    const uint32_t *listed;
+    size_t count, element_count;
+    const atomic_uchar *seen;
+    const uint8_t *relevant; /* NULL: all */
+} unseen_list;
+
+static bool must_be_listed(const unseen_list *list, size_t element) {
+    return !list->seen[element] && (list->relevant == NULL || list->relevant[element]);
+}
+
+static void claim_unseen(starg_verdict *verdict, const unseen_list *list) {
+    size_t missing = 0, extra = 0, next = 0, first_missing = 0, first_extra = 0;
+    bool ascending = true;
+    for (size_t i = 0; i < list->count; i++) {
+        ascending = ascending && list->listed[i] < list->element_count &&
+                    (i == 0 || list->listed[i - 1] < list->listed[i]);
+    }
+    if (!ascending) {
+        verify_claim(verdict, false,
+                     "%s that no guard sees: the list is not ascending, or names "
+                     "one that does not exist",
+                     list->name);
+        return;
+    }
+    for (size_t element = 0; element < list->element_count; element++) {
+        bool listed = next < list->count && list->listed[next] == element;
+        bool expected = must_be_listed(list, element);
+        next += listed;
+        if (expected && !listed && missing++ == 0)
+            first_missing = element;
+        if (listed && !expected && extra++ == 0)
+            first_extra = element;
+    }
+    char details[2][64] = {"", ""};
+    if (missing != 0)
+        snprintf(details[0], sizeof details[0], ": %zu more are not seen, first %zu", missing,
+                 first_missing);
+    if (extra != 0)
+        snprintf(details[1], sizeof details[1], ": %zu of them are seen, first %zu", extra,
+                 first_extra);
+    verify_claim(verdict, missing == 0 && extra == 0, "%zu %s are seen by no guard%s%s",
+                 list->count, list->name, details[0], details[1]);
+}
+
+static bool about_equal(double a, double b) {
+    return fabs(a - b) <= TOLERANCE * fmax(fabs(a), fabs(b));
+}
+
+static void claim_fraction(starg_verdict *verdict, const char *name, double claimed, double found) {
+    verify_claim(verdict, about_equal(claimed, found), "coverage by %s is %.17g (found: %.17g)",
+                 name, claimed, found);
+}
+
+static double fraction(double part, double all) {
+    return all > 0 ? part / all : 0;
+}
+
+static void claim_coverage(starg_verdict *verdict, const facts *known) {
+    const starg_guards *guards = known->guards;
+    const verify_surface *surface = known->surface;
+    const unseen_list faces = {
+        "faces", guards->uncovered, guards->uncovered_count, surface->face_count, known->face,
+        NULL};
+    claim_unseen(verdict, &faces);
+    claim_fraction(verdict, "faces", guards->coverage_faces,
+                   fraction((double)known->covered_faces, (double)surface->face_count));
+    claim_fraction(verdict, "area", guards->coverage_area,
+                   fraction(known->covered_area, known->total_area));
+    if (guards->options.visibility.target != STARG_TARGET_VERTICES)
+        return;
+    const unseen_list vertices = {"vertices",
+                                  guards->uncovered_vertices,
+                                  guards->uncovered_vertex_count,
+                                  surface->vertex_count,
+                                  known->vertex,
+                                  known->used};
+    claim_unseen(verdict, &vertices);
+    claim_fraction(verdict, "vertices", guards->coverage_vertices,
+                   fraction((double)known->covered_vertices, (double)known->used_vertices));
+}
+
+/* ---- claims about what could be seen ---- */
+
+/* What the options ask to be seen. */
+typedef struct target {
+    const char *name;
+    size_t all, covered, coverable;
+} target;
+
+static target target_of(const facts *known) {
+    const starg_guards *guards = known->guards;
+    if (guards->options.visibility.target == STARG_TARGET_VERTICES)
+        return (target){"vertices", known->used_vertices, known->covered_vertices,
+                        guards->coverable_vertices};
+    return (target){"faces", known->surface->face_count, known->covered_faces,
+                    guards->coverable_faces};
+}
+
+static void claim_coverable(starg_verdict *verdict, const facts *known) {
+    target goal = target_of(known);
+    verify_claim(verdict, goal.covered <= goal.coverable && goal.coverable <= goal.all,
+                 "%zu of %zu %s can be seen (at least those %zu that are)", goal.coverable,
+                 goal.all, goal.name, goal.covered);
+}
+
+/* The least area that a number of faces that no guard sees can have: that number times the area of
+ * the smallest of them. */
+static double least_unseen_area(const facts *known, size_t count) {
+    double smallest = INFINITY;
+    for (size_t f = 0; f < known->surface->face_count; f++)
+        if (!known->face[f])
+            smallest = fmin(smallest, known->area[f]);
+    return count != 0 && smallest < INFINITY ? (double)count * smallest : 0;
+}
+
+/* Guards without a limit to their number reach the coverage that was asked for. Which of the faces
+ * unseen are coverable is not known; the smallest possible area is held against the claim. */
+static void claim_goal(starg_verdict *verdict, const facts *known) {
+    const starg_guard_options *options = &known->guards->options;
+    target goal = target_of(known);
+    if (options->max_guards != 0 || goal.coverable < goal.covered)
+        return;
+    double reached, wanted;
+    size_t rest = goal.coverable - goal.covered;
+    if (options->coverage >= 1 || options->visibility.target == STARG_TARGET_VERTICES) {
+        reached = (double)goal.covered;
+        wanted = options->coverage * (double)goal.coverable;
+    } else {
+        reached = known->covered_area;
+        wanted = options->coverage * (known->covered_area + least_unseen_area(known, rest));
+    }
+    verify_claim(verdict, reached >= wanted * (1 - TOLERANCE),
+                 "guards see a fraction of at least %.17g of what can be seen (%zu of %zu %s)",
+                 options->coverage, goal.covered, goal.coverable, goal.name);
+}
+
+/* ---- claims about the number of guards ---- */
+
+static void claim_numbers(starg_verdict *verdict, const facts *known) {
+    const starg_guards *guards = known->guards;
+    target goal = target_of(known);
+    verify_claim(verdict, guards->count > 0 || goal.coverable == 0,
+                 "there are guards (%zu), unless nothing can be seen", guards->count);
+    verify_claim(verdict, guards->count <= guards->candidate_count,
+                 "%zu guards are among %zu candidates", guards->count, guards->candidate_count);
+    if (guards->options.max_guards != 0)
+        verify_claim(verdict, guards->count <= guards->options.max_guards,
+                     "%zu guards are at most %zu", guards->count, guards->options.max_guards);
+    verify_claim(verdict, guards->lower_bound <= guards->count,
+                 "the lower bound %zu is at most the number of guards %zu", guards->lower_bound,
+                 guards->count);
+    bool equal = guards->lower_bound == guards->count;
+    verify_claim(verdict, guards->optimal == equal,
+                 "the result is called %s, with %zu guards and a lower bound of %zu",
+                 guards->optimal ? "optimal" : "not proven optimal", guards->count,
+                 guards->lower_bound);
+    double seen = fraction(known->covered_area, known->total_area);
+    verify_claim(verdict, seen <= guards->area_bound * (1 + TOLERANCE),
+                 "the area seen, %.17g, is within its bound %.17g", seen, guards->area_bound);
+}
+
+starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
+                                 const starg_guards *guards, starg_verdict **out) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    starg_verdict *verdict = NULL;
+    facts known = {.guards = guards};
+    *out = NULL;
+    STARG_TRY(verify_surface_create(context, mesh, &surface));
+    known.surface = surface;
+    STARG_TRY(find_facts(context, &known));
+
+    STARG_TRY(verify_verdict_create(context, &verdict));
+    claim_model(verdict, &known);
+    claim_options(verdict, &guards->options);
+    claim_inside(verdict, &known);
+    claim_clearance(verdict, &known);
+    claim_seen(verdict, &known);
+    claim_coverage(verdict, &known);
+    claim_coverable(verdict, &known);
+    claim_goal(verdict, &known);
+    claim_numbers(verdict, &known);
+    *out = verdict;
+done:
+    free_facts(context, &known);
+    verify_surface_free(surface);
+    return status;
+}

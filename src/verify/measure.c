@@ -1,0 +1,74 @@
+#include "verify/measure.h"
+
+#include <math.h>
+
+int verify_scale(const verify_surface *surface) {
+    double extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, surface->upper[k] - surface->lower[k]);
+    return extent > 0 ? -ilogb(extent) : 0;
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* out = 2^scale (a - b) */
+static void scaled_difference(const double a[3], const double b[3], int scale, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = ldexp(a[k] - b[k], scale);
+}
+
+double verify_area(const verify_surface *surface, size_t face, int scale) {
+    const double *t[3];
+    double u[3], v[3], n[3];
+    verify_corners(surface, face, t);
+    scaled_difference(t[1], t[0], scale, u);
+    scaled_difference(t[2], t[0], scale, v);
+    cross(u, v, n);
+    return 0.5 * sqrt(dot(n, n));
+}
+
+/* Squared distance from the origin to the segment from a along e. */
+static double squared_to_segment(const double a[3], const double e[3]) {
+    double length = dot(e, e);
+    double s = length > 0 ? fmin(1, fmax(0, -dot(a, e) / length)) : 0;
+    double foot[3] = {a[0] + s * e[0], a[1] + s * e[1], a[2] + s * e[2]};
+    return dot(foot, foot);
+}
+
+/* Squared distance from the origin to a triangle: to its plane where the foot is in the triangle,
+ * else to its edges. */
+static double squared_to_triangle(double a[3][3]) {
+    double e[3][3], n[3], side[3], least = INFINITY;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            e[i][k] = a[(i + 1) % 3][k] - a[i][k];
+    cross(e[0], e[1], n);
+    bool above = dot(n, n) > 0;
+    for (int i = 0; i < 3; i++) {
+        least = fmin(least, squared_to_segment(a[i], e[i]));
+        cross(a[i], a[(i + 1) % 3], side);
+        above = above && dot(side, n) >= 0;
+    }
+    double height = dot(a[0], n);
+    return above ? fmin(least, height * (height / dot(n, n))) : least;
+}
+
+double verify_distance(const verify_surface *surface, const double p[3], int scale) {
+    double least = INFINITY;
+    for (size_t f = 0; f < surface->face_count; f++) {
+        const double *t[3];
+        double a[3][3];
+        verify_corners(surface, f, t);
+        for (int i = 0; i < 3; i++)
+            scaled_difference(t[i], p, scale, a[i]);
+        least = fmin(least, squared_to_triangle(a));
+    }
+    return ldexp(sqrt(least), -scale);
+}

@@ -1,0 +1,273 @@
+/* Visibility by a map of directions.
+ *
+ * The directions from p are divided like the sides of a cube about it, each side into 2^levels
+ * squares a row: a cell is the cone of all points q with u0 w <= u <= u1 w and v0 w <= v <= v1 w,
+ * where (u, v, w) are the coordinates of q - p in the order of the side. Every triangle is listed
+ * in every cell that it may meet: it is left out only where its corners are certainly all beyond
+ * one of the four planes, by more than rounding, which proves it to be outside of the cone. A
+ * point on the way from p to a vertex q lies in the same cones as q; so q is seen exactly if no
+ * triangle blocks [p, q) among those listed in the cells in which q itself may lie. The same holds
+ * for a face: whatever enters the tetrahedron (p, face) is listed in a cell that the face may meet.
+ *
+ * No triangle is left out for facing away, for being hidden or for being far. Cost for each point:
+ * about O(n log n) to list, then a short list for each vertex. */
+#include "verify/sight.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "verify/signs.h"
+
+enum { SIDES = 6, MAX_LEVELS = 8 };
+
+typedef struct listing {
+    uint32_t cell, face;
+} listing;
+
+struct verify_sight {
+    const verify_surface *surface;
+    uint32_t width;                /* cells in a row of a side           */
+    STARG_ARRAY(listing) listings; /* as they come                       */
+    STARG_ARRAY(uint32_t) cells;   /* of the item that was placed last   */
+    size_t *start;                 /* of each cell's faces in `listed`   */
+    uint32_t *listed;              /* faces by cell                      */
+    size_t listed_capacity;
+    uint8_t *vertices, *faces, *used; /* used: vertices that faces name */
+};
+
+starg_status verify_sight_create(const verify_surface *surface, verify_sight **out) {
+    starg_context *context = surface->context;
+    verify_sight *sight = starg_allocate_zero(context, 1, sizeof *sight);
+    *out = NULL;
+    if (sight == NULL)
+        return STARG_ERROR_MEMORY;
+    sight->surface = surface;
+    sight->width = 1;
+    for (int level = 0; level < MAX_LEVELS; level++)
+        if ((size_t)4 * SIDES * sight->width * sight->width <= surface->face_count)
+            sight->width *= 2;
+    size_t cell_count = (size_t)SIDES * sight->width * sight->width;
+    sight->start = starg_allocate(context, cell_count + 1, sizeof *sight->start);
+    sight->vertices = starg_allocate(context, surface->vertex_count, 1);
+    sight->faces = starg_allocate(context, surface->face_count, 1);
+    sight->used = starg_allocate_zero(context, surface->vertex_count, 1);
+    if (sight->start == NULL || sight->vertices == NULL || sight->faces == NULL ||
+        sight->used == NULL) {
+        verify_sight_free(sight);
+        return STARG_ERROR_MEMORY;
+    }
+    for (size_t i = 0; i < 3 * surface->face_count; i++)
+        sight->used[surface->faces[i]] = 1;
+    *out = sight;
+    return STARG_OK;
+}
+
+void verify_sight_free(verify_sight *sight) {
+    if (sight == NULL)
+        return;
+    starg_context *context = sight->surface->context;
+    STARG_ARRAY_FREE(context, &sight->listings);
+    STARG_ARRAY_FREE(context, &sight->cells);
+    starg_release(context, sight->start);
+    starg_release(context, sight->listed);
+    starg_release(context, sight->vertices);
+    starg_release(context, sight->faces);
+    starg_release(context, sight->used);
+    starg_release(context, sight);
+}
+
+/* ---- placing points and triangles in cells ---- */
+
+/* One to three points about p, in the coordinates of one side of the cube. */
+typedef struct item {
+    double x[3][3]; /* u, v, w of each */
+    int count;
+} item;
+
+/* Are all points certainly beyond the plane x[k] = limit x w, where limit is in [-1, 1]? The terms
+ * come with at most four roundings; the constant covers those of subnormal products. */
+static bool beyond(const item *it, int k, double limit, int direction) {
+    for (int i = 0; i < it->count; i++) {
+        double x = it->x[i][k], along = limit * it->x[i][2];
+        double bound = 0x1p-50 * (fabs(x) + fabs(it->x[i][2])) + 0x1p-1072;
+        if (!(direction * (x - along) > bound))
+            return false;
+    }
+    return true;
+}
+
+/* Appends the cells of a side that the item may meet, of the `size` x `size` ones that start at
+ * (column, row): the square is split into four until one cell is left. */
+static starg_status place(verify_sight *sight, const item *it, uint32_t side, uint32_t column,
+                          uint32_t row, uint32_t size) {
+    starg_status status = STARG_OK;
+    double step = 2.0 / sight->width;
+    if (beyond(it, 0, column * step - 1, -1) || beyond(it, 0, (column + size) * step - 1, 1) ||
+        beyond(it, 1, row * step - 1, -1) || beyond(it, 1, (row + size) * step - 1, 1))
+        return STARG_OK;
+    if (size == 1) {
+        uint32_t cell = (side * sight->width + row) * sight->width + column;
+        if (sight->cells.count == sight->cells.capacity) {
+            size_t capacity = 2 * sight->cells.capacity + 64;
+            uint32_t *grown = starg_reallocate(sight->surface->context, sight->cells.data,
+                                               sight->cells.count, capacity, sizeof *grown);
+            if (grown == NULL)
+                return STARG_ERROR_MEMORY;
+            sight->cells.data = grown;
+            sight->cells.capacity = capacity;
+        }
+        sight->cells.data[sight->cells.count++] = cell;
+        return STARG_OK;
+    }
+    size /= 2;
+    for (uint32_t quarter = 0; quarter < 4 && status == STARG_OK; quarter++)
+        status = place(sight, it, side, column + (quarter & 1) * size, row + (quarter >> 1) * size,
+                       size);
+    return status;
+}
+
+/* Sets sight->cells to all cells that the points, taken from p, may meet. */
+static starg_status find_cells(verify_sight *sight, const double p[3], const double *const *points,
+                               int count) {
+    sight->cells.count = 0;
+    for (uint32_t side = 0; side < SIDES; side++) {
+        uint32_t axis = side / 2;
+        double sign = side % 2 ? -1 : 1;
+        item it = {.count = count};
+        for (int i = 0; i < count; i++) {
+            it.x[i][0] = points[i][(axis + 1) % 3] - p[(axis + 1) % 3];
+            it.x[i][1] = points[i][(axis + 2) % 3] - p[(axis + 2) % 3];
+            it.x[i][2] = sign * (points[i][axis] - p[axis]);
+        }
+        starg_status status = place(sight, &it, side, 0, 0, sight->width);
+        if (status != STARG_OK)
+            return status;
+    }
+    return STARG_OK;
+}
+
+/* ---- the map ---- */
+
+static starg_status list_faces(verify_sight *sight, const double p[3]) {
+    starg_context *context = sight->surface->context;
+    sight->listings.count = 0;
+    for (uint32_t f = 0; f < sight->surface->face_count; f++) {
+        const double *t[3];
+        verify_corners(sight->surface, f, t);
+        starg_status status = find_cells(sight, p, t, 3);
+        if (status != STARG_OK)
+            return status;
+        size_t count = sight->listings.count + sight->cells.count;
+        if (count > sight->listings.capacity) {
+            listing *grown = starg_reallocate(context, sight->listings.data, sight->listings.count,
+                                              2 * count, sizeof *grown);
+            if (grown == NULL)
+                return STARG_ERROR_MEMORY;
+            sight->listings.data = grown;
+            sight->listings.capacity = 2 * count;
+        }
+        for (size_t i = 0; i < sight->cells.count; i++)
+            sight->listings.data[sight->listings.count++] = (listing){sight->cells.data[i], f};
+    }
+    return STARG_OK;
+}
+
+/* Counting sort of the listings by cell. */
+static starg_status sort_listings(verify_sight *sight) {
+    starg_context *context = sight->surface->context;
+    size_t cell_count = (size_t)SIDES * sight->width * sight->width;
+    if (sight->listed_capacity < sight->listings.capacity) {
+        starg_release(context, sight->listed);
+        sight->listed_capacity = 0;
+        sight->listed = starg_allocate(context, sight->listings.capacity, sizeof *sight->listed);
+        if (sight->listed == NULL)
+            return STARG_ERROR_MEMORY;
+        sight->listed_capacity = sight->listings.capacity;
+    }
+    memset(sight->start, 0, (cell_count + 1) * sizeof *sight->start);
+    for (size_t i = 0; i < sight->listings.count; i++)
+        sight->start[sight->listings.data[i].cell]++;
+    for (size_t c = 1; c <= cell_count; c++)
+        sight->start[c] += sight->start[c - 1];
+    for (size_t i = sight->listings.count; i-- > 0;) {
+        listing entry = sight->listings.data[i];
+        sight->listed[--sight->start[entry.cell]] = entry.face;
+    }
+    return STARG_OK;
+}
+
+/* ---- looking ---- */
+
+/* Is q seen past everything that is listed in sight->cells? */
+static bool sees_point(const verify_sight *sight, const double p[3], const double q[3]) {
+    for (size_t c = 0; c < sight->cells.count; c++) {
+        uint32_t cell = sight->cells.data[c];
+        for (size_t i = sight->start[cell]; i < sight->start[cell + 1]; i++) {
+            const double *t[3];
+            verify_corners(sight->surface, sight->listed[i], t);
+            if (verify_blocks(p, q, t))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Does nothing that is listed in sight->cells enter the tetrahedron (p, face)? */
+static bool sees_whole(const verify_sight *sight, const double p[3], uint32_t face) {
+    const double *f[3];
+    verify_corners(sight->surface, face, f);
+    for (size_t c = 0; c < sight->cells.count; c++) {
+        uint32_t cell = sight->cells.data[c];
+        for (size_t i = sight->start[cell]; i < sight->start[cell + 1]; i++) {
+            const double *t[3];
+            verify_corners(sight->surface, sight->listed[i], t);
+            if (sight->listed[i] != face && verify_enters(p, f, t))
+                return false;
+        }
+    }
+    return true;
+}
+
+static starg_status look_at_vertices(verify_sight *sight, const double p[3], double range) {
+    for (size_t v = 0; v < sight->surface->vertex_count; v++) {
+        const double *q = sight->surface->vertices + 3 * v;
+        sight->vertices[v] = 0;
+        if (!sight->used[v] || !verify_within(p, q, range))
+            continue;
+        starg_status status = find_cells(sight, p, &q, 1);
+        if (status != STARG_OK)
+            return status;
+        sight->vertices[v] = sees_point(sight, p, q);
+    }
+    return STARG_OK;
+}
+
+static starg_status look_at_faces(verify_sight *sight, const double p[3], starg_face_rule rule) {
+    for (uint32_t f = 0; f < sight->surface->face_count; f++) {
+        const uint32_t *corner = sight->surface->faces + 3 * (size_t)f;
+        const double *t[3];
+        verify_corners(sight->surface, f, t);
+        sight->faces[f] = sight->vertices[corner[0]] && sight->vertices[corner[1]] &&
+                          sight->vertices[corner[2]] && verify_side(t[0], t[1], t[2], p) > 0;
+        if (!sight->faces[f] || rule != STARG_FACES_WHOLE)
+            continue;
+        starg_status status = find_cells(sight, p, t, 3);
+        if (status != STARG_OK)
+            return status;
+        sight->faces[f] = sees_whole(sight, p, f);
+    }
+    return STARG_OK;
+}
+
+starg_status verify_look(verify_sight *sight, const double p[3], double range, starg_face_rule rule,
+                         const uint8_t **vertices, const uint8_t **faces) {
+    starg_status status = STARG_OK;
+    STARG_TRY(list_faces(sight, p));
+    STARG_TRY(sort_listings(sight));
+    STARG_TRY(look_at_vertices(sight, p, range));
+    STARG_TRY(look_at_faces(sight, p, rule));
+    *vertices = sight->vertices;
+    *faces = sight->faces;
+done:
+    return status;
+}

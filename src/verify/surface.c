@@ -1,0 +1,302 @@
+/* Shells are components of faces that share edges. The rule of turning is that of the library's
+ * solids, written anew: a shell that lies in an even number of others bounds the solid from
+ * outside and must have positive volume; one in an odd number bounds a cavity and must have
+ * negative volume; "in" means that the other shell has a winding number other than 0 about a
+ * corner. A shell that passes through another gets positive volume. Signs of volumes are exact.
+ *
+ * Cost: a hash table of directed edges, O(n); for several shells one winding number for each
+ * pair whose bounds allow nesting; all pairs of faces for each cavity and a shell around it. */
+#include "verify/surface.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/rng.h"
+#include "verify/exact_sum.h"
+#include "verify/signs.h"
+
+static const char STAGE[] = "verify";
+
+/* ---- edges ---- */
+
+/* Directed edge e runs from corner e % 3 of face e / 3 to the next corner. The table holds
+ * e + 1 at the first free slot behind the hash of its ends. */
+typedef struct edge_table {
+    const uint32_t *faces;
+    uint64_t *slots;
+    size_t mask;
+} edge_table;
+
+static uint32_t edge_from(const uint32_t *faces, uint64_t e) {
+    return faces[e];
+}
+
+static uint32_t edge_to(const uint32_t *faces, uint64_t e) {
+    return faces[e % 3 == 2 ? e - 2 : e + 1];
+}
+
+/* The slot of the edge from a to b, or the free one where it belongs. */
+static uint64_t *find_edge(const edge_table *table, uint32_t a, uint32_t b) {
+    size_t i = (size_t)starg_hash64((uint64_t)a << 32 | b) & table->mask;
+    for (;; i = (i + 1) & table->mask) {
+        uint64_t *slot = &table->slots[i];
+        if (*slot == 0 ||
+            (edge_from(table->faces, *slot - 1) == a && edge_to(table->faces, *slot - 1) == b))
+            return slot;
+    }
+}
+
+static starg_status insert_edges(starg_context *context, edge_table *table, size_t edge_count) {
+    for (uint64_t e = 0; e < edge_count; e++) {
+        uint32_t a = edge_from(table->faces, e), b = edge_to(table->faces, e);
+        uint64_t *slot = find_edge(table, a, b);
+        if (a == b || *slot != 0) {
+            const uint64_t ends[2] = {a, b};
+            return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
+                                 "the surface is not oriented: face %zu runs along edge %u-%u %s",
+                                 (size_t)(e / 3), a, b,
+                                 a == b ? "that has no length" : "like another face");
+        }
+        *slot = e + 1;
+    }
+    return STARG_OK;
+}
+
+/* ---- shells ---- */
+
+static uint32_t find_root(uint32_t *parent, uint32_t f) {
+    while (parent[f] != f) {
+        parent[f] = parent[parent[f]];
+        f = parent[f];
+    }
+    return f;
+}
+
+/* Joins faces that share an edge; the root of a shell is its lowest face. */
+static starg_status join_faces(starg_context *context, const edge_table *table, size_t edge_count,
+                               uint32_t *parent) {
+    for (uint32_t f = 0; f < edge_count / 3; f++)
+        parent[f] = f;
+    for (uint64_t e = 0; e < edge_count; e++) {
+        uint32_t a = edge_from(table->faces, e), b = edge_to(table->faces, e);
+        uint64_t twin = *find_edge(table, b, a);
+        if (twin == 0) {
+            const uint64_t ends[2] = {a, b};
+            return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, ends, 2,
+                                 "the surface is not closed: edge %u-%u of face %zu has no face "
+                                 "on its other side",
+                                 a, b, (size_t)(e / 3));
+        }
+        uint32_t u = find_root(parent, (uint32_t)(e / 3));
+        uint32_t v = find_root(parent, (uint32_t)((twin - 1) / 3));
+        parent[u > v ? u : v] = u > v ? v : u;
+    }
+    return STARG_OK;
+}
+
+typedef struct shell {
+    const uint32_t *faces;
+    size_t count;
+    double lower[3], upper[3];
+} shell;
+
+typedef struct shell_list {
+    STARG_ARRAY(shell) list;
+    uint32_t *faces; /* by shell */
+} shell_list;
+
+static void widen(shell *own, const double p[3]) {
+    for (int k = 0; k < 3; k++) {
+        own->lower[k] = fmin(own->lower[k], p[k]);
+        own->upper[k] = fmax(own->upper[k], p[k]);
+    }
+}
+
+/* Groups the faces by root. `place` first counts, then gives the next free place of a root. */
+static starg_status gather_shells(const verify_surface *surface, uint32_t *parent,
+                                  shell_list *shells) {
+    starg_context *context = surface->context;
+    starg_status status = STARG_OK;
+    size_t n = surface->face_count, *place = NULL, next = 0;
+    STARG_NEW_ZERO(context, STAGE, place, n);
+    STARG_NEW(context, STAGE, shells->faces, n);
+    for (uint32_t f = 0; f < n; f++)
+        place[find_root(parent, f)]++;
+    for (uint32_t f = 0; f < n; f++)
+        if (parent[f] == f) {
+            shell own = {.faces = shells->faces + next,
+                         .count = place[f],
+                         .lower = {INFINITY, INFINITY, INFINITY},
+                         .upper = {-INFINITY, -INFINITY, -INFINITY}};
+            place[f] = next;
+            next += own.count;
+            STARG_PUSH(context, STAGE, &shells->list, own);
+        }
+    for (uint32_t f = 0; f < n; f++)
+        shells->faces[place[find_root(parent, f)]++] = f;
+    for (size_t s = 0; s < shells->list.count; s++) {
+        shell *own = &shells->list.data[s];
+        for (size_t i = 0; i < 3 * own->count; i++) {
+            size_t corner = 3 * (size_t)own->faces[i / 3] + i % 3;
+            widen(own, surface->vertices + 3 * (size_t)surface->faces[corner]);
+        }
+    }
+done:
+    starg_release(context, place);
+    return status;
+}
+
+static int volume_sign(const verify_surface *surface, const shell *own) {
+    exact_sum sum;
+    exact_sum_clear(&sum);
+    for (size_t i = 0; i < own->count; i++) {
+        const double *t[3];
+        verify_corners(surface, own->faces[i], t);
+        exact_sum_add_determinant(&sum, t[0], t[1], t[2]);
+    }
+    return exact_sum_sign(&sum);
+}
+
+static bool bounds_meet(const shell *a, const shell *b) {
+    for (int k = 0; k < 3; k++)
+        if (a->upper[k] < b->lower[k] || b->upper[k] < a->lower[k])
+            return false;
+    return true;
+}
+
+/* Has `other` a winding number about the first corner of `own` that is not on it? */
+static bool lies_in(const verify_surface *surface, const shell *own, const shell *other) {
+    if (!bounds_meet(own, other))
+        return false;
+    for (size_t i = 0; i < own->count; i++) {
+        const double *t[3];
+        verify_corners(surface, own->faces[i], t);
+        for (int j = 0; j < 3; j++) {
+            bool on_surface;
+            int winding = verify_winding(surface, other->faces, other->count, t[j], &on_surface);
+            if (!on_surface)
+                return winding != 0;
+        }
+    }
+    return false;
+}
+
+static void face_bounds(const verify_surface *surface, uint32_t face, shell *bounds) {
+    const double *t[3];
+    verify_corners(surface, face, t);
+    for (int k = 0; k < 3; k++)
+        bounds->lower[k] = bounds->upper[k] = t[0][k];
+    widen(bounds, t[1]);
+    widen(bounds, t[2]);
+}
+
+static bool shells_cross(const verify_surface *surface, const shell *own, const shell *other) {
+    if (!bounds_meet(own, other))
+        return false;
+    for (size_t j = 0; j < other->count; j++) {
+        shell far_face, near_face;
+        face_bounds(surface, other->faces[j], &far_face);
+        if (!bounds_meet(own, &far_face))
+            continue;
+        const double *s[3], *t[3];
+        verify_corners(surface, other->faces[j], t);
+        for (size_t i = 0; i < own->count; i++) {
+            face_bounds(surface, own->faces[i], &near_face);
+            verify_corners(surface, own->faces[i], s);
+            if (bounds_meet(&near_face, &far_face) && verify_cross(s, t))
+                return true;
+        }
+    }
+    return false;
+}
+
+static bool is_cavity(const verify_surface *surface, const shell_list *shells, const shell *own) {
+    size_t depth = 0;
+    for (size_t s = 0; s < shells->list.count; s++)
+        depth += own != &shells->list.data[s] && lies_in(surface, own, &shells->list.data[s]);
+    if (depth % 2 == 0)
+        return false;
+    for (size_t s = 0; s < shells->list.count; s++)
+        if (own != &shells->list.data[s] && shells_cross(surface, own, &shells->list.data[s]))
+            return false;
+    return true;
+}
+
+static starg_status turn_shells(verify_surface *surface, const shell_list *shells) {
+    starg_context *context = surface->context;
+    starg_status status = STARG_OK;
+    uint8_t *turn = NULL;
+    STARG_NEW_ZERO(context, STAGE, turn, shells->list.count);
+    for (size_t s = 0; s < shells->list.count; s++) {
+        const shell *own = &shells->list.data[s];
+        STARG_TRY(starg_check_cancel(context, STAGE));
+        turn[s] = volume_sign(surface, own) == (is_cavity(surface, shells, own) ? 1 : -1);
+    }
+    for (size_t s = 0; s < shells->list.count; s++)
+        for (size_t i = 0; turn[s] && i < shells->list.data[s].count; i++) {
+            uint32_t *face = surface->faces + 3 * (size_t)shells->list.data[s].faces[i];
+            uint32_t second = face[1];
+            face[1] = face[2];
+            face[2] = second;
+        }
+done:
+    starg_release(context, turn);
+    return status;
+}
+
+/* ---- all of it ---- */
+
+static starg_status orient(verify_surface *surface) {
+    starg_context *context = surface->context;
+    starg_status status = STARG_OK;
+    edge_table table = {.faces = surface->faces, .mask = 1};
+    size_t edge_count = 3 * surface->face_count;
+    uint32_t *parent = NULL;
+    shell_list shells = {0};
+    while (table.mask < 2 * edge_count)
+        table.mask = 2 * table.mask + 1;
+    STARG_NEW_ZERO(context, STAGE, table.slots, table.mask + 1);
+    STARG_NEW(context, STAGE, parent, surface->face_count);
+    STARG_TRY(insert_edges(context, &table, edge_count));
+    STARG_TRY(join_faces(context, &table, edge_count, parent));
+    STARG_TRY(gather_shells(surface, parent, &shells));
+    STARG_TRY(turn_shells(surface, &shells));
+done:
+    starg_release(context, table.slots);
+    starg_release(context, parent);
+    starg_release(context, shells.faces);
+    STARG_ARRAY_FREE(context, &shells.list);
+    return status;
+}
+
+starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
+                                   verify_surface **out) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    size_t face_count = starg_mesh_face_count(mesh);
+    *out = NULL;
+    if (face_count == 0)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE, "the model has no faces");
+    STARG_NEW_ZERO(context, STAGE, surface, 1);
+    surface->context = context;
+    surface->vertex_count = starg_mesh_vertex_count(mesh);
+    surface->face_count = face_count;
+    surface->vertices = starg_mesh_vertices(mesh);
+    starg_mesh_bounds(mesh, surface->lower, surface->upper);
+    STARG_NEW(context, STAGE, surface->faces, 3 * face_count);
+    memcpy(surface->faces, starg_mesh_faces(mesh), 3 * face_count * sizeof *surface->faces);
+    STARG_TRY(orient(surface));
+    *out = surface;
+done:
+    if (status != STARG_OK)
+        verify_surface_free(surface);
+    return status;
+}
+
+void verify_surface_free(verify_surface *surface) {
+    if (surface == NULL)
+        return;
+    starg_release(surface->context, surface->faces);
+    starg_release(surface->context, surface);
+}

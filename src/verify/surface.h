@@ -1,0 +1,37 @@
+/* The model as the verifier sees it: a copy with every shell turned, and winding numbers. */
+#ifndef STARG_VERIFY_SURFACE_H
+#define STARG_VERIFY_SURFACE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/context.h"
+#include "starguard/mesh.h"
+
+typedef struct verify_surface {
+    starg_context *context;
+    size_t vertex_count, face_count;
+    const double *vertices;    /* of the mesh, which must outlive the surface */
+    uint32_t *faces;           /* counter-clockwise seen from outside of the solid */
+    double lower[3], upper[3]; /* bounds of all vertices */
+} verify_surface;
+
+/* Checks that every edge has two faces, which run along it in opposite ways, and turns shells.
+ * Errors: MESH, MEMORY, CANCELLED. */
+starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
+                                   verify_surface **out);
+void verify_surface_free(verify_surface *surface);
+
+/* The corners of a face. */
+static inline void verify_corners(const verify_surface *surface, size_t face, const double *t[3]) {
+    for (size_t i = 0; i < 3; i++)
+        t[i] = surface->vertices + 3 * (size_t)surface->faces[3 * face + i];
+}
+
+/* Winding number of `count` faces (NULL: of all), which form a closed surface, about p;
+ * *on_surface: p lies on one of them, and the number means nothing. Exact. */
+int verify_winding(const verify_surface *surface, const uint32_t *faces, size_t count,
+                   const double p[3], bool *on_surface);
+
+#endif
