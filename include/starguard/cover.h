@@ -39,16 +39,20 @@ typedef enum starg_cover_method {
 
 typedef struct starg_cover_options {
     starg_cover_method method;
-    /* Branch-and-bound nodes for each independent block of the reduced problem; when they are
-     * spent the best cover found and its bound are returned. Counted, so that the result is the
-     * same on every machine. */
+    /* Branch-and-bound nodes for each independent block of the reduced problem, and for each number
+     * of rows that is tried with a partial target; when they are spent the best cover found and
+     * its bound are returned. 0: none, bounds only. Counted, so that the result is the same on
+     * every machine. */
     size_t max_nodes;
 } starg_cover_options;
 
 /* ILP with 100,000 nodes. */
 STARG_API void starg_cover_options_default(starg_cover_options *options);
 
-/* A cover. `rows` is ordered by what each row adds, largest first, ties by index. */
+/* A cover. `rows` is ordered by what each row adds, largest first, ties by index: the weight of
+ * its columns that the rows before it have not covered; with redundancy above 1, have not covered
+ * often enough. `optimal` speaks of the number of rows; where max_rows rows cannot reach the
+ * target, `weight` is the most that they can cover if it equals `weight_bound`. */
 typedef struct starg_cover {
     size_t count;
     uint32_t *rows;

@@ -4,7 +4,8 @@
  *   - The C interface has no way to stop a solve. A cut callback runs at every node: when we want
  *     to stop it adds the cut x0 >= 2, which makes every open node infeasible. CBC then ends at
  *     once, with claims that are worth nothing; its covers are still looked at.
- *   - Limits are wanted by elapsed time. All printing is off.
+ *   - Its preprocessing can crash on a model whose cutoff leaves no solution, and gains nothing
+ *     after our reductions: off. Limits are by elapsed time. All printing is off.
  *
  * Trust: coefficients and costs are 1, demands at most 1,000, so the model is exact in doubles. A
  * cover from CBC is checked on the bits. Gaps are closed by our exact dual bound first (dual.h);
@@ -194,6 +195,7 @@ static void set_limits(const cover_run *run, Cbc_Model *model, size_t most) {
     Cbc_setLogLevel(model, 0);
     Cbc_setParameter(model, "log", "0");
     Cbc_setParameter(model, "timeMode", "elapsed");
+    Cbc_setParameter(model, "preprocess", "off");
     Cbc_setCutoff(model, (double)most + 0.5);
     Cbc_setMaximumNodes(model, run->max_nodes < INT_MAX ? (int)run->max_nodes : INT_MAX);
     if (run->context->deadline > 0)

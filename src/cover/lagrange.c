@@ -1,6 +1,7 @@
 /* The subgradient method for the Lagrangian dual, with covers built from its reduced costs, after
- * [CFT99]. Floating point only steers: every step's multipliers are rounded to whole numbers and
- * evaluated exactly. Cost of a step: the ones of the matrix, twice. */
+ * [CFT99] with Held and Karp's control of the step length. Floating point only steers: every step's
+ * multipliers are rounded to whole numbers and evaluated exactly. Cost of a step: the ones of the
+ * matrix, twice. */
 #include <stdlib.h>
 
 #include "cover/dual.h"
@@ -25,8 +26,9 @@ typedef struct lagrange {
     double *slope;              /* subgradient per column                      */
     int64_t *rounded, *reduced; /* multipliers of this step, and their costs   */
     priced_row *order;
-    int64_t value;     /* exact value of this step                    */
-    int64_t low, high; /* values since the last review                */
+    int64_t value;    /* exact value of this step                     */
+    int64_t reached;  /* best value of the steps so far               */
+    int64_t reviewed; /* `reached` at the last review                 */
     double factor;
 } lagrange;
 
@@ -48,10 +50,8 @@ static void evaluate(lagrange *search) {
     search->value = cover_dual_value(instance, search->rounded, search->reduced);
     if (search->value > search->dual->value)
         cover_dual_offer(instance, search->dual, search->rounded, search->reduced);
-    if (search->value < search->low)
-        search->low = search->value;
-    if (search->value > search->high)
-        search->high = search->value;
+    if (search->value > search->reached)
+        search->reached = search->value;
 }
 
 /* The subgradient: what each column lacks when the rows of negative cost are chosen. Returns its
@@ -87,16 +87,11 @@ static void take_step(lagrange *search, double square) {
     }
 }
 
-/* Shorter steps when the values jump about, longer ones when they hardly move. */
+/* Shorter steps when the last ones have brought nothing. */
 static void review(lagrange *search) {
-    double spread = (double)(search->high - search->low);
-    double size = (double)(search->dual->value > COVER_ONE ? search->dual->value : COVER_ONE);
-    if (spread > 0.01 * size)
+    if (search->reached <= search->reviewed)
         search->factor *= 0.5;
-    else if (spread < 0.001 * size)
-        search->factor *= 1.5;
-    search->low = INT64_MAX;
-    search->high = INT64_MIN;
+    search->reviewed = search->reached;
 }
 
 /* A cover from the cheapest rows, needless ones dropped. */
@@ -135,6 +130,24 @@ static starg_status iterate(cover_run *run, lagrange *search) {
     return STARG_OK;
 }
 
+/* Each column pays as much as the largest of its rows asks of each of its columns: dual feasible,
+ * and spread out, which suits the method better than the corner that dual ascent ends in. */
+static void set_start(lagrange *search) {
+    const cover_instance *instance = search->instance;
+    for (size_t j = 0; j < instance->columns; j++)
+        search->point[j] = 1;
+    for (size_t i = 0; i < instance->rows; i++) {
+        const uint64_t *row = cover_row(instance, i);
+        double share = 1 / (double)starg_bit_count(row, instance->row_words);
+        for (size_t w = 0; w < instance->row_words; w++) {
+            STARG_FOR_BITS (bit, row[w]) {
+                if (share < search->point[64 * w + bit])
+                    search->point[64 * w + bit] = share;
+            }
+        }
+    }
+}
+
 starg_status cover_lagrange(cover_run *run, const cover_instance *instance, cover_dual *dual,
                             cover_state *best) {
     starg_status status = STARG_OK;
@@ -144,17 +157,16 @@ starg_status cover_lagrange(cover_run *run, const cover_instance *instance, cove
                        .dual = dual,
                        .best = best,
                        .trial = &trial,
-                       .low = INT64_MAX,
-                       .high = INT64_MIN,
-                       .factor = 0.1};
+                       .reached = INT64_MIN,
+                       .reviewed = INT64_MIN,
+                       .factor = 1};
     STARG_TRY(cover_state_create(instance, &trial));
     STARG_NEW(context, "bound", search.point, instance->columns);
     STARG_NEW(context, "bound", search.slope, instance->columns);
     STARG_NEW(context, "bound", search.rounded, instance->columns);
     STARG_NEW(context, "bound", search.reduced, instance->rows);
     STARG_NEW(context, "bound", search.order, instance->rows);
-    for (size_t j = 0; j < instance->columns; j++)
-        search.point[j] = (double)dual->multipliers[j] / (double)COVER_ONE;
+    set_start(&search);
     STARG_TRY(iterate(run, &search));
 done:
     cover_state_free(&trial);

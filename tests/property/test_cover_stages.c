@@ -1,0 +1,285 @@
+/* Each stage of the cover alone, on small random instances, against exhaustive search: what the
+ * whole solve rarely reaches because an earlier stage has finished the work. */
+
+#include "core/rng.h"
+#include "cover/dual.h"
+#include "cover/greedy.h"
+#include "cover/ilp.h"
+#include "cover/reduce.h"
+#include "cover/search.h"
+#include "cover_oracle.h"
+#include "support.h"
+
+enum { NONE = 99 };
+
+/* best[c] of an instance with its own demands; a demand above the supply can never be met. */
+static void instance_best(const cover_instance *instance, uint64_t *best) {
+    assert_true(instance->rows <= COVER_ORACLE_ROWS);
+    for (size_t c = 0; c <= instance->rows; c++)
+        best[c] = 0;
+    for (uint64_t choice = 0; choice < (uint64_t)1 << instance->rows; choice++) {
+        uint64_t sum = 0;
+        for (size_t j = 0; j < instance->columns; j++) {
+            uint64_t holders = instance->column_words ? cover_column(instance, j)[0] : 0;
+            if ((uint32_t)__builtin_popcountll(holders & choice) >= instance->demands[j])
+                sum += instance->weights[j];
+        }
+        int count = __builtin_popcountll(choice);
+        if (sum > best[count])
+            best[count] = sum;
+    }
+}
+
+/* The fewest rows that cover everything; NONE if that cannot be. */
+static size_t optimum(const cover_instance *instance) {
+    uint64_t best[COVER_ORACLE_ROWS + 1];
+    instance_best(instance, best);
+    size_t count = cover_oracle_fewest(best, instance->rows, instance->total);
+    return count > instance->rows ? NONE : count;
+}
+
+static uint64_t heaviest(const cover_instance *instance, size_t rows) {
+    uint64_t best[COVER_ORACLE_ROWS + 1], most = 0;
+    instance_best(instance, best);
+    for (size_t c = 0; c <= rows && c <= instance->rows; c++)
+        most = most > best[c] ? most : best[c];
+    return most;
+}
+
+/* `kind` 0: anything; 1: each column held by two or three rows (few reductions, LP not tight). */
+static void make_instance(starg_context *context, starg_rng *rng, int kind, cover_instance *out) {
+    size_t rows = 1 + starg_rng_below(rng, 11), columns = 1 + starg_rng_below(rng, 20);
+    uint64_t density = 10 + starg_rng_below(rng, 50);
+    uint64_t weights[20];
+    starg_bits *bits;
+    test_ok(context, starg_bits_create(context, rows, columns, &bits));
+    for (size_t j = 0; j < columns; j++) {
+        weights[j] = 1 + starg_rng_below(rng, 9);
+        for (size_t i = 0; i < rows && kind == 0; i++) {
+            if (starg_rng_below(rng, 100) < density)
+                starg_bits_set(bits, i, j);
+        }
+        for (int k = 0; k < 3 && kind == 1; k++)
+            starg_bits_set(bits, starg_rng_below(rng, rows), j);
+    }
+    starg_cover_problem problem;
+    starg_cover_problem_default(&problem);
+    problem.rows = bits;
+    problem.weights = weights;
+    problem.redundancy = 1 + (uint32_t)starg_rng_below(rng, 3);
+    test_ok(context, cover_instance_build(context, &problem, out));
+    starg_bits_free(bits);
+}
+
+typedef void instance_check(cover_run *run, starg_rng *rng, cover_instance *instance);
+
+static void for_instances(uint64_t stage, size_t count, instance_check *check) {
+    starg_context *context = test_context(1);
+    for (uint64_t item = 0; item < count; item++) {
+        starg_rng rng = starg_rng_make(1, stage, item);
+        cover_run run = {.context = context, .max_nodes = 100000};
+        cover_instance instance;
+        make_instance(context, &rng, (int)(item % 2), &instance);
+        check(&run, &rng, &instance);
+        cover_instance_free(&instance);
+    }
+    test_context_free(context);
+}
+
+static void keep_part(cover_instance *instance, const uint64_t *rows, const uint64_t *columns) {
+    cover_instance part;
+    assert_int_equal(cover_instance_select(instance, rows, columns, &part), STARG_OK);
+    cover_instance_free(instance);
+    *instance = part;
+}
+
+static void check_essential(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    (void)rng;
+    size_t before = optimum(instance);
+    uint64_t rows[1] = {0};
+    cover_names forced = {0};
+    if (cover_mark_essential(instance, rows) != 0)
+        test_ok(run->context, cover_take_rows(instance, rows, NULL, &forced));
+    assert_int_equal(forced.count + optimum(instance), before);
+    STARG_ARRAY_FREE(run->context, &forced);
+}
+
+static void check_rows(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    (void)rng;
+    uint64_t before[COVER_ORACLE_ROWS + 2];
+    size_t rows_before = instance->rows, dropped;
+    for (size_t k = 0; k <= rows_before; k++)
+        before[k] = heaviest(instance, k);
+    uint64_t rows[1];
+    cover_mask_fill(rows, instance->rows);
+    test_ok(run->context, cover_drop_dominated_rows(run, instance, rows, &dropped));
+    assert_int_equal(dropped, instance->rows - starg_bit_count(rows, 1));
+    keep_part(instance, rows, NULL);
+    for (size_t k = 0; k <= rows_before; k++) /* in every mode: for each number of rows */
+        assert_true(heaviest(instance, k) == before[k]);
+}
+
+static void check_columns(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    (void)rng;
+    size_t before = optimum(instance), dropped;
+    uint64_t columns[1];
+    cover_mask_fill(columns, instance->columns);
+    test_ok(run->context, cover_drop_dominated_columns(run, instance, columns, &dropped));
+    assert_int_equal(dropped, instance->columns - starg_bit_count(columns, instance->row_words));
+    keep_part(instance, NULL, columns);
+    assert_int_equal(optimum(instance), before);
+}
+
+static void check_blocks(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    (void)rng;
+    uint32_t block[COVER_ORACLE_ROWS];
+    size_t count, sum = 0, before = optimum(instance);
+    test_ok(run->context, cover_find_blocks(instance, block, &count));
+    for (uint32_t number = 0; number < count; number++) {
+        uint64_t rows[1] = {0}, columns[1] = {0};
+        cover_instance part;
+        for (size_t i = 0; i < instance->rows; i++) {
+            if (block[i] != number)
+                continue;
+            starg_bit_set(rows, i);
+            for (size_t w = 0; w < instance->row_words; w++)
+                columns[w] |= cover_row(instance, i)[w];
+        }
+        for (size_t i = 0; i < instance->rows; i++) { /* they share nothing */
+            if (block[i] != number && instance->row_words != 0)
+                assert_true((cover_row(instance, i)[0] & columns[0]) == 0);
+        }
+        test_ok(run->context, cover_instance_select(instance, rows, columns, &part));
+        sum += optimum(&part);
+        cover_instance_free(&part);
+    }
+    assert_int_equal(sum, before);
+}
+
+static void check_reduce_full(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    (void)rng;
+    size_t before = optimum(instance);
+    cover_names forced = {0};
+    bool feasible;
+    test_ok(run->context, cover_reduce_full(run, instance, &forced, &feasible));
+    assert_true(feasible);
+    assert_int_equal(forced.count + optimum(instance), before);
+    STARG_ARRAY_FREE(run->context, &forced);
+}
+
+static void random_multipliers(starg_rng *rng, const cover_instance *instance, int64_t *out) {
+    uint64_t most = (uint64_t)1 << (1 + starg_rng_below(rng, 22));
+    for (size_t j = 0; j < instance->columns; j++)
+        out[j] = (int64_t)starg_rng_below(rng, most);
+}
+
+/* Reduced-cost fixing loses no cover of at most `most` rows that would be an optimum. */
+static void check_fixing(cover_run *run, const cover_instance *instance, const cover_dual *dual,
+                         size_t least, size_t most) {
+    uint64_t keep[1], take[1] = {0};
+    cover_names forced = {0};
+    cover_instance rest;
+    cover_mask_fill(keep, instance->rows);
+    if (!cover_dual_fix(instance, dual, most, keep, take))
+        return;
+    test_ok(run->context, cover_instance_select(instance, NULL, NULL, &rest));
+    test_ok(run->context, cover_take_rows(&rest, take, keep, &forced));
+    size_t left = optimum(&rest);
+    if (least <= most)
+        assert_int_equal(forced.count + left, least);
+    else
+        assert_true(left == NONE || forced.count + left >= least);
+    cover_instance_free(&rest);
+    STARG_ARRAY_FREE(run->context, &forced);
+}
+
+static void check_dual(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    size_t least = optimum(instance);
+    int64_t multipliers[20], scratch[COVER_ORACLE_ROWS];
+    cover_dual dual;
+    cover_state best;
+    test_ok(run->context, cover_dual_create(instance, &dual));
+    test_ok(run->context, cover_state_create(instance, &best));
+    assert_true(cover_dual_rows(dual.value) <= least);
+    random_multipliers(rng, instance, multipliers);
+    assert_true(cover_dual_rows(cover_dual_value(instance, multipliers, scratch)) <= least);
+
+    test_ok(run->context, cover_greedy(run, &best, instance->total, instance->rows));
+    cover_drop_needless(&best, instance->total);
+    assert_true(best.weight == instance->total && best.count >= least);
+    test_ok(run->context, cover_lagrange(run, instance, &dual, &best));
+    assert_true(cover_dual_rows(dual.value) <= least);
+    assert_true(best.weight == instance->total && best.count >= least);
+    for (size_t most = least > 2 ? least - 2 : 0; most <= least + 1; most++)
+        check_fixing(run, instance, &dual, least, most);
+
+    bool found;
+    test_ok(run->context, cover_lp_multipliers(run, instance, multipliers, &found));
+    assert_true(found);
+    cover_dual_offer(instance, &dual, multipliers, scratch);
+    assert_true(cover_dual_rows(dual.value) <= least);
+    cover_state_free(&best);
+    cover_dual_free(instance, &dual);
+}
+
+static void check_ilp(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    size_t least = optimum(instance), most = starg_rng_below(rng, instance->rows + 1), bound;
+    cover_state best;
+    bool found;
+    test_ok(run->context, cover_state_create(instance, &best));
+    test_ok(run->context, cover_ilp_solve(run, instance, most, &best, &found, &bound));
+    assert_int_equal(found, least <= most);
+    assert_int_equal(bound, least <= most ? least : most + 1);
+    if (found) {
+        assert_int_equal(best.count, least);
+        assert_true(best.weight == instance->total);
+    }
+    cover_state_free(&best);
+}
+
+static void check_weight_bound(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    uint64_t best[COVER_ORACLE_ROWS + 1];
+    if (instance->rows == 0 || instance->columns == 0)
+        return;
+    instance_best(instance, best);
+    size_t rows = starg_rng_below(rng, instance->rows + 1);
+    uint64_t goal = 1 + starg_rng_below(rng, instance->total), most = heaviest(instance, rows);
+    size_t least = cover_oracle_fewest(best, instance->rows, goal);
+    cover_weight_bound bound;
+    test_ok(run->context, cover_weight_bound_create(instance, rows, goal, &bound));
+    assert_true(bound.most >= most && bound.least <= least);
+    test_ok(run->context, cover_weight_bound_improve(run, instance, 0, &bound));
+    assert_true(bound.most >= most && bound.least <= least);
+
+    bool exhausted;
+    cover_state found;
+    test_ok(run->context, cover_state_create(instance, &found));
+    test_ok(run->context,
+            cover_search(run, instance, &bound, 0, instance->total, &found, &exhausted));
+    assert_true(exhausted && found.weight == most && found.count <= rows);
+    cover_state_free(&found);
+    cover_weight_bound_free(instance, &bound);
+}
+
+#define STAGE(NAME, NUMBER, COUNT)                                                                 \
+    static void NAME(void **state) {                                                               \
+        (void)state;                                                                               \
+        for_instances(NUMBER, COUNT, check_##NAME);                                                \
+    }
+STAGE(essential, 1, 3000)
+STAGE(rows, 2, 1500)
+STAGE(columns, 3, 3000)
+STAGE(blocks, 4, 3000)
+STAGE(reduce_full, 5, 3000)
+STAGE(dual, 6, 1000)
+STAGE(ilp, 7, 500)
+STAGE(weight_bound, 8, 1500)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(essential),   cmocka_unit_test(rows),         cmocka_unit_test(columns),
+        cmocka_unit_test(blocks),      cmocka_unit_test(dual),         cmocka_unit_test(ilp),
+        cmocka_unit_test(reduce_full), cmocka_unit_test(weight_bound),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
