@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "mesh/solid.h"
+#include "starguard/visibility.h"
 
 #define SCENE_NONE UINT32_MAX
 
@@ -72,6 +73,10 @@ typedef struct visibility_engine {
 } visibility_engine;
 
 extern const visibility_engine visibility_grid, visibility_tree, visibility_sweep;
+
+/* Does p, strictly inside, see the one face? The rules of starg_visibility, by the tree. */
+bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
+                     const starg_visibility_options *options);
 
 /* Is every point of the face of `rank` visible from p? Its three vertices are, and p is on its
  * inner side. Exact. */

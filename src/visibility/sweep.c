@@ -116,7 +116,7 @@ static bool nearly_parallel(const double a[3], const double b[3]) {
     return !(n > 0x1p-20 * size);
 }
 
-static void measure_latitudes(const double d[3][3], const direction *const v[3], range *r) {
+static void measure_latitudes(double d[3][3], const direction *const v[3], range *r) {
     r->theta_low = fmin(v[0]->theta, fmin(v[1]->theta, v[2]->theta));
     r->theta_high = fmax(v[0]->theta, fmax(v[1]->theta, v[2]->theta));
     for (int k = 0; k < 3; k++) {

@@ -1,5 +1,6 @@
 /* Visibility by a bounding volume hierarchy: one query per vertex, O(log n) where little stands
  * between. Uses every face, whatever its side. */
+#include "geometry/predicates.h"
 #include "visibility/scene.h"
 
 typedef struct tree_query {
@@ -12,6 +13,32 @@ typedef struct tree_query {
 static bool passes(void *user, size_t rank) {
     const tree_query *query = user;
     return !scene_blocks(query->scene, rank, query->side[rank], query->p, query->slot);
+}
+
+/* For a single vertex the sides are not known beforehand; only those of its own faces matter. */
+static bool passes_alone(void *user, size_t rank) {
+    const tree_query *query = user;
+    int side = 0;
+    if (scene_has_corner(query->scene, rank, query->slot))
+        side = orient3d(scene_corner(query->scene, rank, 0), scene_corner(query->scene, rank, 1),
+                        scene_corner(query->scene, rank, 2), query->p);
+    return !scene_blocks(query->scene, rank, side, query->p, query->slot);
+}
+
+bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
+                     const starg_visibility_options *options) {
+    if (orient3d(scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                 scene_corner(scene, rank, 2), p) <= 0)
+        return false;
+    for (int k = 0; k < 3; k++) {
+        const double *q = scene_corner(scene, rank, k);
+        tree_query query = {scene, p, NULL, scene->corners[3 * rank + (size_t)k]};
+        if (options->range < 1e100 && compare_distance(p, q, options->range) > 0)
+            return false;
+        if (!bvh_query_segment(scene->solid->tree, p, q, passes_alone, &query))
+            return false;
+    }
+    return options->face_rule != STARG_FACES_WHOLE || face_is_wholly_visible(scene, p, rank);
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {

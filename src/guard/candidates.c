@@ -1,0 +1,117 @@
+#include "guard/candidates.h"
+
+#include <math.h>
+
+#include "skeleton/medial.h"
+
+static const char STAGE[] = "candidates";
+
+starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3]) {
+    starg_status status = STARG_OK;
+    for (int k = 0; k < 3; k++)
+        STARG_PUSH(context, STAGE, &points->data, p[k]);
+done:
+    return status;
+}
+
+static starg_status medial_candidates(starg_context *context, const starg_solid *solid,
+                                      size_t wanted, double clearance, candidate_points *points) {
+    starg_status status = STARG_OK;
+    medial_ball *balls = NULL;
+    double *scratch = NULL;
+    size_t count = 0;
+    STARG_TRY(medial_balls(context, solid, clearance, &balls, &count));
+    STARG_NEW(context, STAGE, scratch, count);
+    size_t chosen = medial_thin(balls, count, wanted, scratch);
+    for (size_t i = 0; i < chosen; i++)
+        STARG_TRY(candidates_push(context, points, balls[i].centre));
+done:
+    starg_release(context, balls);
+    starg_release(context, scratch);
+    return status;
+}
+
+static bool is_allowed(const starg_solid *solid, const double p[3], double clearance) {
+    return starg_solid_contains(solid, p) &&
+           (clearance <= 0 || starg_solid_distance(solid, p) >= clearance);
+}
+
+/* Points of a body-centred cubic lattice: the most even one for covering. The half step that
+ * shifts it off the box keeps points off walls that follow the axes. */
+static starg_status lattice_points(starg_context *context, const starg_solid *solid, double step,
+                                   double clearance, candidate_points *points) {
+    starg_status status = STARG_OK;
+    double lower[3], upper[3];
+    starg_mesh_bounds(solid->mesh, lower, upper);
+    size_t cells[3];
+    for (int k = 0; k < 3; k++)
+        cells[k] = (size_t)((upper[k] - lower[k]) / step) + 1;
+    points->data.count = 0;
+    for (size_t i = 0; i < 2 * cells[0]; i++) {
+        STARG_TRY(starg_check_cancel(context, STAGE));
+        for (size_t j = i % 2; j < 2 * cells[1]; j += 2)
+            for (size_t k = i % 2; k < 2 * cells[2]; k += 2) {
+                const double p[3] = {lower[0] + step * (0.5 * (double)i + 0.3),
+                                     lower[1] + step * (0.5 * (double)j + 0.3),
+                                     lower[2] + step * (0.5 * (double)k + 0.3)};
+                if (is_allowed(solid, p, clearance))
+                    STARG_TRY(candidates_push(context, points, p));
+            }
+    }
+done:
+    return status;
+}
+
+/* The step follows from the volume, two points a cubic cell; where clearance or thin walls leave
+ * fewer points than wanted it is made smaller, some times. */
+static starg_status interior_candidates(starg_context *context, const starg_solid *solid,
+                                        size_t wanted, double clearance, candidate_points *points) {
+    enum { ROUNDS = 6 };
+    double step = cbrt(2 * solid->check->volume / (double)wanted);
+    for (int round = 0; round < ROUNDS; round++) {
+        starg_status status = lattice_points(context, solid, step, clearance, points);
+        if (status != STARG_OK)
+            return status;
+        size_t found = points->data.count / 3;
+        if (10 * found >= 9 * wanted)
+            break;
+        double ratio = (double)(found > wanted / 8 ? found : wanted / 8 + 1) / (double)wanted;
+        step *= cbrt(ratio) * 0.99;
+    }
+    return STARG_OK;
+}
+
+starg_status starg_candidate_points(starg_context *context, const starg_solid *solid,
+                                    starg_candidates source, size_t wanted, double clearance,
+                                    double **points, size_t *count) {
+    starg_status status = STARG_OK;
+    candidate_points found = {0};
+    *points = NULL;
+    *count = 0;
+    if (wanted == 0 || wanted > 10000000 || !(clearance >= 0)) {
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "1 to 10000000 candidates can be asked for, with a clearance of zero "
+                            "or more; got %zu and %g",
+                            wanted, clearance);
+        goto done;
+    }
+    if (source == STARG_CANDIDATES_MEDIAL) {
+        STARG_TRY(medial_candidates(context, solid, wanted, clearance, &found));
+    } else if (source == STARG_CANDIDATES_INTERIOR) {
+        STARG_TRY(interior_candidates(context, solid, wanted, clearance, &found));
+    } else {
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "given candidates are not made: pass them in the options");
+        goto done;
+    }
+    *points = found.data.data;
+    *count = found.data.count / 3;
+    found.data.data = NULL;
+done:
+    STARG_ARRAY_FREE(context, &found.data);
+    return status;
+}
+
+void starg_points_free(starg_context *context, double *points) {
+    starg_release(context, points);
+}

@@ -1,0 +1,370 @@
+/* GUARDS.json: the result of guarding as text (docs/formats.md). One line a key, one line a guard;
+ * reals with 17 significant digits, so that reading gives back the same doubles. */
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "starguard/guard.h"
+
+static const char STAGE[] = "guards file";
+static const char FORMAT[] = "starguard-guards";
+enum { VERSION = 1, DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
+
+static const char *const METHODS[] = {"ilp", "greedy"};
+static const char *const CANDIDATES[] = {"medial", "interior", "given"};
+static const char *const TARGETS[] = {"faces", "vertices"};
+static const char *const FACE_RULES[] = {"vertices", "whole"};
+
+static json_t *real_or_null(double x) {
+    return isfinite(x) ? json_real(x) : json_null();
+}
+
+static json_t *options_json(const starg_guard_options *o) {
+    return json_pack("{s:s, s:s, s:I, s:s, s:s, s:f, s:I, s:o, s:I, s:f}", "method",
+                     METHODS[o->method], "candidates", CANDIDATES[o->candidates], "count",
+                     (json_int_t)o->candidate_count, "target", TARGETS[o->visibility.target],
+                     "faces", FACE_RULES[o->visibility.face_rule], "coverage", o->coverage,
+                     "max_guards", (json_int_t)o->max_guards, "range",
+                     real_or_null(o->visibility.range), "redundancy", (json_int_t)o->redundancy,
+                     "clearance", o->clearance);
+}
+
+static json_t *index_list(const uint32_t *items, size_t count) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count && list != NULL; i++)
+        if (json_array_append_new(list, json_integer(items[i])) != 0) {
+            json_decref(list);
+            list = NULL;
+        }
+    return list;
+}
+
+static json_t *coverage_json(const starg_guards *g) {
+    json_t *coverage =
+        json_pack("{s:f, s:f, s:I, s:o}", "faces", g->coverage_faces, "area", g->coverage_area,
+                  "coverable_faces", (json_int_t)g->coverable_faces, "uncovered_faces",
+                  index_list(g->uncovered, g->uncovered_count));
+    if (coverage == NULL)
+        return NULL;
+    int failed = 0;
+    if (g->options.visibility.target == STARG_TARGET_VERTICES) {
+        failed |= json_object_set_new(coverage, "vertices", json_real(g->coverage_vertices));
+        failed |= json_object_set_new(coverage, "coverable_vertices",
+                                      json_integer((json_int_t)g->coverable_vertices));
+        failed |= json_object_set_new(coverage, "uncovered_vertices",
+                                      index_list(g->uncovered_vertices, g->uncovered_vertex_count));
+    }
+    if (g->options.max_guards > 0)
+        failed |= json_object_set_new(coverage, "area_bound", json_real(g->area_bound));
+    if (failed == 0)
+        return coverage;
+    json_decref(coverage);
+    return NULL;
+}
+
+static json_t *guard_json(const starg_guards *g, size_t i) {
+    const double *p = g->positions + 3 * i;
+    return json_pack("{s:[f, f, f], s:I, s:i}", "position", p[0], p[1], p[2], "faces",
+                     (json_int_t)g->seen_faces[i], "level", g->levels[i]);
+}
+
+/* Writes a value that is consumed; false when it could not be made (memory is out). */
+static bool put(FILE *stream, const char *before, json_t *value, const char *after) {
+    if (value == NULL)
+        return false;
+    fputs(before, stream);
+    bool written = json_dumpf(value, stream, DUMP) == 0;
+    fputs(after, stream);
+    json_decref(value);
+    return written || ferror(stream);
+}
+
+static bool put_all(FILE *stream, const starg_guards *g, const char *model_file) {
+    json_t *model = json_pack("{s:s?, s:I, s:I}", "file", model_file, "vertices",
+                              (json_int_t)g->vertex_count, "faces", (json_int_t)g->face_count);
+    bool done = put(stream, "{\n\"format\": ", json_string(FORMAT), ",\n") &&
+                put(stream, "\"version\": ", json_integer(VERSION), ",\n") &&
+                put(stream, "\"model\": ", model, ",\n") &&
+                put(stream, "\"options\": ", options_json(&g->options), ",\n\"guards\": [\n");
+    for (size_t i = 0; i < g->count && done; i++)
+        done = put(stream, "", guard_json(g, i), i + 1 < g->count ? ",\n" : "\n");
+    return done && put(stream, "],\n\"coverage\": ", coverage_json(g), ",\n") &&
+           put(stream, "\"candidates\": ", json_integer((json_int_t)g->candidate_count), ",\n") &&
+           put(stream, "\"lower_bound\": ", json_integer((json_int_t)g->lower_bound), ",\n") &&
+           put(stream, "\"optimal\": ", json_boolean(g->optimal), ",\n") &&
+           put(stream, "\"time_limited\": ", json_boolean(g->time_limited), "\n}\n");
+}
+
+/* A path that is no UTF-8 cannot stand in JSON: its bytes outside ASCII are replaced. */
+static starg_status printable_path(starg_context *context, const char *path, char **copy) {
+    starg_status status = STARG_OK;
+    size_t length = strlen(path);
+    STARG_NEW(context, STAGE, *copy, length + 1);
+    memcpy(*copy, path, length + 1);
+    json_t *probe = json_string(path);
+    if (probe == NULL)
+        for (size_t i = 0; i < length; i++)
+            if ((unsigned char)path[i] >= 0x80)
+                (*copy)[i] = '?';
+    json_decref(probe);
+done:
+    return status;
+}
+
+starg_status starg_guards_write(starg_context *context, const starg_guards *guards,
+                                const char *model_file, const char *path) {
+    starg_status status = STARG_OK;
+    starg_output output = {0};
+    char *shown = NULL;
+    if (model_file != NULL)
+        STARG_TRY(printable_path(context, model_file, &shown));
+    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    if (!put_all(output.stream, guards, shown)) {
+        starg_output_discard(&output);
+        status = starg_fail_memory(context, STAGE);
+        goto done;
+    }
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_release(context, shown);
+    return status;
+}
+
+/* A reader in the middle of a file: the first thing that does not fit ends it. */
+typedef struct json_reader {
+    starg_context *context;
+    const char *path;
+    starg_status status;
+} json_reader;
+
+static void reject(json_reader *r, const char *what) {
+    if (r->status == STARG_OK)
+        r->status = starg_fail(r->context, STARG_ERROR_FORMAT, STAGE,
+                               "'%s' is no valid guards file: %s", r->path, what);
+}
+
+static json_t *member(json_reader *r, json_t *object, const char *key) {
+    json_t *value = json_object_get(object, key);
+    char text[128];
+    if (value != NULL)
+        return value;
+    snprintf(text, sizeof text, "key \"%s\" is missing", key);
+    reject(r, text);
+    return NULL;
+}
+
+static void reject_key(json_reader *r, const char *key, const char *expected) {
+    char text[128];
+    snprintf(text, sizeof text, "\"%s\" must be %s", key, expected);
+    reject(r, text);
+}
+
+static size_t read_count(json_reader *r, json_t *object, const char *key) {
+    json_t *value = member(r, object, key);
+    if (value == NULL)
+        return 0;
+    if (!json_is_integer(value) || json_integer_value(value) < 0) {
+        reject_key(r, key, "a whole number, zero or more");
+        return 0;
+    }
+    return (size_t)json_integer_value(value);
+}
+
+static double read_real(json_reader *r, json_t *object, const char *key) {
+    json_t *value = member(r, object, key);
+    if (value == NULL)
+        return 0;
+    if (!json_is_number(value)) {
+        reject_key(r, key, "a number");
+        return 0;
+    }
+    return json_number_value(value);
+}
+
+static bool read_bool(json_reader *r, json_t *object, const char *key) {
+    json_t *value = member(r, object, key);
+    if (value != NULL && !json_is_boolean(value))
+        reject_key(r, key, "true or false");
+    return json_is_true(value);
+}
+
+static int read_name(json_reader *r, json_t *object, const char *key, const char *const *names,
+                     int count) {
+    json_t *value = member(r, object, key);
+    for (int i = 0; i < count && value != NULL; i++)
+        if (json_is_string(value) && strcmp(json_string_value(value), names[i]) == 0)
+            return i;
+    if (value != NULL)
+        reject_key(r, key, "one of the names that docs/formats.md lists");
+    return 0;
+}
+
+static void read_options(json_reader *r, json_t *object, starg_guard_options *o) {
+    starg_guard_options_default(o);
+    if (!json_is_object(object)) {
+        reject(r, "\"options\" must be an object");
+        return;
+    }
+    o->method = (starg_guard_method)read_name(r, object, "method", METHODS, 2);
+    o->candidates = (starg_candidates)read_name(r, object, "candidates", CANDIDATES, 3);
+    o->candidate_count = read_count(r, object, "count");
+    o->visibility.target = (starg_target)read_name(r, object, "target", TARGETS, 2);
+    o->visibility.face_rule = (starg_face_rule)read_name(r, object, "faces", FACE_RULES, 2);
+    o->coverage = read_real(r, object, "coverage");
+    o->max_guards = read_count(r, object, "max_guards");
+    o->redundancy = (uint32_t)read_count(r, object, "redundancy");
+    o->clearance = read_real(r, object, "clearance");
+    if (!json_is_null(json_object_get(object, "range")))
+        o->visibility.range = read_real(r, object, "range");
+    if (!(o->visibility.range >= 0) || !(o->clearance >= 0))
+        reject(r, "\"range\" and \"clearance\" must not be negative");
+}
+
+static void read_guard(json_reader *r, json_t *object, starg_guards *g, size_t i) {
+    json_t *position = json_object_get(object, "position");
+    if (!json_is_array(position) || json_array_size(position) != 3) {
+        reject_key(r, "position", "an array of three numbers");
+        return;
+    }
+    for (size_t k = 0; k < 3; k++) {
+        json_t *x = json_array_get(position, k);
+        if (!json_is_number(x) || !(fabs(json_number_value(x)) < 1e100)) {
+            reject_key(r, "position", "an array of three numbers below 1e100");
+            return;
+        }
+        g->positions[3 * i + k] = json_number_value(x);
+    }
+    g->seen_faces[i] = read_count(r, object, "faces");
+    g->levels[i] = (int)read_count(r, object, "level");
+}
+
+static void read_guards(json_reader *r, json_t *list, starg_guards *g) {
+    starg_status status = STARG_OK;
+    if (!json_is_array(list)) {
+        reject(r, "\"guards\" must be an array");
+        return;
+    }
+    g->count = json_array_size(list);
+    STARG_NEW(r->context, STAGE, g->positions, 3 * g->count);
+    STARG_NEW(r->context, STAGE, g->seen_faces, g->count);
+    STARG_NEW(r->context, STAGE, g->levels, g->count);
+    for (size_t i = 0; i < g->count; i++)
+        read_guard(r, json_array_get(list, i), g, i);
+done:
+    if (status != STARG_OK)
+        r->status = status;
+}
+
+/* A list of ascending indices below `limit`. */
+static void read_list(json_reader *r, json_t *object, const char *key, size_t limit,
+                      uint32_t **items, size_t *count) {
+    starg_status status = STARG_OK;
+    json_t *list = member(r, object, key);
+    if (!json_is_array(list)) {
+        reject_key(r, key, "an array of indices");
+        return;
+    }
+    *count = json_array_size(list);
+    STARG_NEW(r->context, STAGE, *items, *count);
+    for (size_t i = 0; i < *count; i++) {
+        json_t *item = json_array_get(list, i);
+        json_int_t value = json_is_integer(item) ? json_integer_value(item) : -1;
+        if (value < 0 || (size_t)value >= limit || (i > 0 && value <= (*items)[i - 1])) {
+            reject_key(r, key, "an array of ascending indices of the model");
+            break;
+        }
+        (*items)[i] = (uint32_t)value;
+    }
+done:
+    if (status != STARG_OK)
+        r->status = status;
+}
+
+static void read_coverage(json_reader *r, json_t *object, starg_guards *g) {
+    if (!json_is_object(object)) {
+        reject(r, "\"coverage\" must be an object");
+        return;
+    }
+    g->coverage_faces = read_real(r, object, "faces");
+    g->coverage_area = read_real(r, object, "area");
+    g->coverable_faces = read_count(r, object, "coverable_faces");
+    read_list(r, object, "uncovered_faces", g->face_count, &g->uncovered, &g->uncovered_count);
+    g->area_bound = 1;
+    if (g->options.max_guards > 0)
+        g->area_bound = read_real(r, object, "area_bound");
+    if (g->options.visibility.target == STARG_TARGET_VERTICES) {
+        g->coverage_vertices = read_real(r, object, "vertices");
+        g->coverable_vertices = read_count(r, object, "coverable_vertices");
+        read_list(r, object, "uncovered_vertices", g->vertex_count, &g->uncovered_vertices,
+                  &g->uncovered_vertex_count);
+    }
+}
+
+static void read_model(json_reader *r, json_t *object, starg_guards *g) {
+    json_t *file = json_object_get(object, "file");
+    if (!json_is_object(object)) {
+        reject(r, "\"model\" must be an object");
+        return;
+    }
+    g->vertex_count = read_count(r, object, "vertices");
+    g->face_count = read_count(r, object, "faces");
+    if (!json_is_string(file))
+        return;
+    size_t length = strlen(json_string_value(file));
+    g->file = starg_allocate(r->context, length + 1, 1);
+    if (g->file == NULL)
+        r->status = starg_fail_memory(r->context, STAGE);
+    else
+        memcpy(g->file, json_string_value(file), length + 1);
+}
+
+static void read_document(json_reader *r, json_t *root, starg_guards *g) {
+    json_t *format = json_object_get(root, "format");
+    if (!json_is_string(format) || strcmp(json_string_value(format), FORMAT) != 0) {
+        reject(r, "its \"format\" is not \"starguard-guards\"");
+        return;
+    }
+    if (read_count(r, root, "version") != VERSION) {
+        reject(r, "its \"version\" is not 1, the only one that is known");
+        return;
+    }
+    read_model(r, json_object_get(root, "model"), g);
+    read_options(r, json_object_get(root, "options"), &g->options);
+    read_guards(r, json_object_get(root, "guards"), g);
+    read_coverage(r, json_object_get(root, "coverage"), g);
+    g->candidate_count = read_count(r, root, "candidates");
+    g->lower_bound = read_count(r, root, "lower_bound");
+    g->optimal = read_bool(r, root, "optimal");
+    g->time_limited = json_is_true(json_object_get(root, "time_limited"));
+}
+
+starg_status starg_guards_read(starg_context *context, const char *path, starg_guards **out) {
+    starg_status status = STARG_OK;
+    json_reader reader = {context, path, STARG_OK};
+    starg_guards *guards = NULL;
+    json_t *root = NULL;
+    json_error_t error;
+    char *bytes = NULL;
+    size_t size;
+    *out = NULL;
+    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
+    if (root == NULL) {
+        uint64_t line = error.line > 0 ? (uint64_t)error.line : 1;
+        status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
+                               "'%s', line %llu: %s", path, (unsigned long long)line, error.text);
+        goto done;
+    }
+    STARG_NEW_ZERO(context, STAGE, guards, 1);
+    read_document(&reader, root, guards);
+    STARG_TRY(reader.status);
+    *out = guards;
+done:
+    json_decref(root);
+    starg_release(context, bytes);
+    if (status != STARG_OK)
+        starg_guards_free(context, guards);
+    return status;
+}

@@ -1,0 +1,134 @@
+/* Centres of maximal balls [YL11, section 3; Dey and Zhao 2004]: where the vertices of the surface
+ * sample it densely, the Voronoi vertices inside the solid lie near its medial axis (or near the
+ * surface, between vertices that are almost cospherical with their neighbours).
+ *
+ * Stages: Delaunay tetrahedra of the vertices, their circumcentres, the exact inside test.
+ * Cost: that of the Delaunay tetrahedra, plus O(log n) for each.
+ *
+ * Thinning is farthest-point sampling with distances measured in radii: the next ball is the one
+ * whose centre is most radii away from the chosen ones. Large balls so stand for a wide
+ * neighbourhood, thin parts keep their samples. O(count x wanted). */
+#include "skeleton/medial.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "geometry/delaunay.h"
+#include "geometry/vec3.h"
+
+static const char STAGE[] = "medial axis";
+
+/* Solves |x - a| = |x - b| = |x - c| = |x - d| by Cramer's rule about a. */
+static bool circumscribe(const double *const v[4], medial_ball *ball) {
+    double u[3][3], square[3], normal[3][3];
+    for (int k = 0; k < 3; k++) {
+        vec3_subtract(v[k + 1], v[0], u[k]);
+        square[k] = vec3_dot(u[k], u[k]);
+    }
+    for (int k = 0; k < 3; k++)
+        vec3_cross(u[(k + 1) % 3], u[(k + 2) % 3], normal[k]);
+    double scale = 0.5 / vec3_dot(u[0], normal[0]);
+    double offset[3] = {0, 0, 0};
+    for (int k = 0; k < 3; k++)
+        vec3_along(offset, scale * square[k], normal[k], offset);
+    ball->radius = vec3_length(offset);
+    for (int k = 0; k < 3; k++)
+        ball->centre[k] = v[0][k] + offset[k];
+    return isfinite(ball->radius);
+}
+
+typedef struct ball_job {
+    const starg_solid *solid;
+    const delaunay *tetrahedra;
+    double clearance, lower[3], upper[3];
+    medial_ball *balls;
+    bool *inside;
+} ball_job;
+
+enum { BLOCK = 256 };
+
+static bool examine(const ball_job *job, size_t t) {
+    const double *v[4];
+    for (int k = 0; k < 4; k++)
+        v[k] = job->solid->mesh->vertices + 3 * (size_t)job->tetrahedra->tetrahedra[t][k];
+    medial_ball *ball = &job->balls[t];
+    if (!circumscribe(v, ball))
+        return false;
+    for (int k = 0; k < 3; k++)
+        if (!(job->lower[k] < ball->centre[k] && ball->centre[k] < job->upper[k]))
+            return false;
+    return starg_solid_contains(job->solid, ball->centre) &&
+           (job->clearance <= 0 ||
+            starg_solid_distance(job->solid, ball->centre) >= job->clearance);
+}
+
+static starg_status examine_block(starg_context *context, void *shared, void *scratch,
+                                  size_t item) {
+    const ball_job *job = shared;
+    (void)context;
+    (void)scratch;
+    for (size_t t = item * BLOCK; t < (item + 1) * BLOCK && t < job->tetrahedra->count; t++)
+        job->inside[t] = examine(job, t);
+    return STARG_OK;
+}
+
+starg_status medial_balls(starg_context *context, const starg_solid *solid, double clearance,
+                          medial_ball **balls, size_t *count) {
+    starg_status status = STARG_OK;
+    ball_job job = {.solid = solid, .clearance = clearance};
+    delaunay *tetrahedra = NULL;
+    *balls = NULL;
+    *count = 0;
+    STARG_TRY(
+        delaunay_create(context, solid->mesh->vertices, solid->mesh->vertex_count, &tetrahedra));
+    job.tetrahedra = tetrahedra;
+    starg_mesh_bounds(solid->mesh, job.lower, job.upper);
+    STARG_NEW(context, STAGE, job.balls, tetrahedra->count);
+    STARG_NEW(context, STAGE, job.inside, tetrahedra->count);
+    starg_parallel_loop loop = {.stage = STAGE,
+                                .count = (tetrahedra->count + BLOCK - 1) / BLOCK,
+                                .shared = &job,
+                                .item = examine_block};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    for (size_t t = 0; t < tetrahedra->count; t++)
+        if (job.inside[t])
+            job.balls[(*count)++] = job.balls[t];
+    *balls = job.balls;
+    job.balls = NULL;
+done:
+    delaunay_free(tetrahedra);
+    starg_release(context, job.balls);
+    starg_release(context, job.inside);
+    return status;
+}
+
+static void swap_balls(medial_ball *a, medial_ball *b) {
+    medial_ball swap = *a;
+    *a = *b;
+    *b = swap;
+}
+
+size_t medial_thin(medial_ball *balls, size_t count, size_t wanted, double *scratch) {
+    size_t chosen = 0;
+    for (size_t i = 0; i < count; i++)
+        scratch[i] = balls[i].radius; /* the first is the largest */
+    while (chosen < wanted && chosen < count) {
+        size_t best = chosen;
+        for (size_t i = chosen + 1; i < count; i++)
+            if (scratch[i] > scratch[best])
+                best = i;
+        if (!(scratch[best] > 0))
+            break; /* only copies of chosen centres are left */
+        swap_balls(&balls[chosen], &balls[best]);
+        scratch[best] = scratch[chosen];
+        const medial_ball *last = &balls[chosen++];
+        double weight = 1 / (last->radius * last->radius);
+        for (size_t i = chosen; i < count; i++) {
+            double d = vec3_distance_squared(balls[i].centre, last->centre) * weight;
+            if (chosen == 1 || d < scratch[i])
+                scratch[i] = d;
+        }
+    }
+    return chosen;
+}
