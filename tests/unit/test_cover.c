@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <threads.h>
 #include <unistd.h>
 
 #include "core/context.h"
@@ -220,7 +221,7 @@ static void limits_keep_the_bound(void **state) {
     starg_cover_options options;
     starg_cover *cover;
     starg_cover_options_default(&options);
-    for (options.max_nodes = 0; options.max_nodes <= 20; options.max_nodes += 10) {
+    for (options.max_nodes = 0; options.max_nodes <= 5; options.max_nodes += 5) {
         test_ok(context, starg_cover_solve(context, &problem, &options, &cover));
         assert_true(cover->target_reached && !cover->time_limited);
         assert_true(cover->lower_bound > 5 && cover->lower_bound < cover->count);
@@ -280,11 +281,11 @@ static bool same_cover(const starg_cover *a, const starg_cover *b) {
 static void same_on_any_threads(void **state) {
     (void)state;
     starg_context *one = test_context(1), *four = test_context(4);
-    starg_bits *bits = make_hard(one, 40, 120);
+    starg_bits *bits = make_hard(one, 30, 70);
     starg_cover_problem problem = problem_of(bits);
     for (int mode = 0; mode < 4; mode++) {
         problem.redundancy = mode == 1 ? 2 : 1;
-        problem.target = mode == 2 ? 100 : UINT64_MAX;
+        problem.target = mode == 2 ? 60 : UINT64_MAX;
         problem.max_rows = mode == 3 ? 5 : 0;
         starg_cover *a = solve(one, &problem, STARG_COVER_ILP);
         starg_cover *b = solve(four, &problem, STARG_COVER_ILP);
@@ -297,6 +298,44 @@ static void same_on_any_threads(void **state) {
     starg_bits_free(bits);
     test_context_free(one);
     test_context_free(four);
+}
+
+typedef struct parallel_solve {
+    starg_context *context;
+    const starg_cover_problem *problem;
+    starg_cover *cover;
+} parallel_solve;
+
+static int solve_in_thread(void *argument) {
+    parallel_solve *job = argument;
+    return (int)starg_cover_solve(job->context, job->problem, NULL, &job->cover);
+}
+
+/* The solver library cannot do two solves at once; the callers need not know. */
+static void two_solves_at_once(void **state) {
+    (void)state;
+    parallel_solve jobs[2];
+    thrd_t threads[2];
+    starg_context *context = test_context(1);
+    starg_bits *bits = make_hard(context, 30, 80);
+    starg_cover_problem problem = problem_of(bits);
+    starg_cover *alone = solve(context, &problem, STARG_COVER_ILP);
+    assert_true(alone->nodes > 0 && alone->optimal);
+    for (int t = 0; t < 2; t++) {
+        jobs[t] = (parallel_solve){.context = test_context(1), .problem = &problem};
+        assert_int_equal(thrd_create(&threads[t], solve_in_thread, &jobs[t]), thrd_success);
+    }
+    for (int t = 0; t < 2; t++) {
+        int status;
+        thrd_join(threads[t], &status);
+        assert_int_equal(status, STARG_OK);
+        assert_true(same_cover(jobs[t].cover, alone));
+        starg_cover_free(jobs[t].cover);
+        test_context_free(jobs[t].context);
+    }
+    starg_cover_free(alone);
+    starg_bits_free(bits);
+    test_context_free(context);
 }
 
 /* Points a file descriptor at `file`; returns a copy of what it was. */
@@ -316,7 +355,7 @@ static void restore(int descriptor, int old) {
 static void prints_nothing(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_bits *bits = make_hard(context, 40, 120);
+    starg_bits *bits = make_hard(context, 30, 80);
     starg_cover_problem problem = problem_of(bits);
     FILE *sink = tmpfile();
     assert_non_null(sink);
@@ -409,6 +448,7 @@ int main(void) {
         cmocka_unit_test(cancelled_in_every_stage),
         cmocka_unit_test(same_on_any_threads),
         cmocka_unit_test(prints_nothing),
+        cmocka_unit_test(two_solves_at_once),
         cmocka_unit_test(memory_runs_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
