@@ -11,10 +11,12 @@ typedef struct cover_answer {
     uint64_t weight;    /* what the rows cover; set by cover_solve_limited    */
 } cover_answer;
 
-/* Covers everything; proves what it can. Consumes the instance. Errors: MEMORY, CANCELLED. */
+/* Covers everything; proves what it can. Reduces the instance in place. Errors: MEMORY, CANCELLED.
+ */
 starg_status cover_solve_full(cover_run *run, cover_instance *instance, cover_answer *answer);
 
-/* Covers the weight `goal`, more than 0 and less than all. Errors: MEMORY, CANCELLED. */
+/* Covers the weight `goal`, more than 0 and less than all; greedily unless `exact`.
+ * Errors: MEMORY, CANCELLED. */
 starg_status cover_solve_partial(cover_run *run, const cover_instance *instance, uint64_t goal,
                                  bool exact, cover_answer *answer);
 
