@@ -18,8 +18,6 @@ static bool same(const double a[3], const double b[3]) {
 #define UNDERFLOW 1e-200
 
 static int exact_side(const double a[3], const double b[3], const double c[3], const double p[3]) {
-    if (same(p, a) || same(p, b) || same(p, c))
-        return 0; /* the usual reason for a zero */
     exact_sum sum;
     exact_sum_clear(&sum);
     exact_sum_add_determinant(&sum, a, b, c);
@@ -27,6 +25,15 @@ static int exact_side(const double a[3], const double b[3], const double c[3], c
     exact_sum_add_determinant(&sum, a, c, p);
     exact_sum_add_determinant(&sum, c, b, p);
     return exact_sum_sign(&sum);
+}
+
+/* The usual reasons for a zero: p is a corner, or all four are in a plane across an axis. */
+static bool plainly_flat(const double a[3], const double b[3], const double c[3],
+                         const double p[3]) {
+    for (int k = 0; k < 3; k++)
+        if (a[k] == p[k] && b[k] == p[k] && c[k] == p[k])
+            return true;
+    return same(p, a) || same(p, b) || same(p, c);
 }
 
 int verify_side(const double a[3], const double b[3], const double c[3], const double p[3]) {
@@ -46,7 +53,9 @@ int verify_side(const double a[3], const double b[3], const double c[3], const d
     double bound = ROUNDING * size + UNDERFLOW;
     if (sum > bound)
         return 1;
-    return sum < -bound ? -1 : exact_side(a, b, c, p);
+    if (sum < -bound)
+        return -1;
+    return plainly_flat(a, b, c, p) ? 0 : exact_side(a, b, c, p);
 }
 
 /* a x b + b x c + c x a in the plane of u and v */
@@ -150,9 +159,14 @@ static bool line_meets(const double p[3], const double q[3], const double *const
     return plus == 0 || minus == 0;
 }
 
-static bool box_apart(const double p[3], const double q[3], const double *const t[3]) {
+/* Do the bounds of some points and of t have nothing in common? */
+static bool bounds_apart(const double *const *points, int count, const double *const t[3]) {
     for (int k = 0; k < 3; k++) {
-        double low = fmin(p[k], q[k]), high = fmax(p[k], q[k]);
+        double low = points[0][k], high = points[0][k];
+        for (int i = 1; i < count; i++) {
+            low = points[i][k] < low ? points[i][k] : low;
+            high = points[i][k] > high ? points[i][k] : high;
+        }
         if ((t[0][k] < low && t[1][k] < low && t[2][k] < low) ||
             (t[0][k] > high && t[1][k] > high && t[2][k] > high))
             return true;
@@ -161,7 +175,8 @@ static bool box_apart(const double p[3], const double q[3], const double *const 
 }
 
 bool verify_blocks(const double p[3], const double q[3], const double *const t[3]) {
-    if (box_apart(p, q, t))
+    const double *ends[2] = {p, q};
+    if (bounds_apart(ends, 2, t))
         return false;
     int p_side = verify_side(t[0], t[1], t[2], p), q_side = verify_side(t[0], t[1], t[2], q);
     if (p_side != 0) /* then t has area; to stop in its plane at q is no contact */
@@ -182,7 +197,14 @@ bool verify_blocks(const double p[3], const double q[3], const double *const t[3
  * passes the open inside of one of the three sides through p. */
 
 bool verify_enters(const double p[3], const double *const face[3], const double *const t[3]) {
+    const double *corners[4] = {p, face[0], face[1], face[2]};
     int side[3][3], height[3];
+    if (bounds_apart(corners, 4, t))
+        return false;
+    for (int j = 0; j < 3; j++)
+        height[j] = verify_side(face[0], face[1], face[2], t[j]);
+    if (height[0] <= 0 && height[1] <= 0 && height[2] <= 0)
+        return false;
     for (int i = 0; i < 3; i++) {
         const double *from = face[i], *to = face[(i + 1) % 3];
         for (int j = 0; j < 3; j++)
@@ -190,13 +212,9 @@ bool verify_enters(const double p[3], const double *const face[3], const double 
         if (side[i][0] < 0 && side[i][1] < 0 && side[i][2] < 0)
             return false;
     }
-    for (int j = 0; j < 3; j++) {
-        height[j] = verify_side(face[0], face[1], face[2], t[j]);
+    for (int j = 0; j < 3; j++)
         if (height[j] > 0 && side[0][j] >= 0 && side[1][j] >= 0 && side[2][j] >= 0)
             return true;
-    }
-    if (height[0] <= 0 && height[1] <= 0 && height[2] <= 0)
-        return false;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             const double *u = t[j], *v = t[(j + 1) % 3];

@@ -188,7 +188,7 @@ static void check_winding_at(const scene *world, const double p[3]) {
 }
 
 static void check_winding(const scene *world) {
-    for (uint64_t round = 0; round < 250; round++) {
+    for (uint64_t round = 0; round < 100; round++) {
         starg_rng rng = starg_rng_make(13, 1, round);
         double p[3];
         lattice_point(&rng, p);
@@ -248,7 +248,7 @@ static void check_segment(const scene *world, const double p[3], const double q[
 }
 
 static void check_segments(const scene *world) {
-    for (uint64_t round = 0; round < 300; round++) {
+    for (uint64_t round = 0; round < 150; round++) {
         starg_rng rng = starg_rng_make(13, 2, round);
         double p[3], q[3];
         lattice_point(&rng, p);
@@ -278,7 +278,7 @@ static void test_query_segment_at_any_scale(void **state) {
             shape_place(&world.s, scales[i], 0);
             test_ok(context, bvh_create(context, world.s.vertices, world.s.faces,
                                         world.s.face_count, &world.tree));
-            for (uint64_t round = 0; round < 40; round++) {
+            for (uint64_t round = 0; round < 10; round++) {
                 starg_rng rng = starg_rng_make(13, 4, round);
                 double p[3], q[3];
                 lattice_point(&rng, p);

@@ -5,7 +5,7 @@
 #include "geometry/predicates.h"
 #include "support.h"
 
-enum { ROUNDS = 700, POINTS = 6 };
+enum { ROUNDS = 500, POINTS = 6 };
 
 typedef double (*points)[3];
 
