@@ -78,6 +78,9 @@ starg_status starg_sample_create(starg_context *context, const char *name,
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "%zu vertices are asked for; a sample has %d to %d of them",
                           o->vertex_count, MIN_VERTICES, MAX_VERTICES);
+    starg_status status = starg_check_cancel(context, STAGE);
+    if (status != STARG_OK)
+        return status;
     if (e->figure == RIGID)
         return e->make(context, o->vertex_count, out);
     return solid_figure(context, (figure_kind)e->figure, o->pose, o->vertex_count, out);

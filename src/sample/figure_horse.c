@@ -79,9 +79,9 @@ static const figure_turn turns[] = {
     {3, TAIL, {0, 0, -20}},
     /* 4: looks back, head and tail to one side */
     {4, CHEST, {0, -8, 0}},
-    {4, NECK, {0, -30, 0}},
-    {4, NECK2, {0, -30, 0}},
-    {4, HEAD, {0, -20, -6}},
+    {4, NECK, {0, -26, 0}},
+    {4, NECK2, {0, -24, 0}},
+    {4, HEAD, {0, -16, -4}},
     {4, TAIL, {-30, 0, -20}},
     {4, TAIL2, {-20, 0, 0}},
     {4, LEG_R, {0, 0, 12}},

@@ -103,6 +103,7 @@ static starg_status patch_triangle(mesh_builder *builder, const patch *t, uint32
 
 static starg_status add_patch(mesh_builder *builder, const patch *t) {
     starg_status status = STARG_OK;
+    STARG_TRY(starg_check_cancel(builder->context, "sample"));
     for (uint32_t i = 0; i < t->n; i++)
         for (uint32_t j = 0; i + j < t->n; j++) {
             uint32_t a, b, c, d;
@@ -176,7 +177,7 @@ starg_status solid_star(starg_context *context, size_t vertex_count, starg_mesh 
     starg_status status = STARG_OK;
     mesh_builder builder = {.context = context};
     uint32_t faces[FACES][3], n = nearest_subdivision(30, vertex_count);
-    const double core = 0.5, tip = 1.45; /* tip: in units of the face's centre at core radius 1 */
+    const double core = 0.5, tip = 1.35; /* tip: in units of the face's centre at core radius 1 */
     icosahedron_faces(faces);
     for (uint32_t f = 0; f < FACES; f++) {
         double corners[3][3], apex[3] = {0, 0, 0};

@@ -1,6 +1,6 @@
 /* Articulated figures as meshes: an isosurface of the rest pose, coarsened to the wanted number of
- * vertices, bent by skinning. All poses of one size share their connectivity, because the mesh is
- * made from the rest pose only.
+ * vertices, bent by skinning and freed of the folds that this makes. All poses of one size share
+ * their connectivity, because the mesh is made from the rest pose only.
  *
  * The isosurface starts finer than what is asked for, so that the coarsening can throw its thin
  * triangles away; its spacing is extrapolated from a first mesh, as the number of vertices grows
@@ -14,6 +14,7 @@
 #include "sample/remesh.h"
 #include "sample/skin.h"
 #include "sample/solids.h"
+#include "sample/unfold.h"
 
 static const char STAGE[] = "sample";
 
@@ -21,6 +22,8 @@ static const char STAGE[] = "sample";
 static const double FIRST_SPACING = 0.009;
 /* Vertices of the isosurface for one of the result. */
 static const double EXCESS = 2.2;
+
+enum { MAX_ATTEMPTS = 8 };
 
 static double box_diagonal(const implicit_field *field) {
     double lower[3], upper[3];
@@ -39,18 +42,39 @@ done:
     return status;
 }
 
+/* All figures are balls in topology. A web between two fingers is as thin as it likes near its
+ * edge, so that a lattice may see holes in it: then a slightly finer one is tried. */
+static starg_status extract_ball(starg_context *context, const implicit_field *field,
+                                 double spacing, starg_mesh **out) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    for (int attempt = 0; attempt < MAX_ATTEMPTS; attempt++) {
+        starg_mesh_free(mesh);
+        mesh = NULL;
+        STARG_TRY(extract(context, field, spacing, &mesh));
+        if (2 * mesh->vertex_count == mesh->face_count + 4)
+            break;
+        spacing *= 0.95;
+    }
+    *out = mesh;
+    mesh = NULL;
+done:
+    starg_mesh_free(mesh);
+    return status;
+}
+
 static starg_status rest_mesh(starg_context *context, const implicit_field *field,
                               size_t vertex_count, starg_mesh **out) {
     starg_status status = STARG_OK;
     starg_mesh *raw = NULL;
     double spacing = FIRST_SPACING * box_diagonal(field);
-    STARG_TRY(extract(context, field, spacing, &raw));
+    STARG_TRY(extract_ball(context, field, spacing, &raw));
     double wanted = EXCESS * (double)vertex_count;
     if ((double)raw->vertex_count < wanted) {
         spacing *= sqrt((double)raw->vertex_count / wanted);
         starg_mesh_free(raw);
         raw = NULL;
-        STARG_TRY(extract(context, field, spacing, &raw));
+        STARG_TRY(extract_ball(context, field, spacing, &raw));
     }
     STARG_TRY(remesh_isosurface(context, field, raw, vertex_count, out));
 done:
@@ -58,19 +82,38 @@ done:
     return status;
 }
 
+/* A copy of `rest`, bent into a pose. */
+static starg_status bend(starg_context *context, const figure *f, int pose, const starg_mesh *rest,
+                         starg_mesh **out) {
+    starg_status status = STARG_OK;
+    starg_mesh *posed = NULL;
+    STARG_TRY(starg_mesh_create(context, rest->vertices, rest->vertex_count, rest->faces,
+                                rest->face_count, &posed));
+    STARG_TRY(skin_pose(context, f, pose, posed->vertices, posed->vertex_count));
+    STARG_TRY(unfold_mesh(context, rest, posed));
+    *out = posed;
+    posed = NULL;
+done:
+    starg_mesh_free(posed);
+    return status;
+}
+
 starg_status solid_figure(starg_context *context, figure_kind kind, int pose, size_t vertex_count,
                           starg_mesh **out) {
     starg_status status = STARG_OK;
     figure *f = NULL;
-    starg_mesh *mesh = NULL;
+    starg_mesh *rest = NULL;
     STARG_NEW(context, STAGE, f, 1);
     figure_build(kind, f);
-    STARG_TRY(rest_mesh(context, &f->field, vertex_count, &mesh));
-    STARG_TRY(skin_pose(context, f, pose, mesh->vertices, mesh->vertex_count));
-    *out = mesh;
-    mesh = NULL;
+    STARG_TRY(rest_mesh(context, &f->field, vertex_count, &rest));
+    if (pose == 0) {
+        *out = rest;
+        rest = NULL;
+    } else {
+        STARG_TRY(bend(context, f, pose, rest, out));
+    }
 done:
-    starg_mesh_free(mesh);
+    starg_mesh_free(rest);
     starg_release(context, f);
     return status;
 }

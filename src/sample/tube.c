@@ -73,6 +73,7 @@ static starg_status make_ring(mesh_builder *builder, curve *c, double t, double 
 
 static starg_status make_strip(mesh_builder *builder, size_t ring, size_t rings, size_t around) {
     starg_status status = STARG_OK;
+    STARG_TRY(starg_check_cancel(builder->context, "sample"));
     uint32_t from = (uint32_t)(ring * around), to = (uint32_t)((ring + 1) % rings * around);
     for (uint32_t j = 0; j < around; j++) {
         uint32_t k = (j + 1) % (uint32_t)around;
