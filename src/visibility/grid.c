@@ -83,6 +83,7 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     if (g->rows && g->cell_start && g->cube && g->x && g->y && g->z && g->v && g->in_use &&
         g->used && g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hidden &&
         g->chunks) {
+        g->test_faces = grid_choose_form(GRID_WIDEST);
         *scratch = g;
         return STARG_OK;
     }
@@ -245,18 +246,30 @@ static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_s
     }
 }
 
-/* The widest form that the processor has. All give the same bits: what floating point does not
- * decide beyond its error bound is decided exactly. */
-static grid_test_faces *choose_form(void) {
+static bool supports(grid_form form) {
 #if defined(__x86_64__)
-    bool bits = __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-    bool fused = __builtin_cpu_supports("fma");
-    if (bits && fused && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl"))
-        return grid_test_faces_avx512;
-    if (bits && fused && __builtin_cpu_supports("avx2"))
-        return grid_test_faces_avx2;
+    bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+    bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
+    return form == GRID_PLAIN || (avx2 && (form == GRID_AVX2 || avx512));
+#else
+    return form == GRID_PLAIN;
 #endif
-    return grid_test_faces_plain;
+}
+
+/* All forms give the same bits: what floating point does not decide beyond its error bound is
+ * decided exactly. */
+grid_test_faces *grid_choose_form(grid_form wanted) {
+    static grid_test_faces *const forms[] = {
+        grid_test_faces_plain,
+#if defined(__x86_64__)
+        grid_test_faces_avx2,
+        grid_test_faces_avx512,
+#endif
+    };
+    if (wanted == GRID_WIDEST)
+        wanted = supports(GRID_AVX512) ? GRID_AVX512 : supports(GRID_AVX2) ? GRID_AVX2 : GRID_PLAIN;
+    return supports(wanted) ? forms[wanted] : NULL;
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
@@ -265,7 +278,7 @@ static void find(const visibility_scene *scene, void *scratch, const double p[3]
     make_relative(scene, p, g);
     keep_faces(scene, side, g);
     sort_into_cells(scene, g);
-    choose_form()(scene, p, side, g);
+    g->test_faces(scene, p, side, g);
     for (size_t i = 0; i < scene->vertex_count; i++)
         visible[i] = g->in_use[i] && !starg_bit_test(g->hidden, g->place[i]);
 }

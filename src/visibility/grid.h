@@ -29,7 +29,14 @@ typedef struct chunk_distance {
     uint32_t chunk;
 } chunk_distance;
 
+struct grid_scratch;
+
+/* Hides the vertices that the kept faces hide, taking them in their order. */
+typedef void grid_test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
+                             struct grid_scratch *g);
+
 typedef struct grid_scratch {
+    grid_test_faces *test_faces;
     uint32_t row_count;
     uint32_t row_of_bin[CUBE_FACES][BINS];
     grid_row *rows; /* row_limit at most */
@@ -69,13 +76,15 @@ static inline uint32_t cell_of(const grid_row *row, float u) {
     return row->first_cell + part_of(u - row->u_low, row->scale, row->cell_count);
 }
 
-/* Hides the vertices that the kept faces hide, taking them in their order. */
-typedef void grid_test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
-                             grid_scratch *g);
-
+/* The same stage for several instruction sets. */
 grid_test_faces grid_test_faces_plain;
 #if defined(__x86_64__)
 grid_test_faces grid_test_faces_avx2, grid_test_faces_avx512;
 #endif
+
+typedef enum grid_form { GRID_PLAIN, GRID_AVX2, GRID_AVX512, GRID_WIDEST } grid_form;
+
+/* NULL where the processor does not have what the form needs. */
+grid_test_faces *grid_choose_form(grid_form wanted);
 
 #endif
