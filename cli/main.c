@@ -1,3 +1,158 @@
-int main(void) {
-    return 0;
+/* Finds the command, reads its options, runs it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "help.h"
+#include "report.h"
+#include "starguard/version.h"
+#include "suggest.h"
+
+/* Ends a run that only had to print. */
+static int finish_text(void) {
+    if (fflush(stdout) == 0 && ferror(stdout) == 0)
+        return CLI_EXIT_DONE;
+    fputs("starguard: cannot write standard output\n", stderr);
+    return CLI_EXIT_UNFINISHED;
+}
+
+static int print_version(void) {
+    printf("starguard %s\n", starg_version());
+    return finish_text();
+}
+
+static int reject(const char *kind, const char *word, const char *best) {
+    fprintf(stderr, "starguard: unknown %s '%.100s'", kind, word);
+    if (best != NULL)
+        fprintf(stderr, "; did you mean '%s'?", best);
+    fputs("\nTry 'starguard --help'.\n", stderr);
+    return CLI_EXIT_USAGE;
+}
+
+static int reject_command(const char *word) {
+    cli_suggestion near;
+    cli_suggest_begin(&near, word);
+    for (size_t i = 0; cli_commands[i] != NULL; i++)
+        cli_suggest_try(&near, cli_commands[i]->name);
+    cli_suggest_try(&near, "help");
+    return reject("command", word, near.best);
+}
+
+/* Options in front of a command: only those that need none. */
+static int reject_option(const char *word) {
+    cli_suggestion near;
+    cli_suggest_begin(&near, word);
+    cli_suggest_try(&near, "--help");
+    cli_suggest_try(&near, "--version");
+    for (size_t i = 0; i < cli_common_option_count; i++) {
+        if (strncmp(word, "--", 2) == 0 && strcmp(word + 2, cli_common_options[i].name) == 0) {
+            fprintf(stderr, "starguard: options follow the command: starguard COMMAND %s\n", word);
+            return CLI_EXIT_USAGE;
+        }
+    }
+    return reject("option", word, near.best);
+}
+
+static int print_help(int argc, char **argv) {
+    const cli_command *command = argc > 0 ? cli_command_find(argv[0]) : NULL;
+    if (argc > 1) {
+        fputs("starguard help: takes one command\n", stderr);
+        return CLI_EXIT_USAGE;
+    }
+    if (argc == 1 && command == NULL && strcmp(argv[0], "help") != 0 &&
+        strcmp(argv[0], "--help") != 0)
+        return reject_command(argv[0]);
+    if (command != NULL)
+        cli_help_command(stdout, command);
+    else
+        cli_help_program(stdout);
+    return finish_text();
+}
+
+static starg_status check_operands(cli_session *session) {
+    const cli_command *command = session->command;
+    if (session->operand_count < command->least_operands)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "too few arguments; usage: starguard %s %s",
+                        command->name, command->usage);
+    if (session->operand_count > command->most_operands)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "one argument too many: '%.100s'",
+                        session->operands[command->most_operands]);
+    return STARG_OK;
+}
+
+/* A command line that cannot be parsed may still ask for errors as JSON. */
+static bool wants_json(int argc, char **argv) {
+    for (int i = 0; i < argc; i++)
+        if (strcmp(argv[i], "--json") == 0)
+            return true;
+    return false;
+}
+
+static starg_status parse(cli_session *session, cli_group *own, int argc, char **argv) {
+    cli_group groups[] = {*own, {cli_common_options, cli_common_option_count, &session->common}};
+    cli_complaint complaint;
+    bool json = wants_json(argc, argv);
+    int operands = cli_options_parse(groups, 2, argc, argv, &complaint);
+    if (operands < 0) {
+        if (json)
+            cli_report_begin(session);
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "%s", complaint.text);
+    }
+    session->operands = argv;
+    session->operand_count = (size_t)operands;
+    return STARG_OK;
+}
+
+/* --help and --version, which need neither operands nor a run. */
+static int print_about(const cli_session *session) {
+    if (session->common.help)
+        cli_help_command(stdout, session->command);
+    else
+        printf("starguard %s\n", starg_version());
+    return finish_text();
+}
+
+static int run(const cli_command *command, int argc, char **argv) {
+    starg_status status = STARG_OK;
+    int result = CLI_EXIT_DONE;
+    cli_session session;
+    cli_session_init(&session, command);
+    cli_group own = {command->options, command->option_count, calloc(1, command->values_size)};
+    if (own.values == NULL) {
+        status = cli_fail_memory(&session);
+        goto done;
+    }
+    if (command->defaults != NULL)
+        command->defaults(own.values);
+    CLI_TRY(parse(&session, &own, argc, argv));
+    if (session.common.help || session.common.version) {
+        result = print_about(&session);
+        goto free_values;
+    }
+    CLI_TRY(cli_session_start(&session));
+    CLI_TRY(check_operands(&session));
+    CLI_TRY(command->run(&session, own.values));
+done:
+    result = cli_session_finish(&session, status);
+free_values:
+    if (own.values != NULL)
+        cli_options_free(&own);
+    free(own.values);
+    return result;
+}
+
+int main(int argc, char **argv) {
+    if (argc < 2) {
+        cli_help_short(stderr);
+        return CLI_EXIT_USAGE;
+    }
+    const char *word = argv[1];
+    if (strcmp(word, "help") == 0 || strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0)
+        return print_help(argc - 2, argv + 2);
+    if (strcmp(word, "--version") == 0)
+        return print_version();
+    const cli_command *command = cli_command_find(word);
+    if (command == NULL)
+        return word[0] == '-' ? reject_option(word) : reject_command(word);
+    return run(command, argc - 2, argv + 2);
 }

@@ -1,0 +1,349 @@
+/* starguard guard: places guards, the main job. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/guard.h"
+#include "starguard/picture.h"
+#include "suggest.h"
+#include "view.h"
+
+static const char *const method_words[] = {"ilp", "greedy", NULL};
+static const char *const candidate_words[] = {"medial", "interior"};
+
+static const uint8_t UNCOVERED[3] = {139, 0, 0};
+
+typedef struct values {
+    const char *output, *marks, *picture;
+    const char *candidates;
+    int method;
+    uint64_t count, max_guards, redundancy, max_nodes;
+    double coverage, clearance;
+    cli_view view;
+} values;
+
+static const cli_option options[] = {
+    {.name = "output",
+     .letter = 'o',
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, output),
+     .value = "GUARDS.json",
+     .help = "Where to write the guards (docs/formats.md); '-' writes to standard output."},
+    {.name = "method",
+     .kind = CLI_CHOICE,
+     .offset = offsetof(values, method),
+     .value = "ilp|greedy",
+     .choices = method_words,
+     .help = "ilp (default) finds the fewest guards and proves it, or gives its best and a bound; "
+             "greedy is fast, with a weaker bound."},
+    {.name = "candidates",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, candidates),
+     .value = "medial|interior|FILE",
+     .help = "Where guards may stand: on the medial axis (default), on a lattice inside, or at the "
+             "points of a file: three numbers a line, or another GUARDS.json."},
+    {.name = "count",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, count),
+     .value = "N",
+     .least = 1,
+     .most = 10000000,
+     .help = "About how many candidates to make; more are added for faces that none of them sees. "
+             "Default 1,000."},
+    CLI_VIEW_OPTIONS(values, "visibility"),
+    {.name = "coverage",
+     .kind = CLI_REAL,
+     .offset = offsetof(values, coverage),
+     .value = "F",
+     .high = 1,
+     .above = true,
+     .help = "Fraction of the coverable area that must be seen (of the vertices with --target "
+             "vertices), above 0 and at most 1. Default 1."},
+    {.name = "max-guards",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, max_guards),
+     .value = "K",
+     .most = UINT32_MAX,
+     .help = "No more than K guards, which see as much area as possible. Default 0: as many as it "
+             "takes."},
+    {.name = "redundancy",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, redundancy),
+     .value = "K",
+     .least = 1,
+     .most = 1000,
+     .help = "Every face is to be seen by K guards, as far as there are so many candidates that "
+             "see it. Default 1."},
+    {.name = "clearance",
+     .kind = CLI_REAL,
+     .offset = offsetof(values, clearance),
+     .value = "D",
+     .high = 1e100,
+     .help = "Guards stand at least D from the walls, in units of the model. Default 0."},
+    {.name = "max-nodes",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, max_nodes),
+     .value = "N",
+     .most = UINT32_MAX,
+     .help = "ilp: branch-and-bound nodes for each independent part before the best so far is "
+             "taken. Default 100,000."},
+    {.name = "picture",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, picture),
+     .value = "FILE.png",
+     .help = "Draw the model half transparent with its guards; uncovered faces are dark red."},
+    {.name = "marks",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, marks),
+     .value = "FILE.ply",
+     .help = "Write the model with each face in the colour of the first guard that sees it; "
+             "uncovered faces are dark red."},
+};
+
+static void set_defaults(void *data) {
+    values *v = data;
+    starg_guard_options library;
+    starg_guard_options_default(&library);
+    v->candidates = "medial";
+    v->method = (int)library.method;
+    v->count = library.candidate_count;
+    v->max_guards = library.max_guards;
+    v->redundancy = library.redundancy;
+    v->max_nodes = library.max_nodes;
+    v->coverage = library.coverage;
+    v->clearance = library.clearance;
+    cli_view_default(&v->view);
+}
+
+/* ---- what was asked for ---- */
+
+/* A known source, or a file with points, which is read here. A word that is neither is more likely
+ * a slip than a file. */
+static starg_status take_candidates(cli_session *session, const char *word,
+                                    starg_guard_options *wanted, double **points) {
+    cli_suggestion near;
+    cli_suggest_begin(&near, word);
+    for (int i = 0; i < 2; i++) {
+        if (strcmp(word, candidate_words[i]) == 0) {
+            wanted->candidates = (starg_candidates)i;
+            return STARG_OK;
+        }
+        cli_suggest_try(&near, candidate_words[i]);
+    }
+    if (near.best != NULL && access(word, F_OK) != 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--candidates takes medial, interior or a file of points, and there is no "
+                        "file '%.100s'; did you mean '%s'?",
+                        word, near.best);
+    if (strcmp(word, "-") == 0 && strcmp(session->operands[0], "-") == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "the model and the candidates cannot both come from standard input");
+    wanted->candidates = STARG_CANDIDATES_GIVEN;
+    starg_status status = starg_points_read(session->context, word, points, &wanted->point_count);
+    wanted->points = *points;
+    return status;
+}
+
+static starg_guard_options make_options(const values *v) {
+    starg_guard_options wanted;
+    starg_guard_options_default(&wanted);
+    wanted.method = (starg_guard_method)v->method;
+    wanted.candidate_count = v->count;
+    wanted.visibility = cli_view_options(&v->view);
+    wanted.coverage = v->coverage;
+    wanted.max_guards = v->max_guards;
+    wanted.redundancy = (uint32_t)v->redundancy;
+    wanted.clearance = v->clearance;
+    wanted.max_nodes = v->max_nodes;
+    return wanted;
+}
+
+/* ---- what was found ---- */
+
+static void say_bound(cli_session *session, const starg_guards *g) {
+    size_t gap = g->count - g->lower_bound;
+    cli_say(session, "lower bound   %zu", g->lower_bound);
+    if (g->optimal)
+        cli_say(session, " (optimal: no fewer of the candidates do)\n");
+    else
+        cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
+}
+
+static void say_guards(cli_session *session, const starg_guards *g) {
+    cli_say(session, "guards        %zu\n", g->count);
+    say_bound(session, g);
+    cli_say(session, "coverage      %.4g %% of the faces, %.4g %% of the area\n",
+            100 * g->coverage_faces, 100 * g->coverage_area);
+    if (g->options.visibility.target == STARG_TARGET_VERTICES)
+        cli_say(session, "              %.4g %% of the vertices\n", 100 * g->coverage_vertices);
+    if (g->options.max_guards > 0)
+        cli_say(session, "area bound    %.4g %% with %zu guards\n", 100 * g->area_bound,
+                g->options.max_guards);
+    cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
+    size_t hidden = g->face_count - g->coverable_faces;
+    if (hidden > 0)
+        cli_say(session, " (%s that no candidate sees)",
+                cli_count_of(hidden, "face", "faces").text);
+    cli_say(session, "\ncandidates    %zu\n", g->candidate_count);
+    if (g->time_limited)
+        cli_say(session, "time limit    reached; this is the best that was found\n");
+}
+
+static json_t *coverage_json(cli_session *session, const starg_guards *g) {
+    json_t *coverage = json_object();
+    cli_put(session, coverage, "faces", cli_json_real(g->coverage_faces));
+    cli_put(session, coverage, "area", cli_json_real(g->coverage_area));
+    cli_put(session, coverage, "coverable_faces", json_integer((json_int_t)g->coverable_faces));
+    cli_put(session, coverage, "uncovered_faces",
+            cli_json_indices(session, g->uncovered, g->uncovered_count));
+    if (g->options.max_guards > 0)
+        cli_put(session, coverage, "area_bound", cli_json_real(g->area_bound));
+    if (g->options.visibility.target != STARG_TARGET_VERTICES)
+        return coverage;
+    cli_put(session, coverage, "vertices", cli_json_real(g->coverage_vertices));
+    cli_put(session, coverage, "coverable_vertices",
+            json_integer((json_int_t)g->coverable_vertices));
+    cli_put(session, coverage, "uncovered_vertices",
+            cli_json_indices(session, g->uncovered_vertices, g->uncovered_vertex_count));
+    return coverage;
+}
+
+static void report_guards(cli_session *session, const starg_guards *g, const char *output) {
+    json_t *report = session->report, *list = json_array();
+    for (size_t i = 0; i < g->count; i++) {
+        json_t *guard = json_object();
+        cli_put(session, guard, "position", cli_json_point(g->positions + 3 * i));
+        cli_put(session, guard, "faces", json_integer((json_int_t)g->seen_faces[i]));
+        cli_put(session, guard, "level", json_integer(g->levels[i]));
+        cli_append(session, list, guard);
+    }
+    cli_put(session, report, "output", cli_json_text(output));
+    cli_put(session, report, "guards", list);
+    cli_put(session, report, "coverage", coverage_json(session, g));
+    cli_put(session, report, "candidates", json_integer((json_int_t)g->candidate_count));
+    cli_put(session, report, "lower_bound", json_integer((json_int_t)g->lower_bound));
+    cli_put(session, report, "optimal", json_boolean(g->optimal));
+    cli_put(session, report, "time_limited", json_boolean(g->time_limited));
+}
+
+/* ---- files ---- */
+
+static void paint_uncovered(uint8_t *colors, const starg_guards *g) {
+    for (size_t i = 0; i < g->uncovered_count; i++)
+        memcpy(colors + 3 * (size_t)g->uncovered[i], UNCOVERED, sizeof UNCOVERED);
+}
+
+static starg_status write_marks(cli_session *session, const starg_solid *solid,
+                                const starg_guards *g, const char *name) {
+    starg_status status = STARG_OK;
+    starg_bits *seen = NULL;
+    starg_visibility_options view = g->options.visibility;
+    view.target = STARG_TARGET_FACES;
+    uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
+    if (colors == NULL)
+        return cli_fail_memory(session);
+    CLI_TRY(starg_visibility(session->context, solid, g->positions, g->count, &view, &seen));
+    cli_colors_by_viewer(colors, seen);
+    paint_uncovered(colors, g);
+    CLI_TRY(cli_mesh_write(session, starg_solid_mesh(solid), STARG_MESH_PLY_BINARY, colors, name));
+done:
+    starg_bits_free(seen);
+    free(colors);
+    return status;
+}
+
+static starg_status write_picture(cli_session *session, const starg_solid *solid,
+                                  const starg_guards *g, const char *name) {
+    starg_picture_options picture;
+    starg_picture_options_default(&picture);
+    uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
+    if (colors == NULL)
+        return cli_fail_memory(session);
+    paint_uncovered(colors, g);
+    picture.face_colors = colors;
+    picture.points = g->positions;
+    picture.point_count = g->count;
+    starg_status status = starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
+                                              cli_outputs_place(&session->outputs, name));
+    free(colors);
+    return status;
+}
+
+/* Standard output comes last: what has gone there cannot be taken back. */
+static starg_status write_files(cli_session *session, const values *v, const starg_solid *solid,
+                                const starg_guards *g) {
+    starg_status status = STARG_OK;
+    if (v->marks != NULL)
+        CLI_TRY(write_marks(session, solid, g, v->marks));
+    if (v->picture != NULL)
+        CLI_TRY(write_picture(session, solid, g, v->picture));
+    CLI_TRY(starg_guards_write(session->context, g, session->operands[0],
+                               cli_outputs_place(&session->outputs, v->output)));
+done:
+    return status;
+}
+
+static starg_status announce_files(cli_session *session, const values *v) {
+    starg_status status = STARG_OK;
+    if (v->output == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o GUARDS.json");
+    CLI_TRY(cli_announce(session, v->output));
+    CLI_TRY(cli_announce_with_ending(session, "--marks", v->marks, ".ply"));
+    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+done:
+    return status;
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    starg_guard_options wanted = make_options(v);
+    starg_solid *solid = NULL;
+    starg_guards *guards = NULL;
+    double *points = NULL;
+    CLI_TRY(announce_files(session, v));
+    CLI_TRY(take_candidates(session, v->candidates, &wanted, &points));
+    CLI_TRY(cli_solid_read(session, &solid));
+    CLI_TRY(starg_guard(session->context, solid, &wanted, &guards));
+    CLI_TRY(write_files(session, v, solid, guards));
+    say_guards(session, guards);
+    if (session->report != NULL) {
+        cli_report_head(session, "starguard-guard", session->operands[0], starg_solid_mesh(solid));
+        report_guards(session, guards, v->output);
+    }
+done:
+    starg_guards_free(session->context, guards);
+    starg_points_free(session->context, points);
+    starg_solid_free(solid);
+    return status;
+}
+
+const cli_command cli_command_guard = {
+    .name = "guard",
+    .usage = "MODEL -o GUARDS.json [options]",
+    .summary = "place the fewest guards that together see the whole boundary",
+    .description =
+        "Makes candidate points inside the solid, computes exactly which faces each sees, and "
+        "chooses the fewest that together see every face that can be seen. The result holds the "
+        "guards, what they cover, and a proven lower bound: no choice of fewer candidates covers "
+        "as much. Faces that nothing sees are listed, and are no error.\n"
+        "With --time-limit the best that was found is written, with its bound.",
+    .examples = "# the fewest guards for a model, and the proof\n"
+                "starguard guard model.off -o guards.json\n"
+                "starguard verify model.off guards.json\n"
+                "# 99 % of the area is enough; guards 0.1 from the walls; a picture\n"
+                "starguard guard room.obj -o guards.json --coverage 0.99 --clearance 0.1 \\\n"
+                "    --picture guards.png\n"
+                "# the best places for five cameras that see 20 units far\n"
+                "starguard guard hall.stl -o cameras.json --max-guards 5 --range 20",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .least_operands = 1,
+    .most_operands = 1,
+    .values_size = sizeof(values),
+    .defaults = set_defaults,
+    .run = run,
+};

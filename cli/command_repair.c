@@ -1,0 +1,135 @@
+/* starguard repair: makes a solid of a mesh that is nearly one. */
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/repair.h"
+
+typedef struct values {
+    const char *output;
+    double merge_distance;
+    uint64_t max_hole_edges, rounds;
+} values;
+
+static const cli_option options[] = {
+    {.name = "output",
+     .letter = 'o',
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, output),
+     .value = "FILE",
+     .help = "Where to write the mended mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
+             "output."},
+    {.name = "merge-distance",
+     .kind = CLI_REAL,
+     .offset = offsetof(values, merge_distance),
+     .value = "D",
+     .high = 1,
+     .help = "Vertices this close become one; a fraction of the model's diagonal. Default 0: only "
+             "equal positions."},
+    {.name = "max-hole-edges",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, max_hole_edges),
+     .value = "N",
+     .most = UINT32_MAX,
+     .help = "Leave holes of more edges open. Default 0: fill all."},
+    {.name = "rounds",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, rounds),
+     .value = "N",
+     .most = 10000,
+     .help = "Attempts to resolve self-intersections. Default 10."},
+};
+
+static void set_defaults(void *data) {
+    values *v = data;
+    starg_repair_options library;
+    starg_repair_options_default(&library);
+    v->merge_distance = library.merge_distance;
+    v->max_hole_edges = library.max_hole_edges;
+    v->rounds = library.max_rounds;
+}
+
+/* What was done, for people and for programs. */
+static void tell(cli_session *session, const starg_repair_report *r) {
+    const struct {
+        const char *key, *text;
+        size_t count;
+    } lines[] = {
+        {"vertices_merged", "vertices merged", r->vertices_merged},
+        {"vertices_dropped", "vertices dropped", r->vertices_dropped},
+        {"vertices_split", "vertices split", r->vertices_split},
+        {"vertices_moved", "vertices moved", r->vertices_moved},
+        {"vertices_added", "vertices added", r->vertices_added},
+        {"faces_dropped", "faces dropped", r->faces_dropped},
+        {"faces_turned", "faces turned", r->faces_turned},
+        {"faces_added", "faces added", r->faces_added},
+        {"holes_filled", "holes filled", r->holes_filled},
+        {"components_dropped", "components dropped", r->components_dropped},
+        {"intersections_before", "intersections before", r->intersections_before},
+        {"intersections_after", "intersections after", r->intersections_after},
+    };
+    json_t *report = json_object();
+    for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+        cli_put(session, report, lines[i].key, json_integer((json_int_t)lines[i].count));
+        cli_say(session, "%-22s %zu\n", lines[i].text, lines[i].count);
+    }
+    cli_put(session, report, "largest_move", cli_json_real(r->largest_move));
+    cli_say(session, "%-22s %.6g\n", "largest move", r->largest_move);
+    if (session->report != NULL)
+        cli_put(session, session->report, "repair", report);
+    else
+        json_decref(report);
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    starg_mesh_format format;
+    starg_mesh *mesh = NULL, *mended = NULL;
+    starg_repair_report report;
+    const starg_repair_options wanted = {.merge_distance = v->merge_distance,
+                                         .max_hole_edges = v->max_hole_edges,
+                                         .max_rounds = v->rounds};
+    if (v->output == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o FILE");
+    CLI_TRY(cli_mesh_format(session, v->output, &format));
+    CLI_TRY(cli_announce(session, v->output));
+    CLI_TRY(cli_model_read(session, &mesh));
+    CLI_TRY(starg_mesh_repair(session->context, mesh, &wanted, &mended, &report));
+    CLI_TRY(cli_mesh_write(session, mended, format, NULL, v->output));
+    cli_report_head(session, "starguard-repair", session->operands[0], mesh);
+    cli_say(session, "%zu vertices, %zu faces in; %zu vertices, %zu faces out\n",
+            starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh),
+            starg_mesh_vertex_count(mended), starg_mesh_face_count(mended));
+    tell(session, &report);
+    if (session->report != NULL)
+        cli_put(session, session->report, "result",
+                json_pack("{s:o, s:I, s:I}", "file", cli_json_text(v->output), "vertices",
+                          (json_int_t)starg_mesh_vertex_count(mended), "faces",
+                          (json_int_t)starg_mesh_face_count(mended)));
+done:
+    starg_mesh_free(mended);
+    starg_mesh_free(mesh);
+    return status;
+}
+
+const cli_command cli_command_repair = {
+    .name = "repair",
+    .usage = "MODEL -o FILE [options]",
+    .summary = "make a usable solid of a model that is nearly one",
+    .description =
+        "Merges and drops vertices, drops degenerate and duplicate faces, turns faces, fills holes "
+        "and resolves local self-intersections, and says what was done and how far vertices moved. "
+        "Exit status 2 if no usable solid comes of it; then nothing is written.",
+    .examples = "# mend and look at what remains\n"
+                "starguard repair scan.stl -o solid.off\n"
+                "starguard check solid.off\n"
+                "# close gaps of up to a thousandth of the diagonal, leave big holes open\n"
+                "starguard repair scan.ply -o solid.ply --merge-distance 0.001 --max-hole-edges 50",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .least_operands = 1,
+    .most_operands = 1,
+    .values_size = sizeof(values),
+    .defaults = set_defaults,
+    .run = run,
+};

@@ -1,0 +1,175 @@
+/* starguard visible: what do points inside a solid see? */
+#include <stdlib.h>
+
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/picture.h"
+#include "view.h"
+
+typedef struct values {
+    cli_points from;
+    cli_view view;
+    const char *output;
+} values;
+
+static const cli_option options[] = {
+    {.name = "from",
+     .kind = CLI_POINTS,
+     .offset = offsetof(values, from),
+     .value = "X,Y,Z",
+     .help = "A point to look from, in coordinates of the model. May be given many times."},
+    {.name = "output",
+     .letter = 'o',
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, output),
+     .value = "FILE.ply",
+     .help = "Write the model with each face in the colour of the first point that sees it; faces "
+             "that none sees are grey. With --target vertices a face counts whose vertices one "
+             "point sees."},
+    CLI_VIEW_OPTIONS(values, "engine"),
+};
+
+static void set_defaults(void *data) {
+    values *v = data;
+    cli_view_default(&v->view);
+}
+
+/* Everything about one call. */
+typedef struct look {
+    const values *wanted;
+    const starg_solid *solid;
+    const starg_bits *seen;
+    const double *fractions; /* of the area; by face */
+    json_t *points;
+} look;
+
+static double area_seen(const look *l, size_t row) {
+    double sum = 0;
+    for (size_t face = 0; face < starg_bits_columns(l->seen); face++)
+        if (starg_bits_test(l->seen, row, face))
+            sum += l->fractions[face];
+    return sum;
+}
+
+static void tell_point(cli_session *session, const look *l, size_t row) {
+    const double *p = l->wanted->from.values + 3 * row;
+    bool faces = l->wanted->view.target == STARG_TARGET_FACES;
+    bool inside = starg_solid_contains(l->solid, p);
+    size_t count = starg_bits_count(l->seen, row), all = starg_bits_columns(l->seen);
+    double area = faces ? area_seen(l, row) : 0;
+    cli_say(session, "%.17g,%.17g,%.17g  ", p[0], p[1], p[2]);
+    if (!inside)
+        cli_say(session, "not inside the solid: sees nothing\n");
+    else if (faces)
+        cli_say(session, "sees %zu of %zu faces, %.2f %% of the area\n", count, all, 100 * area);
+    else
+        cli_say(session, "sees %zu of %zu vertices\n", count, all);
+    if (session->report == NULL)
+        return;
+    json_t *point = json_object();
+    cli_put(session, point, "position", cli_json_point(p));
+    cli_put(session, point, "inside", json_boolean(inside));
+    cli_put(session, point, "count", json_integer((json_int_t)count));
+    if (faces)
+        cli_put(session, point, "area", cli_json_real(area));
+    cli_put(session, point, cli_target_words[l->wanted->view.target],
+            cli_json_row(session, l->seen, row));
+    cli_append(session, l->points, point);
+}
+
+static starg_status tell(cli_session *session, look *l) {
+    const cli_view *view = &l->wanted->view;
+    l->points = json_array();
+    cli_report_head(session, "starguard-visible", session->operands[0], starg_solid_mesh(l->solid));
+    for (size_t row = 0; row < starg_bits_rows(l->seen); row++)
+        tell_point(session, l, row);
+    if (session->report == NULL) {
+        json_decref(l->points);
+        return STARG_OK;
+    }
+    cli_put(session, session->report, "options",
+            json_pack("{s:s, s:s, s:s, s:o}", "engine", cli_engine_words[view->engine], "target",
+                      cli_target_words[view->target], "faces", cli_face_rule_words[view->face_rule],
+                      "range", cli_json_real(view->range)));
+    cli_put(session, session->report, "points", l->points);
+    return STARG_OK;
+}
+
+/* Paints the faces whose vertices a point sees, the first point last. */
+static void paint_by_vertices(uint8_t *colors, const starg_mesh *mesh, const starg_bits *seen) {
+    const uint32_t *faces = starg_mesh_faces(mesh);
+    for (size_t row = starg_bits_rows(seen); row-- > 0;)
+        for (size_t f = 0; f < starg_mesh_face_count(mesh); f++)
+            if (starg_bits_test(seen, row, faces[3 * f]) &&
+                starg_bits_test(seen, row, faces[3 * f + 1]) &&
+                starg_bits_test(seen, row, faces[3 * f + 2]))
+                starg_distinct_color(row, colors + 3 * f);
+}
+
+static starg_status write_seen(cli_session *session, const look *l) {
+    const starg_mesh *mesh = starg_solid_mesh(l->solid);
+    uint8_t *colors = cli_colors_create(mesh);
+    if (colors == NULL)
+        return cli_fail_memory(session);
+    if (l->wanted->view.target == STARG_TARGET_FACES)
+        cli_colors_by_viewer(colors, l->seen);
+    else
+        paint_by_vertices(colors, mesh, l->seen);
+    starg_status status =
+        cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, l->wanted->output);
+    free(colors);
+    return status;
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    starg_bits *seen = NULL;
+    double *fractions = NULL;
+    const starg_visibility_options view = cli_view_options(&v->view);
+    if (v->from.count == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name a point to look from: --from X,Y,Z");
+    CLI_TRY(cli_announce_with_ending(session, "-o", v->output, ".ply"));
+    CLI_TRY(cli_solid_read(session, &solid));
+    CLI_TRY(starg_visibility(session->context, solid, v->from.values, v->from.count, &view, &seen));
+    fractions = cli_area_fractions(starg_solid_mesh(solid));
+    if (fractions == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    look l = {.wanted = v, .solid = solid, .seen = seen, .fractions = fractions};
+    CLI_TRY(tell(session, &l));
+    if (v->output != NULL)
+        CLI_TRY(write_seen(session, &l));
+done:
+    free(fractions);
+    starg_bits_free(seen);
+    starg_solid_free(solid);
+    return status;
+}
+
+const cli_command cli_command_visible = {
+    .name = "visible",
+    .usage = "MODEL --from X,Y,Z [--from ...] [-o FILE.ply] [options]",
+    .summary = "which faces do points inside a solid see",
+    .description =
+        "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is seen "
+        "when the segment from the point to it meets the boundary nowhere else; a face, when its "
+        "three vertices are and the point lies on its inner side. A point that is not inside sees "
+        "nothing. --json lists the faces, counted from 0 in the order of the file.",
+    .examples = "# how much of the room does one see from here\n"
+                "starguard visible room.off --from 1,1.7,2\n"
+                "# two points, and a picture for a mesh viewer\n"
+                "starguard visible room.off --from 1,1.7,2 --from 6,1.7,2 -o seen.ply\n"
+                "# indices of the faces that are seen wholly, within 5 units\n"
+                "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .least_operands = 1,
+    .most_operands = 1,
+    .values_size = sizeof(values),
+    .defaults = set_defaults,
+    .run = run,
+};

@@ -1,0 +1,37 @@
+/* The commands as a table: all that main, the help and the suggestions know about them. */
+#ifndef STARGUARD_CLI_COMMANDS_H
+#define STARGUARD_CLI_COMMANDS_H
+
+#include <stddef.h>
+
+#include "options.h"
+#include "session.h"
+
+struct cli_command {
+    const char *name;
+    const char *usage;       /* what follows the name: "MODEL -o FILE [options]" */
+    const char *summary;     /* one line, no full stop                           */
+    const char *description; /* paragraphs, parted by newlines                   */
+    const char *examples;    /* lines: "# what it does", then the command        */
+    const cli_option *options;
+    size_t option_count;
+    size_t least_operands, most_operands;
+    size_t values_size;             /* of the struct that the options fill */
+    void (*defaults)(void *values); /* the struct comes zeroed; may be NULL */
+    starg_status (*run)(cli_session *session, void *values);
+};
+
+extern const cli_command cli_command_sample;
+extern const cli_command cli_command_check;
+extern const cli_command cli_command_repair;
+extern const cli_command cli_command_visible;
+extern const cli_command cli_command_guard;
+extern const cli_command cli_command_verify;
+
+/* All commands in the order of the help; ends with NULL. */
+extern const cli_command *const cli_commands[];
+
+/* NULL if there is none of that name. */
+const cli_command *cli_command_find(const char *name);
+
+#endif

@@ -1,0 +1,117 @@
+#include "help.h"
+
+#include <string.h>
+
+#include "terminal.h"
+
+enum { WIDTH = 79, OPTION_INDENT = 24 };
+
+static void heading(FILE *stream, const char *text) {
+    fprintf(stream, "\n%s%s%s\n", cli_style_on(stream, CLI_BOLD), text, cli_style_off(stream));
+}
+
+/* Writes paragraphs (parted by newlines) with every line indented; the first line begins at
+ * `column`. Bytes are columns: the texts are ASCII. */
+static void wrap(FILE *stream, const char *text, int indent, int column) {
+    while (*text != '\0') {
+        if (*text == '\n') {
+            fputc('\n', stream);
+            column = 0;
+            text++;
+            continue;
+        }
+        int size = (int)strcspn(text, " \n");
+        if (column > indent && column + 1 + size > WIDTH) {
+            fputc('\n', stream);
+            column = 0;
+        }
+        column += column < indent   ? fprintf(stream, "%*s", indent - column, "")
+                  : column > indent ? fprintf(stream, " ")
+                                    : 0;
+        column += fprintf(stream, "%.*s", size, text);
+        text += size;
+        text += *text == ' ';
+    }
+    fputc('\n', stream);
+}
+
+static void print_options(FILE *stream, const cli_option *options, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const cli_option *o = &options[i];
+        const char letter[] = {'-', o->letter, ',', ' ', '\0'};
+        int column = fprintf(stream, "  %s--%s%s%s", o->letter != 0 ? letter : "", o->name,
+                             o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+        if (column > OPTION_INDENT - 2) {
+            fputc('\n', stream);
+            column = 0;
+        }
+        wrap(stream, o->help, OPTION_INDENT, column);
+    }
+}
+
+static void print_commands(FILE *stream) {
+    for (size_t i = 0; cli_commands[i] != NULL; i++)
+        fprintf(stream, "  %-10s %s\n", cli_commands[i]->name, cli_commands[i]->summary);
+}
+
+void cli_help_short(FILE *stream) {
+    fprintf(stream, "Usage: starguard COMMAND ... [options]\n\nCommands:\n");
+    print_commands(stream);
+    fprintf(stream, "\n'starguard help' tells more, 'starguard help COMMAND' all about one.\n");
+}
+
+void cli_help_program(FILE *stream) {
+    fprintf(stream, "Usage: starguard COMMAND ... [options]\n\n");
+    wrap(stream,
+         "Places the fewest guards inside a solid that together see its whole boundary (the art "
+         "gallery problem in 3D), with exact visibility and a proven bound on how few could do.",
+         0, 0);
+    heading(stream, "Commands");
+    print_commands(stream);
+    fprintf(stream, "  %-10s %s\n", "help", "all about a command: starguard help COMMAND");
+    heading(stream, "Options of every command");
+    print_options(stream, cli_common_options, cli_common_option_count);
+    heading(stream, "Models and files");
+    wrap(stream,
+         "A MODEL is a triangle mesh: OFF, OBJ, PLY or STL, known by its content. '-' reads "
+         "standard input, or writes standard output. Coordinates have whatever unit the model "
+         "has; lengths in options are in the same unit. An output file appears whole or not at "
+         "all, and only when the command has done its work.",
+         2, 0);
+    heading(stream, "First steps");
+    fputs("  # a horse of 5,000 vertices, its guards, a picture of them, and the proof\n"
+          "  starguard sample horse -o horse.off\n"
+          "  starguard guard horse.off -o guards.json --picture guards.png\n"
+          "  starguard verify horse.off guards.json\n",
+          stream);
+    heading(stream, "Exit status");
+    fputs("  0    done\n"
+          "  1    the command line is wrong\n"
+          "  2    an input is missing, unreadable or not usable\n"
+          "  3    could not finish: output unwritable, disk full, out of memory,\n"
+          "       or time over with nothing found\n"
+          "  4    verification failed\n"
+          "  130  cancelled\n",
+          stream);
+}
+
+/* Lines that begin with '#' say what the next one does. */
+static void print_examples(FILE *stream, const char *examples) {
+    while (*examples != '\0') {
+        int size = (int)strcspn(examples, "\n");
+        fprintf(stream, "  %.*s\n", size, examples);
+        examples += size;
+        examples += *examples == '\n';
+    }
+}
+
+void cli_help_command(FILE *stream, const cli_command *command) {
+    fprintf(stream, "Usage: starguard %s %s\n\n", command->name, command->usage);
+    wrap(stream, command->description, 0, 0);
+    heading(stream, "Options");
+    print_options(stream, command->options, command->option_count);
+    heading(stream, "Options of every command");
+    print_options(stream, cli_common_options, cli_common_option_count);
+    heading(stream, "Examples");
+    print_examples(stream, command->examples);
+}

@@ -1,0 +1,138 @@
+#include "model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "report.h"
+#include "starguard/picture.h"
+
+static const uint8_t NEUTRAL[3] = {190, 195, 200};
+
+starg_status cli_model_read(cli_session *session, starg_mesh **out) {
+    return starg_mesh_read(session->context, session->operands[0], out);
+}
+
+starg_status cli_solid_read(cli_session *session, starg_solid **out) {
+    starg_mesh *mesh = NULL;
+    *out = NULL;
+    starg_status status = cli_model_read(session, &mesh);
+    if (status == STARG_OK)
+        status = starg_solid_create(session->context, mesh, out);
+    starg_mesh_free(mesh);
+    return status;
+}
+
+static bool has_ending(const char *name, const char *ending) {
+    size_t size = strlen(name), tail = strlen(ending);
+    return size > tail && strcasecmp(name + size - tail, ending) == 0;
+}
+
+starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format) {
+    static const struct {
+        const char *ending;
+        starg_mesh_format format;
+    } known[] = {{".off", STARG_MESH_OFF},
+                 {".obj", STARG_MESH_OBJ},
+                 {".ply", STARG_MESH_PLY_BINARY},
+                 {".stl", STARG_MESH_STL_BINARY}};
+    *format = STARG_MESH_OFF;
+    if (strcmp(name, "-") == 0)
+        return STARG_OK;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        if (has_ending(name, known[i].ending)) {
+            *format = known[i].format;
+            return STARG_OK;
+        }
+    }
+    return cli_fail(session, STARG_ERROR_ARGUMENT,
+                    "the ending of '%.200s' names no mesh format; use .off, .obj, .ply or .stl",
+                    name);
+}
+
+starg_status cli_announce_with_ending(cli_session *session, const char *option, const char *name,
+                                      const char *ending) {
+    if (name != NULL && strcmp(name, "-") != 0 && !has_ending(name, ending))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "%s writes a file that ends in %s, not '%.200s'", option, ending, name);
+    return cli_announce(session, name);
+}
+
+starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
+                            const uint8_t *colors, const char *name) {
+    starg_mesh_write_options options;
+    starg_mesh_write_options_default(&options);
+    options.format = format;
+    options.face_colors = colors;
+    return starg_mesh_write(session->context, mesh, cli_outputs_place(&session->outputs, name),
+                            &options);
+}
+
+uint8_t *cli_colors_create(const starg_mesh *mesh) {
+    size_t count = starg_mesh_face_count(mesh);
+    uint8_t *colors = malloc(3 * count + 1);
+    for (size_t i = 0; colors != NULL && i < count; i++)
+        memcpy(colors + 3 * i, NEUTRAL, sizeof NEUTRAL);
+    return colors;
+}
+
+void cli_colors_by_viewer(uint8_t *colors, const starg_bits *seen) {
+    for (size_t row = starg_bits_rows(seen); row-- > 0;) {
+        uint8_t rgb[3];
+        starg_distinct_color(row, rgb);
+        for (size_t face = 0; face < starg_bits_columns(seen); face++)
+            if (starg_bits_test(seen, row, face))
+                memcpy(colors + 3 * face, rgb, sizeof rgb);
+    }
+}
+
+/* Twice the area, with lengths measured in `unit` so that no square overflows or vanishes. */
+static double doubled_area(const double *vertices, const uint32_t *corners, double unit) {
+    double u[3], v[3];
+    for (int k = 0; k < 3; k++) {
+        double base = vertices[3 * corners[0] + k] / unit;
+        u[k] = vertices[3 * corners[1] + k] / unit - base;
+        v[k] = vertices[3 * corners[2] + k] / unit - base;
+    }
+    double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
+           z = u[0] * v[1] - u[1] * v[0];
+    return sqrt(x * x + y * y + z * z);
+}
+
+double *cli_area_fractions(const starg_mesh *mesh) {
+    size_t count = starg_mesh_face_count(mesh);
+    double *areas = malloc((count + 1) * sizeof *areas);
+    double lower[3], upper[3], unit = 0, sum = 0;
+    starg_mesh_bounds(mesh, lower, upper);
+    for (int k = 0; k < 3; k++)
+        unit = fmax(unit, upper[k] - lower[k]);
+    for (size_t i = 0; areas != NULL && i < count; i++) {
+        areas[i] = doubled_area(starg_mesh_vertices(mesh), starg_mesh_faces(mesh) + 3 * i, unit);
+        sum += areas[i];
+    }
+    for (size_t i = 0; areas != NULL && i < count; i++)
+        areas[i] /= sum;
+    return areas;
+}
+
+json_t *cli_json_row(cli_session *session, const starg_bits *bits, size_t row) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < starg_bits_columns(bits); i++)
+        if (starg_bits_test(bits, row, i))
+            cli_append(session, list, json_integer((json_int_t)i));
+    return list;
+}
+
+json_t *cli_json_indices(cli_session *session, const uint32_t *indices, size_t count) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++)
+        cli_append(session, list, json_integer((json_int_t)indices[i]));
+    return list;
+}
+
+cli_amount cli_count_of(size_t count, const char *singular, const char *plural) {
+    cli_amount amount;
+    snprintf(amount.text, sizeof amount.text, "%zu %s", count, count == 1 ? singular : plural);
+    return amount;
+}

@@ -1,0 +1,48 @@
+/* Models and coloured models, as several commands read and write them. */
+#ifndef STARGUARD_CLI_MODEL_H
+#define STARGUARD_CLI_MODEL_H
+
+#include "session.h"
+#include "starguard/bits.h"
+#include "starguard/mesh.h"
+#include "starguard/solid.h"
+
+/* Reads the model that the first operand names. */
+starg_status cli_model_read(cli_session *session, starg_mesh **out);
+
+/* Reads it as a solid. */
+starg_status cli_solid_read(cli_session *session, starg_solid **out);
+
+/* The format for an output mesh by its name's ending; OFF for "-". Errors: ARGUMENT. */
+starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);
+
+/* Announces an output that must have the ending, for example ".ply"; NULL is fine. */
+starg_status cli_announce_with_ending(cli_session *session, const char *option, const char *name,
+                                      const char *ending);
+
+/* Writes a mesh with face colours (or NULL) to an announced output. */
+starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
+                            const uint8_t *colors, const char *name);
+
+/* Colours for the faces of a mesh, all of them neutral to begin with; NULL when memory is out. */
+uint8_t *cli_colors_create(const starg_mesh *mesh);
+
+/* Each face in the colour of the first row of `seen` that has it; others as they are. */
+void cli_colors_by_viewer(uint8_t *colors, const starg_bits *seen);
+
+/* Areas of all faces as fractions of their sum; NULL when memory is out. */
+double *cli_area_fractions(const starg_mesh *mesh);
+
+/* An array of the columns that a row holds. */
+json_t *cli_json_row(cli_session *session, const starg_bits *bits, size_t row);
+
+/* An array of `count` indices. */
+json_t *cli_json_indices(cli_session *session, const uint32_t *indices, size_t count);
+
+/* "1 face" or "7 faces". */
+typedef struct cli_amount {
+    char text[64];
+} cli_amount;
+cli_amount cli_count_of(size_t count, const char *singular, const char *plural);
+
+#endif

@@ -1,0 +1,44 @@
+#include "numbers.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cli_number_count(const char *word, uint64_t *value) {
+    uint64_t sum = 0;
+    if (*word == '\0')
+        return false;
+    for (; *word != '\0'; word++) {
+        if (*word < '0' || *word > '9')
+            return false;
+        uint64_t digit = (uint64_t)(*word - '0');
+        if (sum > (UINT64_MAX - digit) / 10)
+            return false;
+        sum = 10 * sum + digit;
+    }
+    *value = sum;
+    return true;
+}
+
+/* The program never leaves the "C" locale, so strtod reads a point. */
+static bool read_real(const char *word, size_t size, double *value) {
+    if (size == 0 || strspn(word, "+-.0123456789eE") < size)
+        return false;
+    char *end;
+    *value = strtod(word, &end);
+    return end == word + size && isfinite(*value);
+}
+
+bool cli_number_real(const char *word, double *value) {
+    return read_real(word, strlen(word), value);
+}
+
+bool cli_number_point(const char *word, double point[3]) {
+    for (int i = 0; i < 3; i++) {
+        size_t size = strcspn(word, ",");
+        if (!read_real(word, size, &point[i]) || (word[size] == ',') != (i < 2))
+            return false;
+        word += size + 1;
+    }
+    return true;
+}

@@ -1,0 +1,17 @@
+/* Strict numbers: the whole word or nothing. */
+#ifndef STARGUARD_CLI_NUMBERS_H
+#define STARGUARD_CLI_NUMBERS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Decimal digits only; false for anything else and for what does not fit. */
+bool cli_number_count(const char *word, uint64_t *value);
+
+/* A finite decimal number; no spaces, hexadecimal, "inf" or "nan". */
+bool cli_number_real(const char *word, double *value);
+
+/* Three reals with commas between them. */
+bool cli_number_point(const char *word, double point[3]);
+
+#endif

@@ -1,0 +1,223 @@
+#include "options.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "numbers.h"
+#include "suggest.h"
+
+/* Where parsing stands. */
+typedef struct parser {
+    const cli_group *groups;
+    size_t group_count;
+    int argc, next;
+    char **argv;
+    cli_complaint *complaint;
+} parser;
+
+/* An option as the user wrote it. */
+typedef struct match {
+    const cli_option *option;
+    const cli_group *group;
+    char shown[64]; /* "--name" or "-n" */
+} match;
+
+__attribute__((format(printf, 2, 3))) static bool complain(parser *p, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(p->complaint->text, sizeof p->complaint->text, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+/* ---- values ---- */
+
+static bool set_count(parser *p, const match *m, const char *word, uint64_t *value) {
+    const cli_option *o = m->option;
+    if (cli_number_count(word, value) && *value >= o->least && *value <= o->most)
+        return true;
+    if (o->most == UINT64_MAX)
+        return complain(p, "%s takes a whole number of at least %llu, not '%.100s'", m->shown,
+                        (unsigned long long)o->least, word);
+    return complain(p, "%s takes a whole number from %llu to %llu, not '%.100s'", m->shown,
+                    (unsigned long long)o->least, (unsigned long long)o->most, word);
+}
+
+static bool set_real(parser *p, const match *m, const char *word, double *value) {
+    const cli_option *o = m->option;
+    if (cli_number_real(word, value) && *value <= o->high &&
+        (o->above ? *value > o->low : *value >= o->low))
+        return true;
+    return complain(p, "%s takes a number %s %g and at most %g, not '%.100s'", m->shown,
+                    o->above ? "above" : "of at least", o->low, o->high, word);
+}
+
+static bool set_choice(parser *p, const match *m, const char *word, int *value) {
+    char list[256] = "";
+    size_t used = 0;
+    cli_suggestion near;
+    cli_suggest_begin(&near, word);
+    for (int i = 0; m->option->choices[i] != NULL; i++) {
+        const char *choice = m->option->choices[i];
+        if (strcmp(word, choice) == 0) {
+            *value = i;
+            return true;
+        }
+        cli_suggest_try(&near, choice);
+        const char *comma = i == 0 ? "" : m->option->choices[i + 1] == NULL ? " or " : ", ";
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", comma, choice);
+        if (used >= sizeof list)
+            used = sizeof list - 1;
+    }
+    if (near.best != NULL)
+        return complain(p, "%s takes %s, not '%.100s'; did you mean '%s'?", m->shown, list, word,
+                        near.best);
+    return complain(p, "%s takes %s, not '%.100s'", m->shown, list, word);
+}
+
+static bool add_point(parser *p, const match *m, const char *word, cli_points *points) {
+    double point[3];
+    if (!cli_number_point(word, point))
+        return complain(p, "%s takes a point as X,Y,Z (three numbers, no spaces), not '%.100s'",
+                        m->shown, word);
+    double *grown = realloc(points->values, (points->count + 1) * sizeof point);
+    if (grown == NULL)
+        return complain(p, "%s: out of memory", m->shown);
+    memcpy(grown + 3 * points->count, point, sizeof point);
+    points->values = grown;
+    points->count++;
+    return true;
+}
+
+static bool set_value(parser *p, const match *m, const char *word) {
+    void *variable = (char *)m->group->values + m->option->offset;
+    switch (m->option->kind) {
+    case CLI_FLAG:
+        *(bool *)variable = true;
+        return true;
+    case CLI_TEXT:
+        *(const char **)variable = word;
+        return *word != '\0' || complain(p, "%s takes a name, not an empty word", m->shown);
+    case CLI_COUNT:
+        return set_count(p, m, word, variable);
+    case CLI_REAL:
+        return set_real(p, m, word, variable);
+    case CLI_CHOICE:
+        return set_choice(p, m, word, variable);
+    case CLI_POINTS:
+        return add_point(p, m, word, variable);
+    }
+    return false;
+}
+
+/* ---- names ---- */
+
+static bool find_long(parser *p, const char *name, size_t size, match *m) {
+    char word[64] = "";
+    cli_suggestion near;
+    if (size < sizeof word)
+        memcpy(word, name, size);
+    cli_suggest_begin(&near, word);
+    for (size_t g = 0; g < p->group_count; g++) {
+        for (size_t i = 0; i < p->groups[g].count; i++) {
+            const cli_option *o = &p->groups[g].options[i];
+            if (strcmp(word, o->name) == 0) {
+                *m = (match){.option = o, .group = &p->groups[g]};
+                snprintf(m->shown, sizeof m->shown, "--%s", o->name);
+                return true;
+            }
+            cli_suggest_try(&near, o->name);
+        }
+    }
+    if (near.best != NULL)
+        return complain(p, "unknown option '--%s'; did you mean '--%s'?", word, near.best);
+    return complain(p, "unknown option '--%.*s'", (int)(size < 100 ? size : 100), name);
+}
+
+static bool find_short(parser *p, char letter, match *m) {
+    for (size_t g = 0; g < p->group_count; g++) {
+        for (size_t i = 0; i < p->groups[g].count; i++) {
+            const cli_option *o = &p->groups[g].options[i];
+            if (o->letter != letter)
+                continue;
+            *m = (match){.option = o, .group = &p->groups[g]};
+            snprintf(m->shown, sizeof m->shown, "-%c", letter);
+            return true;
+        }
+    }
+    return complain(p, "unknown option '-%c'", letter);
+}
+
+/* The next word as a value. One that looks like an option is more likely a value forgotten;
+ * "--name=--value" says that it is meant. */
+static bool next_value(parser *p, const match *m, const char **word) {
+    if (p->next == p->argc || strncmp(p->argv[p->next], "--", 2) == 0)
+        return complain(p, "%s needs a value: %s %s", m->shown, m->shown, m->option->value);
+    *word = p->argv[p->next++];
+    return true;
+}
+
+static bool parse_long(parser *p, const char *text) {
+    match m;
+    const char *equals = strchr(text, '='), *word = NULL;
+    size_t size = equals != NULL ? (size_t)(equals - text) : strlen(text);
+    if (!find_long(p, text, size, &m))
+        return false;
+    if (m.option->kind == CLI_FLAG && equals != NULL)
+        return complain(p, "%s takes no value", m.shown);
+    if (m.option->kind != CLI_FLAG) {
+        word = equals != NULL ? equals + 1 : NULL;
+        if (word == NULL && !next_value(p, &m, &word))
+            return false;
+    }
+    return set_value(p, &m, word);
+}
+
+/* "-o FILE" or "-oFILE"; letters do not bundle. */
+static bool parse_short(parser *p, const char *text) {
+    match m;
+    const char *word = NULL;
+    if (!find_short(p, *text, &m))
+        return false;
+    if (m.option->kind == CLI_FLAG && text[1] != '\0')
+        return complain(p, "unknown option '-%.100s'", text);
+    if (m.option->kind != CLI_FLAG) {
+        word = text + 1;
+        if (*word == '\0' && !next_value(p, &m, &word))
+            return false;
+    }
+    return set_value(p, &m, word);
+}
+
+int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
+                      cli_complaint *complaint) {
+    parser p = {.groups = groups,
+                .group_count = group_count,
+                .argc = argc,
+                .argv = argv,
+                .complaint = complaint};
+    int operands = 0;
+    bool options_end = false;
+    while (p.next < argc) {
+        char *word = argv[p.next++];
+        if (options_end || word[0] != '-' || word[1] == '\0')
+            argv[operands++] = word;
+        else if (strcmp(word, "--") == 0)
+            options_end = true;
+        else if (word[1] == '-' ? !parse_long(&p, word + 2) : !parse_short(&p, word + 1))
+            return -1;
+    }
+    return operands;
+}
+
+void cli_options_free(const cli_group *group) {
+    for (size_t i = 0; i < group->count; i++) {
+        if (group->options[i].kind != CLI_POINTS)
+            continue;
+        cli_points *points = (cli_points *)((char *)group->values + group->options[i].offset);
+        free(points->values);
+        *points = (cli_points){0};
+    }
+}

@@ -1,0 +1,164 @@
+#include "outputs.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { SUFFIX = 64 };
+
+static bool fail(cli_outputs *outputs, const char *name, const char *reason) {
+    snprintf(outputs->message, sizeof outputs->message, "cannot write '%.300s': %s", name, reason);
+    return false;
+}
+
+/* Length of the folder part of a path, with the last slash. */
+static size_t folder_size(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* A short name of our own: one that is made longer could be longer than the system allows. */
+static char *staged_name(const char *folder, size_t size, size_t index) {
+    char *name = malloc(size + SUFFIX);
+    if (name != NULL) {
+        memcpy(name, folder, size);
+        snprintf(name + size, SUFFIX, ".starguard-%ld-%zu", (long)getpid(), index);
+    }
+    return name;
+}
+
+static bool is_writable(const char *path, size_t size) {
+    char *folder = strndup(path, size);
+    bool writable = folder != NULL && access(size > 0 ? folder : ".", W_OK | X_OK) == 0;
+    int error = errno;
+    free(folder);
+    errno = error;
+    return writable;
+}
+
+/* Follows links and finds out what stands there now. */
+static bool inspect(cli_outputs *outputs, cli_output *output) {
+    struct stat info;
+    bool exists = stat(output->name, &info) == 0;
+    if (!exists && errno != ENOENT)
+        return fail(outputs, output->name, strerror(errno));
+    if (exists && S_ISDIR(info.st_mode))
+        return fail(outputs, output->name, "it is a directory; name a file in it");
+    if (exists && access(output->name, W_OK) != 0)
+        return fail(outputs, output->name, strerror(errno));
+    output->device = exists && !S_ISREG(info.st_mode);
+    output->target = exists && !output->device ? realpath(output->name, NULL) : NULL;
+    if (output->target == NULL)
+        output->target = strdup(output->name);
+    if (output->target == NULL)
+        return fail(outputs, output->name, "out of memory");
+    return true;
+}
+
+static bool is_taken(const cli_outputs *outputs, const cli_output *output) {
+    for (size_t i = 0; i < outputs->count; i++)
+        if (!output->device && strcmp(outputs->items[i].target, output->target) == 0)
+            return true;
+    return false;
+}
+
+bool cli_outputs_add(cli_outputs *outputs, const char *name) {
+    static const char temporary[] = "/tmp/"; /* a device has no folder of its own */
+    if (strcmp(name, "-") == 0)
+        return true;
+    if (outputs->count == CLI_OUTPUTS)
+        return fail(outputs, name, "there are too many output files");
+    cli_output *output = &outputs->items[outputs->count];
+    *output = (cli_output){.name = name};
+    if (!inspect(outputs, output)) {
+        free(output->target);
+        return false;
+    }
+    bool taken = is_taken(outputs, output);
+    const char *base = output->device ? temporary : output->target;
+    size_t size = folder_size(base);
+    output->staged = staged_name(base, size, outputs->count);
+    outputs->count++;
+    if (taken)
+        return fail(outputs, name, "two outputs have this name");
+    if (output->staged == NULL)
+        return fail(outputs, name, "out of memory");
+    if (name[folder_size(name)] == '\0')
+        return fail(outputs, name, "it is a directory; name a file in it");
+    if (!is_writable(base, size))
+        return fail(outputs, name, strerror(errno));
+    return true;
+}
+
+const char *cli_outputs_place(const cli_outputs *outputs, const char *name) {
+    for (size_t i = 0; i < outputs->count; i++)
+        if (strcmp(outputs->items[i].name, name) == 0)
+            return outputs->items[i].staged;
+    return name;
+}
+
+void cli_outputs_translate(const cli_outputs *outputs, char *message, size_t size) {
+    for (size_t i = 0; i < outputs->count; i++) {
+        const cli_output *output = &outputs->items[i];
+        char *found = output->staged != NULL ? strstr(message, output->staged) : NULL;
+        char *text = found != NULL ? strdup(message) : NULL;
+        if (text == NULL)
+            continue;
+        size_t head = (size_t)(found - message);
+        snprintf(message, size, "%.*s%s%s", (int)head, text, output->name,
+                 text + head + strlen(output->staged));
+        free(text);
+    }
+}
+
+/* Copies the staged file into a device or a pipe. */
+static bool copy_to_device(const cli_output *output) {
+    char block[1 << 16];
+    FILE *from = fopen(output->staged, "rb");
+    if (from == NULL)
+        return false;
+    int to = open(output->target, O_WRONLY | O_NOCTTY);
+    bool copied = to >= 0;
+    size_t size;
+    while (copied && (size = fread(block, 1, sizeof block, from)) > 0) {
+        for (size_t done = 0; copied && done < size;) {
+            ssize_t written = write(to, block + done, size - done);
+            copied = written >= 0;
+            done += copied ? (size_t)written : 0;
+        }
+    }
+    int error = errno;
+    copied = copied && ferror(from) == 0;
+    if (to >= 0 && close(to) != 0 && copied) {
+        error = errno;
+        copied = false;
+    }
+    fclose(from);
+    errno = error;
+    return copied;
+}
+
+bool cli_outputs_commit(cli_outputs *outputs) {
+    for (size_t i = 0; i < outputs->count; i++) {
+        cli_output *output = &outputs->items[i];
+        bool moved =
+            output->device ? copy_to_device(output) : rename(output->staged, output->target) == 0;
+        if (!moved)
+            return fail(outputs, output->name, strerror(errno));
+    }
+    return true;
+}
+
+void cli_outputs_discard(cli_outputs *outputs) {
+    for (size_t i = 0; i < outputs->count; i++) {
+        if (outputs->items[i].staged != NULL)
+            unlink(outputs->items[i].staged);
+        free(outputs->items[i].staged);
+        free(outputs->items[i].target);
+    }
+    outputs->count = 0;
+}

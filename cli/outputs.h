@@ -1,0 +1,39 @@
+/* Output files of a run. Each is written beside its place under another name first; all take
+ * their places together at the very end, so that a run that fails leaves everything as it was. */
+#ifndef STARGUARD_CLI_OUTPUTS_H
+#define STARGUARD_CLI_OUTPUTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { CLI_OUTPUTS = 4, CLI_OUTPUT_MESSAGE = 512 };
+
+typedef struct cli_output {
+    const char *name; /* as the user gave it                                       */
+    char *target;     /* the same with symbolic links followed                     */
+    char *staged;     /* where it is written first                                 */
+    bool device;      /* the target is a device or a pipe: copied, not renamed     */
+} cli_output;
+
+typedef struct cli_outputs {
+    cli_output items[CLI_OUTPUTS];
+    size_t count;
+    char message[CLI_OUTPUT_MESSAGE]; /* why the last call failed */
+} cli_outputs;
+
+/* Announces an output before the work begins: can it be written at all? Not for "-". */
+bool cli_outputs_add(cli_outputs *outputs, const char *name);
+
+/* Where to write what was announced as `name`; "-" and unknown names are returned as they are. */
+const char *cli_outputs_place(const cli_outputs *outputs, const char *name);
+
+/* Puts the names that the user knows into a message about a staged file. */
+void cli_outputs_translate(const cli_outputs *outputs, char *message, size_t size);
+
+/* Moves all staged files to their places. */
+bool cli_outputs_commit(cli_outputs *outputs);
+
+/* Removes what is staged and frees everything; also after commit. */
+void cli_outputs_discard(cli_outputs *outputs);
+
+#endif

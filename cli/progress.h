@@ -1,0 +1,34 @@
+/* Progress of the library's stages: a bar on a terminal, and the seconds of each stage. */
+#ifndef STARGUARD_CLI_PROGRESS_H
+#define STARGUARD_CLI_PROGRESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { CLI_STAGES = 32 };
+
+typedef struct cli_stage {
+    const char *name;
+    double seconds; /* of all its finished runs */
+    double began;   /* the run under way        */
+    bool running;
+} cli_stage;
+
+typedef struct cli_progress {
+    bool bar;   /* draw one on stderr      */
+    bool drawn; /* and there is one now    */
+    double drawn_at;
+    cli_stage stages[CLI_STAGES]; /* in the order of their first run */
+    size_t count;
+} cli_progress;
+
+/* Seconds of a clock that never jumps. */
+double cli_clock(void);
+
+/* A starg_progress_fn; `user` is a cli_progress. Never cancels: signals do. */
+bool cli_progress_report(void *user, const char *stage, double fraction);
+
+/* Takes the bar away, so that a line can be written. */
+void cli_progress_erase(cli_progress *progress);
+
+#endif

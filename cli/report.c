@@ -1,0 +1,167 @@
+#include "report.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+enum { LAYOUT = JSON_INDENT(1) | JSON_REAL_PRECISION(17) };
+
+void cli_report_begin(cli_session *session) {
+    session->report = json_object();
+    session->log = json_array();
+    session->report_broken = session->report == NULL || session->log == NULL;
+}
+
+void cli_report_free(cli_session *session) {
+    json_decref(session->report);
+    json_decref(session->log);
+    session->report = session->log = NULL;
+}
+
+void cli_put(cli_session *session, json_t *object, const char *key, json_t *value) {
+    if (json_object_set_new(object, key, value) != 0)
+        session->report_broken = true;
+}
+
+void cli_append(cli_session *session, json_t *array, json_t *value) {
+    if (json_array_append_new(array, value) != 0)
+        session->report_broken = true;
+}
+
+/* Length of the UTF-8 sequence that begins at `text`; 0 if there is none. jansson decides what is
+ * valid, so that overlong forms and surrogates are judged once. */
+static size_t sequence_length(const char *text) {
+    for (size_t size = 1; size <= 4 && text[size - 1] != '\0'; size++) {
+        json_t *probe = json_stringn(text, size);
+        if (probe != NULL) {
+            json_decref(probe);
+            return size;
+        }
+    }
+    return 0;
+}
+
+json_t *cli_json_text(const char *text) {
+    static const char replacement[] = "\xEF\xBF\xBD";
+    json_t *value = json_string(text);
+    char *clean = value == NULL ? malloc(3 * strlen(text) + 1) : NULL;
+    if (clean == NULL)
+        return value;
+    size_t used = 0;
+    while (*text != '\0') {
+        size_t size = sequence_length(text);
+        memcpy(clean + used, size > 0 ? text : replacement, size > 0 ? size : 3);
+        used += size > 0 ? size : 3;
+        text += size > 0 ? size : 1;
+    }
+    value = json_stringn(clean, used);
+    free(clean);
+    return value;
+}
+
+json_t *cli_json_real(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *cli_json_point(const double point[3]) {
+    return json_pack("[fff]", point[0], point[1], point[2]);
+}
+
+void cli_report_head(cli_session *session, const char *format, const char *file,
+                     const starg_mesh *mesh) {
+    json_t *report = session->report;
+    if (report == NULL)
+        return;
+    cli_put(session, report, "format", json_string(format));
+    cli_put(session, report, "version", json_integer(1));
+    if (mesh == NULL)
+        return;
+    json_t *model = json_object();
+    cli_put(session, model, "file", cli_json_text(file));
+    cli_put(session, model, "vertices", json_integer((json_int_t)starg_mesh_vertex_count(mesh)));
+    cli_put(session, model, "faces", json_integer((json_int_t)starg_mesh_face_count(mesh)));
+    cli_put(session, report, "model", model);
+}
+
+void cli_report_log(cli_session *session, starg_log_level level, const char *message) {
+    if (session->log == NULL)
+        return;
+    json_t *line = json_object();
+    cli_put(session, line, "level", json_string(level == STARG_LOG_WARNING ? "warning" : "notice"));
+    cli_put(session, line, "message", cli_json_text(message));
+    cli_append(session, session->log, line);
+}
+
+static json_t *seconds(cli_session *session) {
+    json_t *object = json_object();
+    for (size_t i = 0; i < session->progress.count; i++) {
+        const cli_stage *stage = &session->progress.stages[i];
+        cli_put(session, object, stage->name, json_real(stage->seconds));
+    }
+    cli_put(session, object, "total", json_real(cli_clock() - session->began));
+    return object;
+}
+
+static json_t *memory(cli_session *session) {
+    json_t *object = json_object();
+    struct rusage usage;
+    if (getrusage(RUSAGE_SELF, &usage) == 0)
+        cli_put(session, object, "peak_resident_bytes",
+                json_integer((json_int_t)usage.ru_maxrss * 1024));
+    cli_put(session, object, "peak_library_bytes",
+            json_integer((json_int_t)starg_context_peak_bytes(session->context)));
+    return object;
+}
+
+/* Prints an object and gives it up. */
+static bool print(json_t *object) {
+    bool printed = object != NULL && json_dumpf(object, stdout, LAYOUT) == 0;
+    if (printed)
+        putc('\n', stdout);
+    json_decref(object);
+    return printed;
+}
+
+starg_status cli_report_print(cli_session *session) {
+    json_t *report = session->report;
+    cli_put(session, report, "log", json_incref(session->log));
+    cli_put(session, report, "seconds", seconds(session));
+    cli_put(session, report, "memory", memory(session));
+    if (session->report_broken)
+        return cli_fail_memory(session);
+    session->report = NULL;
+    if (!print(report))
+        return cli_fail(session, STARG_ERROR_WRITE, "cannot write standard output");
+    return STARG_OK;
+}
+
+static const char *element_name(starg_element element) {
+    static const char *const names[] = {"none", "vertex", "face",  "edge",
+                                        "line", "byte",   "guard", "candidate"};
+    return (size_t)element < sizeof names / sizeof *names ? names[element] : "unknown";
+}
+
+static const char *status_name(starg_status status) {
+    static const char *const names[] = {"ok",   "argument", "memory", "read", "write",    "format",
+                                        "mesh", "range",    "solver", "time", "cancelled"};
+    return (size_t)status < sizeof names / sizeof *names ? names[status] : "unknown";
+}
+
+void cli_report_error(cli_session *session, const starg_error *error, int exit_status) {
+    if (session->report == NULL)
+        return;
+    json_t *indices = json_array();
+    for (size_t i = 0; i < error->index_count; i++)
+        cli_append(session, indices, json_integer((json_int_t)error->indices[i]));
+    json_t *detail = json_object();
+    cli_put(session, detail, "status", json_string(status_name(error->status)));
+    cli_put(session, detail, "exit_status", json_integer(exit_status));
+    cli_put(session, detail, "stage", json_string(error->stage));
+    cli_put(session, detail, "message", cli_json_text(error->message));
+    cli_put(session, detail, "element", json_string(element_name(error->element)));
+    cli_put(session, detail, "indices", indices);
+    json_t *object = json_object();
+    cli_put(session, object, "error", detail);
+    print(object);
+}

@@ -1,0 +1,34 @@
+/* --json: the one object on standard output. Keys are documented in docs/formats.md. */
+#ifndef STARGUARD_CLI_REPORT_H
+#define STARGUARD_CLI_REPORT_H
+
+#include "session.h"
+#include "starguard/mesh.h"
+
+/* Begins the report; every function below does nothing for a NULL report. */
+void cli_report_begin(cli_session *session);
+void cli_report_free(cli_session *session);
+
+/* Adds a key; takes `value`, of which NULL means that memory is out. */
+void cli_put(cli_session *session, json_t *object, const char *key, json_t *value);
+void cli_append(cli_session *session, json_t *array, json_t *value);
+
+/* Values. Text that is not UTF-8 has its odd bytes replaced; a real that is not finite is null. */
+json_t *cli_json_text(const char *text);
+json_t *cli_json_real(double value);
+json_t *cli_json_point(const double point[3]);
+
+/* "format", "version" and "model". */
+void cli_report_head(cli_session *session, const char *format, const char *file,
+                     const starg_mesh *mesh);
+
+/* Collects a line of the library for "log". */
+void cli_report_log(cli_session *session, starg_log_level level, const char *message);
+
+/* Adds log, seconds and memory, and prints. Errors: WRITE, MEMORY. */
+starg_status cli_report_print(cli_session *session);
+
+/* Prints an error instead, unless a report has been printed. */
+void cli_report_error(cli_session *session, const starg_error *error, int exit_status);
+
+#endif

@@ -1,0 +1,265 @@
+#include "session.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "commands.h"
+#include "report.h"
+#include "terminal.h"
+
+const cli_option cli_common_options[] = {
+    {.name = "threads",
+     .kind = CLI_COUNT,
+     .offset = offsetof(cli_common, threads),
+     .value = "N",
+     .most = 1024,
+     .help = "Threads to use; 0 (default): all that the machine has. Results do not depend on it."},
+    {.name = "seed",
+     .kind = CLI_COUNT,
+     .offset = offsetof(cli_common, seed),
+     .value = "N",
+     .most = UINT64_MAX,
+     .help = "Where random choices come from. Default 1."},
+    {.name = "time-limit",
+     .kind = CLI_REAL,
+     .offset = offsetof(cli_common, time_limit),
+     .value = "S",
+     .high = 1e9,
+     .above = true,
+     .help = "Stop searching after S seconds and give the best that was found. Default: none."},
+    {.name = "quiet",
+     .kind = CLI_FLAG,
+     .offset = offsetof(cli_common, quiet),
+     .help = "Only warnings and errors: no text, no notices, no progress bar."},
+    {.name = "json",
+     .kind = CLI_FLAG,
+     .offset = offsetof(cli_common, json),
+     .help = "One JSON object on standard output and nothing else there (docs/formats.md)."},
+    {.name = "help",
+     .letter = 'h',
+     .kind = CLI_FLAG,
+     .offset = offsetof(cli_common, help),
+     .help = "This text."},
+    {.name = "version",
+     .kind = CLI_FLAG,
+     .offset = offsetof(cli_common, version),
+     .help = "The version."},
+};
+const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
+
+/* ---- signals ---- */
+
+/* The handler's view of the run; a handler has no other way to it. */
+static starg_context *volatile signal_context;
+static volatile sig_atomic_t signal_count;
+
+/* The first two ask politely; a user who insists is obeyed. */
+static void on_signal(int number) {
+    signal_count = signal_count + 1;
+    if (signal_context != NULL)
+        starg_context_cancel(signal_context);
+    if (signal_count >= 3) {
+        signal(number, SIG_DFL);
+        raise(number);
+    }
+}
+
+static void catch_signals(void) {
+    struct sigaction action = {.sa_handler = on_signal}, old;
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+        sigaction(SIGHUP, &action, NULL);
+    /* Writes that fail shall say so, not kill us half-way. */
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+/* ---- start ---- */
+
+static void on_log(void *user, starg_log_level level, const char *message) {
+    cli_session *session = user;
+    cli_report_log(session, level, message);
+    if (level == STARG_LOG_WARNING) {
+        cli_warn(session, "%swarning:%s %s", cli_style_on(stderr, CLI_YELLOW),
+                 cli_style_off(stderr), message);
+    } else if (!session->common.quiet) {
+        cli_progress_erase(&session->progress);
+        fprintf(stderr, "starguard: %s\n", message);
+    }
+}
+
+void cli_session_init(cli_session *session, const cli_command *command) {
+    *session = (cli_session){.command = command, .began = cli_clock(), .common = {.seed = 1}};
+}
+
+starg_status cli_session_start(cli_session *session) {
+    const cli_common *common = &session->common;
+    starg_context_options options;
+    starg_context_options_default(&options);
+    options.threads = (int)common->threads;
+    options.seed = common->seed;
+    options.log = on_log;
+    options.log_user = session;
+    options.progress = cli_progress_report;
+    options.progress_user = &session->progress;
+    session->progress.bar = !common->quiet && cli_terminal(stderr);
+    if (common->json)
+        cli_report_begin(session);
+
+    starg_status status = starg_context_create(&options, &session->context);
+    if (status != STARG_OK)
+        return cli_fail(session, status, "%s", starg_status_string(status));
+    signal_context = session->context;
+    catch_signals();
+    if (common->time_limit > 0)
+        starg_context_set_time_limit(session->context, common->time_limit);
+    return STARG_OK;
+}
+
+starg_status cli_announce(cli_session *session, const char *name) {
+    if (name == NULL)
+        return STARG_OK;
+    if (strcmp(name, "-") == 0) {
+        if (session->common.json)
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "--json and an output '-' would both write to standard output; name "
+                            "a file");
+        if (session->stdout_taken)
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "only one output can be '-' (standard output)");
+        session->stdout_taken = true;
+        return STARG_OK;
+    }
+    if (!cli_outputs_add(&session->outputs, name))
+        return cli_fail(session, STARG_ERROR_WRITE, "%s", session->outputs.message);
+    return STARG_OK;
+}
+
+/* ---- text ---- */
+
+void cli_say(cli_session *session, const char *format, ...) {
+    if (session->common.quiet || session->common.json)
+        return;
+    cli_progress_erase(&session->progress);
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(session->stdout_taken ? stderr : stdout, format, arguments);
+    va_end(arguments);
+}
+
+void cli_warn(cli_session *session, const char *format, ...) {
+    cli_progress_erase(&session->progress);
+    fputs("starguard: ", stderr);
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fputc('\n', stderr);
+}
+
+starg_status cli_fail(cli_session *session, starg_status status, const char *format, ...) {
+    session->error = (starg_error){
+        .status = status, .stage = session->command->name, .message = session->message};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(session->message, sizeof session->message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+starg_status cli_fail_memory(cli_session *session) {
+    return cli_fail(session, STARG_ERROR_MEMORY, "out of memory");
+}
+
+/* ---- finish ---- */
+
+static cli_exit exit_status(starg_status status) {
+    switch (status) {
+    case STARG_OK:
+        return CLI_EXIT_DONE;
+    case STARG_ERROR_ARGUMENT:
+        return CLI_EXIT_USAGE;
+    case STARG_ERROR_READ:
+    case STARG_ERROR_FORMAT:
+    case STARG_ERROR_RANGE:
+    case STARG_ERROR_MESH:
+        return CLI_EXIT_INPUT;
+    case STARG_ERROR_CANCELLED:
+        return CLI_EXIT_CANCELLED;
+    case STARG_ERROR_MEMORY:
+    case STARG_ERROR_WRITE:
+    case STARG_ERROR_SOLVER:
+    case STARG_ERROR_TIME:
+        break;
+    }
+    return CLI_EXIT_UNFINISHED;
+}
+
+/* A reader that has gone away has read enough of a text, but not of a result. */
+static starg_status flush_stdout(cli_session *session) {
+    errno = 0;
+    bool broken = fflush(stdout) != 0 || ferror(stdout) != 0;
+    int error = errno;
+    if (!broken || (error == EPIPE && !session->stdout_taken && !session->common.json))
+        return STARG_OK;
+    return cli_fail(session, STARG_ERROR_WRITE, "cannot write standard output: %s",
+                    error != 0 ? strerror(error) : "an earlier write failed");
+}
+
+/* Everything that can still fail, the outputs last: after a failure none has changed. */
+static starg_status deliver(cli_session *session) {
+    starg_status status = STARG_OK;
+    if (session->common.json)
+        CLI_TRY(cli_report_print(session));
+    CLI_TRY(flush_stdout(session));
+    if (signal_count > 0)
+        return STARG_ERROR_CANCELLED;
+    if (!cli_outputs_commit(&session->outputs))
+        status = cli_fail(session, STARG_ERROR_WRITE, "%s", session->outputs.message);
+done:
+    return status;
+}
+
+/* The detail of a failure: our own, else the library's. */
+static starg_error find_error(cli_session *session, starg_status status) {
+    if (session->error.status == status)
+        return session->error;
+    if (session->context != NULL && starg_context_error(session->context)->status == status)
+        return *starg_context_error(session->context);
+    return (starg_error){.status = status, .stage = "", .message = starg_status_string(status)};
+}
+
+static void tell_error(cli_session *session, starg_status status) {
+    char message[sizeof session->message];
+    starg_error error = find_error(session, status);
+    snprintf(message, sizeof message, "%s", error.message);
+    cli_outputs_translate(&session->outputs, message, sizeof message);
+    error.message = message;
+    cli_report_error(session, &error, (int)exit_status(status));
+    fprintf(stderr, "starguard %s: %s%s%s\n", session->command->name, cli_style_on(stderr, CLI_RED),
+            message, cli_style_off(stderr));
+    if (status == STARG_ERROR_ARGUMENT)
+        fprintf(stderr, "Try 'starguard %s --help'.\n", session->command->name);
+}
+
+int cli_session_finish(cli_session *session, starg_status status) {
+    cli_progress_erase(&session->progress);
+    if (status == STARG_OK)
+        status = deliver(session);
+    if (status != STARG_OK && signal_count > 0)
+        status = STARG_ERROR_CANCELLED; /* whatever the interruption made fail */
+    int result = (int)session->outcome;
+    if (status != STARG_OK) {
+        tell_error(session, status);
+        result = (int)exit_status(status);
+    }
+    cli_outputs_discard(&session->outputs);
+    cli_report_free(session);
+    signal_context = NULL;
+    starg_context_free(session->context);
+    return result;
+}
