@@ -23,15 +23,17 @@ STARG_API void starg_repair_options_default(starg_repair_options *options);
 
 /* What was done. */
 typedef struct starg_repair_report {
-    size_t vertices_merged, vertices_dropped, vertices_split, vertices_moved;
+    size_t vertices_merged, vertices_dropped, vertices_split, vertices_moved, vertices_added;
     size_t faces_dropped, faces_turned, faces_added, holes_filled;
     size_t components_dropped; /* pieces without volume                                  */
     size_t intersections_before, intersections_after;
     double largest_move; /* of a vertex that was kept, in units of the coordinates */
 } starg_repair_report;
 
-/* Mends what can be mended. `options` may be NULL. Errors: MESH when the result would still not
- * be a usable solid (the message says what is left), MEMORY, CANCELLED. */
+/* Mends what can be mended; a mesh that needs nothing comes back as it is. Components that overlap
+ * are left so. `options` may be NULL. *report is zero on failure. Errors: ARGUMENT (merge_distance
+ * not in [0, 1]), MESH when the result would still not be a usable solid (the message says what is
+ * left), MEMORY, CANCELLED. */
 STARG_API starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
                                          const starg_repair_options *options, starg_mesh **out,
                                          starg_repair_report *report);

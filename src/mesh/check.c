@@ -11,8 +11,8 @@
 
 #include "core/memory.h"
 #include "geometry/bvh.h"
-#include "geometry/intersect.h"
 #include "geometry/predicates.h"
+#include "mesh/contact.h"
 #include "mesh/examine.h"
 #include "mesh/mesh.h"
 
@@ -215,36 +215,11 @@ static void check_areas(checker *c) {
     }
 }
 
-/* Puts the corners that two faces share first, in the same order in both; returns their number. */
-static int align_shared(const checker *c, uint32_t a, uint32_t b, const double *s[3],
-                        const double *t[3]) {
-    uint32_t u[3], v[3];
-    int shared = 0;
-    memcpy(u, c->mesh->faces + 3 * (size_t)a, sizeof u);
-    memcpy(v, c->mesh->faces + 3 * (size_t)b, sizeof v);
-    for (int i = 0; i < 3; i++)
-        for (int j = shared; j < 3; j++)
-            if (i >= shared && u[i] == v[j]) {
-                uint32_t swap_u = u[i], swap_v = v[j];
-                u[i] = u[shared];
-                v[j] = v[shared];
-                u[shared] = swap_u;
-                v[shared] = swap_v;
-                shared++;
-                break;
-            }
-    for (int k = 0; k < 3; k++) {
-        s[k] = position(c, u[k]);
-        t[k] = position(c, v[k]);
-    }
-    return shared;
-}
-
 static bool check_pair(void *user, uint32_t a, uint32_t b) {
     checker *c = user;
-    const double *s[3], *t[3];
-    int shared = align_shared(c, a, b, s, t);
-    triangle_contact contact = triangles_contact(s, t, shared);
+    const uint32_t *faces = c->mesh->faces;
+    triangle_contact contact =
+        faces_contact(c->mesh->vertices, faces + 3 * (size_t)a, faces + 3 * (size_t)b);
     if (contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS) {
         starg_finding_kind kind = contact == TRIANGLES_CROSS ? STARG_FINDING_SELF_INTERSECTION
                                                              : STARG_FINDING_SELF_CONTACT;
