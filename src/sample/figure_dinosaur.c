@@ -37,8 +37,8 @@ static const vertebrate_part parts[] = {
 
 static const figure_turn turns[] = {
     /* 1: strides */
-    {1, LEG_R, {0, 0, 30}},
-    {1, LEG_R2, {0, 0, -12}},
+    {1, LEG_R, {0, 0, 22}},
+    {1, LEG_R2, {0, 0, -4}},
     {1, LEG_L, {0, 0, -30}},
     {1, LEG_L2, {0, 0, -14}},
     {1, LEG_L3, {0, 0, -10}},

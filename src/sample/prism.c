@@ -52,8 +52,9 @@ static void cut_strips(const double *lengths, size_t count, double step, size_t 
     }
 }
 
-static cutting cut_plan(const plan *p, double step) {
-    cutting c = {.p = p, .step = step, .levels = steps_of(p->height, step)};
+/* Steps upright are `stretch` times as long as those across. */
+static cutting cut_plan(const plan *p, double step, double stretch) {
+    cutting c = {.p = p, .step = step, .levels = steps_of(p->height, stretch * step)};
     cut_strips(p->widths, p->columns, step, c.x, c.x_at);
     cut_strips(p->depths, p->rows, step, c.z, c.z_at);
     return c;
@@ -132,23 +133,28 @@ static size_t count_vertices(const cutting *c) {
     return quads + 2 - 2 * holes;
 }
 
-/* The step that comes nearest to the wanted number; the count falls as the step grows. */
-static double find_step(const plan *p, size_t vertex_count) {
-    double low = 1e-4, high = 10, best = high;
+/* The cutting that comes nearest to the wanted number. The count falls as the step grows, in jumps
+ * where many strips are equally wide; a few stretches give it more values to choose from. */
+static cutting find_cutting(const plan *p, size_t vertex_count) {
+    static const double stretches[] = {1, 0.9, 1.1, 0.8, 1.25, 0.7, 1.4};
+    cutting best = {0};
     size_t best_error = SIZE_MAX;
-    for (int i = 0; i < 60; i++) {
-        double step = sqrt(low * high);
-        cutting c = cut_plan(p, step);
-        size_t count = count_vertices(&c);
-        size_t error = count > vertex_count ? count - vertex_count : vertex_count - count;
-        if (error < best_error) {
-            best_error = error;
-            best = step;
+    for (size_t s = 0; s < sizeof stretches / sizeof *stretches; s++) {
+        double low = 1e-4, high = 10;
+        for (int i = 0; i < 50 && best_error > vertex_count / 100; i++) {
+            double step = sqrt(low * high);
+            cutting c = cut_plan(p, step, stretches[s]);
+            size_t count = count_vertices(&c);
+            size_t error = count > vertex_count ? count - vertex_count : vertex_count - count;
+            if (error < best_error) {
+                best_error = error;
+                best = c;
+            }
+            if (count > vertex_count)
+                low = step;
+            else
+                high = step;
         }
-        if (count > vertex_count)
-            low = step;
-        else
-            high = step;
     }
     return best;
 }
@@ -262,7 +268,7 @@ static starg_status make_prism(starg_context *context, const plan *p, size_t ver
                                starg_mesh **out) {
     starg_status status = STARG_OK;
     mesh_builder builder = {.context = context};
-    cutting c = cut_plan(p, find_step(p, vertex_count));
+    cutting c = find_cutting(p, vertex_count);
     for (size_t row = 0; row < p->rows; row++)
         for (size_t column = 0; column < p->columns; column++) {
             char kind = cell_at(p, column, row);

@@ -357,7 +357,7 @@ static double mean_cost(const surface *s) {
 static starg_status coarsen(surface *s, size_t vertex_count) {
     starg_status status = STARG_OK;
     double mean = mean_cost(s);
-    for (double limit = 0.02 * mean; s->live > vertex_count && limit < 1e6 * mean; limit *= 1.2) {
+    for (double limit = 0.02 * mean; s->live > vertex_count && limit < 1e6 * mean; limit *= 1.35) {
         STARG_TRY(starg_check_cancel(s->context, STAGE));
         for (uint32_t h = 0; h < 3 * s->face_count && s->live > vertex_count; h++)
             if (s->faces[h - h % 3] != NONE && h < s->twins[h] && edge_cost(s, h) < limit)
