@@ -273,7 +273,7 @@ static void check_sample(starg_context *context, const starg_sample_info *info, 
     starg_mesh_free(mesh);
 }
 
-/* Every sample in the rest pose and in poses from to to, as far as it has them. */
+/* Every sample in the rest pose and in poses `from` to `to`, as far as it has them. */
 static void check_all(size_t vertex_count, double tolerance, int from, int to) {
     starg_context *context = test_context(2);
     for (size_t i = 0; i < starg_sample_count(); i++) {
