@@ -1,0 +1,61 @@
+# A thin front for CMake. `make demo` and `make check` do all the set-up on a fresh Debian machine.
+BUILD   ?= build
+JOBS    ?= $(shell nproc)
+SECONDS ?= 60
+CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
+CTEST   := ctest --output-on-failure -j $(JOBS)
+
+.PHONY: build demo check check-long lint sanitize fuzz bench install deps deps-check clean
+
+build: deps
+	@$(CMAKE) -S . -B $(BUILD) > /dev/null
+	@cmake --build $(BUILD) -j $(JOBS)
+
+# The main job on a bundled sample, and a picture of it.
+demo: build
+	@scripts/demo.sh $(BUILD)
+
+check: deps-check build lint
+	@$(CTEST) --test-dir $(BUILD)
+	@$(MAKE) --no-print-directory sanitize
+
+# The test suite once more, under the address and undefined-behaviour sanitizers.
+sanitize: deps-check
+	@$(CMAKE) -S . -B $(BUILD)-sanitize -DSTARGUARD_SANITIZE=address,undefined > /dev/null
+	@cmake --build $(BUILD)-sanitize -j $(JOBS)
+	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
+
+# What takes too long for every change: a clang build, the thread sanitizer.
+check-long: check
+	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
+	@cmake --build $(BUILD)-clang -j $(JOBS)
+	@$(CTEST) --test-dir $(BUILD)-clang
+	@$(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
+	@cmake --build $(BUILD)-thread -j $(JOBS)
+	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
+
+lint: deps-check
+	@scripts/lint.sh
+
+# Coverage-guided fuzzing of every reader, SECONDS each.
+fuzz: deps-check
+	@CC=clang $(CMAKE) -S . -B $(BUILD)-fuzz -DSTARGUARD_FUZZ=ON -DSTARGUARD_SANITIZE=address,undefined > /dev/null
+	@cmake --build $(BUILD)-fuzz -j $(JOBS)
+	@scripts/fuzz.sh $(BUILD)-fuzz $(SECONDS)
+
+bench: build
+	@$(CMAKE) -S . -B $(BUILD)-bench -DCMAKE_BUILD_TYPE=Release -DSTARGUARD_BENCH=ON -DSTARGUARD_TESTS=OFF > /dev/null
+	@cmake --build $(BUILD)-bench -j $(JOBS)
+	@bench/run.sh $(BUILD)-bench
+
+install: build
+	@cmake --install $(BUILD)
+
+deps:
+	@scripts/install-deps.sh build
+
+deps-check:
+	@scripts/install-deps.sh build check
+
+clean:
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-thread $(BUILD)-fuzz $(BUILD)-bench demo

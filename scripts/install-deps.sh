@@ -1,0 +1,35 @@
+#!/bin/sh
+# Installs the Debian packages that are missing, as root or with sudo.
+# Usage: install-deps.sh build|check|bench ...
+set -eu
+export DEBIAN_FRONTEND=noninteractive
+
+packages=""
+for purpose in "$@"; do
+    case $purpose in
+    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev" ;;
+    check) packages="$packages libcmocka-dev libgmp-dev clang clang-format clang-tidy libclang-rt-14-dev python3" ;;
+    bench) packages="$packages libembree-dev hyperfine" ;;
+    *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;
+    esac
+done
+
+missing=""
+for package in $packages; do
+    state=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    [ "$state" = installed ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+sudo=""
+if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || {
+        echo "These packages are missing, and installing them takes root or sudo:$missing" >&2
+        exit 1
+    }
+    sudo="sudo"
+fi
+echo "Installing:$missing"
+$sudo apt-get update -qq
+# shellcheck disable=SC2086
+$sudo apt-get install -y -qq --no-install-recommends $missing >/dev/null

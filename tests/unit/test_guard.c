@@ -1,0 +1,342 @@
+/* Guarding end to end on procedural solids: every result goes through the independent verifier. */
+#include "support.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "starguard/guard.h"
+#include "starguard/sample.h"
+#include "starguard/verify.h"
+
+static starg_solid *make_solid(starg_context *context, const char *name, size_t vertices) {
+    starg_sample_options options;
+    starg_mesh *mesh = NULL;
+    starg_solid *solid = NULL;
+    starg_sample_options_default(&options);
+    options.vertex_count = vertices;
+    test_ok(context, starg_sample_create(context, name, &options, &mesh));
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    starg_mesh_free(mesh);
+    return solid;
+}
+
+static starg_guards *guard(starg_context *context, const starg_solid *solid,
+                           const starg_guard_options *options) {
+    starg_guards *guards = NULL;
+    starg_verdict *verdict = NULL;
+    test_ok(context, starg_guard(context, solid, options, &guards));
+    test_ok(context, starg_verify_guards(context, starg_solid_mesh(solid), guards, &verdict));
+    for (size_t i = 0; i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            print_error("%s\n", verdict->claims[i].text);
+    assert_true(verdict->passed);
+    starg_verdict_free(context, verdict);
+    return guards;
+}
+
+static starg_guard_options small_options(void) {
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.candidate_count = 150;
+    return options;
+}
+
+static void test_every_sample(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    for (size_t i = 0; i < starg_sample_count(); i++) {
+        starg_guard_options options = small_options();
+        starg_solid *solid = make_solid(context, starg_sample_at(i)->name, 600);
+        starg_guards *best = guard(context, solid, &options);
+        options.method = STARG_GUARD_GREEDY;
+        starg_guards *greedy = guard(context, solid, &options);
+        /* samples are embedded and have no thin crevices: every face can be seen */
+        assert_int_equal(best->uncovered_count, 0);
+        assert_true(best->optimal);
+        assert_true(best->count <= greedy->count);
+        assert_true(greedy->lower_bound <= best->count);
+        assert_int_equal(best->candidate_count, greedy->candidate_count);
+        starg_guards_free(context, best);
+        starg_guards_free(context, greedy);
+        starg_solid_free(solid);
+    }
+    test_context_free(context);
+}
+
+static void test_sphere_takes_one(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = make_solid(context, "sphere", 500);
+    starg_guard_options options = small_options();
+    for (int source = 0; source < 2; source++) {
+        options.candidates = (starg_candidates)source;
+        starg_guards *guards = guard(context, solid, &options);
+        assert_int_equal(guards->count, 1);
+        starg_guards_free(context, guards);
+    }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+static void test_options(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = make_solid(context, "gallery", 900);
+    double diagonal = starg_solid_check(solid)->diagonal;
+    starg_guard_options options = small_options();
+    starg_guards *all = guard(context, solid, &options);
+
+    options.coverage = 0.9;
+    starg_guards *most = guard(context, solid, &options);
+    assert_true(most->count <= all->count);
+    assert_true(most->coverage_area >= 0.9 * (1 - 1e-9));
+
+    options = small_options();
+    options.max_guards = 1;
+    starg_guards *one = guard(context, solid, &options);
+    assert_int_equal(one->count, 1);
+    assert_true(one->coverage_area <= one->area_bound * (1 + 1e-9));
+
+    options = small_options();
+    options.redundancy = 2;
+    starg_guards *twice = guard(context, solid, &options);
+    assert_true(twice->count > all->count);
+
+    options = small_options();
+    options.visibility.range = 0.35 * diagonal;
+    starg_guards *near = guard(context, solid, &options);
+    assert_true(near->count >= all->count);
+
+    options = small_options();
+    options.clearance = 0.02 * diagonal;
+    starg_guards *clear = guard(context, solid, &options);
+    for (size_t i = 0; i < clear->count; i++)
+        assert_true(starg_solid_distance(solid, clear->positions + 3 * i) >= options.clearance);
+
+    options = small_options();
+    options.visibility.target = STARG_TARGET_VERTICES;
+    starg_guards *vertices = guard(context, solid, &options);
+    assert_true(vertices->coverage_vertices == 1);
+    assert_true(vertices->count <= all->count + 1);
+
+    options = small_options();
+    options.visibility.face_rule = STARG_FACES_WHOLE;
+    starg_guards *whole = guard(context, solid, &options);
+    assert_int_equal(whole->uncovered_count, 0);
+
+    options = small_options();
+    options.candidates = STARG_CANDIDATES_GIVEN;
+    options.points = all->positions;
+    options.point_count = all->count;
+    starg_guards *given = guard(context, solid, &options);
+    assert_int_equal(given->count, all->count);
+    assert_int_equal(given->candidate_count, all->count);
+
+    starg_guards *results[] = {all, most, one, twice, near, clear, vertices, whole, given};
+    for (size_t i = 0; i < sizeof results / sizeof *results; i++)
+        starg_guards_free(context, results[i]);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+static char *read_text(const char *path, long *size) {
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    *size = ftell(file);
+    rewind(file);
+    char *text = malloc((size_t)*size + 1);
+    assert_non_null(text);
+    assert_int_equal(fread(text, 1, (size_t)*size, file), *size);
+    text[*size] = '\0';
+    fclose(file);
+    return text;
+}
+
+/* Same bytes at any thread count, and the file gives back what was written. */
+static void test_file(void **state) {
+    (void)state;
+    char path[2][64], *text[2];
+    long size[2];
+    starg_guards *guards = NULL;
+    for (int i = 0; i < 2; i++) {
+        starg_context *context = test_context(i == 0 ? 1 : 5);
+        starg_solid *solid = make_solid(context, "star", 700);
+        starg_guard_options options = small_options();
+        guards = guard(context, solid, &options);
+        snprintf(path[i], sizeof path[i], "guards-%ld-%d.json", (long)getpid(), i);
+        test_ok(context, starg_guards_write(context, guards, "a \"name\".off", path[i]));
+        text[i] = read_text(path[i], &size[i]);
+
+        starg_guards *again = NULL;
+        test_ok(context, starg_guards_read(context, path[i], &again));
+        assert_string_equal(again->file, "a \"name\".off");
+        assert_int_equal(again->count, guards->count);
+        assert_memory_equal(again->positions, guards->positions, 24 * guards->count);
+        assert_memory_equal(again->seen_faces, guards->seen_faces,
+                            guards->count * sizeof *guards->seen_faces);
+        assert_true(again->coverage_area == guards->coverage_area);
+        assert_int_equal(again->lower_bound, guards->lower_bound);
+        assert_int_equal(again->optimal, guards->optimal);
+
+        double *points = NULL;
+        size_t count = 0;
+        test_ok(context, starg_points_read(context, path[i], &points, &count));
+        assert_int_equal(count, guards->count);
+        starg_points_free(context, points);
+
+        starg_guards_free(context, again);
+        starg_guards_free(context, guards);
+        starg_solid_free(solid);
+        test_context_free(context);
+        unlink(path[i]);
+    }
+    assert_int_equal(size[0], size[1]);
+    assert_memory_equal(text[0], text[1], (size_t)size[0]);
+    free(text[0]);
+    free(text[1]);
+}
+
+/* Every change to a good file that makes it bad is told, and none crashes. */
+static void test_bad_files(void **state) {
+    static const char good[] =
+        "{\"format\":\"starguard-guards\",\"version\":1,"
+        "\"model\":{\"file\":\"m.off\",\"vertices\":4,\"faces\":4},"
+        "\"options\":{\"method\":\"ilp\",\"candidates\":\"medial\",\"count\":10,"
+        "\"target\":\"faces\",\"faces\":\"vertices\",\"coverage\":1.0,\"max_guards\":0,"
+        "\"range\":null,\"redundancy\":1,\"clearance\":0.0},"
+        "\"guards\":[{\"position\":[0.1,0.1,0.1],\"faces\":3,\"level\":0}],"
+        "\"coverage\":{\"faces\":0.75,\"area\":0.7,\"coverable_faces\":3,"
+        "\"uncovered_faces\":[2]},\"candidates\":5,\"lower_bound\":1,\"optimal\":true}";
+    static const char *const changes[][2] = {{"starguard-guards", "starguard-gards"},
+                                             {"\"version\":1", "\"version\":2"},
+                                             {"\"vertices\":4", "\"vertices\":-4"},
+                                             {"\"method\":\"ilp\"", "\"method\":\"best\""},
+                                             {"[0.1,0.1,0.1]", "[0.1,0.1]"},
+                                             {"[0.1,0.1,0.1]", "[0.1,\"x\",0.1]"},
+                                             {"[2]", "[2,2]"},
+                                             {"[2]", "[4]"},
+                                             {"[2]", "{}"},
+                                             {"\"optimal\":true", "\"optimal\":1"},
+                                             {"\"lower_bound\":1", "\"lower\":1"},
+                                             {"\"guards\":[", "\"guards\":7,\"g\":["},
+                                             {"\"area\":0.7", "\"area\":\"0.7\""},
+                                             {"}", ""},
+                                             {"\"range\":null", "\"range\":-1"}};
+    (void)state;
+    char path[64], text[2048];
+    snprintf(path, sizeof path, "bad-%ld.json", (long)getpid());
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i <= sizeof changes / sizeof *changes; i++) {
+        bool changed = i < sizeof changes / sizeof *changes;
+        const char *at = changed ? strstr(good, changes[i][0]) : good;
+        assert_non_null(at);
+        if (changed)
+            snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, changes[i][1],
+                     at + strlen(changes[i][0]));
+        else
+            memcpy(text, good, sizeof good);
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fputs(text, file);
+        fclose(file);
+        starg_guards *guards = NULL;
+        starg_status status = starg_guards_read(context, path, &guards);
+        assert_int_equal(status, changed ? STARG_ERROR_FORMAT : STARG_OK);
+        if (changed)
+            assert_non_null(strstr(starg_context_error(context)->message, path));
+        starg_guards_free(context, guards);
+    }
+    unlink(path);
+    starg_guards *guards = NULL;
+    assert_int_equal(starg_guards_read(context, path, &guards), STARG_ERROR_READ);
+    test_context_free(context);
+}
+
+static void test_bad_options(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = make_solid(context, "torus", 500);
+    starg_guards *guards = NULL;
+    starg_guard_options bad[6];
+    for (int i = 0; i < 6; i++)
+        bad[i] = small_options();
+    bad[0].coverage = 0;
+    bad[1].coverage = NAN;
+    bad[2].redundancy = 0;
+    bad[3].clearance = -1;
+    bad[4].candidate_count = 0;
+    bad[5].visibility.range = NAN;
+    for (int i = 0; i < 6; i++) {
+        assert_int_equal(starg_guard(context, solid, &bad[i], &guards), STARG_ERROR_ARGUMENT);
+        assert_null(guards);
+    }
+    starg_guard_options far = small_options();
+    far.clearance = starg_solid_check(solid)->diagonal;
+    assert_int_equal(starg_guard(context, solid, &far, &guards), STARG_ERROR_MESH);
+    starg_context_cancel(context);
+    assert_int_equal(starg_guard(context, solid, NULL, &guards), STARG_ERROR_CANCELLED);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* An allocator that fails at the n-th call, for every n: right status, nothing lost. */
+typedef struct failing {
+    size_t calls, fail_at;
+} failing;
+
+static void *failing_allocate(void *user, size_t size) {
+    failing *f = user;
+    return ++f->calls == f->fail_at ? NULL : malloc(size);
+}
+
+static void failing_release(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+static void test_memory(void **state) {
+    (void)state;
+    starg_context *plain = test_context(1);
+    starg_sample_options sample;
+    starg_mesh *mesh = NULL;
+    starg_sample_options_default(&sample);
+    sample.vertex_count = 500;
+    test_ok(plain, starg_sample_create(plain, "torus", &sample, &mesh));
+    for (size_t n = 2;; n += 1 + n / 40) {
+        failing f = {0, n};
+        starg_context_options options;
+        starg_context *context = NULL;
+        starg_solid *solid = NULL;
+        starg_guards *guards = NULL;
+        starg_guard_options guarding = small_options();
+        guarding.candidate_count = 30;
+        starg_context_options_default(&options);
+        options.threads = 1;
+        options.allocator = (starg_allocator){failing_allocate, failing_release, &f};
+        assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+        starg_status status = starg_solid_create(context, mesh, &solid);
+        if (status == STARG_OK)
+            status = starg_guard(context, solid, &guarding, &guards);
+        assert_true(status == STARG_OK || status == STARG_ERROR_MEMORY);
+        starg_guards_free(context, guards);
+        starg_solid_free(solid);
+        test_context_free(context);
+        if (f.calls < n)
+            break;
+    }
+    starg_mesh_free(mesh);
+    test_context_free(plain);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_sample), cmocka_unit_test(test_sphere_takes_one),
+        cmocka_unit_test(test_options),      cmocka_unit_test(test_file),
+        cmocka_unit_test(test_bad_files),    cmocka_unit_test(test_bad_options),
+        cmocka_unit_test(test_memory)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
