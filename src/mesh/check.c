@@ -249,13 +249,16 @@ static starg_status check_shells(checker *c) {
     starg_status status = shells_classify(c->context, c->mesh, c->topology, c->tree, c->shells);
     if (status != STARG_OK)
         return status;
+    double volume = 0; /* scaled: the true one may be too small for a double */
     for (size_t i = 0; i < c->topology->component_count; i++) {
         const mesh_shell *own = &c->shells[i];
         check->cavities += own->cavity;
-        check->volume += own->turn ? -own->volume : own->volume;
+        volume += own->turn ? -own->volume : own->volume;
         if (own->turn)
             find_one(c, STARG_FINDING_INWARD_COMPONENT, STARG_ELEMENT_FACE, own->first_face);
     }
+    check->volume = ldexp(volume, 3 * starg_mesh_exponent(c->mesh));
+    check->usable = volume > 0;
     return STARG_OK;
 }
 
@@ -303,7 +306,6 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     summarise(&c);
     if (c.check->closed && c.check->manifold && c.check->oriented)
         STARG_TRY(check_shells(&c));
-    c.check->usable = c.check->volume > 0;
 done:
     *out = (mesh_examination){c.check, c.topology, c.tree, c.shells};
     return status;

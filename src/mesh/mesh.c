@@ -119,26 +119,41 @@ void starg_mesh_bounds(const starg_mesh *mesh, double lower[3], double upper[3])
     }
 }
 
+int starg_mesh_exponent(const starg_mesh *mesh) {
+    double lower[3], upper[3];
+    int exponent;
+    starg_mesh_bounds(mesh, lower, upper);
+    frexp(fmax(upper[0] - lower[0], fmax(upper[1] - lower[1], upper[2] - lower[2])), &exponent);
+    return exponent;
+}
+
+void starg_mesh_scaled_corner(const starg_mesh *mesh, size_t face, size_t k, int exponent,
+                              double out[3]) {
+    vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * face + k], mesh->vertices, out);
+    for (int i = 0; i < 3; i++)
+        out[i] = ldexp(out[i], -exponent);
+}
+
 double starg_mesh_area(const starg_mesh *mesh) {
     double sum = 0;
+    int exponent = starg_mesh_exponent(mesh);
     for (size_t f = 0; f < mesh->face_count; f++) {
-        const double *a = mesh->vertices + 3 * (size_t)mesh->faces[3 * f];
-        const double *b = mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 1];
-        const double *c = mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 2];
-        sum += vec3_triangle_area(a, b, c);
+        double p[3][3];
+        for (size_t k = 0; k < 3; k++)
+            starg_mesh_scaled_corner(mesh, f, k, exponent, p[k]);
+        sum += vec3_triangle_area(p[0], p[1], p[2]);
     }
-    return sum;
+    return ldexp(sum, 2 * exponent);
 }
 
 double starg_mesh_volume(const starg_mesh *mesh) {
     double sum = 0;
-    const double *origin = mesh->vertices; /* any point does; a near one keeps digits */
+    int exponent = starg_mesh_exponent(mesh);
     for (size_t f = 0; f < mesh->face_count; f++) {
-        double a[3], b[3], c[3];
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f], origin, a);
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 1], origin, b);
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 2], origin, c);
-        sum += vec3_triple(a, b, c);
+        double p[3][3]; /* relative to any point: a near one keeps digits */
+        for (size_t k = 0; k < 3; k++)
+            starg_mesh_scaled_corner(mesh, f, k, exponent, p[k]);
+        sum += vec3_triple(p[0], p[1], p[2]);
     }
-    return sum / 6;
+    return ldexp(sum / 6, 3 * exponent);
 }

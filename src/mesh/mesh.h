@@ -18,6 +18,14 @@ struct starg_mesh {
 /* Every coordinate is smaller in magnitude. */
 #define STARG_COORDINATE_LIMIT 1e100
 
+/* The power of two of the mesh's extent: differences of coordinates times 2^-exponent are at most 1
+ * in magnitude, so that their products neither over- nor underflow as a whole. */
+int starg_mesh_exponent(const starg_mesh *mesh);
+
+/* Corner k of a face, relative to the first vertex and scaled by 2^-exponent. */
+void starg_mesh_scaled_corner(const starg_mesh *mesh, size_t face, size_t k, int exponent,
+                              double out[3]);
+
 /* Takes over two blocks of the context (on success only), after the checks of starg_mesh_create. */
 starg_status starg_mesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
                               uint32_t *faces, size_t face_count, starg_mesh **out);

@@ -34,13 +34,13 @@ static size_t nesting_depth(const bvh *tree, const mesh_topology *topology, cons
 }
 
 static void sum_volumes(const starg_mesh *mesh, const mesh_topology *topology, mesh_shell *shells) {
+    int exponent = starg_mesh_exponent(mesh);
     for (size_t f = mesh->face_count; f-- > 0;) {
         mesh_shell *own = &shells[topology->component[f]];
-        double a[3], b[3], c[3];
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f], mesh->vertices, a);
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 1], mesh->vertices, b);
-        vec3_subtract(mesh->vertices + 3 * (size_t)mesh->faces[3 * f + 2], mesh->vertices, c);
-        own->volume += vec3_triple(a, b, c) / 6;
+        double p[3][3];
+        for (size_t k = 0; k < 3; k++)
+            starg_mesh_scaled_corner(mesh, f, k, exponent, p[k]);
+        own->volume += vec3_triple(p[0], p[1], p[2]) / 6;
         own->first_face = (uint32_t)f;
     }
 }

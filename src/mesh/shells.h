@@ -11,7 +11,7 @@
 
 typedef struct mesh_shell {
     uint32_t first_face;
-    double volume; /* signed, as given       */
+    double volume; /* signed, as given, times 8^-starg_mesh_exponent */
     bool crossed;  /* intersects other shells; set by the caller */
     bool cavity;   /* bounds a hole: it lies in an odd number of other shells */
     bool turn;     /* faces must be reversed */

@@ -99,6 +99,10 @@ starg_status topology_create(starg_context *context, const starg_mesh *mesh, mes
     entry *entries = NULL;
     uint32_t *parent = NULL;
     *out = NULL;
+    if (mesh->face_count > UINT32_MAX / 3)
+        return starg_fail(context, STARG_ERROR_MESH, "topology",
+                          "%zu faces are more than the %u whose edges can be numbered",
+                          mesh->face_count, UINT32_MAX / 3);
     STARG_NEW_ZERO(context, "topology", result, 1);
     result->context = context;
     result->vertex_count = mesh->vertex_count;

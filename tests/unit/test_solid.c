@@ -1,0 +1,225 @@
+/* The solid: what is refused and with which message, shells turned, order kept, containment and
+ * distance. */
+#include "starguard/solid.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/rng.h"
+#include "exact_oracle.h"
+#include "shapes.h"
+#include "support.h"
+
+/* ---- helpers ---- */
+
+typedef struct messages {
+    int notices, warnings;
+    char last[512];
+} messages;
+
+static void keep_message(void *user, starg_log_level level, const char *message) {
+    messages *m = user;
+    *(level == STARG_LOG_NOTICE ? &m->notices : &m->warnings) += 1;
+    snprintf(m->last, sizeof m->last, "%s", message);
+}
+
+static starg_context *listening_context(messages *m) {
+    starg_context_options options;
+    starg_context_options_default(&options);
+    options.log = keep_message;
+    options.log_user = m;
+    starg_context *context = NULL;
+    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+    return context;
+}
+
+static starg_solid *make_solid(starg_context *context, shape *s) {
+    starg_mesh *mesh;
+    starg_solid *solid;
+    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
+                                       s->face_count, &mesh));
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    starg_mesh_free(mesh);
+    return solid;
+}
+
+static void expect_refusal(shape *s, const char *phrase, starg_element element, size_t indices,
+                           uint64_t first) {
+    starg_context *context = test_context(1);
+    starg_mesh *mesh;
+    starg_solid *solid;
+    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
+                                       s->face_count, &mesh));
+    assert_int_equal(starg_solid_create(context, mesh, &solid), STARG_ERROR_MESH);
+    assert_null(solid);
+    const starg_error *error = starg_context_error(context);
+    if (strstr(error->message, phrase) == NULL)
+        fail_msg("'%s' is not in '%s'", phrase, error->message);
+    assert_int_equal(error->element, element);
+    assert_int_equal(error->index_count, indices);
+    if (indices > 0)
+        assert_int_equal(error->indices[0], first);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+    shape_free(s);
+}
+
+/* ---- refusals ---- */
+
+static void test_refuses_open(void **state) {
+    (void)state;
+    shape s = shape_tetrahedron();
+    s.face_count = 3;
+    expect_refusal(&s, "open edges: 3", STARG_ELEMENT_EDGE, 6, 1);
+}
+
+static void test_refuses_inconsistent(void **state) {
+    (void)state;
+    shape s = shape_tetrahedron();
+    s.faces[10] = 3;
+    s.faces[11] = 2;
+    expect_refusal(&s, "inconsistent edges: 3", STARG_ELEMENT_EDGE, 6, 1);
+}
+
+static void test_refuses_nonmanifold(void **state) {
+    (void)state;
+    shape s = shape_cells("#..#", 2, 2, 1); /* two cells that touch along the edge over (1, 1) */
+    uint64_t first = 0;
+    while (s.vertices[3 * first] != 1 || s.vertices[3 * first + 1] != 1)
+        first++;
+    expect_refusal(&s, "non-manifold edges: 1", STARG_ELEMENT_EDGE, 2, first);
+}
+
+static void test_refuses_flat(void **state) {
+    (void)state;
+    shape s = shape_tetrahedron();
+    for (size_t v = 0; v < s.vertex_count; v++)
+        s.vertices[3 * v + 2] = 0;
+    expect_refusal(&s, "encloses no volume", STARG_ELEMENT_NONE, 0, 0);
+}
+
+static void test_refuses_nothing(void **state) {
+    (void)state;
+    shape s = {0};
+    expect_refusal(&s, "no faces", STARG_ELEMENT_NONE, 0, 0);
+}
+
+/* ---- what is taken ---- */
+
+static void test_keeps_order(void **state) {
+    (void)state;
+    messages m = {0};
+    starg_context *context = listening_context(&m);
+    shape s = shape_columns();
+    starg_solid *solid = make_solid(context, &s);
+    const starg_mesh *mesh = starg_solid_mesh(solid);
+    assert_int_equal(starg_mesh_face_count(mesh), s.face_count);
+    assert_memory_equal(starg_mesh_faces(mesh), s.faces, 3 * s.face_count * sizeof(uint32_t));
+    assert_memory_equal(starg_mesh_vertices(mesh), s.vertices, 3 * s.vertex_count * sizeof(double));
+    assert_true(starg_solid_check(solid)->usable);
+    assert_int_equal(m.notices + m.warnings, 0);
+    starg_solid_free(solid);
+    shape_free(&s);
+    test_context_free(context);
+}
+
+static void test_turns_shells_with_a_notice(void **state) {
+    (void)state;
+    messages m = {0};
+    starg_context *context = listening_context(&m);
+    shape s = shape_cube(1), inner = shape_cube(1);
+    shape_place(&s, 4, 0);
+    shape_append(&s, &inner, (const double[3]){1, 1, 1}, 0); /* a cavity given outward */
+    starg_solid *solid = make_solid(context, &s);
+    assert_int_equal(m.notices, 1);
+    assert_int_equal(m.warnings, 0);
+    assert_non_null(strstr(m.last, "1 of 2 shells"));
+    assert_true(fabs(starg_mesh_volume(starg_solid_mesh(solid)) - 63) < 1e-9);
+    assert_int_equal(starg_solid_check(solid)->findings[STARG_FINDING_INWARD_COMPONENT].count, 1);
+    assert_true(starg_solid_contains(solid, (const double[3]){0.5, 0.5, 0.5}));
+    assert_false(starg_solid_contains(solid, (const double[3]){1.5, 1.5, 1.5}));
+    assert_false(starg_solid_contains(solid, (const double[3]){1, 1.5, 1.5}));
+    starg_solid_free(solid);
+    shape_free(&s);
+    shape_free(&inner);
+    test_context_free(context);
+}
+
+static void test_warns_of_intersections(void **state) {
+    (void)state;
+    messages m = {0};
+    starg_context *context = listening_context(&m);
+    shape s = shape_cube(2), other = shape_cube(2);
+    shape_append(&s, &other, (const double[3]){0.75, 0.5, 0.25}, 0);
+    starg_solid *solid = make_solid(context, &s);
+    assert_int_equal(m.notices, 0);
+    assert_int_equal(m.warnings, 1);
+    assert_non_null(strstr(m.last, "intersect"));
+    /* in one, in both, in none */
+    assert_true(starg_solid_contains(solid, (const double[3]){0.1, 0.1, 0.1}));
+    assert_true(starg_solid_contains(solid, (const double[3]){1.1, 1.2, 1.3}));
+    assert_false(starg_solid_contains(solid, (const double[3]){2.5, 0.1, 0.1}));
+    starg_solid_free(solid);
+    shape_free(&s);
+    shape_free(&other);
+    test_context_free(context);
+}
+
+/* ---- queries ---- */
+
+static void test_contains_against_oracle(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape shapes[] = {shape_room(), shape_cavity(), shape_columns(), shape_blob(2, 3)};
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        starg_solid *solid = make_solid(context, &shapes[i]);
+        for (uint64_t round = 0; round < 100; round++) {
+            starg_rng rng = starg_rng_make(9, i, round);
+            double p[3];
+            bool on_surface;
+            for (int k = 0; k < 3; k++)
+                p[k] = 0.5 * (double)starg_rng_below(&rng, 13) - 1;
+            int winding = oracle_winding(shapes[i].vertices, shapes[i].faces, shapes[i].face_count,
+                                         p, &on_surface);
+            assert_int_equal(starg_solid_contains(solid, p), winding > 0 && !on_surface);
+            double d = starg_solid_distance(solid, p);
+            assert_true(on_surface ? d < 1e-12 : d > 0);
+        }
+        starg_solid_free(solid);
+        shape_free(&shapes[i]);
+    }
+    test_context_free(context);
+}
+
+static void test_distance(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape s = shape_cube(1);
+    starg_solid *solid = make_solid(context, &s);
+    assert_true(fabs(starg_solid_distance(solid, (const double[3]){0.5, 0.5, 0.25}) - 0.25) <
+                1e-15);
+    assert_true(fabs(starg_solid_distance(solid, (const double[3]){2, 2, 2}) - sqrt(3)) < 1e-15);
+    assert_true(starg_solid_distance(solid, (const double[3]){0.5, 1, 0.25}) == 0);
+    starg_solid_free(solid);
+    starg_solid_free(NULL);
+    shape_free(&s);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_refuses_open),
+        cmocka_unit_test(test_refuses_inconsistent),
+        cmocka_unit_test(test_refuses_nonmanifold),
+        cmocka_unit_test(test_refuses_flat),
+        cmocka_unit_test(test_refuses_nothing),
+        cmocka_unit_test(test_keeps_order),
+        cmocka_unit_test(test_turns_shells_with_a_notice),
+        cmocka_unit_test(test_warns_of_intersections),
+        cmocka_unit_test(test_contains_against_oracle),
+        cmocka_unit_test(test_distance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
