@@ -24,7 +24,9 @@ typedef enum triangle_contact {
     TRIANGLES_CROSS = 3  /* an edge of one passes through the other, or they lie on one another  */
 } triangle_contact;
 
-/* Contact of two triangles whose first `shared` corners (0 to 3) are the same mesh vertices. */
+/* Contact of two triangles with area whose first `shared` corners (0 to 3) are the same mesh
+ * vertices. Without shared corners triangles without area are decided too; with them they may be
+ * told to touch or cross where they only share, or the reverse. */
 triangle_contact triangles_contact(const double *const s[3], const double *const t[3], int shared);
 
 #endif

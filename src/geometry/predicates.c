@@ -73,8 +73,23 @@ static int orient3d_short(const double values[12], int scale) {
                         m[2][2] * (m[0][0] * m[1][1] - m[1][0] * m[0][1]));
 }
 
+static bool same(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* The usual reasons for a zero: a corner that is an end of the segment, walls along the axes. */
+static bool plainly_coplanar(const double a[3], const double b[3], const double c[3],
+                             const double d[3]) {
+    for (int k = 0; k < 3; k++)
+        if (a[k] == b[k] && b[k] == c[k] && c[k] == d[k])
+            return true;
+    return same(a, b) || same(a, c) || same(a, d) || same(b, c) || same(b, d) || same(c, d);
+}
+
 static __attribute__((noinline)) int orient3d_exact(const double a[3], const double b[3],
                                                     const double c[3], const double d[3]) {
+    if (plainly_coplanar(a, b, c, d))
+        return 0;
     double values[12];
     gather(values, (const double *const[]){a, b, c, d}, 4);
     int bits, scale = exact_scale(values, 12, &bits);

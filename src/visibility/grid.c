@@ -149,7 +149,7 @@ static void cut_rows(grid_scratch *g) {
         g->row_count += last + 1;
     }
     for (uint32_t r = 0; r < g->row_count; r++)
-        g->rows[r] = (grid_row){.u_low = 1, .u_high = -1};
+        g->rows[r] = (grid_row){.u_low = 1, .u_high = -1, .v_low = 1, .v_high = -1};
 }
 
 /* Gives each row twice as many cells as it has vertices. Returns the number of cells. */
@@ -165,6 +165,8 @@ static uint32_t cut_cells(grid_scratch *g) {
         grid_row *row = &g->rows[g->place[slot]];
         row->u_low = u < row->u_low ? u : row->u_low;
         row->u_high = u > row->u_high ? u : row->u_high;
+        row->v_low = v < row->v_low ? v : row->v_low;
+        row->v_high = v > row->v_high ? v : row->v_high;
         row->vertices++;
     }
     uint32_t cells = 0;

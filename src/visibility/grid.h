@@ -20,7 +20,7 @@ typedef struct cube_point {
 
 /* A row of cells: vertices of nearly the same v, cut evenly between their extremes of u. */
 typedef struct grid_row {
-    float u_low, u_high, scale;
+    float u_low, u_high, v_low, v_high, scale;
     uint32_t first_cell, cell_count, vertices;
 } grid_row;
 

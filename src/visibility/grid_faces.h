@@ -10,6 +10,9 @@
 /* Positions that are tested at once: what can be cut out of the bits of `hidden` in one piece. */
 enum { RUN = 56 };
 
+/* From so many rows on a face's edges are followed from row to row. */
+enum { TALL = 3 };
+
 /* A face as the inner loop needs it. */
 typedef struct blocker {
     size_t rank;
@@ -105,16 +108,63 @@ static void test_run(const visibility_scene *scene, const double p[3], grid_scra
         decide_exactly(scene, p, g, f, begin, maybe);
 }
 
+static inline void test_cells(const visibility_scene *scene, const double p[3], grid_scratch *g,
+                              blocker *f, const grid_row *row, float u_low, float u_high) {
+    size_t begin = g->cell_start[cell_of(row, u_low - CELL_MARGIN)];
+    size_t end = g->cell_start[cell_of(row, u_high + CELL_MARGIN) + 1];
+    for (; begin < end; begin += RUN)
+        test_run(scene, p, g, f, begin, end - begin < RUN ? end - begin : RUN);
+}
+
 /* Tests the cells between two values of u in some rows. */
 static inline void test_rows(const visibility_scene *scene, const double p[3], grid_scratch *g,
                              blocker *f, uint32_t row, uint32_t last_row, float u_low,
                              float u_high) {
+    for (; row <= last_row; row++)
+        test_cells(scene, p, g, f, &g->rows[row], u_low, u_high);
+}
+
+static void widen(float u, float span[2]) {
+    span[0] = u < span[0] ? u : span[0];
+    span[1] = u > span[1] ? u : span[1];
+}
+
+/* Where one edge of a projected triangle lies within a row: its ends there, and where it enters
+ * and leaves. The slack covers the rounding of the slope, which counts where an edge is nearly
+ * level; the ends bound it. */
+static void span_edge(const float from[2], const float to[2], float v_low, float v_high,
+                      float span[2]) {
+    float u_low = from[0] < to[0] ? from[0] : to[0], u_high = from[0] < to[0] ? to[0] : from[0];
+    float slope = (to[0] - from[0]) / (to[1] - from[1]);
+    float slack = (fabsf(slope) + 1) * CELL_MARGIN;
+    if (from[1] >= v_low && from[1] <= v_high)
+        widen(from[0], span);
+    for (int side = 0; side < 2; side++) {
+        float v = side ? v_high : v_low;
+        if ((from[1] < v) == (to[1] < v))
+            continue;
+        float u = from[0] + (v - from[1]) * slope;
+        widen(u - slack > u_low ? u - slack : u_low, span);
+        widen(u + slack < u_high ? u + slack : u_high, span);
+    }
+}
+
+/* A tall face in one cube face: in each row only the cells between its edges. */
+static void test_tall(const visibility_scene *scene, const double p[3], grid_scratch *g, blocker *f,
+                      uint32_t row, uint32_t last_row) {
+    float corner[3][2];
+    for (int k = 0; k < 3; k++) {
+        corner[k][0] = g->cube[f->corner[k]].u;
+        corner[k][1] = g->v[f->corner[k]];
+    }
     for (; row <= last_row; row++) {
         const grid_row *r = &g->rows[row];
-        size_t begin = g->cell_start[cell_of(r, u_low - CELL_MARGIN)];
-        size_t end = g->cell_start[cell_of(r, u_high + CELL_MARGIN) + 1];
-        for (; begin < end; begin += RUN)
-            test_run(scene, p, g, f, begin, end - begin < RUN ? end - begin : RUN);
+        float span[2] = {2, -2};
+        for (int k = 0; k < 3; k++)
+            span_edge(corner[k], corner[(k + 1) % 3], r->v_low - CELL_MARGIN,
+                      r->v_high + CELL_MARGIN, span);
+        if (span[0] <= span[1])
+            test_cells(scene, p, g, f, r, span[0], span[1]);
     }
 }
 
@@ -192,17 +242,26 @@ static void test_clipped(const visibility_scene *scene, const double p[3], grid_
     }
 }
 
+static void test_face(const visibility_scene *scene, const double p[3], grid_scratch *g,
+                      blocker *f) {
+    const cube_point *a = &g->cube[f->corner[0]], *b = &g->cube[f->corner[1]];
+    const cube_point *c = &g->cube[f->corner[2]];
+    if (a->face != b->face || b->face != c->face || a->face >= RIM) {
+        test_clipped(scene, p, g, f);
+        return;
+    }
+    uint32_t first = least_row(a, b, c), last = last_row(a, b, c);
+    if (last - first < TALL)
+        test_rows(scene, p, g, f, first, last, min3(a->u, b->u, c->u), max3(a->u, b->u, c->u));
+    else
+        test_tall(scene, p, g, f, first, last);
+}
+
 void GRID_TEST_FACES(const visibility_scene *scene, const double p[3], const int8_t *side,
                      grid_scratch *g) {
     for (size_t i = 0; i < g->kept_count; i++) {
         size_t rank = g->kept[i];
         blocker f = {.rank = rank, .side = side[rank], .corner = scene->corners + 3 * rank};
-        const cube_point *a = &g->cube[f.corner[0]], *b = &g->cube[f.corner[1]];
-        const cube_point *c = &g->cube[f.corner[2]];
-        if (a->face == b->face && b->face == c->face && a->face < RIM)
-            test_rows(scene, p, g, &f, least_row(a, b, c), last_row(a, b, c),
-                      min3(a->u, b->u, c->u), max3(a->u, b->u, c->u));
-        else
-            test_clipped(scene, p, g, &f);
+        test_face(scene, p, g, &f);
     }
 }

@@ -28,15 +28,15 @@ static void order_vertices(visibility_scene *scene) {
         }
 }
 
-/* The error bound: with e the longest extent of an edge and h half that of the box, a normal's
+/* The error bound: with e the longest extent of an edge and h that of the box, a normal's
  * components are below 2 e^2 and carry 4 roundings, the products another 4; there are six terms
  * with factors up to h (which itself carries a rounding). 128 covers the sum. */
 static void compute_planes(visibility_scene *scene) {
-    double lower[3], upper[3], edge = 0, half = 0;
+    double lower[3], upper[3], edge = 0;
     starg_mesh_bounds(scene->mesh, lower, upper);
     for (int k = 0; k < 3; k++) {
         scene->centre[k] = 0.5 * lower[k] + 0.5 * upper[k];
-        half = fmax(half, upper[k] - lower[k]);
+        scene->extent = fmax(scene->extent, upper[k] - lower[k]);
     }
     for (size_t rank = 0; rank < scene->face_count; rank++) {
         const double *a = scene_corner(scene, rank, 0), *b = scene_corner(scene, rank, 1);
@@ -51,7 +51,7 @@ static void compute_planes(visibility_scene *scene) {
         for (int k = 0; k < 3; k++)
             edge = fmax(edge, fmax(fabs(b[k] - a[k]), fabs(c[k] - a[k])));
     }
-    scene->side_bound = 128 * 0x1p-53 * edge * edge * half;
+    scene->side_bound = 128 * 0x1p-53 * edge * edge * scene->extent;
     if (!(scene->side_bound > 1e-250))
         scene->side_bound = INFINITY; /* too small for the analysis: always decide exactly */
 }

@@ -37,6 +37,7 @@ typedef struct visibility_scene {
     /* Plane of each face by rank: normal . (centre - p) + offset is positive where p is inside. */
     double *nx, *ny, *nz, *offset;
     double centre[3];
+    double extent;     /* longest side of the bounding box */
     double side_bound; /* larger than the rounding error of that expression for p in the box */
 } visibility_scene;
 

@@ -30,14 +30,11 @@ typedef struct cone {
 } cone;
 
 static void make_cone(cone *k) {
-    double r[3][3], size = 0, range = 0;
-    double lower[3], upper[3];
-    starg_mesh_bounds(k->scene->mesh, lower, upper);
+    double r[3][3], size = 0, range = k->scene->extent;
     for (int i = 0; i < 3; i++) {
         vec3_subtract(k->corner[i], k->p, r[i]);
         for (int j = 0; j < 3; j++)
             size = fmax(size, fabs(r[i][j]));
-        range = fmax(range, upper[i] - lower[i]);
     }
     for (int i = 0; i < 3; i++) {
         /* a face seen from inside turns clockwise about the view */
