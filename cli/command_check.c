@@ -184,8 +184,8 @@ static void judge(cli_session *session, const starg_check *check) {
     for (size_t i = 0; i < sizeof serious / sizeof *serious && used < sizeof list; i++) {
         size_t count = check->findings[serious[i]].count;
         if (count > 0)
-            used += (size_t)snprintf(list + used, sizeof list - used, "%s%zu %s",
-                                     used == 0 ? "" : ", ", count, starg_finding_name(serious[i]));
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s (%zu)",
+                                     used == 0 ? "" : ", ", starg_finding_name(serious[i]), count);
     }
     cli_warn(session, "'%s' is not a usable solid: %s; 'starguard repair' may mend it", name,
              used > 0 ? list : "it bounds no volume");

@@ -1,4 +1,5 @@
 /* starguard guard: places guards, the main job. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -120,8 +121,8 @@ static void set_defaults(void *data) {
 
 /* ---- what was asked for ---- */
 
-/* A known source, or a file with points, which is read here. A word that is neither is more likely
- * a slip than a file. */
+/* A known source, or a file with points, which is read here. A bare word that names no file is a
+ * slip of the command line. */
 static starg_status take_candidates(cli_session *session, const char *word,
                                     starg_guard_options *wanted, double **points) {
     cli_suggestion near;
@@ -133,11 +134,12 @@ static starg_status take_candidates(cli_session *session, const char *word,
         }
         cli_suggest_try(&near, candidate_words[i]);
     }
-    if (near.best != NULL && access(word, F_OK) != 0)
+    if (strpbrk(word, "./") == NULL && strcmp(word, "-") != 0 && access(word, F_OK) != 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--candidates takes medial, interior or a file of points, and there is no "
-                        "file '%.100s'; did you mean '%s'?",
-                        word, near.best);
+                        "file '%.100s'%s%s%s",
+                        word, near.best != NULL ? "; did you mean '" : "",
+                        near.best != NULL ? near.best : "", near.best != NULL ? "'?" : "");
     if (strcmp(word, "-") == 0 && strcmp(session->operands[0], "-") == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "the model and the candidates cannot both come from standard input");
@@ -172,15 +174,20 @@ static void say_bound(cli_session *session, const starg_guards *g) {
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
+/* Rounded down, so that only what is whole is called 100 %. */
+static double percent(double fraction) {
+    return floor(1e4 * fraction) / 100;
+}
+
 static void say_guards(cli_session *session, const starg_guards *g) {
     cli_say(session, "guards        %zu\n", g->count);
     say_bound(session, g);
-    cli_say(session, "coverage      %.4g %% of the faces, %.4g %% of the area\n",
-            100 * g->coverage_faces, 100 * g->coverage_area);
+    cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
+            percent(g->coverage_faces), percent(g->coverage_area));
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
-        cli_say(session, "              %.4g %% of the vertices\n", 100 * g->coverage_vertices);
+        cli_say(session, "              %g %% of the vertices\n", percent(g->coverage_vertices));
     if (g->options.max_guards > 0)
-        cli_say(session, "area bound    %.4g %% with %zu guards\n", 100 * g->area_bound,
+        cli_say(session, "area bound    %g %% with %zu guards\n", percent(g->area_bound),
                 g->options.max_guards);
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
     size_t hidden = g->face_count - g->coverable_faces;

@@ -88,7 +88,7 @@ static void on_log(void *user, starg_log_level level, const char *message) {
                  cli_style_off(stderr), message);
     } else if (!session->common.quiet) {
         cli_progress_erase(&session->progress);
-        fprintf(stderr, "starguard: %s\n", message);
+        fprintf(stderr, "starguard %s: %s\n", session->command->name, message);
     }
 }
 
@@ -153,7 +153,7 @@ void cli_say(cli_session *session, const char *format, ...) {
 
 void cli_warn(cli_session *session, const char *format, ...) {
     cli_progress_erase(&session->progress);
-    fputs("starguard: ", stderr);
+    fprintf(stderr, "starguard %s: ", session->command->name);
     va_list arguments;
     va_start(arguments, format);
     vfprintf(stderr, format, arguments);

@@ -1,0 +1,108 @@
+"""What the tests of the command line share: running it, scratch folders, small models."""
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ.get("STARGUARD", "build/starguard")
+SHARED = os.environ.get("STARGUARD_SHARED", "../shared")
+# Programs under a sanitizer are several times slower; limits on time grow with them.
+SLOWNESS = 8 if os.environ.get("STARGUARD_SANITIZE") else 1
+
+COMMANDS = ["sample", "check", "repair", "visible", "guard", "verify"]
+
+TETRAHEDRON = """OFF
+4 4 6
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+"""
+
+OPEN = """OFF
+4 3 6
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 0 2 1
+3 0 1 3
+3 0 3 2
+"""
+
+
+class Case(unittest.TestCase):
+    """A test in a scratch folder of its own, which is the working directory of every run."""
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "wb") as file:
+            file.write(text if isinstance(text, bytes) else text.encode())
+        return name
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def names(self):
+        return sorted(os.listdir(self.folder))
+
+    def start(self, *words, **options):
+        environment = dict(os.environ, **options.pop("environment", {}))
+        return subprocess.Popen([PROGRAM, *words], cwd=self.folder, env=environment,
+                                stdin=options.pop("stdin", subprocess.DEVNULL),
+                                stdout=options.pop("stdout", subprocess.PIPE),
+                                stderr=options.pop("stderr", subprocess.PIPE), **options)
+
+    def run_bytes(self, *words, status=0, input=None, timeout=60, **options):
+        """Runs the program and checks its exit status; what it wrote to both streams."""
+        stdin = subprocess.DEVNULL if input is None else subprocess.PIPE
+        with self.start(*words, stdin=options.pop("stdin", stdin), **options) as process:
+            try:
+                out, err = process.communicate(input, timeout=timeout * SLOWNESS)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                self.fail(f"{words}: still running after {timeout * SLOWNESS} s")
+        self.assertEqual(process.returncode, status, f"{words}: {out!r} {err!r}")
+        return out or b"", err or b""
+
+    def run_text(self, *words, **options):
+        out, err = self.run_bytes(*words, **options)
+        return out.decode(), err.decode()
+
+    def run_json(self, *words, **options):
+        """Runs with --json: the one object on standard output."""
+        out, _ = self.run_text(words[0], "--json", *words[1:], **options)
+        value = json.loads(out)
+        self.assertIsInstance(value, dict)
+        return value
+
+    def usage_error(self, *words, says):
+        """A wrong command line: status 1, nothing on standard output, a hint on standard error."""
+        before = self.names()
+        out, err = self.run_text(*words, status=1)
+        self.assertEqual(out, "")
+        self.assertIn(says, err)
+        self.assertIn("--help", err)
+        self.assertEqual(self.names(), before)
+
+    def sample(self, name="l-room", vertices=500, file=None, *more):
+        file = file or f"{name}.off"
+        self.run_text("sample", name, "--vertices", str(vertices), "-o", file, "--quiet", *more)
+        return file
+
+
+def main():
+    unittest.main(verbosity=2)

@@ -1,0 +1,296 @@
+"""What each command does with good input, seen through its files and its --json."""
+import json
+import struct
+
+import support
+from support import OPEN, TETRAHEDRON
+
+
+def ply_header(data):
+    return data[:data.index(b"end_header")].decode()
+
+
+class Sample(support.Case):
+    def test_list(self):
+        text = self.run_text("sample", "--list")[0]
+        listed = self.run_json("sample", "--list")
+        self.assertEqual(listed["format"], "starguard-samples")
+        self.assertGreaterEqual(len(listed["samples"]), 13)
+        for entry in listed["samples"]:
+            self.assertIn(entry["name"], text)
+            self.assertGreaterEqual(entry["poses"], 1)
+        self.assertGreaterEqual(sum(entry["poses"] >= 5 for entry in listed["samples"]), 6)
+
+    def test_formats(self):
+        for ending, first in [("off", b"OFF"), ("obj", b"v "), ("ply", b"ply"), ("stl", b"")]:
+            self.run_text("sample", "torus", "--vertices", "600", "-o", f"t.{ending}")
+            self.assertTrue(self.read(f"t.{ending}").startswith(first), ending)
+            self.assertTrue(self.run_json("check", f"t.{ending}")["usable"])
+
+    def test_poses_share_faces(self):
+        def faces(pose):
+            data = self.run_bytes("sample", "cat", "--pose", pose, "--vertices", "800", "-o", "-")[0]
+            lines = data.decode().splitlines()
+            vertices, count, _ = map(int, lines[1].split())
+            return lines[2:2 + vertices], lines[2 + vertices:2 + vertices + count]
+        first, second = faces("0"), faces("3")
+        self.assertEqual(first[1], second[1])
+        self.assertNotEqual(first[0], second[0])
+
+
+class Check(support.Case):
+    def test_solid(self):
+        self.write("m.off", TETRAHEDRON)
+        report = self.run_json("check", "m.off")
+        self.assertEqual(report["format"], "starguard-check")
+        self.assertEqual(report["version"], 1)
+        self.assertEqual(report["model"], {"file": "m.off", "vertices": 4, "faces": 4})
+        for key in ["usable", "closed", "manifold", "oriented", "embedded"]:
+            self.assertIs(report[key], True)
+        self.assertEqual([report[k] for k in ("components", "cavities", "genus", "edges")],
+                         [1, 0, 0, 6])
+        self.assertAlmostEqual(report["volume"], 1 / 6)
+        self.assertAlmostEqual(report["area"], 1.5 + 3 ** 0.5 / 2)
+        self.assertEqual(report["findings"], {})
+
+    def test_open(self):
+        self.write("m.off", OPEN)
+        report = self.run_json("check", "m.off", status=2)
+        self.assertIs(report["usable"], False)
+        found = report["findings"]["open_edges"]
+        self.assertEqual(found["count"], 3)
+        self.assertEqual(found["element"], "edge")
+        self.assertEqual(sorted(map(sorted, found["first"])), [[1, 2], [1, 3], [2, 3]])
+        out, err = self.run_text("check", "m.off", status=2)
+        self.assertIn("open edges", out)
+        self.assertIn("not a usable solid", err)
+        out, err = self.run_text("check", "m.off", "--quiet", status=2)
+        self.assertEqual(out, "")
+        self.assertIn("not a usable solid", err)
+
+    def test_self_intersection_is_a_warning(self):
+        shifted = [f"{x + .1} {y + .1} {z + .1}" for x, y, z in
+                   [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]]
+        lines = TETRAHEDRON.splitlines()
+        faces = lines[6:] + ["3 " + " ".join(str(int(i) + 4) for i in f.split()[1:])
+                             for f in lines[6:]]
+        self.write("m.off", "\n".join(["OFF", "8 8 12"] + lines[2:6] + shifted + faces) + "\n")
+        report = self.run_json("check", "m.off")
+        self.assertIs(report["usable"], True)
+        self.assertIs(report["embedded"], False)
+        self.assertGreater(report["findings"]["self_intersections"]["count"], 0)
+        _, err = self.run_text("check", "m.off")
+        self.assertIn("warning", err)
+        self.run_text("guard", "m.off", "-o", "g.json", "--count", "20")
+        self.assertIn("g.json", self.names())
+
+    def test_marks(self):
+        self.write("m.off", OPEN)
+        text = self.run_text("check", "m.off", "--marks", "marks.ply", status=2)[0]
+        self.assertRegex(text, r"#[0-9A-F]{6}  open edges")
+        header = ply_header(self.read("marks.ply"))
+        self.assertIn("element face 3", header)
+        self.assertIn("property uchar red", header)
+
+    def test_standard_input(self):
+        out = self.run_text("check", "-", input=TETRAHEDRON.encode())[0]
+        self.assertIn("usable      yes", out)
+
+
+class Repair(support.Case):
+    def test_fills_a_hole(self):
+        self.write("m.off", OPEN)
+        report = self.run_json("repair", "m.off", "-o", "mended.off")
+        self.assertEqual(report["format"], "starguard-repair")
+        self.assertEqual(report["repair"]["holes_filled"], 1)
+        self.assertEqual(report["result"]["faces"], 4)
+        self.assertIs(self.run_json("check", "mended.off")["usable"], True)
+
+    def test_says_what_was_done(self):
+        self.write("m.off", OPEN)
+        self.assertRegex(self.run_text("repair", "m.off", "-o", "mended.off")[0],
+                         r"holes filled +1\n")
+
+    def test_hopeless(self):
+        self.write("m.off", "OFF\n3 1 3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        self.run_text("repair", "m.off", "-o", "mended.off", status=2)
+        self.assertEqual(self.names(), ["m.off"])
+
+
+class Visible(support.Case):
+    def test_convex(self):
+        self.write("m.off", TETRAHEDRON)
+        report = self.run_json("visible", "m.off", "--from", "0.1,0.1,0.1", "--from", "2,2,2")
+        self.assertEqual(report["format"], "starguard-visible")
+        inside, outside = report["points"]
+        self.assertEqual(inside["position"], [0.1, 0.1, 0.1])
+        self.assertIs(inside["inside"], True)
+        self.assertEqual(inside["faces"], [0, 1, 2, 3])
+        self.assertEqual(inside["count"], 4)
+        self.assertAlmostEqual(inside["area"], 1)
+        self.assertIs(outside["inside"], False)
+        self.assertEqual(outside["faces"], [])
+        self.assertIn("not inside", self.run_text("visible", "m.off", "--from", "2,2,2")[0])
+
+    def test_targets_and_range(self):
+        self.write("m.off", TETRAHEDRON)
+        report = self.run_json("visible", "m.off", "--from", ".1,.1,.1", "--target", "vertices")
+        self.assertEqual(report["points"][0]["vertices"], [0, 1, 2, 3])
+        report = self.run_json("visible", "m.off", "--from", ".1,.1,.1", "--range", "0.5")
+        self.assertEqual(report["points"][0]["faces"], [])
+
+    def test_engines_agree(self):
+        room = self.sample("l-room")
+        lower = self.run_json("check", room)
+        self.assertIs(lower["usable"], True)
+        guards = json.loads((self.run_bytes("guard", room, "-o", "-")[0]))
+        point = ",".join(map(repr, guards["guards"][0]["position"]))
+        for rule in ["vertices", "whole"]:
+            seen = [self.run_json("visible", room, "--from", point, "--engine", engine,
+                                  "--faces", rule)["points"] for engine in ["grid", "bvh", "sweep"]]
+            self.assertGreater(seen[0][0]["count"], 0)
+            self.assertEqual(seen[0], seen[1])
+            self.assertEqual(seen[0], seen[2])
+
+    def test_colours(self):
+        self.write("m.off", TETRAHEDRON)
+        for target in ["faces", "vertices"]:
+            self.run_text("visible", "m.off", "--from", "2,2,2", "--from", ".1,.1,.1", "-o",
+                          "v.ply", "--target", target)
+            data = self.read("v.ply")
+            body = data[data.index(b"end_header\n") + 11:]
+            size = 1 + 12 + 3
+            colors = {struct.unpack_from("3B", body, 4 * 24 + size * f + 13) for f in range(4)}
+            self.assertEqual(len(colors), 1)
+            self.assertNotIn((190, 195, 200), colors)
+
+
+class Guard(support.Case):
+    def setUp(self):
+        super().setUp()
+        self.room = self.sample("l-room")
+
+    def test_result_and_report_agree(self):
+        report = self.run_json("guard", self.room, "-o", "g.json", "--marks", "g.ply", "--picture",
+                               "g.png")
+        result = json.loads(self.read("g.json"))
+        self.assertEqual(result["format"], "starguard-guards")
+        self.assertEqual(report["format"], "starguard-guard")
+        for key in ["guards", "coverage", "candidates", "lower_bound", "optimal", "model"]:
+            self.assertEqual(report[key], result[key], key)
+        for absent in ["seconds", "memory", "log", "threads"]:
+            self.assertNotIn(absent, result)
+        self.assertGreater(report["memory"]["peak_resident_bytes"], 0)
+        self.assertGreater(report["seconds"]["total"], 0)
+        self.assertTrue(self.read("g.png").startswith(b"\x89PNG\r\n"))
+        self.assertIn("property uchar red", ply_header(self.read("g.ply")))
+        self.run_text("verify", self.room, "g.json")
+
+    def test_options_reach_the_result(self):
+        self.run_text("guard", self.room, "-o", "g.json", "--method", "greedy", "--candidates",
+                      "interior", "--count", "50", "--coverage", "0.5", "--redundancy", "2",
+                      "--clearance", "0.01", "--range", "1000", "--faces", "whole")
+        options = json.loads(self.read("g.json"))["options"]
+        expected = {"method": "greedy", "candidates": "interior", "count": 50, "coverage": 0.5,
+                    "redundancy": 2, "clearance": 0.01, "range": 1000.0, "faces": "whole",
+                    "target": "faces", "max_guards": 0}
+        for key, value in expected.items():
+            self.assertEqual(options[key], value, key)
+        self.run_text("verify", self.room, "g.json")
+
+    def test_limits(self):
+        maze = self.sample("labyrinth")
+        one = self.run_json("guard", maze, "-o", "g.json", "--max-guards", "1", "--count", "60")
+        self.assertEqual(len(one["guards"]), 1)
+        self.assertLess(one["coverage"]["area"], 1)
+        self.run_text("verify", maze, "g.json")
+        vertices = self.run_json("guard", self.room, "-o", "v.json", "--target", "vertices")
+        self.assertEqual(vertices["coverage"]["vertices"], 1)
+        self.run_text("verify", self.room, "v.json")
+
+    def test_text(self):
+        text = self.run_text("guard", self.room, "-o", "g.json")[0]
+        for line in ["guards", "lower bound", "coverage", "uncovered", "candidates"]:
+            self.assertRegex(text, rf"(?m)^{line} +\d")
+
+    def test_candidates_from_files(self):
+        self.run_text("guard", self.room, "-o", "g.json")
+        guards = json.loads(self.read("g.json"))["guards"]
+        lines = "".join("{!r} {!r} {!r}\n".format(*g["position"]) for g in guards)
+        self.write("points.txt", "# from a file\n" + lines)
+        for file in ["g.json", "points.txt"]:
+            again = self.run_json("guard", self.room, "-o", "again.json", "--candidates", file)
+            self.assertEqual(again["candidates"], len(guards))
+            self.assertEqual(sorted(g["position"] for g in again["guards"]),
+                             sorted(g["position"] for g in guards))
+        data = self.read("points.txt")
+        self.run_text("guard", self.room, "-o", "-", "--candidates", "-", input=data)
+        self.write("bad.txt", "1 2\n")
+        self.run_text("guard", self.room, "-o", "bad.json", "--candidates", "bad.txt", status=2)
+        self.run_text("guard", self.room, "-o", "bad.json", "--candidates", "./none", status=2)
+        self.run_text("guard", "-", "-o", "bad.json", "--candidates", "-", status=1)
+        self.assertNotIn("bad.json", self.names())
+
+    def test_pipes(self):
+        model = self.read(self.room)
+        out, err = self.run_text("guard", "-", "-o", "-", input=model)
+        result = json.loads(out)
+        self.assertEqual(result["model"]["file"], "-")
+        self.assertIn("lower bound", err)
+        self.assertEqual(self.names(), [self.room])
+        claims = self.run_text("verify", self.room, "-", input=out.encode())[0]
+        self.assertIn("verified", claims)
+        out, err = self.run_text("guard", "-", "-o", "-", "--quiet", input=model)
+        self.assertEqual(err, "")
+
+
+class Verify(support.Case):
+    def setUp(self):
+        super().setUp()
+        self.room = self.sample("l-room")
+        self.run_text("guard", self.room, "-o", "g.json", "--count", "60")
+        self.result = json.loads(self.read("g.json"))
+
+    def test_passes(self):
+        report = self.run_json("verify", self.room, "g.json", "g.json")
+        self.assertIs(report["passed"], True)
+        self.assertEqual([r["file"] for r in report["results"]], ["g.json", "g.json"])
+        self.assertTrue(all(c["holds"] for r in report["results"] for c in r["claims"]))
+        out, err = self.run_text("verify", self.room, "g.json", "--quiet")
+        self.assertEqual(out + err, "")
+
+    def test_fails(self):
+        changes = {
+            "moved": lambda r: r["guards"][0].update(position=[1e6, 0, 0]),
+            "count": lambda r: r["guards"][0].update(faces=1),
+            "area": lambda r: r["coverage"].update(area=0.5),
+            "bound": lambda r: r.update(lower_bound=len(r["guards"]) + 1),
+            "hidden": lambda r: r["coverage"].update(uncovered_faces=[0]),
+        }
+        for name, change in changes.items():
+            result = json.loads(json.dumps(self.result))
+            change(result)
+            self.write("bad.json", json.dumps(result))
+            out, _ = self.run_text("verify", self.room, "bad.json", status=4)
+            self.assertIn("FAILED", out, name)
+            report = self.run_json("verify", self.room, "g.json", "bad.json", status=4)
+            self.assertIs(report["passed"], False)
+            self.assertEqual([r["passed"] for r in report["results"]], [True, False])
+            out, err = self.run_text("verify", self.room, "bad.json", "--quiet", status=4)
+            self.assertEqual(out, "")
+            self.assertIn("FAILED", err)
+
+    def test_unreadable(self):
+        self.write("text.json", "{")
+        self.write("other.json", '{"format": "something"}')
+        self.write("empty.json", "")
+        for name in ["none.json", "text.json", "other.json", "empty.json", "."]:
+            self.run_text("verify", self.room, "g.json", name, status=2)
+
+    def test_other_model(self):
+        other = self.sample("torus")
+        self.run_text("verify", other, "g.json", status=4)
+
+
+if __name__ == "__main__":
+    support.main()

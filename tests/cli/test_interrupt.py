@@ -1,0 +1,113 @@
+"""Signals, time limits, and results that do not depend on threads."""
+import json
+import os
+import signal
+import time
+
+import support
+from support import SLOWNESS
+
+
+class Interrupt(support.Case):
+    """The sweep on a large sample runs for minutes if nobody stops it."""
+
+    def setUp(self):
+        super().setUp()
+        self.model = self.sample("horse", 30000)
+
+    def interrupt(self, number, *words):
+        names = self.names()
+        with self.start("guard", self.model, "--visibility", "sweep", *words) as process:
+            time.sleep(1.0)
+            self.assertIsNone(process.poll(), "it ended before it could be interrupted")
+            sent = time.monotonic()
+            process.send_signal(number)
+            out, err = process.communicate(timeout=60)
+            took = time.monotonic() - sent
+        self.assertEqual(process.returncode, 130, err)
+        self.assertLess(took, 2 * SLOWNESS)
+        self.assertEqual(self.names(), names)
+        return out, err
+
+    def test_interrupt(self):
+        self.write("g.json", "old")
+        _, err = self.interrupt(signal.SIGINT, "-o", "g.json", "--marks", "g.ply")
+        self.assertIn(b"cancelled", err)
+        self.assertEqual(self.read("g.json"), b"old")
+
+    def test_terminate(self):
+        self.interrupt(signal.SIGTERM, "-o", "g.json")
+        self.interrupt(signal.SIGHUP, "-o", "g.json")
+
+    def test_json(self):
+        out, _ = self.interrupt(signal.SIGINT, "-o", "g.json", "--json")
+        self.assertEqual(json.loads(out)["error"]["status"], "cancelled")
+
+    def test_to_standard_output(self):
+        out, _ = self.interrupt(signal.SIGINT, "-o", "-")
+        self.assertEqual(out, b"")
+
+    def test_waiting_for_input(self):
+        ends = os.pipe()
+        with self.start("check", "-", stdin=ends[0]) as process:
+            time.sleep(0.3)
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=10 * SLOWNESS)
+        os.close(ends[0])
+        os.close(ends[1])
+        self.assertEqual(process.returncode, 130)
+
+
+class TimeLimit(support.Case):
+    def test_nothing_found(self):
+        model = self.sample("horse", 30000)
+        names = self.names()
+        for limit in [0.05, 2.0]:
+            began = time.monotonic()
+            _, err = self.run_text("guard", model, "-o", "g.json", "--visibility", "sweep",
+                                   "--time-limit", str(limit), status=3)
+            self.assertIn("time limit", err)
+            self.assertLess(time.monotonic() - began, (1.05 * limit + 2) * SLOWNESS)
+            self.assertEqual(self.names(), names)
+
+    def test_enough(self):
+        model = self.sample("l-room")
+        self.run_text("guard", model, "-o", "a.json")
+        self.run_text("guard", model, "-o", "b.json", "--time-limit", "600")
+        self.assertEqual(self.read("a.json"), self.read("b.json"))
+
+
+class SameBytes(support.Case):
+    def test_threads(self):
+        model = self.sample("cat", 1500)
+        variants = {
+            "ilp": [],
+            "greedy": ["--method", "greedy", "--candidates", "interior"],
+            "part": ["--coverage", "0.9", "--redundancy", "2", "--faces", "whole", "--count", "60",
+                     "--max-nodes", "50"],
+        }
+        for name, words in variants.items():
+            results = set()
+            for threads in ["1", "2", "3"]:
+                outputs = ["-o", "g.json", "--marks", "g.ply", "--picture", "g.png"]
+                self.run_text("guard", model, *outputs, *words, "--threads", threads, "--quiet")
+                results.add((self.read("g.json"), self.read("g.ply"), self.read("g.png")))
+            self.assertEqual(len(results), 1, name)
+
+    def test_samples(self):
+        for name in ["octopus", "knot"]:
+            self.sample(name, 2000, "a.off", "--threads", "1")
+            self.sample(name, 2000, "b.off", "--threads", "2")
+            self.assertEqual(self.read("a.off"), self.read("b.off"))
+
+    def test_locale(self):
+        """A locale with a decimal comma changes nothing."""
+        model = self.sample("l-room")
+        self.run_text("guard", model, "-o", "a.json")
+        self.run_text("guard", model, "-o", "b.json", "--coverage", "1.0",
+                      environment={"LC_ALL": "de_DE.UTF-8"})
+        self.assertEqual(self.read("a.json"), self.read("b.json"))
+
+
+if __name__ == "__main__":
+    support.main()

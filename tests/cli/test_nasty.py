@@ -1,0 +1,51 @@
+"""A collection of broken meshes: each is done or rejected, and quickly."""
+import glob
+import os
+import unittest
+
+import support
+from support import SHARED
+
+
+class Nasty(support.Case):
+    """Each file of the collection: done or rejected within 30 seconds."""
+
+    def walk(self, *options):
+        files = sorted(glob.glob(os.path.join(SHARED, "data", "nasty", "*")))
+        if not files:
+            raise unittest.SkipTest(f"no shared data at {SHARED}")
+        for file in map(os.path.abspath, files):
+            with self.subTest(file=os.path.basename(file)):
+                words = [options[0], file, *options[1:]]
+                with self.start(*words) as process:
+                    try:
+                        _, err = process.communicate(timeout=30 * support.SLOWNESS)
+                    except Exception:
+                        process.kill()
+                        raise
+                self.assertIn(process.returncode, (0, 2), err)
+                if process.returncode == 2:
+                    self.assertTrue(err.strip())
+                yield file, process.returncode
+
+    def test_check(self):
+        statuses = [status for _, status in self.walk("check")]
+        self.assertIn(0, statuses)
+        self.assertIn(2, statuses)
+
+    def test_repair(self):
+        for file, status in self.walk("repair", "-o", "out.off"):
+            if status == 0:
+                self.run_text("check", "out.off")
+                os.remove(self.path("out.off"))
+            self.assertEqual(self.names(), [], file)
+
+    def test_guard(self):
+        for file, status in self.walk("guard", "-o", "g.json", "--method", "greedy"):
+            self.assertEqual("g.json" in self.names(), status == 0, file)
+            if status == 0:
+                os.remove(self.path("g.json"))
+
+
+if __name__ == "__main__":
+    support.main()
