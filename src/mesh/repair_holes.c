@@ -1,12 +1,22 @@
 /* Holes: loops of open edges. Each is filled by itself; where no filling keeps the mesh manifold,
- * or every one crosses something, a fan about the loop's centre is tried. */
+ * or every one crosses something, a fan about the loop's centre is tried.
+ *
+ * Where two holes meet in a vertex, that vertex was split before, and the two holes have become one
+ * loop that passes both copies. Such copies are joined again first and the loop is cut in two
+ * there: filling both makes one fan of the two. It is allowed where the copies have no neighbour
+ * in common, which would double an edge. */
 #include "mesh/repair.h"
 #include "mesh/repair_fill.h"
 
+/* Loops longer than this are not searched for copies of a vertex. */
+enum { MAX_STEPS = 1 << 14 };
+
 typedef struct filler {
     repair_state *state;
-    uint32_t *out;     /* per vertex: the open halfedge from it, or TOPOLOGY_NONE */
-    uint32_t *end;     /* per vertex: where that halfedge ends                    */
+    uint32_t *out;   /* per vertex: the open halfedge from it, or TOPOLOGY_NONE */
+    uint32_t *end;   /* per vertex: the next one on its loop                    */
+    uint32_t *alias; /* per vertex: itself, or the copy that it was joined with */
+    repair_stars stars;
     repair_keys edges; /* of the mesh as it grows                                 */
     repair_index index;
     fill_list loop, triangles;
@@ -32,8 +42,10 @@ static starg_status find_open_edges(filler *f) {
     STARG_TRY(topology_create(f->state->context, &view, &topology));
     STARG_NEW(f->state->context, REPAIR_STAGE, f->out, view.vertex_count);
     STARG_NEW(f->state->context, REPAIR_STAGE, f->end, view.vertex_count);
+    STARG_NEW(f->state->context, REPAIR_STAGE, f->alias, view.vertex_count);
     for (size_t v = 0; v < view.vertex_count; v++)
         f->out[v] = TOPOLOGY_NONE;
+    sets_make(f->alias, view.vertex_count);
     for (uint32_t h = 0; h < 3 * view.face_count; h++) {
         if (h % 3 == 0)
             STARG_TRY(add_edges(f, view.faces + h));
@@ -47,6 +59,79 @@ done:
     return status;
 }
 
+/* Finds the vertices before v and w on the loop that passes both, if each of its two parts has
+ * three edges or more. */
+static bool find_before(const filler *f, uint32_t v, uint32_t w, uint32_t *before_v,
+                        uint32_t *before_w) {
+    size_t steps = 0, to_w = 0;
+    uint32_t at = v;
+    do {
+        uint32_t next = f->end[at];
+        steps++;
+        if (next == w) {
+            to_w = steps;
+            *before_w = at;
+        }
+        *before_v = at;
+        at = next;
+    } while (at != v && f->out[at] != TOPOLOGY_NONE && steps < MAX_STEPS);
+    return at == v && to_w >= 3 && steps - to_w >= 3;
+}
+
+static bool have_common_neighbour(const filler *f, uint32_t v, uint32_t w) {
+    for (size_t i = f->stars.start[w]; i < f->stars.start[w + 1]; i++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t near = repair_face(f->state, f->stars.list[i])[k];
+            if (near == v || repair_keys_have(&f->edges, repair_edge_key(v, near)))
+                return true;
+        }
+    return false;
+}
+
+/* Gives the faces of w to v and cuts their loop in two. */
+static starg_status join_copies(filler *f, uint32_t v, uint32_t w, bool *joined) {
+    starg_status status = STARG_OK;
+    uint32_t before_v, before_w;
+    *joined = false;
+    if (!find_before(f, v, w, &before_v, &before_w) || have_common_neighbour(f, v, w))
+        return STARG_OK;
+    for (size_t i = f->stars.start[w]; i < f->stars.start[w + 1]; i++) {
+        uint32_t *corner = repair_face(f->state, f->stars.list[i]);
+        for (int k = 0; k < 3; k++)
+            corner[k] = corner[k] == w ? v : corner[k];
+        STARG_TRY(add_edges(f, corner));
+    }
+    f->alias[w] = v;
+    f->end[before_v] = w;
+    f->end[before_w] = v;
+    *joined = true;
+done:
+    return status;
+}
+
+/* Tries to join open copies of the same vertex in pairs. */
+static starg_status join_split_vertices(filler *f) {
+    starg_status status = STARG_OK;
+    uint32_t *waiting = NULL;
+    size_t inputs = f->state->input->vertex_count;
+    STARG_NEW(f->state->context, REPAIR_STAGE, waiting, inputs);
+    STARG_TRY(repair_stars_create(f->state, &f->stars));
+    for (size_t v = 0; v < inputs; v++)
+        waiting[v] = TOPOLOGY_NONE;
+    for (uint32_t v = 0; v < repair_vertex_count(f->state); v++) {
+        uint32_t origin = f->state->origin.data[v];
+        bool joined = false;
+        if (f->out[v] == TOPOLOGY_NONE || origin == REPAIR_NEW)
+            continue;
+        if (waiting[origin] != TOPOLOGY_NONE)
+            STARG_TRY(join_copies(f, waiting[origin], v, &joined));
+        waiting[origin] = joined ? TOPOLOGY_NONE : v;
+    }
+done:
+    starg_release(f->state->context, waiting);
+    return status;
+}
+
 /* Collects the loop through `first`, against the direction of its faces, and closes it for later
  * calls. False if the open edges do not close up. */
 static starg_status collect_loop(filler *f, uint32_t first, bool *closed) {
@@ -54,7 +139,7 @@ static starg_status collect_loop(filler *f, uint32_t first, bool *closed) {
     uint32_t v = first;
     f->loop.count = 0;
     while (f->out[v] != TOPOLOGY_NONE) {
-        STARG_PUSH(f->state->context, REPAIR_STAGE, &f->loop, v);
+        STARG_PUSH(f->state->context, REPAIR_STAGE, &f->loop, f->alias[v]);
         f->out[v] = TOPOLOGY_NONE;
         v = f->end[v];
     }
@@ -148,6 +233,7 @@ starg_status repair_fill_holes(repair_state *state) {
     size_t count = repair_vertex_count(state);
     bool closed = false;
     STARG_TRY(find_open_edges(&f));
+    STARG_TRY(join_split_vertices(&f));
     for (uint32_t v = 0; v < count; v++) {
         if (f.out[v] == TOPOLOGY_NONE)
             continue;
@@ -161,6 +247,8 @@ starg_status repair_fill_holes(repair_state *state) {
 done:
     starg_release(state->context, f.out);
     starg_release(state->context, f.end);
+    starg_release(state->context, f.alias);
+    repair_stars_free(state, &f.stars);
     starg_release(state->context, f.edges.slots);
     repair_index_free(&f.index);
     STARG_ARRAY_FREE(state->context, &f.loop);

@@ -29,6 +29,7 @@ static const expectation EXPECTATIONS[] = {
     {"cow_nonmanifold_vertex.obj", false, false, 0},
     {"cube-ouvert.off", false, false, 0},
     {"degtri_sliding.off", true, false, 0},
+    {"elephant-with-holes.off", false, false, 0},
     {"fan3.obj", false, false, 0},
     {"head.off", false, false, 0},
     {"hourglass_ico.obj", false, false, 0},

@@ -337,6 +337,35 @@ static void test_fills_every_single_hole(void **state) {
     shape_free(&whole);
 }
 
+/* Two holes that meet in a corner: the corner stays one vertex. */
+static void test_fills_holes_that_meet(void **state) {
+    (void)state;
+    shape s = shape_cube(4);
+    size_t removed = 0;
+    for (size_t f = s.face_count; f-- > 0;) {
+        double low[3] = {9, 9, 9}, high[3] = {-9, -9, -9};
+        for (size_t i = 0; i < 9; i++) {
+            double x = s.vertices[3 * (size_t)s.faces[3 * f + i / 3] + i % 3];
+            low[i % 3] = fmin(low[i % 3], x);
+            high[i % 3] = fmax(high[i % 3], x);
+        }
+        bool first = high[0] <= 2 && high[1] <= 2 && low[0] >= 1 && low[1] >= 1;
+        bool second = high[0] <= 3 && high[1] <= 3 && low[0] >= 2 && low[1] >= 2;
+        if (low[2] == 4 && (first || second)) {
+            remove_face(&s, f);
+            removed++;
+        }
+    }
+    assert_int_equal(removed, 4);
+    repaired r = repair(&s);
+    assert_int_equal(r.report.holes_filled, 2);
+    assert_int_equal(r.report.faces_added, 4);
+    assert_int_equal(r.report.vertices_split, 0);
+    assert_true(r.check->embedded);
+    expect_volume(&r, 64);
+    repaired_free(&r);
+}
+
 /* A flat hole that is not convex is filled flat: the lid of an L of cells. */
 static void test_fills_a_concave_hole(void **state) {
     (void)state;
@@ -633,6 +662,7 @@ int main(void) {
         cmocka_unit_test(test_splits_a_pinched_edge),
         cmocka_unit_test(test_flips_degenerate_faces),
         cmocka_unit_test(test_fills_every_single_hole),
+        cmocka_unit_test(test_fills_holes_that_meet),
         cmocka_unit_test(test_fills_a_concave_hole),
         cmocka_unit_test(test_fills_large_holes),
         cmocka_unit_test(test_leaves_holes_beyond_the_limit),
