@@ -1,0 +1,41 @@
+#!/bin/sh
+# The figures of docs/BENCHMARKS.md. Usage: run.sh BUILD [DATA]
+# DATA holds models; without it the bundled samples stand in for them.
+set -eu
+build=$1
+data=${2:-../shared/data}
+here=$(dirname "$0")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+if [ -d "$data/tosca_paper" ]; then
+    model=$data/tosca_paper/david0.off
+    models=$(ls "$data"/tosca_paper/*.off)
+else
+    echo "there is no $data: samples instead"
+    models=""
+    for name in horse human octopus; do
+        "$build/starguard" sample $name --vertices 10000 -o "$work/$name.off" --quiet
+        models="$models $work/$name.off"
+    done
+    model=$work/human.off
+fi
+
+echo "== queries per second"
+"$build/bench/bench_visibility" "$model" 1000
+
+echo "== guarding"
+for method in greedy ilp; do
+    for m in $models; do
+        /usr/bin/time -f '%e s elapsed, %U s user, %M KB' \
+            "$build/starguard" guard "$m" -o "$work/g.json" --method $method --quiet 2>"$work/time"
+        printf '%-8s %-30s %s: ' $method "$(basename "$m")" "$(tail -n 1 "$work/time")"
+        python3 -c "import json,sys; g=json.load(open(sys.argv[1])); print(len(g['guards']), 'guards, bound', g['lower_bound'])" "$work/g.json"
+        "$build/starguard" verify "$m" "$work/g.json" --quiet
+    done
+done
+
+if [ -d "$data" ]; then
+    echo "== every file"
+    python3 "$here/walk.py" "$build/starguard" "$data"
+fi
