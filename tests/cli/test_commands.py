@@ -1,5 +1,7 @@
 """What each command does with good input, seen through its files and its --json."""
 import json
+import os
+import re
 import struct
 
 import support
@@ -290,6 +292,44 @@ class Verify(support.Case):
     def test_other_model(self):
         other = self.sample("torus")
         self.run_text("verify", other, "g.json", status=4)
+
+
+class Documentation(support.Case):
+    """Every key that is printed or written is in docs/formats.md."""
+
+    def keys(self, value):
+        if isinstance(value, list):
+            return set().union(*map(self.keys, value))
+        if not isinstance(value, dict):
+            return set()
+        stages = set(value.get("seconds", {}))
+        return (set(value) | set().union(*map(self.keys, value.values()))) - stages
+
+    def test_keys(self):
+        with open(os.path.join(os.path.dirname(__file__), "../../docs/formats.md"),
+                  encoding="utf-8") as file:
+            words = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]*)`", file.read()))))
+        room = self.sample("l-room")
+        self.write("open.off", OPEN)
+        look = ["visible", room, "--from", "0,0,0", "--target"]
+        guard = ["guard", room, "-o", "g.json", "--count", "60"]
+        reports = [
+            self.run_json("sample", "--list"),
+            self.run_json("sample", "torus", "-o", "t.off"),
+            self.run_json("check", room),
+            self.run_json("check", "open.off", status=2),
+            self.run_json("check", "none.off", status=2),
+            self.run_json("repair", "open.off", "-o", "m.off"),
+            self.run_json(*look, "faces"),
+            self.run_json(*look, "vertices"),
+            self.run_json(*guard),
+            self.run_json("verify", room, "g.json"),
+            json.loads(self.read("g.json")),
+            self.run_json(*guard, "--target", "vertices", "--max-guards", "1"),
+            json.loads(self.read("g.json")),
+        ]
+        for report in reports:
+            self.assertEqual(self.keys(report) - words, set())
 
 
 if __name__ == "__main__":

@@ -10,10 +10,14 @@ import support
 from support import OPEN, TETRAHEDRON
 
 
-def limit_file_size(size):
+def limit(what, size):
     def apply():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+        resource.setrlimit(what, (size, size))
     return apply
+
+
+def limit_file_size(size):
+    return limit(resource.RLIMIT_FSIZE, size)
 
 
 class Outputs(support.Case):
@@ -111,6 +115,12 @@ class Outputs(support.Case):
                     preexec_fn=limit_file_size(1500))
         self.refuse("check", "m.off", "--marks", "c.ply", preexec_fn=limit_file_size(100),
                     says="'c.ply'")
+
+    @unittest.skipIf(support.SLOWNESS > 1, "sanitizers need all the addresses there are")
+    def test_out_of_memory(self):
+        self.write("t.ply", "old")
+        self.refuse("sample", "knot", "--vertices", "1000000", "-o", "t.ply",
+                    preexec_fn=limit(resource.RLIMIT_AS, 80 << 20), says="out of memory")
 
     def test_full_disk(self):
         """A file system of its own that is too small; needs the right to mount one."""
