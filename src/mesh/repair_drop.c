@@ -137,7 +137,7 @@ static int compare_fins(const void *left, const void *right) {
     return (a->patch > b->patch) - (a->patch < b->patch);
 }
 
-/* Faces on the edge of h that are still there, and whether the patch has one of them only. */
+/* Number of faces on the edge of h that are still there. */
 static size_t faces_left(const repair_state *state, const mesh_topology *topology, uint32_t h) {
     size_t left = 0;
     uint32_t o = h;

@@ -41,7 +41,7 @@ typedef struct untangler {
     fill_list loop, triangles;
     double_list before, best, moved; /* positions of `points`                      */
     double largest_move;
-    size_t *work; /* steps of all fillings so far */
+    size_t *work; /* steps of all fillings so far               */
     size_t base;  /* first of the faces that stand in for it    */
     bool changed;
 } untangler;

@@ -529,6 +529,26 @@ static void test_refuses_bad_options(void **state) {
     }
 }
 
+static void test_cancel(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_mesh *mesh, *out;
+    starg_repair_report report;
+    shape s = shape_cube(1);
+    remove_face(&s, 0);
+    test_ok(context,
+            starg_mesh_create(context, s.vertices, s.vertex_count, s.faces, s.face_count, &mesh));
+    starg_context_cancel(context);
+    assert_int_equal(starg_mesh_repair(context, mesh, NULL, &out, &report), STARG_ERROR_CANCELLED);
+    assert_null(out);
+    starg_context_reset(context);
+    test_ok(context, starg_mesh_repair(context, mesh, NULL, &out, &report));
+    starg_mesh_free(out);
+    starg_mesh_free(mesh);
+    shape_free(&s);
+    test_context_free(context);
+}
+
 /* ---- random damage: never a crash, never more faults, and repeatable ---- */
 
 static shape damaged(uint64_t round) {
@@ -560,6 +580,7 @@ static shape damaged(uint64_t round) {
                 (double)starg_rng_below(&rng, 3) - 1;
         }
     }
+    shape_place(&s, (const double[]){1, 1e-300, 1e90}[round % 3], 0);
     return s;
 }
 
@@ -672,6 +693,7 @@ int main(void) {
         cmocka_unit_test(test_refuses_a_moebius_strip),
         cmocka_unit_test(test_refuses_what_encloses_nothing),
         cmocka_unit_test(test_refuses_bad_options),
+        cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_random_damage),
         cmocka_unit_test(test_every_allocation_fails_once),
     };
