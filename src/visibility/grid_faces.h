@@ -149,29 +149,113 @@ static void span_edge(const float from[2], const float to[2], float v_low, float
     }
 }
 
-/* A tall face in one cube face: in each row only the cells between its edges. */
-static void test_tall(const visibility_scene *scene, const double p[3], grid_scratch *g, blocker *f,
-                      uint32_t row, uint32_t last_row) {
-    float corner[3][2];
-    for (int k = 0; k < 3; k++) {
-        corner[k][0] = g->cube[f->corner[k]].u;
-        corner[k][1] = g->v[f->corner[k]];
-    }
+/* A convex polygon on one cube face: a face, or the part of one that lies before the cube face. */
+typedef struct cube_polygon {
+    int count;
+    float corner[8][2]; /* u, v */
+} cube_polygon;
+
+/* In each row only the cells between the polygon's edges. */
+static void test_polygon(const visibility_scene *scene, const double p[3], grid_scratch *g,
+                         blocker *f, const cube_polygon *polygon, uint32_t row, uint32_t last_row) {
     for (; row <= last_row; row++) {
         const grid_row *r = &g->rows[row];
         float span[2] = {2, -2};
-        for (int k = 0; k < 3; k++)
-            span_edge(corner[k], corner[(k + 1) % 3], r->v_low - CELL_MARGIN,
-                      r->v_high + CELL_MARGIN, span);
+        for (int k = 0; k < polygon->count; k++)
+            span_edge(polygon->corner[k], polygon->corner[(k + 1) % polygon->count],
+                      r->v_low - CELL_MARGIN, r->v_high + CELL_MARGIN, span);
         if (span[0] <= span[1])
             test_cells(scene, p, g, f, r, span[0], span[1]);
     }
 }
 
-/* A box on one cube face. */
-typedef struct cell_box {
-    float u_low, u_high, v_low, v_high;
-} cell_box;
+/* A tall face that projects into one cube face. */
+static void test_tall(const visibility_scene *scene, const double p[3], grid_scratch *g, blocker *f,
+                      uint32_t row, uint32_t last_row) {
+    cube_polygon polygon = {.count = 3};
+    for (int k = 0; k < 3; k++) {
+        polygon.corner[k][0] = g->cube[f->corner[k]].u;
+        polygon.corner[k][1] = g->v[f->corner[k]];
+    }
+    test_polygon(scene, p, g, f, &polygon, row, last_row);
+}
+
+/* Vectors from p with the cube face's axis first, then u and v. */
+typedef struct cone_polygon {
+    int count;
+    double corner[8][3];
+} cone_polygon;
+
+/* What lies on the near side of a plane through p: axis x SLACK >= sign x coordinate k. */
+static void clip_cone(const cone_polygon *in, int k, double sign, cone_polygon *out) {
+    static const double SLACK = 1 + 0x1p-18;
+    out->count = 0;
+    for (int i = 0; i < in->count; i++) {
+        const double *a = in->corner[i], *b = in->corner[(i + 1) % in->count];
+        double at_a = SLACK * a[0] - sign * a[k], at_b = SLACK * b[0] - sign * b[k];
+        if (at_a >= 0)
+            memcpy(out->corner[out->count++], a, sizeof out->corner[0]);
+        if ((at_a >= 0) == (at_b >= 0))
+            continue;
+        double t = at_a / (at_a - at_b);
+        for (int j = 0; j < 3; j++)
+            out->corner[out->count][j] = a[j] + t * (b[j] - a[j]);
+        out->count++;
+    }
+}
+
+/* The part of a face in the frustum of a cube face, which is a little widened. Corners that come
+ * so near to p that their direction is not known within the margin are told by `whole`. */
+static void clip_to_cube_face(const grid_scratch *g, const uint32_t *corner, uint32_t cube_face,
+                              cube_polygon *polygon, bool *whole) {
+    const double *const axis[3] = {g->x, g->y, g->z};
+    uint32_t k = cube_face / 2;
+    double sign = cube_face % 2 ? -1 : 1, size = 0;
+    cone_polygon a = {.count = 3}, b;
+    for (int i = 0; i < 3; i++) {
+        a.corner[i][0] = sign * axis[k][corner[i]];
+        a.corner[i][1] = axis[(k + 1) % 3][corner[i]];
+        a.corner[i][2] = axis[(k + 2) % 3][corner[i]];
+        for (int j = 0; j < 3; j++)
+            size = fabs(a.corner[i][j]) > size ? fabs(a.corner[i][j]) : size;
+    }
+    clip_cone(&a, 1, 1, &b);
+    clip_cone(&b, 1, -1, &a);
+    clip_cone(&a, 2, 1, &b);
+    clip_cone(&b, 2, -1, &a);
+    polygon->count = a.count;
+    *whole = false;
+    for (int i = 0; i < a.count; i++) {
+        *whole = *whole || !(a.corner[i][0] > 0x1p-20 * size);
+        polygon->corner[i][0] = (float)(a.corner[i][1] / a.corner[i][0]);
+        polygon->corner[i][1] = (float)(a.corner[i][2] / a.corner[i][0]);
+    }
+}
+
+/* A face that does not project into one cube face. */
+static void test_clipped(const visibility_scene *scene, const double p[3], grid_scratch *g,
+                         blocker *f) {
+    for (uint32_t cube_face = 0; cube_face < CUBE_FACES; cube_face++) {
+        const uint32_t *rows = g->row_of_bin[cube_face];
+        cube_polygon polygon;
+        bool whole;
+        clip_to_cube_face(g, f->corner, cube_face, &polygon, &whole);
+        if (polygon.count == 0)
+            continue;
+        if (whole) {
+            test_rows(scene, p, g, f, rows[0], rows[BINS - 1], -1, 1);
+            continue;
+        }
+        float low = 2, high = -2;
+        for (int i = 0; i < polygon.count; i++) {
+            float v = polygon.corner[i][1];
+            low = v < low ? v : low;
+            high = v > high ? v : high;
+        }
+        test_polygon(scene, p, g, f, &polygon, rows[bin_of(low - CELL_MARGIN)],
+                     rows[bin_of(high + CELL_MARGIN)]);
+    }
+}
 
 static float min3(float a, float b, float c) {
     float m = a < b ? a : b;
@@ -183,44 +267,6 @@ static float max3(float a, float b, float c) {
     return m > c ? m : c;
 }
 
-/* What a face that does not project into one cube face covers of `cube_face`; false if nothing.
- * Where all corners lie well before the cube face the projection is a triangle still; else the
- * whole cube face is taken. */
-static bool clip_to_cube_face(const grid_scratch *g, const uint32_t *corner, uint32_t cube_face,
-                              cell_box *box) {
-    const double *axis[3] = {g->x, g->y, g->z};
-    const double *major = axis[cube_face / 2];
-    const double *first = axis[(cube_face / 2 + 1) % 3], *second = axis[(cube_face / 2 + 2) % 3];
-    double sign = cube_face % 2 ? -1 : 1, slack = 1 + 0x1p-20;
-    int behind = 0, left = 0, right = 0, below = 0, above = 0;
-    bool before = true;
-    *box = (cell_box){1, -1, 1, -1};
-    for (int k = 0; k < 3; k++) {
-        double m = sign * major[corner[k]], u = first[corner[k]], v = second[corner[k]];
-        behind += m <= 0;
-        left += u < -m * slack && m > 0;
-        right += u > m * slack && m > 0;
-        below += v < -m * slack && m > 0;
-        above += v > m * slack && m > 0;
-        before = before && m > 0x1p-10 * (fabs(u) + fabs(v));
-        if (before) {
-            float pu = (float)(u / m), pv = (float)(v / m);
-            box->u_low = pu < box->u_low ? pu : box->u_low;
-            box->u_high = pu > box->u_high ? pu : box->u_high;
-            box->v_low = pv < box->v_low ? pv : box->v_low;
-            box->v_high = pv > box->v_high ? pv : box->v_high;
-        }
-    }
-    if (behind == 3 || left == 3 || right == 3 || below == 3 || above == 3)
-        return false;
-    if (!before)
-        *box = (cell_box){-1, 1, -1, 1};
-    /* coordinates up to 2^10 carry a rounding beyond the margin of those within the cube */
-    float wide = CELL_MARGIN * 1024;
-    *box = (cell_box){box->u_low - wide, box->u_high + wide, box->v_low - wide, box->v_high + wide};
-    return true;
-}
-
 static uint32_t least_row(const cube_point *a, const cube_point *b, const cube_point *c) {
     uint32_t row = a->row_low < b->row_low ? a->row_low : b->row_low;
     return row < c->row_low ? row : c->row_low;
@@ -229,17 +275,6 @@ static uint32_t least_row(const cube_point *a, const cube_point *b, const cube_p
 static uint32_t last_row(const cube_point *a, const cube_point *b, const cube_point *c) {
     uint32_t row = a->row_high > b->row_high ? a->row_high : b->row_high;
     return row > c->row_high ? row : c->row_high;
-}
-
-static void test_clipped(const visibility_scene *scene, const double p[3], grid_scratch *g,
-                         blocker *f) {
-    for (uint32_t cube_face = 0; cube_face < CUBE_FACES; cube_face++) {
-        const uint32_t *rows = g->row_of_bin[cube_face];
-        cell_box box;
-        if (clip_to_cube_face(g, f->corner, cube_face, &box))
-            test_rows(scene, p, g, f, rows[bin_of(box.v_low)], rows[bin_of(box.v_high)], box.u_low,
-                      box.u_high);
-    }
 }
 
 static void test_face(const visibility_scene *scene, const double p[3], grid_scratch *g,
