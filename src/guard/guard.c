@@ -14,6 +14,7 @@
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
 #include "starguard/cover.h"
+#include "visibility/scene.h"
 
 static const char STAGE[] = "guard";
 
@@ -29,6 +30,7 @@ typedef struct guarding {
     double area;         /* of all faces */
     uint64_t *weights;   /* by column */
     uint64_t total_weight;
+    bool time_limited; /* before the cover was begun */
     starg_cover *cover;
     starg_bits *seen; /* faces by chosen guard */
 } guarding;
@@ -95,30 +97,60 @@ done:
     return status;
 }
 
-/* Computes the rows of the candidates from `first` on and appends them to the matrix. */
+/* Moves the finished rows and their points together; returns how many there are. */
+static size_t keep_finished(guarding *g, size_t first, const uint8_t *finished, starg_bits *rows) {
+    double *points = g->points.data.data + 3 * first;
+    size_t kept = 0;
+    for (size_t i = 0; i < rows->rows; i++) {
+        if (!finished[i])
+            continue;
+        memmove(points + 3 * kept, points + 3 * i, 3 * sizeof *points);
+        memmove(starg_bits_row_mutable(rows, kept), starg_bits_row(rows, i),
+                rows->words * sizeof *rows->data);
+        kept++;
+    }
+    g->time_limited = g->time_limited || kept < rows->rows;
+    g->points.data.count = 3 * (first + kept);
+    rows->rows = kept;
+    return kept;
+}
+
+/* Appends the rows of `added`, which is consumed in any case. */
+static starg_status append_rows(guarding *g, starg_bits *added) {
+    starg_status status = STARG_OK;
+    starg_bits *all = NULL;
+    if (g->rows == NULL) {
+        g->rows = added;
+        return STARG_OK;
+    }
+    STARG_TRY(starg_bits_create(g->context, g->rows->rows + added->rows, added->columns, &all));
+    memcpy(all->data, g->rows->data, g->rows->rows * all->words * sizeof *all->data);
+    memcpy(starg_bits_row_mutable(all, g->rows->rows), added->data,
+           added->rows * all->words * sizeof *all->data);
+    starg_bits_free(g->rows);
+    g->rows = all;
+done:
+    starg_bits_free(added);
+    return status;
+}
+
+/* Computes the rows of the candidates from `first` on. Those that the time limit left unfinished
+ * are no candidates. */
 static starg_status add_rows(guarding *g, size_t first) {
     starg_status status = STARG_OK;
-    starg_bits *added = NULL, *all = NULL;
+    starg_bits *added = NULL;
+    uint8_t *finished = NULL;
     size_t count = g->points.data.count / 3 - first;
-    STARG_TRY(starg_visibility(g->context, g->solid, g->points.data.data + 3 * first, count,
-                               &g->options->visibility, &added));
+    STARG_NEW_ZERO(g->context, STAGE, finished, count);
+    STARG_TRY(visibility_rows(g->context, g->solid, g->points.data.data + 3 * first, count,
+                              &g->options->visibility, finished, &added));
+    count = keep_finished(g, first, finished, added);
     for (size_t i = 0; i < count; i++)
         for (size_t w = 0; w < added->words; w++)
             g->coverable[w] |= starg_bits_row(added, i)[w];
-    if (first > 0) {
-        STARG_TRY(starg_bits_create(g->context, first + count, added->columns, &all));
-        memcpy(all->data, g->rows->data, first * all->words * sizeof *all->data);
-        memcpy(starg_bits_row_mutable(all, first), added->data,
-               count * all->words * sizeof *all->data);
-        starg_bits_free(g->rows);
-        g->rows = all;
-    } else {
-        starg_bits_free(g->rows);
-        g->rows = added;
-        added = NULL;
-    }
+    STARG_TRY(append_rows(g, added));
 done:
-    starg_bits_free(added);
+    starg_release(g->context, finished);
     return status;
 }
 
@@ -144,10 +176,16 @@ static starg_status complete(guarding *g) {
     bool pending = g->options->candidates != STARG_CANDIDATES_GIVEN;
     STARG_NEW_ZERO(g->context, STAGE, all.tried, g->solid->mesh->face_count);
     STARG_NEW(g->context, STAGE, unseen, g->solid->mesh->face_count);
-    while (pending) {
+    while (pending && !g->time_limited) {
         size_t first = g->points.data.count / 3;
         mark_unseen(g, unseen);
-        STARG_TRY(complete_candidates(g->context, &all, unseen, &g->points, &pending));
+        status = complete_candidates(g->context, &all, unseen, &g->points, &pending);
+        if (status == STARG_ERROR_TIME) {
+            status = STARG_OK;
+            g->time_limited = true;
+            break;
+        }
+        STARG_TRY(status);
         if (g->points.data.count / 3 > first)
             STARG_TRY(add_rows(g, first));
     }
@@ -328,6 +366,7 @@ done:
 static starg_status report(guarding *g, starg_guards **out) {
     starg_status status = STARG_OK;
     starg_guards *result = NULL;
+    double deadline = g->context->deadline;
     STARG_NEW_ZERO(g->context, STAGE, result, 1);
     result->vertex_count = g->solid->mesh->vertex_count;
     result->face_count = g->solid->mesh->face_count;
@@ -336,10 +375,11 @@ static starg_status report(guarding *g, starg_guards **out) {
     result->candidate_count = g->points.data.count / 3;
     result->lower_bound = g->cover->lower_bound;
     result->optimal = g->cover->optimal;
-    result->time_limited = g->cover->time_limited;
+    result->time_limited = g->time_limited || g->cover->time_limited;
     result->area_bound = 1;
     if (g->options->max_guards > 0)
         result->area_bound = (double)g->cover->weight_bound / (double)g->total_weight;
+    g->context->deadline = 0; /* what was found is measured in full */
     STARG_TRY(copy_positions(g, result));
     STARG_TRY(measure_faces(g, result));
     STARG_TRY(count_coverable_faces(g, result));
@@ -347,6 +387,7 @@ static starg_status report(guarding *g, starg_guards **out) {
         STARG_TRY(measure_vertices(g, result));
     *out = result;
 done:
+    g->context->deadline = deadline;
     if (status != STARG_OK)
         starg_guards_free(g->context, result);
     return status;
@@ -366,6 +407,11 @@ starg_status starg_guard(starg_context *context, const starg_solid *solid,
     STARG_TRY(make_candidates(&g));
     STARG_TRY(add_rows(&g, 0));
     STARG_TRY(complete(&g));
+    if (g.points.data.count == 0 && g.time_limited) {
+        status = starg_fail(context, STARG_ERROR_TIME, STAGE,
+                            "the time limit struck before any candidate was looked at");
+        goto done;
+    }
     if (g.points.data.count == 0) {
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,
                             "there is no point inside the solid from which anything is seen; a "

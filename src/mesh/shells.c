@@ -7,29 +7,37 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 
+/* Windings are zero between queries; the shells that a query touched are set back after it. */
 typedef struct line_query {
     const bvh *tree;
     const mesh_topology *topology;
     const double *p;
-    int *winding; /* per mesh_shell */
+    int *winding;      /* per shell */
+    uint32_t *touched; /* shells, each crossing once */
+    size_t touched_count;
 } line_query;
 
 static bool count_crossing(void *user, uint32_t triangle) {
     line_query *query = user;
-    query->winding[query->topology->component[triangle]] +=
-        bvh_crossing(query->tree, triangle, query->p);
+    int crossing = bvh_crossing(query->tree, triangle, query->p);
+    if (crossing != 0) {
+        query->winding[query->topology->component[triangle]] += crossing;
+        query->touched[query->touched_count++] = query->topology->component[triangle];
+    }
     return true;
 }
 
-static size_t nesting_depth(const bvh *tree, const mesh_topology *topology, const double *p,
-                            uint32_t own, int *winding) {
-    line_query query = {tree, topology, p, winding};
+static size_t nesting_depth(line_query *query, const double *p, uint32_t own) {
     bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
     size_t depth = 0;
-    memset(winding, 0, topology->component_count * sizeof *winding);
-    bvh_query_box(tree, &line, count_crossing, &query);
-    for (size_t c = 0; c < topology->component_count; c++)
-        depth += c != own && winding[c] != 0;
+    query->p = p;
+    query->touched_count = 0;
+    bvh_query_box(query->tree, &line, count_crossing, query);
+    for (size_t i = 0; i < query->touched_count; i++) {
+        uint32_t touched = query->touched[i];
+        depth += touched != own && query->winding[touched] != 0;
+        query->winding[touched] = 0;
+    }
     return depth;
 }
 
@@ -48,17 +56,19 @@ static void sum_volumes(const starg_mesh *mesh, const mesh_topology *topology, m
 starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
                              const mesh_topology *topology, const bvh *tree, mesh_shell *shells) {
     starg_status status = STARG_OK;
-    int *winding = NULL;
-    STARG_NEW(context, "check", winding, topology->component_count);
+    line_query query = {.tree = tree, .topology = topology};
+    STARG_NEW_ZERO(context, "check", query.winding, topology->component_count);
+    STARG_NEW(context, "check", query.touched, mesh->face_count);
     sum_volumes(mesh, topology, shells);
     for (size_t c = 0; c < topology->component_count; c++) {
         mesh_shell *own = &shells[c];
         const double *p = mesh->vertices + 3 * (size_t)mesh->faces[3 * (size_t)own->first_face];
         if (!own->crossed)
-            own->cavity = nesting_depth(tree, topology, p, (uint32_t)c, winding) % 2 == 1;
+            own->cavity = nesting_depth(&query, p, (uint32_t)c) % 2 == 1;
         own->turn = own->cavity ? own->volume > 0 : own->volume < 0;
     }
 done:
-    starg_release(context, winding);
+    starg_release(context, query.winding);
+    starg_release(context, query.touched);
     return status;
 }

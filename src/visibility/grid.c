@@ -26,10 +26,6 @@
 #include "core/bits.h"
 #include "core/memory.h"
 
-/* Rows of a cube face with m vertices: this times sqrt(m). Flat long cells are best: a face then
- * touches few rows, and in each of them one run of vertices. */
-static const double ROW_FACTOR = 0.2;
-
 static void free_scratch(const visibility_scene *scene, void *scratch) {
     grid_scratch *g = scratch;
     if (g == NULL)
@@ -41,7 +37,9 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_release(context, g->x);
     starg_release(context, g->y);
     starg_release(context, g->z);
+    starg_release(context, g->u);
     starg_release(context, g->v);
+    starg_release(context, g->cube_face);
     starg_release(context, g->in_use);
     starg_release(context, g->used);
     starg_release(context, g->kept);
@@ -69,7 +67,9 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->x = starg_allocate(context, n, sizeof *g->x);
     g->y = starg_allocate(context, n, sizeof *g->y);
     g->z = starg_allocate(context, n, sizeof *g->z);
+    g->u = starg_allocate(context, n, sizeof *g->u);
     g->v = starg_allocate(context, n, sizeof *g->v);
+    g->cube_face = starg_allocate(context, n, sizeof *g->cube_face);
     g->in_use = starg_allocate(context, n, sizeof *g->in_use);
     g->used = starg_allocate(context, n + 1, sizeof *g->used);
     g->kept = starg_allocate(context, scene->face_count + 1, sizeof *g->kept);
@@ -80,172 +80,15 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->sz = starg_allocate_zero(context, n + LANES, sizeof *g->sz);
     g->hidden = starg_allocate(context, starg_bit_words(n) + 1, sizeof *g->hidden);
     g->chunks = starg_allocate(context, scene->face_count / CHUNK + 1, sizeof *g->chunks);
-    if (g->rows && g->cell_start && g->cube && g->x && g->y && g->z && g->v && g->in_use &&
-        g->used && g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hidden &&
-        g->chunks) {
-        g->test_faces = grid_choose_form(GRID_WIDEST);
+    if (g->rows && g->cell_start && g->cube && g->x && g->y && g->z && g->u && g->v &&
+        g->cube_face && g->in_use && g->used && g->kept && g->place && g->slot && g->sx && g->sy &&
+        g->sz && g->hidden && g->chunks) {
+        g->run = grid_choose_form(GRID_WIDEST);
         *scratch = g;
         return STARG_OK;
     }
     free_scratch(scene, g);
     return STARG_ERROR_MEMORY;
-}
-
-static double larger(double a, double b) {
-    return a > b ? a : b; /* unlike fmax, one instruction */
-}
-
-/* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
- * most 6 mx my mz and an error of at most 8 roundings of it; the sum of three and D come to 30. */
-static void make_relative(const visibility_scene *scene, const double p[3], grid_scratch *g) {
-    double mx = 0, my = 0, mz = 0;
-    for (size_t i = 0; i < scene->vertex_count; i++) {
-        g->x[i] = scene->x[i] - p[0];
-        g->y[i] = scene->y[i] - p[1];
-        g->z[i] = scene->z[i] - p[2];
-        mx = larger(mx, fabs(g->x[i]));
-        my = larger(my, fabs(g->y[i]));
-        mz = larger(mz, fabs(g->z[i]));
-    }
-    g->bound = 6 * 32 * 0x1p-53 * mx * my * mz;
-    if (!(g->bound > 1e-200))
-        g->bound = INFINITY;
-}
-
-/* Without branches: the largest coordinate changes unpredictably from vertex to vertex. */
-static void project(grid_scratch *g, uint32_t slot) {
-    double d[5] = {g->x[slot], g->y[slot], g->z[slot], g->x[slot], g->y[slot]};
-    double ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]);
-    int k = (ax < ay) | (ax < az);
-    k += k & (ay < az);
-    double scale = 1 / fabs(d[k]);
-    float u = (float)(d[k + 1] * scale), v = (float)(d[k + 2] * scale);
-    bool rim = !(fabsf(u) < 1 - CELL_MARGIN) | !(fabsf(v) < 1 - CELL_MARGIN);
-    g->cube[slot].u = u;
-    g->cube[slot].face = 2 * (uint32_t)k + (d[k] < 0) + (rim ? RIM : 0);
-    g->v[slot] = v;
-}
-
-/* Cuts each cube face into rows of about equally many vertices, by a histogram of v. */
-static void cut_rows(grid_scratch *g) {
-    memset(g->row_of_bin, 0, sizeof g->row_of_bin);
-    for (size_t i = 0; i < g->used_count; i++) {
-        uint32_t slot = g->used[i];
-        project(g, slot);
-        g->row_of_bin[g->cube[slot].face % RIM][bin_of(g->v[slot])]++;
-    }
-    g->row_count = 0;
-    for (int face = 0; face < CUBE_FACES; face++) {
-        uint32_t total = 0, sum = 0, last = 0;
-        for (int bin = 0; bin < BINS; bin++)
-            total += g->row_of_bin[face][bin];
-        double rows_per_vertex = total ? ROW_FACTOR / sqrt((double)total) : 0;
-        for (int bin = 0; bin < BINS; bin++) {
-            uint32_t count = g->row_of_bin[face][bin];
-            last = (uint32_t)((sum + 0.5 * count) * rows_per_vertex);
-            g->row_of_bin[face][bin] = g->row_count + last;
-            sum += count;
-        }
-        g->row_count += last + 1;
-    }
-    for (uint32_t r = 0; r < g->row_count; r++)
-        g->rows[r] = (grid_row){.u_low = 1, .u_high = -1, .v_low = 1, .v_high = -1};
-}
-
-/* Gives each row twice as many cells as it has vertices. Returns the number of cells. */
-static uint32_t cut_cells(grid_scratch *g) {
-    for (size_t i = 0; i < g->used_count; i++) {
-        uint32_t slot = g->used[i];
-        cube_point *c = &g->cube[slot];
-        const uint32_t *rows = g->row_of_bin[c->face % RIM];
-        float v = g->v[slot], u = c->u;
-        c->row_low = rows[bin_of(v - CELL_MARGIN)];
-        c->row_high = rows[bin_of(v + CELL_MARGIN)];
-        g->place[slot] = rows[bin_of(v)];
-        grid_row *row = &g->rows[g->place[slot]];
-        row->u_low = u < row->u_low ? u : row->u_low;
-        row->u_high = u > row->u_high ? u : row->u_high;
-        row->v_low = v < row->v_low ? v : row->v_low;
-        row->v_high = v > row->v_high ? v : row->v_high;
-        row->vertices++;
-    }
-    uint32_t cells = 0;
-    for (uint32_t r = 0; r < g->row_count; r++) {
-        grid_row *row = &g->rows[r];
-        row->first_cell = cells;
-        row->cell_count = 2 * row->vertices + 1;
-        float width = row->u_high - row->u_low;
-        row->scale = width > 0 ? (float)row->cell_count / width : 0;
-        cells += row->cell_count;
-    }
-    return cells;
-}
-
-/* Counting sort; cell_start[c] is first the end of cell c, and its start when all are placed. */
-static void sort_into_cells(const visibility_scene *scene, grid_scratch *g) {
-    memset(g->hidden, 0, (starg_bit_words(scene->vertex_count) + 1) * sizeof *g->hidden);
-    cut_rows(g);
-    uint32_t cells = cut_cells(g);
-    memset(g->cell_start, 0, (cells + 1) * sizeof *g->cell_start);
-    for (size_t i = 0; i < g->used_count; i++) {
-        uint32_t slot = g->used[i];
-        g->place[slot] = cell_of(&g->rows[g->place[slot]], g->cube[slot].u);
-        g->cell_start[g->place[slot]]++;
-    }
-    uint32_t sum = 0;
-    for (size_t c = 0; c <= cells; c++)
-        sum = g->cell_start[c] += sum;
-    for (size_t i = g->used_count; i-- > 0;) {
-        uint32_t slot = g->used[i], position = --g->cell_start[g->place[slot]];
-        g->place[slot] = position;
-        g->slot[position] = slot;
-        g->sx[position] = g->x[slot];
-        g->sy[position] = g->y[slot];
-        g->sz[position] = g->z[slot];
-    }
-}
-
-static int compare_chunks(const void *left, const void *right) {
-    const chunk_distance *a = left, *b = right;
-    if (a->distance != b->distance)
-        return a->distance < b->distance ? -1 : 1;
-    return (a->chunk > b->chunk) - (a->chunk < b->chunk);
-}
-
-/* Near chunks of faces hide most: the far ones then find little left to test. */
-static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
-    size_t count = (scene->face_count + CHUNK - 1) / CHUNK;
-    for (size_t c = 0; c < count; c++) {
-        uint32_t slot = scene->corners[3 * (c * CHUNK)];
-        g->chunks[c].chunk = (uint32_t)c;
-        g->chunks[c].distance =
-            g->x[slot] * g->x[slot] + g->y[slot] * g->y[slot] + g->z[slot] * g->z[slot];
-    }
-    qsort(g->chunks, count, sizeof *g->chunks, compare_chunks);
-    return count;
-}
-
-/* Stage 1: lists the faces that can block first, and the vertices that they use. */
-static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_scratch *g) {
-    size_t chunk_count = order_chunks(scene, g);
-    g->kept_count = g->used_count = 0;
-    memset(g->in_use, 0, scene->vertex_count);
-    for (size_t c = 0; c < chunk_count; c++) {
-        size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
-        for (; rank < end && rank < scene->face_count; rank++) {
-            uint8_t keep = !scene->cull || side[rank] > 0;
-            const uint32_t *corner = scene->corners + 3 * rank;
-            g->kept[g->kept_count] = (uint32_t)rank;
-            g->kept_count += keep;
-            g->in_use[corner[0]] |= keep;
-            g->in_use[corner[1]] |= keep;
-            g->in_use[corner[2]] |= keep;
-        }
-    }
-    for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
-        g->used[g->used_count] = slot;
-        g->used_count += g->in_use[slot];
-    }
 }
 
 static bool supports(grid_form form) {
@@ -261,12 +104,12 @@ static bool supports(grid_form form) {
 
 /* All forms give the same bits: what floating point does not decide beyond its error bound is
  * decided exactly. */
-grid_test_faces *grid_choose_form(grid_form wanted) {
-    static grid_test_faces *const forms[] = {
-        grid_test_faces_plain,
+grid_run *grid_choose_form(grid_form wanted) {
+    static grid_run *const forms[] = {
+        grid_run_plain,
 #if defined(__x86_64__)
-        grid_test_faces_avx2,
-        grid_test_faces_avx512,
+        grid_run_avx2,
+        grid_run_avx512,
 #endif
     };
     if (wanted == GRID_WIDEST)
@@ -277,12 +120,7 @@ grid_test_faces *grid_choose_form(grid_form wanted) {
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
                  const int8_t *side, uint8_t *visible) {
     grid_scratch *g = scratch;
-    make_relative(scene, p, g);
-    keep_faces(scene, side, g);
-    sort_into_cells(scene, g);
-    g->test_faces(scene, p, side, g);
-    for (size_t i = 0; i < scene->vertex_count; i++)
-        visible[i] = g->in_use[i] && !starg_bit_test(g->hidden, g->place[i]);
+    g->run(scene, g, p, side, visible);
 }
 
 const visibility_engine visibility_grid = {make_scratch, free_scratch, find};

@@ -1,4 +1,4 @@
-/* Inside of the direction grid (visibility/grid.c): its tables, and the stage that is compiled
+/* Inside of the direction grid (visibility/grid.c): its tables, and the stages that are compiled
  * once for each instruction set. */
 #ifndef STARG_VISIBILITY_GRID_H
 #define STARG_VISIBILITY_GRID_H
@@ -6,6 +6,10 @@
 #include "visibility/scene.h"
 
 enum { CHUNK = 128, CUBE_FACES = 6, BINS = 1024, LANES = 8, RIM = 8 };
+
+/* Rows of a cube face with m vertices: this times sqrt(m). Flat long cells are best: a face then
+ * touches few rows, and in each of them one run of vertices. */
+static const double ROW_FACTOR = 0.2;
 
 /* Far above the rounding of a projected coordinate in single precision (2^-23). */
 static const float CELL_MARGIN = 0x1p-20f;
@@ -20,7 +24,7 @@ typedef struct cube_point {
 
 /* A row of cells: vertices of nearly the same v, cut evenly between their extremes of u. */
 typedef struct grid_row {
-    float u_low, u_high, v_low, v_high, scale;
+    float u_low, u_high, v_low, v_high, scale, last_cell;
     uint32_t first_cell, cell_count, vertices;
 } grid_row;
 
@@ -31,12 +35,12 @@ typedef struct chunk_distance {
 
 struct grid_scratch;
 
-/* Hides the vertices that the kept faces hide, taking them in their order. */
-typedef void grid_test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
-                             struct grid_scratch *g);
+/* All stages for one point: visible[slot] = 1 where p sees the vertex, else 0. */
+typedef void grid_run(const visibility_scene *scene, struct grid_scratch *g, const double p[3],
+                      const int8_t *side, uint8_t *visible);
 
 typedef struct grid_scratch {
-    grid_test_faces *test_faces;
+    grid_run *run;
     uint32_t row_count;
     uint32_t row_of_bin[CUBE_FACES][BINS];
     grid_row *rows; /* row_limit at most */
@@ -44,7 +48,8 @@ typedef struct grid_scratch {
     uint32_t *cell_start; /* two cells a vertex and one a row, and the end */
     cube_point *cube;     /* by slot */
     double *x, *y, *z;    /* relative to p, by slot */
-    float *v;             /* by slot */
+    float *u, *v;         /* by slot */
+    uint32_t *cube_face;  /* by slot, plus RIM */
     uint8_t *in_use;      /* slot has a kept face */
     uint32_t *used;       /* the slots in use */
     size_t used_count;
@@ -59,32 +64,31 @@ typedef struct grid_scratch {
     double bound; /* of the error of a determinant; infinite: always exact */
 } grid_scratch;
 
-/* Index among `count` equal parts of `scale` each from 0; values outside (and NaN) go to the ends.
- * Monotone, which is all that correctness asks of it. */
-static inline uint32_t part_of(float distance, float scale, uint32_t count) {
+/* Index among equal parts of which the last has number `last`; what lies outside (and NaN) goes to
+ * the ends. Monotone, which is all that correctness asks of it; without branches. */
+static inline uint32_t part_of(float distance, float scale, float last) {
     float t = distance * scale;
-    if (!(t > 0))
-        return 0;
-    return t >= (float)count ? count - 1 : (uint32_t)t;
+    t = t > 0 ? t : 0;
+    return (uint32_t)(int32_t)(t < last ? t : last);
 }
 
 static inline uint32_t bin_of(float v) {
-    return part_of(v + 1, BINS / 2, BINS);
+    return part_of(v + 1, BINS / 2, BINS - 1);
 }
 
 static inline uint32_t cell_of(const grid_row *row, float u) {
-    return row->first_cell + part_of(u - row->u_low, row->scale, row->cell_count);
+    return row->first_cell + part_of(u - row->u_low, row->scale, row->last_cell);
 }
 
-/* The same stage for several instruction sets. */
-grid_test_faces grid_test_faces_plain;
+/* The stages for several instruction sets. */
+grid_run grid_run_plain;
 #if defined(__x86_64__)
-grid_test_faces grid_test_faces_avx2, grid_test_faces_avx512;
+grid_run grid_run_avx2, grid_run_avx512;
 #endif
 
 typedef enum grid_form { GRID_PLAIN, GRID_AVX2, GRID_AVX512, GRID_WIDEST } grid_form;
 
 /* NULL where the processor does not have what the form needs. */
-grid_test_faces *grid_choose_form(grid_form wanted);
+grid_run *grid_choose_form(grid_form wanted);
 
 #endif

@@ -75,6 +75,12 @@ typedef struct visibility_engine {
 
 extern const visibility_engine visibility_grid, visibility_tree, visibility_sweep;
 
+/* starg_visibility for callers that can use a part: when the time limit strikes, the rows that are
+ * finished by then are told by finished[i] = 1, and there is no error. */
+starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
+                             size_t count, const starg_visibility_options *options,
+                             uint8_t *finished, starg_bits **out);
+
 /* Does p, strictly inside, see the one face? The rules of starg_visibility, by the tree. */
 bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
                      const starg_visibility_options *options);

@@ -16,6 +16,7 @@ typedef struct job {
     const starg_visibility_options *options;
     const double *points;
     starg_bits *rows;
+    uint8_t *finished; /* by point; may be NULL */
 } job;
 
 /* What one thread needs to work on a point. */
@@ -95,15 +96,17 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     const double *p = all->points + 3 * item;
     uint64_t *row = starg_bits_row_mutable(all->rows, item);
     (void)context;
-    if (!starg_solid_contains(all->scene->solid, p))
-        return STARG_OK;
-    scene_sides(all->scene, p, w->side);
-    all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
-    drop_out_of_range(all, p, w->visible);
-    if (all->options->target == STARG_TARGET_VERTICES)
-        write_vertices(all, w, row);
-    else
-        write_faces(all, w, p, row);
+    if (starg_solid_contains(all->scene->solid, p)) {
+        scene_sides(all->scene, p, w->side);
+        all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
+        drop_out_of_range(all, p, w->visible);
+        if (all->options->target == STARG_TARGET_VERTICES)
+            write_vertices(all, w, row);
+        else
+            write_faces(all, w, p, row);
+    }
+    if (all->finished != NULL)
+        all->finished[item] = 1;
     return STARG_OK;
 }
 
@@ -126,9 +129,9 @@ static starg_status check_arguments(starg_context *context, const double *points
     return STARG_OK;
 }
 
-starg_status starg_visibility(starg_context *context, const starg_solid *solid,
-                              const double *points, size_t count,
-                              const starg_visibility_options *options, starg_bits **out) {
+starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
+                             size_t count, const starg_visibility_options *options,
+                             uint8_t *finished, starg_bits **out) {
     static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
                                                        &visibility_sweep};
     starg_status status = STARG_OK;
@@ -144,7 +147,7 @@ starg_status starg_visibility(starg_context *context, const starg_solid *solid,
     size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                               : solid->mesh->face_count;
     STARG_TRY(starg_bits_create(context, count, columns, &rows));
-    job all = {scene, engines[options->engine], options, points, rows};
+    job all = {scene, engines[options->engine], options, points, rows, finished};
     starg_parallel_loop loop = {.stage = STAGE,
                                 .count = count,
                                 .shared = &all,
@@ -152,11 +155,20 @@ starg_status starg_visibility(starg_context *context, const starg_solid *solid,
                                 .make_scratch = make_worker,
                                 .free_scratch = free_worker,
                                 .stop_at_deadline = true};
-    STARG_TRY(starg_parallel_for(context, &loop));
+    status = starg_parallel_for(context, &loop);
+    if (status == STARG_ERROR_TIME && finished != NULL)
+        status = STARG_OK;
+    STARG_TRY(status);
     *out = rows;
 done:
     scene_free(scene);
     if (status != STARG_OK)
         starg_bits_free(rows);
     return status;
+}
+
+starg_status starg_visibility(starg_context *context, const starg_solid *solid,
+                              const double *points, size_t count,
+                              const starg_visibility_options *options, starg_bits **out) {
+    return visibility_rows(context, solid, points, count, options, NULL, out);
 }

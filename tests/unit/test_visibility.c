@@ -197,7 +197,7 @@ static void test_lattice_boxes(void **state) {
     test_context_free(context);
 }
 
-/* The inner stage for each instruction set that the processor has: the same bits. */
+/* The stages for each instruction set that the processor has: the same bits. */
 static void test_grid_forms(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -221,8 +221,8 @@ static void test_grid_forms(void **state) {
     for (size_t i = 0; i < count; i++) {
         scene_sides(scene, points + 3 * i, side);
         for (int form = GRID_PLAIN; form <= GRID_WIDEST; form++) {
-            grid->test_faces = grid_choose_form((grid_form)form);
-            if (grid->test_faces == NULL)
+            grid->run = grid_choose_form((grid_form)form);
+            if (grid->run == NULL)
                 continue;
             uint8_t *out = form == GRID_PLAIN ? plain : wide;
             visibility_grid.find(scene, scratch, points + 3 * i, side, out);

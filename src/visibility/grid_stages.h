@@ -1,6 +1,7 @@
-/* Stage 3 of the direction grid, written once over LANES doubles at a time and compiled for each
+/* The stages of the direction grid (visibility/grid.c), written once and compiled for each
  * instruction set: the including file names the function and chooses the lanes. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/bits.h"
@@ -11,7 +12,172 @@
 enum { RUN = 56 };
 
 /* From so many rows on a face's edges are followed from row to row. */
-enum { TALL = 3 };
+enum { TALL = 6 };
+
+static double larger(double a, double b) {
+    return a > b ? a : b; /* unlike fmax, one instruction */
+}
+
+/* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
+ * most 6 mx my mz and an error of at most 8 roundings of it; the sum of three and D come to 30. */
+static void make_relative(const visibility_scene *scene, const double p[3], grid_scratch *g) {
+    double mx = 0, my = 0, mz = 0;
+    for (size_t i = 0; i < scene->vertex_count; i++) {
+        g->x[i] = scene->x[i] - p[0];
+        g->y[i] = scene->y[i] - p[1];
+        g->z[i] = scene->z[i] - p[2];
+        mx = larger(mx, fabs(g->x[i]));
+        my = larger(my, fabs(g->y[i]));
+        mz = larger(mz, fabs(g->z[i]));
+    }
+    g->bound = 6 * 32 * 0x1p-53 * mx * my * mz;
+    if (!(g->bound > 1e-200))
+        g->bound = INFINITY;
+}
+
+/* Projects all vertices; without branches, so that the compiler takes several at a time. */
+static void project(const visibility_scene *scene, grid_scratch *g) {
+    const float rim = 1 - CELL_MARGIN;
+    for (size_t i = 0; i < scene->vertex_count; i++) {
+        double x = g->x[i], y = g->y[i], z = g->z[i];
+        double ax = fabs(x), ay = fabs(y), az = fabs(z);
+        bool by_x = (ax >= ay) & (ax >= az), by_y = ay >= az;
+        double major = by_x ? x : by_y ? y : z;
+        double first = by_x ? y : by_y ? z : x;
+        double second = by_x ? z : by_y ? x : y;
+        double scale = 1 / fabs(major);
+        float u = (float)(first * scale), v = (float)(second * scale);
+        uint32_t face = by_x ? 0 : by_y ? 2 : 4;
+        bool inner = (fabsf(u) < rim) & (fabsf(v) < rim);
+        g->u[i] = u;
+        g->v[i] = v;
+        g->cube_face[i] = face + (major < 0 ? 1 : 0) + (inner ? 0 : RIM);
+    }
+}
+
+/* Cuts each cube face into rows of about equally many vertices, by a histogram of v. */
+static void cut_rows(grid_scratch *g) {
+    memset(g->row_of_bin, 0, sizeof g->row_of_bin);
+    for (size_t i = 0; i < g->used_count; i++) {
+        uint32_t slot = g->used[i];
+        g->row_of_bin[g->cube_face[slot] % RIM][bin_of(g->v[slot])]++;
+    }
+    g->row_count = 0;
+    for (int face = 0; face < CUBE_FACES; face++) {
+        uint32_t total = 0, sum = 0, last = 0;
+        for (int bin = 0; bin < BINS; bin++)
+            total += g->row_of_bin[face][bin];
+        double rows_per_vertex = total ? ROW_FACTOR / sqrt((double)total) : 0;
+        for (int bin = 0; bin < BINS; bin++) {
+            uint32_t count = g->row_of_bin[face][bin];
+            last = (uint32_t)((sum + 0.5 * count) * rows_per_vertex);
+            g->row_of_bin[face][bin] = g->row_count + last;
+            sum += count;
+        }
+        g->row_count += last + 1;
+    }
+    for (uint32_t r = 0; r < g->row_count; r++)
+        g->rows[r] = (grid_row){.u_low = 1, .u_high = -1, .v_low = 1, .v_high = -1};
+}
+
+/* Gives each row twice as many cells as it has vertices. Returns the number of cells. */
+static uint32_t cut_cells(grid_scratch *g) {
+    for (size_t i = 0; i < g->used_count; i++) {
+        uint32_t slot = g->used[i];
+        cube_point *c = &g->cube[slot];
+        const uint32_t *rows = g->row_of_bin[g->cube_face[slot] % RIM];
+        float v = g->v[slot], u = g->u[slot];
+        c->u = u;
+        c->face = g->cube_face[slot];
+        c->row_low = rows[bin_of(v - CELL_MARGIN)];
+        c->row_high = rows[bin_of(v + CELL_MARGIN)];
+        g->place[slot] = rows[bin_of(v)];
+        grid_row *row = &g->rows[g->place[slot]];
+        row->u_low = u < row->u_low ? u : row->u_low;
+        row->u_high = u > row->u_high ? u : row->u_high;
+        row->v_low = v < row->v_low ? v : row->v_low;
+        row->v_high = v > row->v_high ? v : row->v_high;
+        row->vertices++;
+    }
+    uint32_t cells = 0;
+    for (uint32_t r = 0; r < g->row_count; r++) {
+        grid_row *row = &g->rows[r];
+        row->first_cell = cells;
+        row->cell_count = 2 * row->vertices + 1;
+        row->last_cell = (float)(row->cell_count - 1);
+        float width = row->u_high - row->u_low;
+        row->scale = width > 0 ? (float)row->cell_count / width : 0;
+        cells += row->cell_count;
+    }
+    return cells;
+}
+
+/* Counting sort; cell_start[c] is first the end of cell c, and its start when all are placed. */
+static void sort_into_cells(const visibility_scene *scene, grid_scratch *g) {
+    memset(g->hidden, 0, (starg_bit_words(scene->vertex_count) + 1) * sizeof *g->hidden);
+    cut_rows(g);
+    uint32_t cells = cut_cells(g);
+    memset(g->cell_start, 0, (cells + 1) * sizeof *g->cell_start);
+    for (size_t i = 0; i < g->used_count; i++) {
+        uint32_t slot = g->used[i];
+        g->place[slot] = cell_of(&g->rows[g->place[slot]], g->u[slot]);
+        g->cell_start[g->place[slot]]++;
+    }
+    uint32_t sum = 0;
+    for (size_t c = 0; c <= cells; c++)
+        sum = g->cell_start[c] += sum;
+    for (size_t i = g->used_count; i-- > 0;) {
+        uint32_t slot = g->used[i], position = --g->cell_start[g->place[slot]];
+        g->place[slot] = position;
+        g->slot[position] = slot;
+        g->sx[position] = g->x[slot];
+        g->sy[position] = g->y[slot];
+        g->sz[position] = g->z[slot];
+    }
+}
+
+static int compare_chunks(const void *left, const void *right) {
+    const chunk_distance *a = left, *b = right;
+    if (a->distance != b->distance)
+        return a->distance < b->distance ? -1 : 1;
+    return (a->chunk > b->chunk) - (a->chunk < b->chunk);
+}
+
+/* Near chunks of faces hide most: the far ones then find little left to test. */
+static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
+    size_t count = (scene->face_count + CHUNK - 1) / CHUNK;
+    for (size_t c = 0; c < count; c++) {
+        uint32_t slot = scene->corners[3 * (c * CHUNK)];
+        g->chunks[c].chunk = (uint32_t)c;
+        g->chunks[c].distance =
+            g->x[slot] * g->x[slot] + g->y[slot] * g->y[slot] + g->z[slot] * g->z[slot];
+    }
+    qsort(g->chunks, count, sizeof *g->chunks, compare_chunks);
+    return count;
+}
+
+/* Stage 1: lists the faces that can block first, and the vertices that they use. */
+static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_scratch *g) {
+    size_t chunk_count = order_chunks(scene, g);
+    g->kept_count = g->used_count = 0;
+    memset(g->in_use, 0, scene->vertex_count);
+    for (size_t c = 0; c < chunk_count; c++) {
+        size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
+        for (; rank < end && rank < scene->face_count; rank++) {
+            uint8_t keep = !scene->cull || side[rank] > 0;
+            const uint32_t *corner = scene->corners + 3 * rank;
+            g->kept[g->kept_count] = (uint32_t)rank;
+            g->kept_count += keep;
+            g->in_use[corner[0]] |= keep;
+            g->in_use[corner[1]] |= keep;
+            g->in_use[corner[2]] |= keep;
+        }
+    }
+    for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
+        g->used[g->used_count] = slot;
+        g->used_count += g->in_use[slot];
+    }
+}
 
 /* A face as the inner loop needs it. */
 typedef struct blocker {
@@ -174,7 +340,7 @@ static void test_tall(const visibility_scene *scene, const double p[3], grid_scr
                       uint32_t row, uint32_t last_row) {
     cube_polygon polygon = {.count = 3};
     for (int k = 0; k < 3; k++) {
-        polygon.corner[k][0] = g->cube[f->corner[k]].u;
+        polygon.corner[k][0] = g->u[f->corner[k]];
         polygon.corner[k][1] = g->v[f->corner[k]];
     }
     test_polygon(scene, p, g, f, &polygon, row, last_row);
@@ -186,8 +352,9 @@ typedef struct cone_polygon {
     double corner[8][3];
 } cone_polygon;
 
-/* What lies on the near side of a plane through p: axis x SLACK >= sign x coordinate k. */
-static void clip_cone(const cone_polygon *in, int k, double sign, cone_polygon *out) {
+/* What lies on the near side of a plane through p: axis x SLACK >= sign x coordinate k. False if
+ * nothing does. */
+static bool clip_cone(const cone_polygon *in, int k, double sign, cone_polygon *out) {
     static const double SLACK = 1 + 0x1p-18;
     out->count = 0;
     for (int i = 0; i < in->count; i++) {
@@ -202,6 +369,7 @@ static void clip_cone(const cone_polygon *in, int k, double sign, cone_polygon *
             out->corner[out->count][j] = a[j] + t * (b[j] - a[j]);
         out->count++;
     }
+    return out->count > 0;
 }
 
 /* The part of a face in the frustum of a cube face, which is a little widened. Corners that come
@@ -219,12 +387,14 @@ static void clip_to_cube_face(const grid_scratch *g, const uint32_t *corner, uin
         for (int j = 0; j < 3; j++)
             size = fabs(a.corner[i][j]) > size ? fabs(a.corner[i][j]) : size;
     }
-    clip_cone(&a, 1, 1, &b);
-    clip_cone(&b, 1, -1, &a);
-    clip_cone(&a, 2, 1, &b);
-    clip_cone(&b, 2, -1, &a);
-    polygon->count = a.count;
     *whole = false;
+    polygon->count = 0;
+    if (a.corner[0][0] <= 0 && a.corner[1][0] <= 0 && a.corner[2][0] <= 0)
+        return;
+    if (!(clip_cone(&a, 1, 1, &b) && clip_cone(&b, 1, -1, &a) && clip_cone(&a, 2, 1, &b) &&
+          clip_cone(&b, 2, -1, &a)))
+        return;
+    polygon->count = a.count;
     for (int i = 0; i < a.count; i++) {
         *whole = *whole || !(a.corner[i][0] > 0x1p-20 * size);
         polygon->corner[i][0] = (float)(a.corner[i][1] / a.corner[i][0]);
@@ -292,11 +462,22 @@ static void test_face(const visibility_scene *scene, const double p[3], grid_scr
         test_tall(scene, p, g, f, first, last);
 }
 
-void GRID_TEST_FACES(const visibility_scene *scene, const double p[3], const int8_t *side,
-                     grid_scratch *g) {
+static void test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
+                       grid_scratch *g) {
     for (size_t i = 0; i < g->kept_count; i++) {
         size_t rank = g->kept[i];
         blocker f = {.rank = rank, .side = side[rank], .corner = scene->corners + 3 * rank};
         test_face(scene, p, g, &f);
     }
+}
+
+void GRID_RUN(const visibility_scene *scene, grid_scratch *g, const double p[3], const int8_t *side,
+              uint8_t *visible) {
+    make_relative(scene, p, g);
+    keep_faces(scene, side, g);
+    project(scene, g);
+    sort_into_cells(scene, g);
+    test_faces(scene, p, side, g);
+    for (size_t i = 0; i < scene->vertex_count; i++)
+        visible[i] = g->in_use[i] && !starg_bit_test(g->hidden, g->place[i]);
 }

@@ -1,0 +1,4 @@
+/* The stages of the direction grid for AVX-512. */
+#define GRID_RUN grid_run_avx512
+#define LANES_AVX512
+#include "visibility/grid_stages.h"
