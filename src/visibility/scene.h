@@ -86,7 +86,8 @@ bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t ra
                      const starg_visibility_options *options);
 
 /* Is every point of the face of `rank` visible from p? Its three vertices are, and p is on its
- * inner side. Exact. */
-bool face_is_wholly_visible(const visibility_scene *scene, const double p[3], size_t rank);
+ * inner side. `side` holds the sides of p by rank, or is NULL. Exact. */
+bool face_is_wholly_visible(const visibility_scene *scene, const double p[3], const int8_t *side,
+                            size_t rank);
 
 #endif

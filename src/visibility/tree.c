@@ -38,7 +38,7 @@ bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t ra
         if (!bvh_query_segment(scene->solid->tree, p, q, passes_alone, &query))
             return false;
     }
-    return options->face_rule != STARG_FACES_WHOLE || face_is_wholly_visible(scene, p, rank);
+    return options->face_rule != STARG_FACES_WHOLE || face_is_wholly_visible(scene, p, NULL, rank);
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {

@@ -85,7 +85,7 @@ static void write_faces(const job *all, const worker *w, const double p[3], uint
         const uint32_t *c = scene->corners + 3 * rank;
         if (w->side[rank] <= 0 || !(w->visible[c[0]] & w->visible[c[1]] & w->visible[c[2]]))
             continue;
-        if (!whole || face_is_wholly_visible(scene, p, rank))
+        if (!whole || face_is_wholly_visible(scene, p, w->side, rank))
             starg_bit_set(row, scene->face_of[rank]);
     }
 }

@@ -22,6 +22,7 @@
 typedef struct cone {
     const visibility_scene *scene;
     const double *p;
+    const int8_t *side; /* of p by rank, or NULL */
     const double *corner[3];
     size_t rank;
     /* Planes that have the cone on their positive side, relative to p: three lateral ones, and
@@ -82,9 +83,32 @@ static bool crosses_lateral(const double p[3], const double a[3], const double b
     return ab != 0 && pa * ab >= 0 && bp * ab >= 0;
 }
 
+/* Lies the triangle, but for corners that it shares with the face, beyond one of the planes? What
+ * it has on that plane is then a corner or an edge of the face, which is not before it. */
+static bool is_plainly_outside(const cone *k, size_t rank) {
+    const uint32_t *own = k->scene->corners + 3 * k->rank, *other = k->scene->corners + 3 * rank;
+    for (int i = 0; i < 4; i++) {
+        int outside = 0;
+        for (int j = 0; j < 3; j++) {
+            uint32_t slot = other[j];
+            bool shared = slot == own[i % 3] || (i < 3 && slot == own[(i + 1) % 3]) ||
+                          (i == 3 && (slot == own[1] || slot == own[2]));
+            double reach = k->offset[i] + k->normal[i][0] * (k->scene->x[slot] - k->p[0]) +
+                           k->normal[i][1] * (k->scene->y[slot] - k->p[1]) +
+                           k->normal[i][2] * (k->scene->z[slot] - k->p[2]);
+            outside += shared || reach < -k->slack[i];
+        }
+        if (outside == 3)
+            return true;
+    }
+    return false;
+}
+
 static bool passes(void *user, size_t rank) {
     const cone *k = user;
-    if (rank == k->rank)
+    if (k->side != NULL && k->scene->cull && k->side[rank] <= 0)
+        return true; /* by the proof in scene.h another face blocks the same view first */
+    if (rank == k->rank || is_plainly_outside(k, rank))
         return true;
     const double *t[3];
     for (int i = 0; i < 3; i++) {
@@ -99,8 +123,9 @@ static bool passes(void *user, size_t rank) {
     return true;
 }
 
-bool face_is_wholly_visible(const visibility_scene *scene, const double p[3], size_t rank) {
-    cone k = {.scene = scene, .p = p, .rank = rank};
+bool face_is_wholly_visible(const visibility_scene *scene, const double p[3], const int8_t *side,
+                            size_t rank) {
+    cone k = {.scene = scene, .p = p, .side = side, .rank = rank};
     for (int i = 0; i < 3; i++)
         k.corner[i] = scene_corner(scene, rank, i);
     make_cone(&k);
