@@ -8,14 +8,16 @@ CTEST   := ctest --output-on-failure -j $(JOBS)
 .PHONY: build demo check check-long lint sanitize fuzz bench install deps deps-check clean
 
 build: deps
-	@$(CMAKE) -S . -B $(BUILD) > /dev/null
+	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=OFF > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 
 # The main job on a bundled sample, and a picture of it.
 demo: build
 	@scripts/demo.sh $(BUILD)
 
-check: deps-check build lint
+check: deps-check lint
+	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=ON > /dev/null
+	@cmake --build $(BUILD) -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)
 	@$(MAKE) --no-print-directory sanitize
 
@@ -44,6 +46,7 @@ fuzz: deps-check
 	@scripts/fuzz.sh $(BUILD)-fuzz $(SECONDS)
 
 bench: build
+	@scripts/install-deps.sh build bench
 	@$(CMAKE) -S . -B $(BUILD)-bench -DCMAKE_BUILD_TYPE=Release -DSTARGUARD_BENCH=ON -DSTARGUARD_TESTS=OFF > /dev/null
 	@cmake --build $(BUILD)-bench -j $(JOBS)
 	@bench/run.sh $(BUILD)-bench
