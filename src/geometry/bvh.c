@@ -166,26 +166,48 @@ void bvh_free(bvh *tree) {
     starg_release(tree->context, tree);
 }
 
-bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *user) {
+bool bvh_query(const bvh *tree, bvh_box_test *may_meet, void *test_user, bvh_visit_rank *visit,
+               void *visit_user) {
     uint32_t stack[STACK_SIZE];
     int depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
         const bvh_node *node = &tree->nodes[stack[--depth]];
-        if (!boxes_meet(&node->box, box))
+        if (!may_meet(test_user, &node->box))
             continue;
         if (node->count == 0 && tree->triangle_count > LEAF_SIZE) {
             stack[depth++] = node->first + 1;
             stack[depth++] = node->first;
             continue;
         }
-        for (uint32_t i = node->first; i < node->first + node->count; i++) {
-            bvh_box own = triangle_box(tree, tree->order[i]);
-            if (boxes_meet(&own, box) && !visit(user, tree->order[i]))
+        for (uint32_t i = node->first; i < node->first + node->count; i++)
+            if (!visit(visit_user, i))
                 return false;
-        }
     }
     return true;
+}
+
+typedef struct box_query {
+    const bvh *tree;
+    const bvh_box *box;
+    bvh_visit *visit;
+    void *user;
+} box_query;
+
+static bool box_may_meet(void *user, const bvh_box *box) {
+    const box_query *query = user;
+    return boxes_meet(query->box, box);
+}
+
+static bool visit_if_met(void *user, size_t rank) {
+    const box_query *query = user;
+    bvh_box own = triangle_box(query->tree, query->tree->order[rank]);
+    return !boxes_meet(&own, query->box) || query->visit(query->user, query->tree->order[rank]);
+}
+
+bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *user) {
+    box_query query = {tree, box, visit, user};
+    return bvh_query(tree, box_may_meet, &query, visit_if_met, &query);
 }
 
 typedef struct pair_query {
@@ -231,32 +253,29 @@ int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]) {
     return orient3d(a, b, c, p) * ab > 0 ? ab : 0;
 }
 
+typedef struct winding_query {
+    const bvh *tree;
+    const double *p;
+    int winding;
+    bool on_surface;
+} winding_query;
+
+static bool add_crossing(void *user, uint32_t triangle) {
+    winding_query *query = user;
+    query->winding += bvh_crossing(query->tree, triangle, query->p);
+    query->on_surface =
+        query->on_surface ||
+        point_on_triangle(query->p, corner(query->tree, triangle, 0),
+                          corner(query->tree, triangle, 1), corner(query->tree, triangle, 2));
+    return true;
+}
+
 int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
-    uint32_t stack[STACK_SIZE];
-    int depth = 0, winding = 0;
-    *on_surface = false;
-    stack[depth++] = 0;
-    while (depth > 0) {
-        const bvh_node *node = &tree->nodes[stack[--depth]];
-        const bvh_box *box = &node->box;
-        if (p[0] < box->lower[0] || p[0] > box->upper[0] || p[1] < box->lower[1] ||
-            p[1] > box->upper[1] || p[2] > box->upper[2])
-            continue;
-        if (node->count == 0 && tree->triangle_count > LEAF_SIZE) {
-            stack[depth++] = node->first + 1;
-            stack[depth++] = node->first;
-            continue;
-        }
-        for (uint32_t i = node->first; i < node->first + node->count; i++) {
-            uint32_t triangle = tree->order[i];
-            winding += bvh_crossing(tree, triangle, p);
-            if (p[2] >= box->lower[2] &&
-                point_on_triangle(p, corner(tree, triangle, 0), corner(tree, triangle, 1),
-                                  corner(tree, triangle, 2)))
-                *on_surface = true;
-        }
-    }
-    return winding;
+    winding_query query = {.tree = tree, .p = p};
+    bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
+    bvh_query_box(tree, &line, add_crossing, &query);
+    *on_surface = query.on_surface;
+    return query.winding;
 }
 
 /* A segment p + t d, 0 <= t <= 1, made ready for slab tests. */
@@ -298,46 +317,14 @@ static bool slab_meets(const slab_segment *s, const bvh_box *box) {
     return enter <= leave * (1 + 0x1p-48) + 0x1p-1000;
 }
 
-bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
-                       void *user) {
-    uint32_t stack[STACK_SIZE];
-    int depth = 0;
-    slab_segment s = slab_prepare(p, q);
-    stack[depth++] = 0;
-    while (depth > 0) {
-        const bvh_node *node = &tree->nodes[stack[--depth]];
-        if (!slab_meets(&s, &node->box))
-            continue;
-        if (node->count == 0 && tree->triangle_count > LEAF_SIZE) {
-            stack[depth++] = node->first + 1;
-            stack[depth++] = node->first;
-            continue;
-        }
-        for (uint32_t i = node->first; i < node->first + node->count; i++)
-            if (!visit(user, i))
-                return false;
-    }
-    return true;
+static bool slab_may_meet(void *user, const bvh_box *box) {
+    return slab_meets(user, box);
 }
 
-bool bvh_query(const bvh *tree, bvh_box_test *may_meet, bvh_visit_rank *visit, void *user) {
-    uint32_t stack[STACK_SIZE];
-    int depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-        const bvh_node *node = &tree->nodes[stack[--depth]];
-        if (!may_meet(user, &node->box))
-            continue;
-        if (node->count == 0 && tree->triangle_count > LEAF_SIZE) {
-            stack[depth++] = node->first + 1;
-            stack[depth++] = node->first;
-            continue;
-        }
-        for (uint32_t i = node->first; i < node->first + node->count; i++)
-            if (!visit(user, i))
-                return false;
-    }
-    return true;
+bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
+                       void *user) {
+    slab_segment segment = slab_prepare(p, q);
+    return bvh_query(tree, slab_may_meet, &segment, visit, user);
 }
 
 /* Squared distance from p to the segment a b. */

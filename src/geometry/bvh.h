@@ -34,6 +34,14 @@ starg_status bvh_create(starg_context *context, const double *vertices, const ui
                         size_t face_count, bvh **out);
 void bvh_free(bvh *tree);
 
+/* Calls visit with the position in `order` of every triangle in the leaves that may_meet lets
+ * through, until it returns false; returns false exactly if visit did. may_meet may say no only
+ * where none of a box's triangles matters. The other queries are special cases. */
+typedef bool bvh_box_test(void *user, const bvh_box *box);
+typedef bool bvh_visit_rank(void *user, size_t rank);
+bool bvh_query(const bvh *tree, bvh_box_test *may_meet, void *test_user, bvh_visit_rank *visit,
+               void *visit_user);
+
 /* Calls visit for every triangle whose box meets `box`, in a fixed order, until it returns false.
  * Returns false exactly if visit did. */
 typedef bool bvh_visit(void *user, uint32_t triangle);
@@ -54,14 +62,8 @@ int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
 /* Calls visit with the position in `order` of every triangle whose leaf the segment from p to q
  * may meet (none that it meets is left out), until it returns false. Returns false exactly if
  * visit did. */
-typedef bool bvh_visit_rank(void *user, size_t rank);
 bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
                        void *user);
-
-/* The same for whatever has a box test of its own, which may say no only where none of a box's
- * triangles matters. */
-typedef bool bvh_box_test(void *user, const bvh_box *box);
-bool bvh_query(const bvh *tree, bvh_box_test *may_meet, bvh_visit_rank *visit, void *user);
 
 /* Distance from p to the nearest triangle, rounded (not a decision); infinity without triangles. */
 double bvh_distance(const bvh *tree, const double p[3]);

@@ -129,5 +129,5 @@ bool face_is_wholly_visible(const visibility_scene *scene, const double p[3], co
     for (int i = 0; i < 3; i++)
         k.corner[i] = scene_corner(scene, rank, i);
     make_cone(&k);
-    return bvh_query(scene->solid->tree, box_may_meet, passes, &k);
+    return bvh_query(scene->solid->tree, box_may_meet, &k, passes, &k);
 }

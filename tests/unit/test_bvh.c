@@ -305,7 +305,7 @@ static bool reaches_below_one(void *user, const bvh_box *box) {
 static void check_query(const scene *world) {
     size_t n = world->s.face_count;
     tally t = {.calls = calloc(n, sizeof(int)), .faces = n};
-    assert_true(bvh_query(world->tree, reaches_below_one, count_rank, &t));
+    assert_true(bvh_query(world->tree, reaches_below_one, &t, count_rank, &t));
     for (size_t rank = 0; rank < n; rank++) {
         bvh_box box = box_of(&world->s, world->tree->order[rank]);
         assert_true(t.calls[rank] <= 1);
