@@ -1,0 +1,102 @@
+/* Real models of up to 1,200 vertices: guarded, verified, and the same with every engine. */
+#include "support.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "starguard/guard.h"
+#include "starguard/verify.h"
+
+enum { MOST_VERTICES = 1200 };
+
+static void verify(starg_context *context, const char *name, const starg_mesh *mesh,
+                   const starg_guards *guards) {
+    starg_verdict *verdict = NULL;
+    test_ok(context, starg_verify_guards(context, mesh, guards, &verdict));
+    for (size_t i = 0; i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            print_error("%s: %s\n", name, verdict->claims[i].text);
+    assert_true(verdict->passed);
+    starg_verdict_free(context, verdict);
+}
+
+static void check_model(starg_context *context, const char *name, const starg_mesh *mesh) {
+    starg_solid *solid = NULL;
+    starg_guards *best = NULL, *other = NULL;
+    starg_guard_options options;
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    starg_guard_options_default(&options);
+    options.candidate_count = 200;
+    test_ok(context, starg_guard(context, solid, &options, &best));
+    verify(context, name, mesh, best);
+    assert_true(best->lower_bound <= best->count);
+    /* an embedded boundary can be seen wherever it has area */
+    if (starg_solid_check(solid)->embedded)
+        assert_int_equal(best->uncovered_count, 0);
+
+    options.method = STARG_GUARD_GREEDY;
+    for (int engine = 0; engine < 3; engine++) {
+        options.visibility.engine = (starg_visibility_engine)engine;
+        starg_guards *greedy = NULL;
+        test_ok(context, starg_guard(context, solid, &options, &greedy));
+        assert_true(greedy->count >= best->count || !best->optimal);
+        assert_true(greedy->lower_bound <= best->count);
+        if (other != NULL) {
+            assert_int_equal(greedy->count, other->count);
+            assert_memory_equal(greedy->positions, other->positions, 24 * other->count);
+        }
+        starg_guards_free(context, other);
+        other = greedy;
+    }
+    starg_guards_free(context, other);
+    starg_guards_free(context, best);
+    starg_solid_free(solid);
+}
+
+static void check_folder(const char *folder, size_t *checked) {
+    const char *data = test_shared_data();
+    if (data == NULL)
+        skip();
+    char path[4400];
+    snprintf(path, sizeof path, "%s/%s", data, folder);
+    DIR *files = opendir(path);
+    assert_non_null(files);
+    starg_context *context = test_context(2);
+    for (struct dirent *file = readdir(files); file != NULL; file = readdir(files)) {
+        starg_mesh *mesh = NULL;
+        if (strstr(file->d_name, ".off") == NULL)
+            continue;
+        snprintf(path, sizeof path, "%s/%s/%s", data, folder, file->d_name);
+        test_ok(context, starg_mesh_read(context, path, &mesh));
+        if (starg_mesh_vertex_count(mesh) <= MOST_VERTICES) {
+            check_model(context, file->d_name, mesh);
+            ++*checked;
+        }
+        starg_mesh_free(mesh);
+    }
+    closedir(files);
+    test_context_free(context);
+}
+
+static void test_cad(void **state) {
+    size_t checked = 0;
+    (void)state;
+    check_folder("cad", &checked);
+    assert_true(checked >= 25);
+}
+
+static void test_small_solids(void **state) {
+    size_t checked = 0;
+    (void)state;
+    check_folder("table2", &checked);
+    check_folder("solids", &checked);
+    assert_true(checked >= 6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cad),
+                                       cmocka_unit_test(test_small_solids)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
