@@ -3,17 +3,15 @@
 set -eu
 build=$1
 seconds=$2
-for target in "$build"/tests/fuzz/fuzz_*; do
-    [ -x "$target" ] && [ -f "$target" ] || continue
-    name=$(basename "$target")
+for target in "$build"/tests/fuzz/fuzz_*_live; do
+    name=$(basename "$target" _live)
     found="$build/found/$name"
+    corpus=${name#fuzz_}
+    corpus="tests/fuzz/corpus/${corpus#mesh_}"
     mkdir -p "$found"
-    corpus="tests/fuzz/corpus/${name#fuzz_mesh_}"
-    [ -d "$corpus" ] || corpus=""
     echo "$name: $seconds s"
-    # shellcheck disable=SC2086
     "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-        -artifact_prefix="$found/" "$found" $corpus 2>"$build/$name.log" || {
+        -artifact_prefix="$found/" "$found" "$corpus" 2>"$build/$name.log" || {
         tail -n 30 "$build/$name.log" >&2
         exit 1
     }

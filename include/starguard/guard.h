@@ -96,10 +96,17 @@ STARG_API starg_status starg_guards_write(starg_context *context, const starg_gu
 STARG_API starg_status starg_guards_read(starg_context *context, const char *path,
                                          starg_guards **out);
 
+/* The same from `size` bytes in memory; `name` stands in messages. */
+STARG_API starg_status starg_guards_read_memory(starg_context *context, const void *bytes,
+                                                size_t size, const char *name, starg_guards **out);
+
 /* Reads candidate points: text of three numbers a line (an optional leading "v", comments by #),
  * or the positions in a GUARDS.json. Free with starg_points_free. */
 STARG_API starg_status starg_points_read(starg_context *context, const char *path, double **points,
                                          size_t *count);
+STARG_API starg_status starg_points_read_memory(starg_context *context, const void *bytes,
+                                                size_t size, const char *name, double **points,
+                                                size_t *count);
 
 #ifdef __cplusplus
 }

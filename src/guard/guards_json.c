@@ -340,21 +340,18 @@ static void read_document(json_reader *r, json_t *root, starg_guards *g) {
     g->time_limited = json_is_true(json_object_get(root, "time_limited"));
 }
 
-starg_status starg_guards_read(starg_context *context, const char *path, starg_guards **out) {
+starg_status starg_guards_read_memory(starg_context *context, const void *bytes, size_t size,
+                                      const char *name, starg_guards **out) {
     starg_status status = STARG_OK;
-    json_reader reader = {context, path, STARG_OK};
+    json_reader reader = {context, name, STARG_OK};
     starg_guards *guards = NULL;
-    json_t *root = NULL;
     json_error_t error;
-    char *bytes = NULL;
-    size_t size;
     *out = NULL;
-    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
+    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
     if (root == NULL) {
         uint64_t line = error.line > 0 ? (uint64_t)error.line : 1;
         status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
-                               "'%s', line %llu: %s", path, (unsigned long long)line, error.text);
+                               "'%s', line %llu: %s", name, (unsigned long long)line, error.text);
         goto done;
     }
     STARG_NEW_ZERO(context, STAGE, guards, 1);
@@ -363,8 +360,18 @@ starg_status starg_guards_read(starg_context *context, const char *path, starg_g
     *out = guards;
 done:
     json_decref(root);
-    starg_release(context, bytes);
     if (status != STARG_OK)
         starg_guards_free(context, guards);
+    return status;
+}
+
+starg_status starg_guards_read(starg_context *context, const char *path, starg_guards **out) {
+    char *bytes = NULL;
+    size_t size;
+    *out = NULL;
+    starg_status status = starg_file_read(context, STAGE, path, &bytes, &size);
+    if (status == STARG_OK)
+        status = starg_guards_read_memory(context, bytes, size, path, out);
+    starg_release(context, bytes);
     return status;
 }

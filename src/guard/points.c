@@ -8,13 +8,13 @@
 
 static const char STAGE[] = "points file";
 
-static starg_status take_positions(starg_context *context, const char *path,
-                                   candidate_points *points) {
+static starg_status take_positions(const starg_source *source, candidate_points *points) {
     starg_guards *guards = NULL;
-    starg_status status = starg_guards_read(context, path, &guards);
+    starg_status status = starg_guards_read_memory(source->context, source->bytes, source->size,
+                                                   source->name, &guards);
     for (size_t i = 0; status == STARG_OK && i < guards->count; i++)
-        status = candidates_push(context, points, guards->positions + 3 * i);
-    starg_guards_free(context, guards);
+        status = candidates_push(source->context, points, guards->positions + 3 * i);
+    starg_guards_free(source->context, guards);
     return status;
 }
 
@@ -69,23 +69,20 @@ static bool is_json(const starg_source *source) {
     return i < source->size && source->bytes[i] == '{';
 }
 
-starg_status starg_points_read(starg_context *context, const char *path, double **points,
-                               size_t *count) {
+starg_status starg_points_read_memory(starg_context *context, const void *bytes, size_t size,
+                                      const char *name, double **points, size_t *count) {
     starg_status status = STARG_OK;
-    starg_source source = {.context = context, .name = path};
+    starg_source source = {context, name, bytes, size};
     candidate_points found = {0};
-    char *bytes = NULL;
     *points = NULL;
     *count = 0;
-    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &source.size));
-    source.bytes = bytes;
     if (is_json(&source))
-        STARG_TRY(take_positions(context, path, &found));
+        STARG_TRY(take_positions(&source, &found));
     else
         STARG_TRY(scan_text(&source, &found));
     if (found.data.count == 0) {
         status = starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                            "'%s' holds no points; write three numbers a line", path);
+                            "'%s' holds no points; write three numbers a line", name);
         goto done;
     }
     *points = found.data.data;
@@ -93,6 +90,18 @@ starg_status starg_points_read(starg_context *context, const char *path, double 
     found.data.data = NULL;
 done:
     STARG_ARRAY_FREE(context, &found.data);
+    return status;
+}
+
+starg_status starg_points_read(starg_context *context, const char *path, double **points,
+                               size_t *count) {
+    char *bytes = NULL;
+    size_t size;
+    *points = NULL;
+    *count = 0;
+    starg_status status = starg_file_read(context, STAGE, path, &bytes, &size);
+    if (status == STARG_OK)
+        status = starg_points_read_memory(context, bytes, size, path, points, count);
     starg_release(context, bytes);
     return status;
 }
