@@ -1,7 +1,8 @@
 /* Covering everything: reductions, blocks, and for each block
  *   1. a greedy cover, improved by swaps;
- *   2. rounds of: Lagrangian bound (with covers from its costs), the linear relaxation's bound if
- *      that is not enough, rows fixed by their reduced costs, reductions of the rest;
+ *   2. rounds of: Lagrangian bound (with covers from its costs), local search down to that bound,
+ *      the linear relaxation's bound if that is not enough, rows fixed by their reduced costs,
+ *      reductions of the rest;
  *   3. branch and bound on what is left.
  * Each ends as soon as the bound meets the cover.
  *
@@ -12,7 +13,9 @@
 #include "cover/dual.h"
 #include "cover/greedy.h"
 #include "cover/ilp.h"
+#include "cover/local.h"
 #include "cover/reduce.h"
+#include "cover/relax.h"
 
 typedef struct block_solve {
     cover_run *run;
@@ -64,22 +67,23 @@ done:
 static starg_status bound_by_lp(block_solve *block, cover_dual *dual) {
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
-    int64_t *multipliers = NULL, *scratch = NULL;
+    cover_relaxation relaxation = {0};
+    int64_t *scratch = NULL;
     bool found;
-    STARG_NEW(context, "bound", multipliers, block->rest.columns);
     STARG_NEW(context, "bound", scratch, block->rest.rows);
-    STARG_TRY(cover_lp_multipliers(block->run, &block->rest, multipliers, &found));
+    STARG_TRY(cover_relax(block->run, &block->rest, &relaxation, &found));
     if (found)
-        cover_dual_offer(&block->rest, dual, multipliers, scratch);
+        cover_dual_offer(&block->rest, dual, relaxation.multipliers, scratch);
 done:
-    starg_release(context, multipliers);
     starg_release(context, scratch);
+    cover_relaxation_free(&block->rest, &relaxation);
     return status;
 }
 
 static starg_status bound_rest(block_solve *block, cover_dual *dual, cover_state *cover) {
     starg_status status = STARG_OK;
     STARG_TRY(cover_lagrange(block->run, &block->rest, dual, cover));
+    STARG_TRY(cover_local_search(block->run, cover_dual_rows(dual->value), cover));
     STARG_TRY(offer_cover(block, cover));
     raise_bound(block, cover_dual_rows(dual->value));
     if (is_closed(block) || cover_time_is_over(block->run))
@@ -136,15 +140,26 @@ done:
     return status;
 }
 
+/* A cover of the rest for the search to start from, as small as the best one if that is found. */
+static starg_status find_start(block_solve *block, cover_state *cover) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_first_cover(block->run, &block->rest, cover));
+    STARG_TRY(cover_local_search(block->run, block->best.count - block->forced.count, cover));
+    STARG_TRY(offer_cover(block, cover));
+done:
+    return status;
+}
+
 static starg_status branch_and_bound(block_solve *block) {
     starg_status status = STARG_OK;
     cover_state cover = {0};
-    bool found;
-    size_t bound, most = block->best.count - 1 - block->forced.count;
+    size_t bound;
     STARG_TRY(cover_state_create(&block->rest, &cover));
-    STARG_TRY(cover_ilp_solve(block->run, &block->rest, most, &cover, &found, &bound));
-    if (found)
-        STARG_TRY(offer_cover(block, &cover));
+    STARG_TRY(find_start(block, &cover));
+    if (is_closed(block))
+        goto done;
+    STARG_TRY(cover_ilp_solve(block->run, &block->rest, &cover, &bound));
+    STARG_TRY(offer_cover(block, &cover));
     raise_bound(block, bound);
 done:
     cover_state_free(&cover);

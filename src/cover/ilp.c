@@ -1,11 +1,21 @@
-/* CBC and Clp by their C interfaces. What one has to know of them:
- *   - Two solves at once in one process fail silently: a process-wide lock, waited for in slices so
- *     that cancellation and the time limit hold meanwhile.
- *   - The C interface has no way to stop a solve. A cut callback runs at every node: when we want
- *     to stop it adds the cut x0 >= 2, which makes every open node infeasible. CBC then ends at
- *     once, with claims that are worth nothing; its covers are still looked at.
- *   - Its preprocessing can crash on a model whose cutoff leaves no solution, and gains nothing
- *     after our reductions: off. Limits are by elapsed time. All printing is off.
+/* Branch and bound by CBC on a part of the columns, which grows until the best cover of the part
+ * covers everything:
+ *   1. the columns that the linear relaxation leaves tight or nearly so are the first part;
+ *   2. CBC solves the part, starting from a cover that is known;
+ *   3. if its answer leaves columns out, these join the part, and it goes on with 2.
+ * A cover of everything covers the part, so what is proven of the part holds for everything. Each
+ * turn takes in a column, so there is an end; a few turns are usual.
+ *
+ * What one has to know of CBC's C interface:
+ *   - Two solves at once in one process fail silently: a lock (solver.h).
+ *   - It has no way to stop a solve. A cut callback runs at every node: when we want to stop it
+ * adds the cut x0 >= 2, which makes every open node infeasible. CBC then ends at once, with claims
+ *     that are worth nothing; its covers are still looked at.
+ *   - A known cover has to be given as a start. A mere cutoff makes CBC believe that it has no
+ *     solution yet: it then looks for one all the way, in trees that are ten times as large.
+ *   - Its heuristics find nothing that our local search has not found: off. Its preprocessing can
+ *     crash on infeasible models and gains nothing after our reductions: off. Limits are by elapsed
+ *     time. All printing is off.
  *
  * Trust: coefficients and costs are 1, demands at most 1,000, so the model is exact in doubles. A
  * cover from CBC is checked on the bits. Gaps are closed by our exact dual bound first (dual.h);
@@ -14,50 +24,27 @@
  * BOUND_MARGIN, far above its tolerance of 1e-6. */
 #include "cover/ilp.h"
 
-#include <float.h>
 #include <limits.h>
 #include <math.h>
-#include <threads.h>
-#include <time.h>
 
 #include <Cbc_C_Interface.h>
-#include <Clp_C_Interface.h>
+
+#include "cover/relax.h"
+#include "cover/solver.h"
 
 static const double BOUND_MARGIN = 1e-3;
 
-static mtx_t solver_lock;
-static bool solver_lock_exists;
-static once_flag solver_lock_once = ONCE_FLAG_INIT;
-
-static void make_solver_lock(void) {
-    solver_lock_exists = mtx_init(&solver_lock, mtx_timed) == thrd_success;
-}
-
-/* *held is false when the time limit struck first, or the system has no lock to give. */
-static starg_status lock_solver(cover_run *run, bool *held) {
-    *held = false;
-    call_once(&solver_lock_once, make_solver_lock);
-    while (solver_lock_exists && !*held && !cover_time_is_over(run)) {
-        starg_status status = starg_check_cancel(run->context, "ilp");
-        if (status != STARG_OK)
-            return status;
-        struct timespec until;
-        timespec_get(&until, TIME_UTC);
-        until.tv_nsec += 50000000;
-        if (until.tv_nsec >= 1000000000) {
-            until.tv_nsec -= 1000000000;
-            until.tv_sec++;
-        }
-        *held = mtx_timedlock(&solver_lock, &until) == thrd_success;
-    }
-    return STARG_OK;
-}
+/* Columns of the first part: those whose surplus in the relaxation is at most this. More of them
+ * make each node slower, fewer of them make more turns. */
+static const double FIRST_SURPLUS = 0.3;
 
 /* The model min sum x, sum over R(j) of x >= demand(j), 0 <= x <= 1, by variables. */
 typedef struct model_data {
     CoinBigIndex *start;
     int *index;
     double *ones, *lower, *upper, *demand;
+    int *start_index; /* room for a first solution */
+    double *start_value;
     int variables, constraints;
 } model_data;
 
@@ -68,6 +55,8 @@ static void model_data_free(starg_context *context, model_data *data) {
     starg_release(context, data->lower);
     starg_release(context, data->upper);
     starg_release(context, data->demand);
+    starg_release(context, data->start_index);
+    starg_release(context, data->start_value);
 }
 
 static void fill_model(const cover_instance *instance, model_data *data) {
@@ -102,69 +91,14 @@ static starg_status make_model(const cover_instance *instance, model_data *data,
     STARG_NEW(context, "ilp", data->lower, instance->rows);
     STARG_NEW(context, "ilp", data->upper, instance->rows);
     STARG_NEW(context, "ilp", data->demand, instance->columns);
+    STARG_NEW(context, "ilp", data->start_index, instance->rows);
+    STARG_NEW(context, "ilp", data->start_value, instance->rows);
     data->variables = (int)instance->rows;
     data->constraints = (int)instance->columns;
     for (size_t e = 0; e < most; e++)
         data->ones[e] = 1;
     fill_model(instance, data);
 done:
-    return status;
-}
-
-static double seconds_left(const starg_context *context) {
-    double left = context->deadline - starg_clock();
-    return left > 0.001 ? left : 0.001;
-}
-
-/* Runs Clp on the model; the duals stay owned by the returned model, NULL without a result. */
-static Clp_Simplex *run_clp(const cover_run *run, const model_data *data) {
-    Clp_Simplex *model = Clp_newModel();
-    if (model == NULL)
-        return NULL;
-    Clp_setLogLevel(model, 0);
-    if (run->context->deadline > 0)
-        Clp_setMaximumSeconds(model, seconds_left(run->context));
-    Clp_loadProblem(model, data->variables, data->constraints, data->start, data->index, data->ones,
-                    data->lower, data->upper, data->ones, data->demand, NULL);
-    Clp_initialDualSolve(model);
-    if (Clp_status(model) == 0 && Clp_dualRowSolution(model) != NULL)
-        return model;
-    Clp_deleteModel(model);
-    return NULL;
-}
-
-static int64_t round_multiplier(double value) {
-    if (!(value > 0))
-        return 0;
-    if (value >= (double)COVER_MOST / (double)COVER_ONE)
-        return COVER_MOST;
-    return llround(value * (double)COVER_ONE);
-}
-
-starg_status cover_lp_multipliers(cover_run *run, const cover_instance *instance,
-                                  int64_t *multipliers, bool *found) {
-    starg_status status = STARG_OK;
-    model_data data;
-    bool fits, held = false;
-    *found = false;
-    STARG_TRY(make_model(instance, &data, &fits));
-    if (!fits)
-        goto done;
-    STARG_TRY(lock_solver(run, &held));
-    if (!held)
-        goto done;
-    Clp_Simplex *model = run_clp(run, &data);
-    if (model != NULL) {
-        const double *duals = Clp_dualRowSolution(model);
-        for (size_t j = 0; j < instance->columns; j++)
-            multipliers[j] = round_multiplier(duals[j]);
-        *found = true;
-        Clp_deleteModel(model);
-    }
-done:
-    if (held)
-        mtx_unlock(&solver_lock);
-    model_data_free(run->context, &data);
     return status;
 }
 
@@ -191,96 +125,175 @@ static void stop_if_asked(void *solver, void *cuts, void *user) {
     }
 }
 
-static void set_limits(const cover_run *run, Cbc_Model *model, size_t most) {
+/* A search on a growing part of the columns. */
+typedef struct part_search {
+    cover_run *run;
+    const cover_instance *instance;
+    uint64_t *columns; /* mask of the part                                       */
+    cover_state *best; /* the best cover of everything                           */
+    cover_state trial; /* what CBC chose last, as a choice for everything        */
+    size_t bound;      /* no cover has fewer rows                                */
+    size_t nodes;      /* used so far                                            */
+    bool answered;     /* the trial is an optimal cover of the part              */
+} part_search;
+
+static void set_limits(const part_search *search, Cbc_Model *model) {
+    size_t nodes = search->run->max_nodes - search->nodes;
     Cbc_setLogLevel(model, 0);
     Cbc_setParameter(model, "log", "0");
     Cbc_setParameter(model, "timeMode", "elapsed");
     Cbc_setParameter(model, "preprocess", "off");
-    Cbc_setCutoff(model, (double)most + 0.5);
-    Cbc_setMaximumNodes(model, run->max_nodes < INT_MAX ? (int)run->max_nodes : INT_MAX);
-    if (run->context->deadline > 0)
-        Cbc_setMaximumSeconds(model, seconds_left(run->context));
+    Cbc_setParameter(model, "heuristicsOnOff", "off");
+    Cbc_setMaximumNodes(model, nodes < INT_MAX ? (int)nodes : INT_MAX);
+    if (search->run->context->deadline > 0)
+        Cbc_setMaximumSeconds(model, cover_seconds_left(search->run));
 }
 
-/* Builds the rows with x near 1 into `trial`; true if they cover everything in at most `most`. */
-static bool check_solution(const cover_instance *instance, const double *solution, size_t most,
-                           cover_state *trial) {
-    size_t count = 0;
-    if (solution == NULL)
-        return false;
-    for (size_t i = 0; i < instance->rows; i++)
-        count += solution[i] > 0.5;
-    if (count > most)
-        return false;
+/* The best cover as CBC's first solution: `index` and `value` have room for all rows. */
+static void set_start(const cover_state *best, Cbc_Model *model, int *index, double *value) {
+    for (size_t c = 0; c < best->count; c++) {
+        index[c] = (int)best->rows[c];
+        value[c] = 1;
+    }
+    Cbc_setMIPStartI(model, (int)best->count, index, value);
+}
+
+/* Chooses the rows with x near 1. */
+static void read_solution(const double *solution, cover_state *trial) {
     cover_state_clear(trial);
-    for (size_t i = 0; i < instance->rows; i++) {
+    for (size_t i = 0; i < trial->instance->rows; i++) {
         if (solution[i] > 0.5)
             cover_state_add(trial, i);
     }
-    return trial->weight == instance->total;
 }
 
-/* What CBC has proven about the covers of at most `most` rows. */
-static size_t proven_bound(const cover_run *run, Cbc_Model *model, size_t most, bool found,
-                           size_t count) {
-    if (Cbc_status(model) == 0 && found && Cbc_isProvenOptimal(model))
+static bool covers_part(const part_search *search) {
+    for (size_t w = 0; w < search->instance->row_words; w++) {
+        if (search->trial.open[w] & search->columns[w])
+            return false;
+    }
+    return true;
+}
+
+/* What CBC has proven about the covers of the part; `count` is the size of the one it found. */
+static size_t proven_bound(const part_search *search, Cbc_Model *model, size_t count) {
+    if (search->answered)
         return count;
-    if (Cbc_status(model) == 0 && !found && Cbc_isProvenInfeasible(model))
-        return most + 1;
     double best = Cbc_getBestPossibleObjValue(model);
-    if (Cbc_status(model) != 1 || run->max_nodes == 0 || !(best > 0))
+    if (Cbc_status(model) != 1 || !(best > 0))
         return 0;
     /* It has not finished: a bound that claims the end is not believed. */
-    size_t limit = found ? count : most + 1;
-    return best < (double)limit - 0.5 ? (size_t)ceil(best - BOUND_MARGIN) : 0;
+    return best < (double)count - 0.5 ? (size_t)ceil(best - BOUND_MARGIN) : 0;
 }
 
-static void run_cbc(cover_run *run, const cover_instance *instance, const model_data *data,
-                    size_t most, cover_state *trial, bool *found, size_t *bound) {
+/* Takes over CBC's choice, if it covers the part, and its bound. */
+static void take_answer(part_search *search, Cbc_Model *model, bool stopped) {
+    cover_run *run = search->run;
+    const double *solution = Cbc_bestSolution(model);
+    int nodes = Cbc_getNodeCount(model);
+    search->nodes += nodes > 0 ? (size_t)nodes : 0;
+    run->nodes += nodes > 0 ? (size_t)nodes : 0;
+    if (Cbc_isSecondsLimitReached(model))
+        run->time_limited = true;
+    if (solution == NULL)
+        return;
+    read_solution(solution, &search->trial);
+    if (!covers_part(search))
+        return;
+    if (search->trial.weight == search->instance->total &&
+        search->trial.count < search->best->count)
+        cover_state_copy(search->best, &search->trial);
+    if (stopped)
+        return;
+    search->answered = Cbc_status(model) == 0 && Cbc_isProvenOptimal(model);
+    size_t bound = proven_bound(search, model, search->trial.count);
+    if (bound > search->bound)
+        search->bound = bound;
+}
+
+static void run_cbc(part_search *search, model_data *data) {
+    stop_request request = {.run = search->run};
     Cbc_Model *model = Cbc_newModel();
-    stop_request request = {.run = run};
     if (model == NULL)
         return;
     Cbc_loadProblem(model, data->variables, data->constraints, data->start, data->index, data->ones,
                     data->lower, data->upper, data->ones, data->demand, NULL);
     for (int i = 0; i < data->variables; i++)
         Cbc_setInteger(model, i);
-    set_limits(run, model, most);
+    set_limits(search, model);
+    set_start(search->best, model, data->start_index, data->start_value);
     Cbc_addCutCallback(model, stop_if_asked, "stop", &request);
     Cbc_solve(model);
-    *found = check_solution(instance, Cbc_bestSolution(model), most, trial);
-    if (!request.stopped)
-        *bound = proven_bound(run, model, most, *found, trial->count);
-    if (Cbc_isSecondsLimitReached(model))
-        run->time_limited = true;
-    int nodes = Cbc_getNodeCount(model);
-    run->nodes += nodes > 0 ? (size_t)nodes : 0;
+    take_answer(search, model, request.stopped);
     Cbc_deleteModel(model);
 }
 
-starg_status cover_ilp_solve(cover_run *run, const cover_instance *instance, size_t most,
-                             cover_state *best, bool *found, size_t *bound) {
+static starg_status solve_part(part_search *search) {
     starg_status status = STARG_OK;
-    model_data data;
-    cover_state trial = {0};
+    cover_run *run = search->run;
+    cover_instance part = {.context = run->context};
+    model_data data = {0};
     bool fits, held = false;
-    *found = false;
-    *bound = 0;
-    STARG_TRY(make_model(instance, &data, &fits));
-    STARG_TRY(cover_state_create(instance, &trial));
-    if (!fits || run->max_nodes == 0)
+    search->answered = false;
+    STARG_TRY(cover_instance_select(search->instance, NULL, search->columns, &part));
+    STARG_TRY(make_model(&part, &data, &fits));
+    if (!fits)
         goto done;
-    STARG_TRY(lock_solver(run, &held));
-    if (!held)
-        goto done;
-    run_cbc(run, instance, &data, most, &trial, found, bound);
-    STARG_TRY(starg_check_cancel(run->context, "ilp"));
-    if (*found)
-        cover_state_copy(best, &trial);
-done:
+    STARG_TRY(cover_solver_lock(run, &held));
     if (held)
-        mtx_unlock(&solver_lock);
-    cover_state_free(&trial);
+        run_cbc(search, &data);
+    STARG_TRY(starg_check_cancel(run->context, "ilp"));
+done:
+    cover_solver_unlock(held);
     model_data_free(run->context, &data);
+    cover_instance_free(&part);
+    return status;
+}
+
+/* Takes in the columns that the trial leaves open; false when there are none. */
+static bool grow_part(part_search *search) {
+    bool any = false;
+    for (size_t w = 0; w < search->instance->row_words; w++) {
+        any = any || search->trial.open[w] != 0;
+        search->columns[w] |= search->trial.open[w];
+    }
+    return any;
+}
+
+static starg_status choose_first_part(part_search *search) {
+    starg_status status = STARG_OK;
+    const cover_instance *instance = search->instance;
+    cover_relaxation relaxation = {0};
+    bool found;
+    STARG_TRY(cover_relax(search->run, instance, &relaxation, &found));
+    for (size_t j = 0; j < instance->columns; j++) {
+        if (!found || relaxation.surplus[j] <= FIRST_SURPLUS)
+            starg_bit_set(search->columns, j);
+    }
+done:
+    cover_relaxation_free(instance, &relaxation);
+    return status;
+}
+
+starg_status cover_ilp_solve(cover_run *run, const cover_instance *instance, cover_state *best,
+                             size_t *bound) {
+    starg_status status = STARG_OK;
+    part_search search = {.run = run, .instance = instance, .best = best};
+    *bound = 0;
+    if (run->max_nodes == 0)
+        return STARG_OK;
+    STARG_TRY(cover_state_create(instance, &search.trial));
+    STARG_NEW_ZERO(run->context, "ilp", search.columns, instance->row_words);
+    STARG_TRY(choose_first_part(&search));
+    while (search.nodes < run->max_nodes && search.bound < best->count &&
+           !cover_time_is_over(run)) {
+        STARG_TRY(solve_part(&search));
+        if (!search.answered || !grow_part(&search))
+            break;
+    }
+    *bound = search.bound < best->count ? search.bound : best->count;
+done:
+    starg_release(run->context, search.columns);
+    cover_state_free(&search.trial);
     return status;
 }

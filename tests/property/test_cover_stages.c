@@ -1,11 +1,14 @@
 /* Each stage of the cover alone, on small random instances, against exhaustive search: what the
  * whole solve rarely reaches because an earlier stage has finished the work. */
+#include <math.h>
 
 #include "core/rng.h"
 #include "cover/dual.h"
 #include "cover/greedy.h"
 #include "cover/ilp.h"
+#include "cover/local.h"
 #include "cover/reduce.h"
+#include "cover/relax.h"
 #include "cover/search.h"
 #include "cover_oracle.h"
 #include "support.h"
@@ -213,28 +216,127 @@ static void check_dual(cover_run *run, starg_rng *rng, cover_instance *instance)
     for (size_t most = least > 2 ? least - 2 : 0; most <= least + 1; most++)
         check_fixing(run, instance, &dual, least, most);
 
-    bool found;
-    test_ok(run->context, cover_lp_multipliers(run, instance, multipliers, &found));
-    assert_true(found);
-    cover_dual_offer(instance, &dual, multipliers, scratch);
-    assert_true(cover_dual_rows(dual.value) <= least);
     cover_state_free(&best);
     cover_dual_free(instance, &dual);
 }
 
-static void check_ilp(cover_run *run, starg_rng *rng, cover_instance *instance) {
-    size_t least = optimum(instance), most = starg_rng_below(rng, instance->rows + 1), bound;
-    cover_state best;
-    bool found;
-    test_ok(run->context, cover_state_create(instance, &best));
-    test_ok(run->context, cover_ilp_solve(run, instance, most, &best, &found, &bound));
-    assert_int_equal(found, least <= most);
-    assert_int_equal(bound, least <= most ? least : most + 1);
-    if (found) {
-        assert_int_equal(best.count, least);
-        assert_true(best.weight == instance->total);
+/* A cover of everything from all rows in random order, none of them needless. */
+static void random_cover(starg_rng *rng, const cover_instance *instance, cover_state *out) {
+    size_t order[COVER_ORACLE_ROWS];
+    for (size_t i = 0; i < instance->rows; i++) {
+        size_t other = starg_rng_below(rng, i + 1);
+        order[i] = order[other];
+        order[other] = i;
     }
+    for (size_t i = 0; i < instance->rows && out->weight < instance->total; i++)
+        cover_state_add(out, order[i]);
+    cover_drop_needless(out, instance->total);
+}
+
+/* Counted afresh: the rows differ and give every column what it demands. */
+static void assert_covers(const cover_instance *instance, const cover_state *cover) {
+    uint64_t choice = 0;
+    for (size_t c = 0; c < cover->count; c++) {
+        assert_true(cover->rows[c] < instance->rows && !(choice >> cover->rows[c] & 1));
+        choice |= (uint64_t)1 << cover->rows[c];
+    }
+    for (size_t j = 0; j < instance->columns; j++) {
+        int held = __builtin_popcountll(cover_column(instance, j)[0] & choice);
+        assert_true((uint32_t)held >= instance->demands[j]);
+    }
+    assert_true(cover->weight == instance->total);
+}
+
+/* The local search owes no optimum; where it misses one, or what was asked for, is counted. */
+static size_t searches, misses;
+
+static void check_local(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    size_t least = optimum(instance);
+    cover_state best;
+    test_ok(run->context, cover_state_create(instance, &best));
+    random_cover(rng, instance, &best);
+    size_t before = best.count, enough = starg_rng_below(rng, before + 1);
+    test_ok(run->context, cover_local_search(run, enough, &best));
+    assert_true(best.count >= least && best.count <= before);
+    searches++;
+    misses += best.count > (least > enough ? least : enough);
+    if (instance->columns != 0)
+        assert_covers(instance, &best);
     cover_state_free(&best);
+}
+
+static void check_relax(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    (void)rng;
+    size_t least = optimum(instance);
+    cover_relaxation relaxation;
+    bool found;
+    int64_t reduced[COVER_ORACLE_ROWS];
+    double sum = 0;
+    test_ok(run->context, cover_relax(run, instance, &relaxation, &found));
+    assert_int_equal(found, instance->columns != 0);
+    for (size_t j = 0; j < instance->columns; j++) {
+        double held = 0;
+        for (size_t i = 0; i < instance->rows; i++)
+            held += cover_column(instance, j)[0] >> i & 1 ? relaxation.solution[i] : 0;
+        assert_true(held > instance->demands[j] - 1e-5);
+        assert_true(fabs(held - instance->demands[j] - relaxation.surplus[j]) < 1e-9);
+    }
+    for (size_t i = 0; i < instance->rows; i++) {
+        assert_true(relaxation.solution[i] > -1e-6 && relaxation.solution[i] < 1 + 1e-6);
+        sum += relaxation.solution[i];
+    }
+    int64_t value = cover_dual_value(instance, relaxation.multipliers, reduced);
+    assert_true(cover_dual_rows(value) <= least);
+    assert_true(fabs((double)value / (double)COVER_ONE - sum) < 1e-3); /* strong duality */
+    cover_relaxation_free(instance, &relaxation);
+}
+
+static void check_ilp(cover_run *run, starg_rng *rng, cover_instance *instance) {
+    size_t least = optimum(instance), bound;
+    cover_state best;
+    test_ok(run->context, cover_state_create(instance, &best));
+    random_cover(rng, instance, &best);
+    test_ok(run->context, cover_ilp_solve(run, instance, &best, &bound));
+    assert_int_equal(best.count, least);
+    assert_int_equal(bound, least);
+    if (instance->columns != 0)
+        assert_covers(instance, &best);
+    cover_state_free(&best);
+}
+
+/* Far more columns than the relaxation and branch and bound start with. */
+static void make_wide_instance(starg_context *context, starg_rng *rng, cover_instance *out) {
+    enum { ROWS = 14, COLUMNS = 700 };
+    starg_bits *bits;
+    test_ok(context, starg_bits_create(context, ROWS, COLUMNS, &bits));
+    size_t size = 3 + starg_rng_below(rng, 3);
+    for (size_t j = 0; j < COLUMNS; j++) {
+        for (size_t k = 0; k < size; k++)
+            starg_bits_set(bits, starg_rng_below(rng, ROWS), j);
+    }
+    starg_cover_problem problem;
+    starg_cover_problem_default(&problem);
+    problem.rows = bits;
+    problem.redundancy = 1 + (uint32_t)starg_rng_below(rng, 2);
+    test_ok(context, cover_instance_build(context, &problem, out));
+    starg_bits_free(bits);
+}
+
+static void lazy_columns(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t item = 0; item < 20; item++) {
+        starg_rng rng = starg_rng_make(1, 9, item);
+        cover_run run = {.context = context, .max_nodes = 100000};
+        cover_instance instance;
+        make_wide_instance(context, &rng, &instance);
+        assert_true(instance.columns > 200);
+        check_relax(&run, &rng, &instance);
+        check_ilp(&run, &rng, &instance);
+        check_local(&run, &rng, &instance);
+        cover_instance_free(&instance);
+    }
+    test_context_free(context);
 }
 
 static void check_weight_bound(cover_run *run, starg_rng *rng, cover_instance *instance) {
@@ -272,14 +374,23 @@ STAGE(columns, 3, 3000)
 STAGE(blocks, 4, 3000)
 STAGE(reduce_full, 5, 3000)
 STAGE(dual, 6, 1000)
-STAGE(ilp, 7, 500)
+STAGE(ilp, 7, 300)
 STAGE(weight_bound, 8, 1500)
+STAGE(relax, 11, 500)
+
+static void local(void **state) {
+    (void)state;
+    searches = misses = 0;
+    for_instances(10, 1500, check_local);
+    assert_true(searches == 1500 && 100 * misses <= searches);
+}
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(essential),   cmocka_unit_test(rows),         cmocka_unit_test(columns),
         cmocka_unit_test(blocks),      cmocka_unit_test(dual),         cmocka_unit_test(ilp),
-        cmocka_unit_test(reduce_full), cmocka_unit_test(weight_bound),
+        cmocka_unit_test(reduce_full), cmocka_unit_test(weight_bound), cmocka_unit_test(local),
+        cmocka_unit_test(relax),       cmocka_unit_test(lazy_columns),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

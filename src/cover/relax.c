@@ -1,0 +1,206 @@
+/* The linear relaxation min sum x, sum over R(j) of x >= demand(j), 0 <= x <= 1, by Clp's dual
+ * simplex method. Most columns are never tight, so the model starts with some columns, spread
+ * evenly, and takes in the most violated others, round by round, from the last basis. Rounds end
+ * when nothing is violated.
+ *
+ * Columns outside the model have the multiplier 0, so the multipliers of any round are valid ones
+ * for all columns; what they prove is found out in whole numbers (dual.h). */
+#include "cover/relax.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include <Clp_C_Interface.h>
+
+#include "cover/solver.h"
+
+enum {
+    FIRST_COLUMNS = 200,
+    MOST_ADDED = 200, /* in a round */
+    MOST_ENTRIES = INT_MAX / 2
+};
+
+static const double TOLERANCE = 1e-6; /* of a violation */
+
+typedef struct scored_column {
+    double surplus;
+    uint32_t column;
+} scored_column;
+
+typedef struct relaxing {
+    const cover_instance *instance;
+    cover_relaxation *out;
+    Clp_Simplex *model;
+    uint64_t *inside;      /* mask of the columns in the model      */
+    uint32_t *columns;     /* those, in the order of the model      */
+    size_t count, entries; /* columns and ones in the model         */
+    scored_column *short_columns;
+    int *index; /* one column at a time */
+    double *ones, *zeros;
+} relaxing;
+
+static void relaxing_free(starg_context *context, relaxing *relax) {
+    if (relax->model != NULL)
+        Clp_deleteModel(relax->model);
+    starg_release(context, relax->inside);
+    starg_release(context, relax->columns);
+    starg_release(context, relax->short_columns);
+    starg_release(context, relax->index);
+    starg_release(context, relax->ones);
+    starg_release(context, relax->zeros);
+}
+
+static starg_status relaxing_make(const cover_instance *instance, cover_relaxation *out,
+                                  relaxing *relax) {
+    starg_status status = STARG_OK;
+    starg_context *context = instance->context;
+    *relax = (relaxing){.instance = instance, .out = out};
+    STARG_NEW_ZERO(context, "bound", relax->inside, instance->row_words);
+    STARG_NEW(context, "bound", relax->columns, instance->columns);
+    STARG_NEW(context, "bound", relax->short_columns, instance->columns);
+    STARG_NEW(context, "bound", relax->index, instance->rows);
+    STARG_NEW(context, "bound", relax->ones, instance->rows);
+    STARG_NEW_ZERO(context, "bound", relax->zeros, instance->rows);
+    for (size_t i = 0; i < instance->rows; i++)
+        relax->ones[i] = 1;
+done:
+    return status;
+}
+
+static void add_column(relaxing *relax, size_t column) {
+    const cover_instance *instance = relax->instance;
+    int count = 0;
+    for (size_t w = 0; w < instance->column_words; w++) {
+        STARG_FOR_BITS (bit, cover_column(instance, column)[w])
+            relax->index[count++] = (int)(64 * w + bit);
+    }
+    if (relax->entries + (size_t)count > MOST_ENTRIES)
+        return;
+    CoinBigIndex starts[2] = {0, count};
+    double demand = instance->demands[column];
+    Clp_addRows(relax->model, 1, &demand, NULL, starts, relax->index, relax->ones);
+    starg_bit_set(relax->inside, column);
+    relax->columns[relax->count++] = (uint32_t)column;
+    relax->entries += (size_t)count;
+}
+
+/* The model with the first columns; false when there is none. */
+static bool start_model(relaxing *relax) {
+    const cover_instance *instance = relax->instance;
+    if (instance->rows >= MOST_ENTRIES || (relax->model = Clp_newModel()) == NULL)
+        return false;
+    Clp_setLogLevel(relax->model, 0);
+    Clp_resize(relax->model, 0, (int)instance->rows);
+    Clp_chgColumnLower(relax->model, relax->zeros);
+    Clp_chgColumnUpper(relax->model, relax->ones);
+    Clp_chgObjCoefficients(relax->model, relax->ones);
+    size_t stride = (instance->columns + FIRST_COLUMNS - 1) / FIRST_COLUMNS;
+    for (size_t j = 0; j < instance->columns; j += stride)
+        add_column(relax, j);
+    return true;
+}
+
+static bool run_simplex(const cover_run *run, relaxing *relax, bool first) {
+    if (run->context->deadline > 0)
+        Clp_setMaximumSeconds(relax->model, cover_seconds_left(run));
+    if (first)
+        Clp_initialDualSolve(relax->model);
+    else
+        Clp_dual(relax->model, 0);
+    return Clp_status(relax->model) == 0 && Clp_primalColumnSolution(relax->model) != NULL &&
+           Clp_dualRowSolution(relax->model) != NULL;
+}
+
+static int64_t round_multiplier(double value) {
+    if (!(value > 0))
+        return 0;
+    if (value >= (double)COVER_MOST / (double)COVER_ONE)
+        return COVER_MOST;
+    return llround(value * (double)COVER_ONE);
+}
+
+static void read_solution(relaxing *relax) {
+    const cover_instance *instance = relax->instance;
+    cover_relaxation *out = relax->out;
+    const double *solution = Clp_primalColumnSolution(relax->model);
+    const double *duals = Clp_dualRowSolution(relax->model);
+    for (size_t j = 0; j < instance->columns; j++) {
+        out->surplus[j] = -(double)instance->demands[j];
+        out->multipliers[j] = 0;
+    }
+    for (size_t c = 0; c < relax->count; c++)
+        out->multipliers[relax->columns[c]] = round_multiplier(duals[c]);
+    for (size_t i = 0; i < instance->rows; i++) {
+        out->solution[i] = solution[i];
+        if (!(solution[i] > 0))
+            continue;
+        for (size_t w = 0; w < instance->row_words; w++) {
+            STARG_FOR_BITS (bit, cover_row(instance, i)[w])
+                out->surplus[64 * w + bit] += solution[i];
+        }
+    }
+}
+
+static int compare_scored(const void *a, const void *b) {
+    const scored_column *x = a, *y = b;
+    if (x->surplus != y->surplus)
+        return x->surplus < y->surplus ? -1 : 1;
+    return (x->column > y->column) - (x->column < y->column);
+}
+
+/* Takes in the most violated columns; false when there are none. */
+static bool add_violated(relaxing *relax) {
+    size_t count = 0, before = relax->count;
+    for (size_t j = 0; j < relax->instance->columns; j++) {
+        if (relax->out->surplus[j] < -TOLERANCE && !starg_bit_test(relax->inside, j))
+            relax->short_columns[count++] = (scored_column){relax->out->surplus[j], (uint32_t)j};
+    }
+    qsort(relax->short_columns, count, sizeof *relax->short_columns, compare_scored);
+    for (size_t c = 0; c < count && c < MOST_ADDED; c++)
+        add_column(relax, relax->short_columns[c].column);
+    return relax->count > before;
+}
+
+static starg_status run_rounds(cover_run *run, relaxing *relax, bool *found) {
+    do {
+        starg_status status = starg_check_cancel(run->context, "bound");
+        if (status != STARG_OK || cover_time_is_over(run))
+            return status;
+        if (!run_simplex(run, relax, !*found))
+            return STARG_OK;
+        read_solution(relax);
+        *found = true;
+    } while (add_violated(relax));
+    return STARG_OK;
+}
+
+starg_status cover_relax(cover_run *run, const cover_instance *instance, cover_relaxation *out,
+                         bool *found) {
+    starg_status status = STARG_OK;
+    starg_context *context = run->context;
+    bool held = false;
+    relaxing relax = {0};
+    *found = false;
+    *out = (cover_relaxation){0};
+    STARG_NEW_ZERO(context, "bound", out->solution, instance->rows);
+    STARG_NEW_ZERO(context, "bound", out->surplus, instance->columns);
+    STARG_NEW_ZERO(context, "bound", out->multipliers, instance->columns);
+    STARG_TRY(relaxing_make(instance, out, &relax));
+    STARG_TRY(cover_solver_lock(run, &held));
+    if (held && instance->columns != 0 && start_model(&relax))
+        STARG_TRY(run_rounds(run, &relax, found));
+done:
+    relaxing_free(context, &relax);
+    cover_solver_unlock(held);
+    if (status != STARG_OK)
+        cover_relaxation_free(instance, out);
+    return status;
+}
+
+void cover_relaxation_free(const cover_instance *instance, cover_relaxation *relaxation) {
+    starg_release(instance->context, relaxation->solution);
+    starg_release(instance->context, relaxation->surplus);
+    starg_release(instance->context, relaxation->multipliers);
+    *relaxation = (cover_relaxation){0};
+}

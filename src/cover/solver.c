@@ -1,0 +1,41 @@
+#include "cover/solver.h"
+
+#include <threads.h>
+#include <time.h>
+
+static mtx_t solver_lock;
+static bool solver_lock_exists;
+static once_flag solver_lock_once = ONCE_FLAG_INIT;
+
+static void make_solver_lock(void) {
+    solver_lock_exists = mtx_init(&solver_lock, mtx_timed) == thrd_success;
+}
+
+starg_status cover_solver_lock(cover_run *run, bool *held) {
+    *held = false;
+    call_once(&solver_lock_once, make_solver_lock);
+    while (solver_lock_exists && !*held && !cover_time_is_over(run)) {
+        starg_status status = starg_check_cancel(run->context, "ilp");
+        if (status != STARG_OK)
+            return status;
+        struct timespec until;
+        timespec_get(&until, TIME_UTC);
+        until.tv_nsec += 50000000;
+        if (until.tv_nsec >= 1000000000) {
+            until.tv_nsec -= 1000000000;
+            until.tv_sec++;
+        }
+        *held = mtx_timedlock(&solver_lock, &until) == thrd_success;
+    }
+    return STARG_OK;
+}
+
+void cover_solver_unlock(bool held) {
+    if (held)
+        mtx_unlock(&solver_lock);
+}
+
+double cover_seconds_left(const cover_run *run) {
+    double left = run->context->deadline - starg_clock();
+    return left > 0.001 ? left : 0.001;
+}

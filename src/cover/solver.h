@@ -1,0 +1,16 @@
+/* What the two users of the solver library share: its lock and its clock. */
+#ifndef STARG_COVER_SOLVER_H
+#define STARG_COVER_SOLVER_H
+
+#include "cover/instance.h"
+
+/* Takes the process-wide lock without which two solves at once fail silently; waits in slices, so
+ * that cancellation and the time limit hold meanwhile. *held is false when the time limit struck
+ * first, or the system has no lock to give. Errors: CANCELLED. */
+starg_status cover_solver_lock(cover_run *run, bool *held);
+void cover_solver_unlock(bool held);
+
+/* Seconds to the time limit, a little more than 0; call it only where there is one. */
+double cover_seconds_left(const cover_run *run);
+
+#endif
