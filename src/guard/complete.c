@@ -60,7 +60,8 @@ static void lean(const double normal[3], const double side[2][3], int index, dou
         vec3_copy(normal, out);
         return;
     }
-    double tilt = index % 2 ? 0.61 : 1.13, turn = (index - 1) / 2 * 1.0471975511965976;
+    int sector = (index - 1) / 2;
+    double tilt = index % 2 ? 0.61 : 1.13, turn = sector * 1.0471975511965976;
     vec3_along((const double[3]){0, 0, 0}, cos(tilt), normal, out);
     vec3_along(out, sin(tilt) * cos(turn), side[0], out);
     vec3_along(out, sin(tilt) * sin(turn), side[1], out);

@@ -155,8 +155,8 @@ starg_status unfold_mesh(starg_context *context, const starg_mesh *rest, starg_m
             idle = 0;
             memcpy(u.best, posed->vertices, size);
         }
-        for (uint8_t level = 1; level <= HALO; level++)
-            widen(&u, level);
+        for (int level = 1; level <= HALO; level++)
+            widen(&u, (uint8_t)level);
         move_marked(&u, posed->vertices);
     }
     memcpy(posed->vertices, u.best, size);

@@ -73,7 +73,7 @@ static inline uint32_t part_of(float distance, float scale, float last) {
 }
 
 static inline uint32_t bin_of(float v) {
-    return part_of(v + 1, BINS / 2, BINS - 1);
+    return part_of(v + 1, 0.5f * BINS, BINS - 1);
 }
 
 static inline uint32_t cell_of(const grid_row *row, float u) {
