@@ -257,6 +257,8 @@ static void test_run(const visibility_scene *scene, const double p[3], grid_scra
     if (!f->prepared)
         prepare(g, f);
     for (size_t i = 0; i < count; i += LANES) {
+        if ((live >> i & ((1 << LANES) - 1)) == 0)
+            continue;
         uint64_t s = 0, m;
         if (f->side != 0)
             test_lanes(g, f, begin + i, &s, &m);
