@@ -11,6 +11,7 @@
 #include "picture.h"
 #include "repair.h"
 #include "sample.h"
+#include "simplify.h"
 #include "solid.h"
 #include "status.h"
 #include "verify.h"

@@ -1,0 +1,624 @@
+/* Simplified meshes: the topology, the embedding and nearly the shape of the input, the same bytes
+ * every time, and no harm on anything else. What comes out is judged by starg_mesh_check and by
+ * distances, which share nothing with the simplification. */
+#include "support.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/rng.h"
+#include "mesh/heap.h"
+#include "shapes.h"
+#include "starguard/check.h"
+#include "starguard/sample.h"
+#include "starguard/simplify.h"
+#include "starguard/solid.h"
+
+static starg_mesh *sample(starg_context *context, const char *name, size_t vertex_count) {
+    starg_sample_options options;
+    starg_sample_options_default(&options);
+    options.vertex_count = vertex_count;
+    starg_mesh *mesh;
+    test_ok(context, starg_sample_create(context, name, &options, &mesh));
+    return mesh;
+}
+
+static starg_mesh *mesh_of(starg_context *context, const shape *s) {
+    starg_mesh *mesh;
+    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
+                                       s->face_count, &mesh));
+    return mesh;
+}
+
+static starg_check *check_of(starg_context *context, const starg_mesh *mesh) {
+    starg_check *check;
+    test_ok(context, starg_mesh_check(context, mesh, &check));
+    return check;
+}
+
+static void assert_same_mesh(const starg_mesh *a, const starg_mesh *b) {
+    size_t n = starg_mesh_vertex_count(a), faces = starg_mesh_face_count(a);
+    assert_int_equal(starg_mesh_vertex_count(b), n);
+    assert_int_equal(starg_mesh_face_count(b), faces);
+    assert_memory_equal(starg_mesh_vertices(a), starg_mesh_vertices(b), 3 * n * sizeof(double));
+    assert_memory_equal(starg_mesh_faces(a), starg_mesh_faces(b), 3 * faces * sizeof(uint32_t));
+}
+
+/* Closed, manifold, and as many components, cavities and handles as before. */
+static void assert_same_topology(starg_context *context, const starg_mesh *fine,
+                                 const starg_mesh *coarse, bool embedded) {
+    starg_check *before = check_of(context, fine), *after = check_of(context, coarse);
+    assert_true(before->usable);
+    assert_true(after->closed && after->manifold && after->oriented);
+    assert_int_equal(after->genus, before->genus);
+    assert_int_equal(after->components, before->components);
+    assert_int_equal(after->findings[STARG_FINDING_ISOLATED_VERTEX].count, 0);
+    if (embedded) {
+        assert_true(before->embedded);
+        assert_true(after->embedded);
+        assert_true(after->usable);
+        assert_int_equal(after->cavities, before->cavities);
+        assert_int_equal(after->findings[STARG_FINDING_INWARD_COMPONENT].count,
+                         before->findings[STARG_FINDING_INWARD_COMPONENT].count);
+    }
+    starg_check_free(context, before);
+    starg_check_free(context, after);
+}
+
+/* Onto all vertices of the coarse mesh; and those into which one vertex alone went did not move. */
+static void assert_map(const starg_mesh *fine, const starg_mesh *coarse, const uint32_t *map) {
+    size_t n = starg_mesh_vertex_count(fine), count = starg_mesh_vertex_count(coarse);
+    uint32_t *merged = calloc(count, sizeof *merged);
+    for (size_t v = 0; v < n; v++) {
+        assert_true(map[v] < count);
+        merged[map[v]]++;
+    }
+    for (size_t c = 0; c < count; c++)
+        assert_true(merged[c] > 0);
+    for (size_t v = 0; v < n; v++)
+        if (merged[map[v]] == 1)
+            assert_memory_equal(starg_mesh_vertices(fine) + 3 * v,
+                                starg_mesh_vertices(coarse) + 3 * (size_t)map[v],
+                                3 * sizeof(double));
+    free(merged);
+}
+
+static starg_mesh *simplify(starg_context *context, const starg_mesh *mesh, size_t target) {
+    uint32_t *map = malloc((starg_mesh_vertex_count(mesh) + 1) * sizeof *map);
+    starg_mesh *coarse;
+    test_ok(context, starg_mesh_simplify(context, mesh, target, NULL, map, &coarse));
+    assert_map(mesh, coarse, map);
+    free(map);
+    return coarse;
+}
+
+/* ---- topology and embedding ----------------------------------------------------------------- */
+
+/* To a target that can be reached, and as far as it goes. */
+static void check_mesh(starg_context *context, const starg_mesh *mesh, size_t target,
+                       double volume_change) {
+    starg_mesh *coarse = simplify(context, mesh, target);
+    size_t count = starg_mesh_vertex_count(mesh);
+    assert_int_equal(starg_mesh_vertex_count(coarse), target < count ? target : count);
+    assert_same_topology(context, mesh, coarse, true);
+    double volume = starg_mesh_volume(mesh);
+    assert_true(fabs(starg_mesh_volume(coarse) - volume) <= volume_change * fabs(volume));
+    starg_mesh *least = simplify(context, coarse, 0);
+    assert_same_topology(context, mesh, least, true);
+    assert_true(starg_mesh_vertex_count(least) >= 4);
+    assert_true(starg_mesh_vertex_count(least) <= 60); /* the samples have at most 8 handles */
+    starg_mesh_free(least);
+    starg_mesh_free(coarse);
+}
+
+static void test_samples_stay_solids(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < starg_sample_count(); i++) {
+        starg_mesh *mesh = sample(context, starg_sample_at(i)->name, 2000);
+        check_mesh(context, mesh, 400, 0.06);
+        starg_mesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
+static void test_lattices_stay_solids(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape shapes[] = {shape_tetrahedron(), shape_cube(1),  shape_cube(6),
+                      shape_room(),        shape_cavity(), shape_columns()};
+    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+        starg_mesh *mesh = mesh_of(context, &shapes[i]);
+        size_t count = starg_mesh_vertex_count(mesh);
+        check_mesh(context, mesh, count > 5 ? count - count / 4 : 4, 0.5);
+        starg_mesh_free(mesh);
+        shape_free(&shapes[i]);
+    }
+    test_context_free(context);
+}
+
+static void test_flat_walls_cost_nothing(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape cube = shape_cube(6);
+    starg_mesh *mesh = mesh_of(context, &cube), *coarse = simplify(context, mesh, 30);
+    assert_int_equal(starg_mesh_vertex_count(coarse), 30);
+    assert_true(fabs(starg_mesh_volume(coarse) - 216) < 0.1);
+    starg_mesh_free(coarse);
+    starg_mesh_free(mesh);
+    shape_free(&cube);
+    test_context_free(context);
+}
+
+static void test_everything_shrinks_to_a_tetrahedron(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape blob = shape_blob(3, 7), cube = shape_cube(4);
+    shape_append(&blob, &cube, (const double[3]){9, 0, 0}, 0);
+    starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 0);
+    assert_int_equal(starg_mesh_vertex_count(coarse), 8); /* two components */
+    assert_int_equal(starg_mesh_face_count(coarse), 8);
+    assert_same_topology(context, mesh, coarse, true);
+    starg_mesh_free(coarse);
+    starg_mesh_free(mesh);
+    shape_free(&blob);
+    shape_free(&cube);
+    test_context_free(context);
+}
+
+/* Small shells close to a surface that moves: none may change sides. */
+static void test_shells_do_not_change_sides(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        starg_rng rng = starg_rng_make(seed, 1, 0);
+        shape all = shape_blob(2, seed);
+        shape_place(&all, 100, 0);
+        size_t corners = all.vertex_count;
+        for (size_t v = 0; v < corners; v += 7) {
+            shape grain = shape_tetrahedron();
+            shape_place(&grain, 0.01 + 0.1 * starg_rng_unit(&rng), 0);
+            const double *p = all.vertices + 3 * v;
+            int inside = (int)starg_rng_below(&rng, 2);
+            double at = inside ? 0.97 : 1.01;
+            const double offset[3] = {at * p[0], at * p[1], at * p[2]};
+            shape_append(&all, &grain, offset, inside);
+            shape_free(&grain);
+        }
+        starg_mesh *mesh = mesh_of(context, &all), *coarse = simplify(context, mesh, 0);
+        assert_same_topology(context, mesh, coarse, true);
+        starg_mesh_free(coarse);
+        starg_mesh_free(mesh);
+        shape_free(&all);
+    }
+    test_context_free(context);
+}
+
+static void test_shared_solids(void **state) {
+    (void)state;
+    const char *shared = test_shared_data();
+    if (shared == NULL)
+        skip();
+    char folder[4200], path[8600];
+    snprintf(folder, sizeof folder, "%s/solids", shared);
+    DIR *directory = opendir(folder);
+    assert_non_null(directory);
+    starg_context *context = test_context(1);
+    size_t done = 0;
+    for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        starg_mesh *mesh = NULL;
+        if (strstr(entry->d_name, ".off") == NULL)
+            continue;
+        test_ok(context, starg_mesh_read(context, path, &mesh));
+        if (starg_mesh_vertex_count(mesh) < 4000) { /* the larger ones take their time in check */
+            check_mesh(context, mesh, 300 + starg_mesh_vertex_count(mesh) / 10, 0.05);
+            done++;
+        }
+        starg_mesh_free(mesh);
+    }
+    closedir(directory);
+    assert_true(done > 10);
+    test_context_free(context);
+}
+
+/* ---- shape ---------------------------------------------------------------------------------- */
+
+/* The largest distance of random points of a mesh from a solid. */
+static double farthest(const starg_mesh *mesh, const starg_solid *solid, uint64_t seed) {
+    double largest = 0;
+    for (size_t i = 0; i < 20000; i++) {
+        starg_rng rng = starg_rng_make(seed, 2, i);
+        const uint32_t *face =
+            starg_mesh_faces(mesh) + 3 * starg_rng_below(&rng, starg_mesh_face_count(mesh));
+        double u = starg_rng_unit(&rng), v = starg_rng_unit(&rng), p[3];
+        if (u + v > 1) {
+            u = 1 - u;
+            v = 1 - v;
+        }
+        for (int k = 0; k < 3; k++) {
+            const double *x = starg_mesh_vertices(mesh) + k;
+            double a = x[3 * (size_t)face[0]], b = x[3 * (size_t)face[1]];
+            p[k] = a + u * (b - a) + v * (x[3 * (size_t)face[2]] - a);
+        }
+        largest = fmax(largest, starg_solid_distance(solid, p));
+    }
+    return largest;
+}
+
+static void test_the_surface_stays_near(void **state) {
+    (void)state;
+    static const char *const names[] = {"horse", "torus", "gallery", "knot"};
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_mesh *mesh = sample(context, names[i], 5000), *coarse = simplify(context, mesh, 1000);
+        starg_solid *before, *after;
+        test_ok(context, starg_solid_create(context, mesh, &before));
+        test_ok(context, starg_solid_create(context, coarse, &after));
+        double limit = 0.006 * starg_solid_check(before)->diagonal;
+        double to = farthest(coarse, before, i), from = farthest(mesh, after, i);
+        if (to > limit || from > limit)
+            print_error("%s: %g and %g, at most %g\n", names[i], to, from, limit);
+        assert_true(to <= limit && from <= limit);
+        starg_solid_free(before);
+        starg_solid_free(after);
+        starg_mesh_free(coarse);
+        starg_mesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
+static void test_large_targets_change_nothing(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_mesh *mesh = sample(context, "star", 500);
+    size_t count = starg_mesh_vertex_count(mesh);
+    for (int i = 0; i < 2; i++) {
+        starg_mesh *same = simplify(context, mesh, i ? count : SIZE_MAX);
+        assert_same_mesh(mesh, same);
+        starg_mesh_free(same);
+    }
+    starg_mesh *less = simplify(context, mesh, count - 1);
+    assert_int_equal(starg_mesh_vertex_count(less), count - 1);
+    starg_mesh_free(less);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
+static void test_same_bytes_for_any_thread_count(void **state) {
+    (void)state;
+    starg_context *one = test_context(1), *four = test_context(4);
+    starg_mesh *a = sample(one, "horse", 3000), *b = sample(four, "horse", 3000);
+    starg_mesh *x = simplify(one, a, 300), *y = simplify(four, b, 300), *z = simplify(one, b, 300);
+    assert_same_mesh(x, y);
+    assert_same_mesh(x, z);
+    starg_mesh_free(x);
+    starg_mesh_free(y);
+    starg_mesh_free(z);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    test_context_free(one);
+    test_context_free(four);
+}
+
+/* Powers of two change no digit: the same collapses at every size. */
+static void test_size_does_not_matter(void **state) {
+    (void)state;
+    static const int exponents[] = {-900, -300, 300};
+    starg_context *context = test_context(1);
+    shape blob = shape_blob(3, 3);
+    starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 60);
+    size_t count = starg_mesh_vertex_count(coarse);
+    for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++) {
+        shape other = shape_blob(3, 3);
+        shape_place(&other, ldexp(1, exponents[i]), 0);
+        starg_mesh *scaled = mesh_of(context, &other), *result = simplify(context, scaled, 60);
+        assert_int_equal(starg_mesh_vertex_count(result), count);
+        assert_memory_equal(starg_mesh_faces(coarse), starg_mesh_faces(result),
+                            3 * starg_mesh_face_count(coarse) * sizeof(uint32_t));
+        for (size_t k = 0; k < 3 * count; k++)
+            assert_true(starg_mesh_vertices(result)[k] ==
+                        ldexp(starg_mesh_vertices(coarse)[k], exponents[i]));
+        starg_mesh_free(result);
+        starg_mesh_free(scaled);
+        shape_free(&other);
+    }
+    starg_mesh_free(coarse);
+    starg_mesh_free(mesh);
+    shape_free(&blob);
+    test_context_free(context);
+}
+
+/* At the ends of the range all that is asked for is the topology. */
+static void test_extreme_places(void **state) {
+    (void)state;
+    static const double places[][2] = {{1, 1e8}, {1e-3, 1e12}, {3e99, 0}, {1e-320, 0}, {0, 5}};
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        shape blob = shape_blob(2, 5);
+        shape_place(&blob, places[i][0], places[i][1]);
+        starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 40);
+        starg_check *check = check_of(context, coarse);
+        assert_true(check->closed && check->manifold && check->oriented);
+        assert_int_equal(check->genus, 0);
+        starg_check_free(context, check);
+        starg_mesh_free(coarse);
+        starg_mesh_free(mesh);
+        shape_free(&blob);
+    }
+    test_context_free(context);
+}
+
+static void test_crossing_input_keeps_its_topology(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape blob = shape_blob(3, 1), other = shape_blob(3, 2);
+    shape_append(&blob, &other, (const double[3]){0.7, 0, 0}, 0);
+    starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 0), *free_run;
+    assert_same_topology(context, mesh, coarse, false);
+    starg_simplify_options options = {.allow_intersections = true};
+    test_ok(context, starg_mesh_simplify(context, mesh, 0, &options, NULL, &free_run));
+    assert_same_topology(context, mesh, free_run, false);
+    assert_int_equal(starg_mesh_vertex_count(free_run), 8);
+    starg_mesh_free(free_run);
+    starg_mesh_free(coarse);
+    starg_mesh_free(mesh);
+    shape_free(&blob);
+    shape_free(&other);
+    test_context_free(context);
+}
+
+/* ---- levels --------------------------------------------------------------------------------- */
+
+static void test_levels(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_mesh *mesh = sample(context, "horse", 3600);
+    static const size_t expected[] = {500, 1500, 2500};
+    starg_levels *levels;
+    test_ok(context, starg_mesh_levels(context, mesh, 500, 1000, NULL, &levels));
+    assert_int_equal(levels->count, 4);
+    assert_same_mesh(levels->meshes[3], mesh);
+    for (size_t i = 0; i < 3; i++) {
+        assert_int_equal(starg_mesh_vertex_count(levels->meshes[i]), expected[i]);
+        assert_same_topology(context, mesh, levels->meshes[i], true);
+        assert_map(levels->meshes[i + 1], levels->meshes[i], levels->vertex_map[i]);
+    }
+    starg_mesh *direct = simplify(context, mesh, 500);
+    assert_same_mesh(direct, levels->meshes[0]);
+    starg_mesh_free(direct);
+    starg_levels_free(context, levels);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
+static void test_levels_that_are_left_out(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_mesh *mesh = sample(context, "torus", 1000);
+    size_t count = starg_mesh_vertex_count(mesh);
+    const struct {
+        size_t coarsest, step, levels;
+    } cases[] = {{count, 10, 1},   {SIZE_MAX, 1, 1}, {count - 100, 201, 1}, {count - 100, 200, 2},
+                 {0, SIZE_MAX, 1}, {0, count, 2},    {count - 10, 1, 11},   {500, SIZE_MAX, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        starg_levels *levels;
+        test_ok(context,
+                starg_mesh_levels(context, mesh, cases[i].coarsest, cases[i].step, NULL, &levels));
+        assert_int_equal(levels->count, cases[i].levels);
+        assert_same_mesh(levels->meshes[levels->count - 1], mesh);
+        starg_levels_free(context, levels);
+    }
+    starg_levels *none = (starg_levels *)context;
+    assert_int_equal(starg_mesh_levels(context, mesh, 10, 0, NULL, &none), STARG_ERROR_ARGUMENT);
+    assert_null(none);
+    starg_levels_free(context, NULL);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
+/* ---- bad input ------------------------------------------------------------------------------ */
+
+static void assert_refused(starg_context *context, const shape *s, const char *word) {
+    starg_mesh *mesh = mesh_of(context, s), *coarse = mesh;
+    starg_levels *levels = (starg_levels *)context;
+    assert_int_equal(starg_mesh_simplify(context, mesh, 4, NULL, NULL, &coarse), STARG_ERROR_MESH);
+    assert_null(coarse);
+    assert_non_null(strstr(starg_context_error(context)->message, word));
+    assert_int_equal(starg_mesh_levels(context, mesh, 4, 1, NULL, &levels), STARG_ERROR_MESH);
+    assert_null(levels);
+    starg_mesh_free(mesh);
+}
+
+static void test_other_meshes_are_refused(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape cube = shape_cube(2), touching = shape_cells("#..#", 2, 2, 1);
+    /* two cells that share one corner */
+    shape corner = shape_cells("#......#", 2, 2, 2), empty = {0};
+    assert_refused(context, &touching, "two faces");
+    assert_refused(context, &corner, "fan");
+    assert_refused(context, &empty, "no faces");
+    uint32_t *face = cube.faces + 3 * (cube.face_count - 1), first = face[0];
+    face[0] = face[1];
+    assert_refused(context, &cube, "");
+    face[0] = first;
+    cube.face_count--;
+    assert_refused(context, &cube, "two faces");
+    cube.face_count++;
+    face[0] = face[1];
+    face[1] = first;
+    assert_refused(context, &cube, "same way");
+    shape_free(&cube);
+    shape_free(&touching);
+    shape_free(&corner);
+    test_context_free(context);
+}
+
+static void test_vertices_of_no_face_go(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape cube = shape_cube(1);
+    uint32_t map[9];
+    double vertices[27] = {5, 5, 5}; /* number 0 is of no face */
+    memcpy(vertices + 3, cube.vertices, 24 * sizeof *vertices);
+    for (size_t i = 0; i < 3 * cube.face_count; i++)
+        cube.faces[i]++;
+    starg_mesh *mesh, *coarse;
+    starg_levels *levels;
+    test_ok(context, starg_mesh_create(context, vertices, 9, cube.faces, cube.face_count, &mesh));
+    test_ok(context, starg_mesh_simplify(context, mesh, 8, NULL, map, &coarse));
+    assert_int_equal(starg_mesh_vertex_count(coarse), 8);
+    assert_true(map[0] == STARG_NO_VERTEX);
+    for (uint32_t v = 1; v < 9; v++)
+        assert_int_equal(map[v], v - 1);
+    test_ok(context, starg_mesh_levels(context, mesh, 5, 4, NULL, &levels));
+    assert_int_equal(levels->count, 2);
+    assert_true(levels->vertex_map[0][0] == STARG_NO_VERTEX);
+    starg_levels_free(context, levels);
+    starg_mesh_free(coarse);
+    starg_mesh_free(mesh);
+    shape_free(&cube);
+    test_context_free(context);
+}
+
+static void test_it_can_be_stopped(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_mesh *mesh = sample(context, "torus", 1000), *coarse = mesh;
+    starg_levels *levels = (starg_levels *)context;
+    starg_context_cancel(context);
+    assert_int_equal(starg_mesh_simplify(context, mesh, 4, NULL, NULL, &coarse),
+                     STARG_ERROR_CANCELLED);
+    assert_null(coarse);
+    assert_int_equal(starg_mesh_levels(context, mesh, 4, 100, NULL, &levels),
+                     STARG_ERROR_CANCELLED);
+    assert_null(levels);
+    starg_context_reset(context);
+    starg_context_set_time_limit(context, 1e-9);
+    assert_int_equal(starg_mesh_simplify(context, mesh, 4, NULL, NULL, &coarse), STARG_ERROR_TIME);
+    assert_null(coarse);
+    starg_context_set_time_limit(context, 0);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
+/* ---- memory that runs out ------------------------------------------------------------------- */
+
+static void *allocate_rationed(void *user, size_t size) {
+    size_t *left = user;
+    return *left == 0 ? NULL : ((*left)--, malloc(size));
+}
+
+static void release_rationed(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+static void test_every_allocation_fails_once(void **state) {
+    (void)state;
+    size_t left = SIZE_MAX;
+    starg_context_options options;
+    starg_context_options_default(&options);
+    options.allocator = (starg_allocator){allocate_rationed, release_rationed, &left};
+    starg_context *context;
+    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+    shape blob = shape_blob(2, 1);
+    starg_mesh *mesh = mesh_of(context, &blob), *coarse;
+    starg_levels *levels;
+    size_t before = starg_context_live_blocks(context), failures = 0;
+    for (;; failures++) {
+        left = failures;
+        starg_status status = starg_mesh_simplify(context, mesh, 0, NULL, NULL, &coarse);
+        if (status == STARG_OK)
+            break;
+        assert_int_equal(status, STARG_ERROR_MEMORY);
+        assert_null(coarse);
+        assert_int_equal(starg_context_live_blocks(context), before);
+    }
+    assert_true(failures > 30); /* among them those of the trees that are built anew */
+    starg_mesh_free(coarse);
+    for (failures = 0;; failures++) {
+        left = failures;
+        starg_status status = starg_mesh_levels(context, mesh, 10, 20, NULL, &levels);
+        if (status == STARG_OK)
+            break;
+        assert_int_equal(status, STARG_ERROR_MEMORY);
+        assert_null(levels);
+        assert_int_equal(starg_context_live_blocks(context), before);
+    }
+    assert_true(failures > 60);
+    left = SIZE_MAX;
+    starg_levels_free(context, levels);
+    starg_mesh_free(mesh);
+    shape_free(&blob);
+    test_context_free(context);
+}
+
+/* ---- the queue ------------------------------------------------------------------------------ */
+
+/* Against a table that is searched from end to end. */
+static void test_heap_against_a_table(void **state) {
+    (void)state;
+    enum { ITEMS = 50 };
+    double key[ITEMS];
+    bool in[ITEMS] = {false};
+    starg_context *context = test_context(1);
+    starg_rng rng = starg_rng_make(1, 3, 0);
+    mesh_heap *heap;
+    test_ok(context, heap_create(context, ITEMS, &heap));
+    for (size_t step = 0; step < 20000; step++) {
+        uint32_t item = (uint32_t)starg_rng_below(&rng, ITEMS), lowest = ITEMS, popped = ITEMS;
+        switch (starg_rng_below(&rng, 4)) {
+        case 0:
+            for (uint32_t i = ITEMS; i-- > 0;)
+                if (in[i] && (lowest == ITEMS || key[i] <= key[lowest]))
+                    lowest = i;
+            assert_int_equal(heap_pop(heap, &popped), lowest < ITEMS);
+            assert_int_equal(popped, lowest);
+            if (lowest < ITEMS)
+                in[lowest] = false;
+            break;
+        case 1:
+            heap_remove(heap, item);
+            in[item] = false;
+            break;
+        default:
+            key[item] = (double)starg_rng_below(&rng, 20); /* many ties */
+            heap_set(heap, item, key[item]);
+            in[item] = true;
+        }
+        for (uint32_t i = 0; i < ITEMS; i++)
+            assert_int_equal(heap_contains(heap, i), in[i]);
+    }
+    heap_free(heap);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_samples_stay_solids),
+        cmocka_unit_test(test_lattices_stay_solids),
+        cmocka_unit_test(test_flat_walls_cost_nothing),
+        cmocka_unit_test(test_everything_shrinks_to_a_tetrahedron),
+        cmocka_unit_test(test_shells_do_not_change_sides),
+        cmocka_unit_test(test_shared_solids),
+        cmocka_unit_test(test_the_surface_stays_near),
+        cmocka_unit_test(test_large_targets_change_nothing),
+        cmocka_unit_test(test_same_bytes_for_any_thread_count),
+        cmocka_unit_test(test_size_does_not_matter),
+        cmocka_unit_test(test_extreme_places),
+        cmocka_unit_test(test_crossing_input_keeps_its_topology),
+        cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_levels_that_are_left_out),
+        cmocka_unit_test(test_other_meshes_are_refused),
+        cmocka_unit_test(test_vertices_of_no_face_go),
+        cmocka_unit_test(test_it_can_be_stopped),
+        cmocka_unit_test(test_every_allocation_fails_once),
+        cmocka_unit_test(test_heap_against_a_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
