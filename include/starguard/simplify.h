@@ -17,7 +17,7 @@ extern "C" {
 #define STARG_NO_VERTEX UINT32_MAX
 
 typedef struct starg_simplify_options {
-    bool allow_intersections; /* do not look for new self-intersections: about twice as fast */
+    bool allow_intersections; /* do not look for new self-intersections: about four times as fast */
 } starg_simplify_options;
 
 /* No intersections allowed. */
@@ -40,12 +40,17 @@ STARG_API starg_status starg_mesh_simplify(starg_context *context, const starg_m
                                            const starg_simplify_options *options,
                                            uint32_t *vertex_map, starg_mesh **out);
 
+/* One level of detail. */
+typedef struct starg_level {
+    starg_mesh *mesh;
+    uint32_t *vertex_map; /* per vertex of the next finer level its vertex of this one, or
+                             STARG_NO_VERTEX; NULL for the finest                            */
+} starg_level;
+
 /* Levels of detail, the coarsest first; the last is a copy of the input. */
 typedef struct starg_levels {
     size_t count;
-    starg_mesh **meshes;   /* count                                                           */
-    uint32_t **vertex_map; /* count - 1: per vertex of meshes[i + 1] its vertex of meshes[i],
-                              or STARG_NO_VERTEX                                              */
+    starg_level *levels;
 } starg_levels;
 
 /* Makes levels of about `coarsest`, `coarsest` + `step`, `coarsest` + 2 `step`, ... vertices, and

@@ -9,8 +9,8 @@
  * vertices evenly where the planes leave the position free. An edge waits in a queue with the error
  * of its best placement: the optimum of the two quadrics, the middle or an end. The first is taken
  * out; if the rules (collapse.h) forbid the placement, the edge comes back with its next best; if
- * they forbid all, it waits until a neighbour changes or the queue is empty: then all edges enter
- * anew, as long as that is of use.
+ * they forbid all, it waits until one of its ends changes or the queue is empty: then all edges
+ * enter anew, as long as that is of use.
  *
  * Invariants: the surface stays a closed 2-manifold with the same components and genus; every edge
  * is in the queue or has been refused since its ends last changed. Ties go to the lower edge.
@@ -318,9 +318,7 @@ done:
 
 /* The levels in the making, from the finest on. */
 typedef struct level_list {
-    size_t count;
-    starg_mesh **meshes;
-    uint32_t **maps;     /* maps[i] leads from level i to level i + 1       */
+    starg_levels *out;
     uint32_t *of_finest; /* per vertex of the input its one of the last level */
 } level_list;
 
@@ -333,7 +331,7 @@ static size_t most_levels(size_t vertices, size_t coarsest, size_t step) {
 static starg_status add_level(simplifier *s, level_list *list, size_t step, uint32_t *number) {
     starg_status status = STARG_OK;
     starg_context *context = s->context;
-    size_t finer = list->meshes[list->count - 1]->vertex_count;
+    size_t finer = list->out->levels[list->out->count - 1].mesh->vertex_count;
     uint32_t *map = NULL;
     starg_mesh *mesh = NULL;
     if (finer - s->surface->vertices_left < step - step / 2)
@@ -346,8 +344,7 @@ static starg_status add_level(simplifier *s, level_list *list, size_t step, uint
             map[list->of_finest[v]] = number[v];
         list->of_finest[v] = number[v];
     }
-    list->maps[list->count - 1] = map;
-    list->meshes[list->count++] = mesh;
+    list->out->levels[list->out->count++] = (starg_level){mesh, map};
 done:
     if (status != STARG_OK)
         starg_release(context, map);
@@ -373,57 +370,39 @@ done:
 }
 
 /* Turns the list about: the coarsest first. */
-static void hand_over(level_list *list, starg_levels *levels) {
-    for (size_t i = 0; i < list->count; i++) {
-        size_t from_end = list->count - 1 - i;
-        levels->meshes[from_end] = list->meshes[i];
-        if (from_end > 0)
-            levels->vertex_map[from_end - 1] = list->maps[i];
+static void reverse(starg_levels *levels) {
+    for (size_t i = 0, j = levels->count; i + 1 < j--; i++) {
+        starg_level swap = levels->levels[i];
+        levels->levels[i] = levels->levels[j];
+        levels->levels[j] = swap;
     }
-    levels->count = list->count;
-    list->count = 0;
-}
-
-static void list_free(starg_context *context, level_list *list) {
-    for (size_t i = 0; i < list->count; i++) {
-        starg_mesh_free(list->meshes[i]);
-        if (i + 1 < list->count)
-            starg_release(context, list->maps[i]);
-    }
-    starg_release(context, list->meshes);
-    starg_release(context, list->maps);
-    starg_release(context, list->of_finest);
 }
 
 starg_status starg_mesh_levels(starg_context *context, const starg_mesh *mesh, size_t coarsest,
                                size_t step, const starg_simplify_options *options,
                                starg_levels **out) {
     starg_status status = STARG_OK;
-    starg_levels *levels = NULL;
     level_list list = {0};
     *out = NULL;
     if (step == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "simplify",
                           "the step between levels is 0 vertices; it must be at least 1");
-    size_t most = most_levels(mesh->vertex_count, coarsest, step);
-    STARG_NEW_ZERO(context, "simplify", levels, 1);
-    STARG_NEW(context, "simplify", levels->meshes, most);
-    STARG_NEW(context, "simplify", levels->vertex_map, most);
-    STARG_NEW(context, "simplify", list.meshes, most);
-    STARG_NEW(context, "simplify", list.maps, most);
+    STARG_NEW_ZERO(context, "simplify", list.out, 1);
+    STARG_NEW_ZERO(context, "simplify", list.out->levels,
+                   most_levels(mesh->vertex_count, coarsest, step));
     STARG_NEW(context, "simplify", list.of_finest, mesh->vertex_count);
     for (size_t v = 0; v < mesh->vertex_count; v++)
         list.of_finest[v] = (uint32_t)v;
     STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
-                                mesh->face_count, &list.meshes[0]));
-    list.count = 1;
+                                mesh->face_count, &list.out->levels[0].mesh));
+    list.out->count = 1;
     STARG_TRY(add_levels(context, mesh, coarsest, step, options, &list));
-    hand_over(&list, levels);
-    *out = levels;
-    levels = NULL;
+    reverse(list.out);
+    *out = list.out;
+    list.out = NULL;
 done:
-    list_free(context, &list);
-    starg_levels_free(context, levels);
+    starg_release(context, list.of_finest);
+    starg_levels_free(context, list.out);
     return status;
 }
 
@@ -431,11 +410,9 @@ void starg_levels_free(starg_context *context, starg_levels *levels) {
     if (levels == NULL)
         return;
     for (size_t i = 0; i < levels->count; i++) {
-        starg_mesh_free(levels->meshes[i]);
-        if (i + 1 < levels->count)
-            starg_release(context, levels->vertex_map[i]);
+        starg_mesh_free(levels->levels[i].mesh);
+        starg_release(context, levels->levels[i].vertex_map);
     }
-    starg_release(context, levels->meshes);
-    starg_release(context, levels->vertex_map);
+    starg_release(context, levels->levels);
     starg_release(context, levels);
 }

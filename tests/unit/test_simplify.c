@@ -519,14 +519,16 @@ static void test_levels(void **state) {
     starg_levels *levels;
     test_ok(context, starg_mesh_levels(context, mesh, 500, 1000, NULL, &levels));
     assert_int_equal(levels->count, 4);
-    assert_same_mesh(levels->meshes[3], mesh);
+    assert_same_mesh(levels->levels[3].mesh, mesh);
+    assert_null(levels->levels[3].vertex_map);
     for (size_t i = 0; i < 3; i++) {
-        assert_int_equal(starg_mesh_vertex_count(levels->meshes[i]), expected[i]);
-        assert_same_topology(context, mesh, levels->meshes[i], true);
-        assert_map(levels->meshes[i + 1], levels->meshes[i], levels->vertex_map[i]);
+        assert_int_equal(starg_mesh_vertex_count(levels->levels[i].mesh), expected[i]);
+        assert_same_topology(context, mesh, levels->levels[i].mesh, true);
+        assert_map(levels->levels[i + 1].mesh, levels->levels[i].mesh,
+                   levels->levels[i].vertex_map);
     }
     starg_mesh *direct = simplify(context, mesh, 500);
-    assert_same_mesh(direct, levels->meshes[0]);
+    assert_same_mesh(direct, levels->levels[0].mesh);
     starg_mesh_free(direct);
     starg_levels_free(context, levels);
     starg_mesh_free(mesh);
@@ -547,7 +549,7 @@ static void test_levels_that_are_left_out(void **state) {
         test_ok(context,
                 starg_mesh_levels(context, mesh, cases[i].coarsest, cases[i].step, NULL, &levels));
         assert_int_equal(levels->count, cases[i].levels);
-        assert_same_mesh(levels->meshes[levels->count - 1], mesh);
+        assert_same_mesh(levels->levels[levels->count - 1].mesh, mesh);
         starg_levels_free(context, levels);
     }
     starg_levels *none = (starg_levels *)context;
@@ -615,7 +617,7 @@ static void test_vertices_of_no_face_go(void **state) {
         assert_int_equal(map[v], v - 1);
     test_ok(context, starg_mesh_levels(context, mesh, 5, 4, NULL, &levels));
     assert_int_equal(levels->count, 2);
-    assert_true(levels->vertex_map[0][0] == STARG_NO_VERTEX);
+    assert_true(levels->levels[0].vertex_map[0] == STARG_NO_VERTEX);
     starg_levels_free(context, levels);
     starg_mesh_free(coarse);
     starg_mesh_free(mesh);
