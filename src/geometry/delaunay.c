@@ -384,16 +384,30 @@ static starg_status insert_all(builder *b, const sort_key *order, size_t count) 
     return status;
 }
 
-static starg_status collect(const builder *b, delaunay *result) {
-    starg_status status = STARG_OK;
+/* Numbers the cells that are no ghosts in the order of the pool; `mark` holds the number. */
+static size_t number_cells(builder *b) {
     size_t count = 0;
-    for (size_t i = 0; i < b->cells.count; i++)
-        count += ghost_side(&b->cells.data[i]) < 0;
+    for (size_t i = 0; i < b->cells.count; i++) {
+        cell *c = &b->cells.data[i];
+        c->mark = ghost_side(c) < 0 ? (uint32_t)count++ : DELAUNAY_NONE;
+    }
+    return count;
+}
+
+static starg_status collect(builder *b, delaunay *result) {
+    starg_status status = STARG_OK;
+    size_t count = number_cells(b);
     STARG_NEW(b->context, "delaunay", result->tetrahedra, count);
-    for (size_t i = 0; i < b->cells.count; i++)
-        if (ghost_side(&b->cells.data[i]) < 0)
-            memcpy(result->tetrahedra[result->count++], b->cells.data[i].vertex,
-                   sizeof *result->tetrahedra);
+    STARG_NEW(b->context, "delaunay", result->neighbours, count);
+    result->count = count;
+    for (size_t i = 0; i < b->cells.count; i++) {
+        const cell *c = &b->cells.data[i];
+        if (c->mark == DELAUNAY_NONE)
+            continue;
+        memcpy(result->tetrahedra[c->mark], c->vertex, sizeof *result->tetrahedra);
+        for (int k = 0; k < 4; k++)
+            result->neighbours[c->mark][k] = b->cells.data[c->neighbour[k]].mark;
+    }
 done:
     return status;
 }
@@ -430,5 +444,6 @@ void delaunay_free(delaunay *tetrahedra) {
     if (tetrahedra == NULL)
         return;
     starg_release(tetrahedra->context, tetrahedra->tetrahedra);
+    starg_release(tetrahedra->context, tetrahedra->neighbours);
     starg_release(tetrahedra->context, tetrahedra);
 }

@@ -67,11 +67,35 @@ static void check_faces(const delaunay *d, size_t count) {
     free(keys);
 }
 
+/* Neighbours name each other, share the three points of the face between them, and nothing lies
+ * beyond exactly those faces that one tetrahedron alone has. */
+static void check_neighbours(const delaunay *d) {
+    for (uint32_t t = 0; t < d->count; t++)
+        for (int k = 0; k < 4; k++) {
+            size_t sharing = 0;
+            for (uint32_t other = 0; other < d->count; other++) {
+                int shared = 0, back = 0;
+                for (int j = 0; j < 4; j++)
+                    for (int i = 0; i < 4; i++)
+                        shared += i != k && d->tetrahedra[t][i] == d->tetrahedra[other][j];
+                if (other == t || shared < 3)
+                    continue;
+                sharing++;
+                assert_int_equal(d->neighbours[t][k], other);
+                for (int j = 0; j < 4; j++)
+                    back += d->neighbours[other][j] == t;
+                assert_int_equal(back, 1);
+            }
+            assert_int_equal(sharing, d->neighbours[t][k] != DELAUNAY_NONE);
+        }
+}
+
 static void run(starg_context *context, const double *points, size_t count, double hull) {
     delaunay *d = NULL;
     test_ok(context, delaunay_create(context, points, count, &d));
     check_empty_spheres(d, points, count);
     check_faces(d, count);
+    check_neighbours(d);
     if (hull >= 0)
         assert_true(fabs(volume_of(d, points) - hull) <= 1e-9 * (1 + hull));
     delaunay_free(d);
