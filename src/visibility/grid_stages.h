@@ -354,14 +354,19 @@ typedef struct cone_polygon {
     double corner[8][3];
 } cone_polygon;
 
-/* What lies on the near side of a plane through p: axis x SLACK >= sign x coordinate k. False if
- * nothing does. */
-static bool clip_cone(const cone_polygon *in, int k, double sign, cone_polygon *out) {
-    static const double SLACK = 1 + 0x1p-18;
+/* The sides of a widened frustum, as planes through p: axis x SLACK - sign x coordinate k. */
+static const double SLACK = 1 + 0x1p-18;
+
+static double beyond_side(const double v[3], int plane) {
+    return SLACK * v[0] - (plane % 2 ? -v[1 + plane / 2] : v[1 + plane / 2]);
+}
+
+/* Cuts off what lies outside one side. */
+static void clip_cone(const cone_polygon *in, int plane, cone_polygon *out) {
     out->count = 0;
     for (int i = 0; i < in->count; i++) {
         const double *a = in->corner[i], *b = in->corner[(i + 1) % in->count];
-        double at_a = SLACK * a[0] - sign * a[k], at_b = SLACK * b[0] - sign * b[k];
+        double at_a = beyond_side(a, plane), at_b = beyond_side(b, plane);
         if (at_a >= 0)
             memcpy(out->corner[out->count++], a, sizeof out->corner[0]);
         if ((at_a >= 0) == (at_b >= 0))
@@ -371,36 +376,56 @@ static bool clip_cone(const cone_polygon *in, int k, double sign, cone_polygon *
             out->corner[out->count][j] = a[j] + t * (b[j] - a[j]);
         out->count++;
     }
-    return out->count > 0;
 }
 
-/* The part of a face in the frustum of a cube face, which is a little widened. Corners that come
- * so near to p that their direction is not known within the margin are told by `whole`. */
+/* The part of a face in the frustum of a cube face: mostly nothing, which one side tells, or what
+ * a single side cuts off. */
+static void clip_to_frustum(cone_polygon *polygon) {
+    cone_polygon clipped;
+    bool cut[4];
+    if (polygon->corner[0][0] <= 0 && polygon->corner[1][0] <= 0 && polygon->corner[2][0] <= 0) {
+        polygon->count = 0;
+        return;
+    }
+    for (int plane = 0; plane < 4; plane++) {
+        int outside = 0;
+        for (int i = 0; i < 3; i++)
+            outside += beyond_side(polygon->corner[i], plane) < 0;
+        if (outside == 3) {
+            polygon->count = 0;
+            return;
+        }
+        cut[plane] = outside > 0;
+    }
+    for (int plane = 0; plane < 4; plane++)
+        if (cut[plane]) {
+            clip_cone(polygon, plane, &clipped);
+            *polygon = clipped;
+        }
+}
+
+/* The same on the cube face. Corners that come so near to p that their direction is not known
+ * within the margin are told by `whole`. */
 static void clip_to_cube_face(const grid_scratch *g, const uint32_t *corner, uint32_t cube_face,
                               cube_polygon *polygon, bool *whole) {
     const double *const axis[3] = {g->x, g->y, g->z};
     uint32_t k = cube_face / 2;
     double sign = cube_face % 2 ? -1 : 1, size = 0;
-    cone_polygon a = {.count = 3}, b;
+    cone_polygon cone = {.count = 3};
     for (int i = 0; i < 3; i++) {
-        a.corner[i][0] = sign * axis[k][corner[i]];
-        a.corner[i][1] = axis[(k + 1) % 3][corner[i]];
-        a.corner[i][2] = axis[(k + 2) % 3][corner[i]];
+        cone.corner[i][0] = sign * axis[k][corner[i]];
+        cone.corner[i][1] = axis[(k + 1) % 3][corner[i]];
+        cone.corner[i][2] = axis[(k + 2) % 3][corner[i]];
         for (int j = 0; j < 3; j++)
-            size = fabs(a.corner[i][j]) > size ? fabs(a.corner[i][j]) : size;
+            size = fabs(cone.corner[i][j]) > size ? fabs(cone.corner[i][j]) : size;
     }
+    clip_to_frustum(&cone);
+    polygon->count = cone.count;
     *whole = false;
-    polygon->count = 0;
-    if (a.corner[0][0] <= 0 && a.corner[1][0] <= 0 && a.corner[2][0] <= 0)
-        return;
-    if (!(clip_cone(&a, 1, 1, &b) && clip_cone(&b, 1, -1, &a) && clip_cone(&a, 2, 1, &b) &&
-          clip_cone(&b, 2, -1, &a)))
-        return;
-    polygon->count = a.count;
-    for (int i = 0; i < a.count; i++) {
-        *whole = *whole || !(a.corner[i][0] > 0x1p-20 * size);
-        polygon->corner[i][0] = (float)(a.corner[i][1] / a.corner[i][0]);
-        polygon->corner[i][1] = (float)(a.corner[i][2] / a.corner[i][0]);
+    for (int i = 0; i < cone.count; i++) {
+        *whole = *whole || !(cone.corner[i][0] > 0x1p-20 * size);
+        polygon->corner[i][0] = (float)(cone.corner[i][1] / cone.corner[i][0]);
+        polygon->corner[i][1] = (float)(cone.corner[i][2] / cone.corner[i][0]);
     }
 }
 
