@@ -20,16 +20,21 @@ extern "C" {
  * With redundancy k a column counts as covered when min(k, number of rows that hold it) of the
  * chosen rows hold it. The goal is the fewest rows that cover coverable weight of at least
  * `target`. With max_rows > 0 and a goal that this many rows cannot reach (as far as the method
- * finds out), the most weight that max_rows rows can cover is sought instead. */
+ * finds out), the most weight that max_rows rows can cover is sought instead.
+ *
+ * Rows may be given: they are in the cover in any case. What follows speaks of the further rows;
+ * weights, targets and demands count what the given rows do towards them. */
 typedef struct starg_cover_problem {
     const starg_bits *rows;
     const uint64_t *weights; /* one per column, sum below 2^62; NULL: 1 each             */
     uint64_t target;         /* weight to cover; UINT64_MAX: all that is coverable       */
     uint32_t redundancy;     /* 1 to 1,000                                               */
     size_t max_rows;         /* 0: no limit                                              */
+    const uint32_t *given;   /* given_count rows, in any order                           */
+    size_t given_count;
 } starg_cover_problem;
 
-/* Fills `problem` with: no rows, weights 1, everything covered once, no limit. */
+/* Fills `problem` with: no rows, weights 1, everything covered once, no limit, none given. */
 STARG_API void starg_cover_problem_default(starg_cover_problem *problem);
 
 typedef enum starg_cover_method {
@@ -44,9 +49,10 @@ typedef struct starg_cover_options {
      * its bound are returned. 0: none, bounds only. Counted, so that the result is the same on
      * every machine. */
     size_t max_nodes;
+    bool prices; /* ask for the columns' prices */
 } starg_cover_options;
 
-/* ILP with 100,000 nodes. */
+/* ILP with 100,000 nodes, no prices. */
 STARG_API void starg_cover_options_default(starg_cover_options *options);
 
 /* A cover. `rows` is ordered by what each row adds, largest first, ties by index: the weight of
@@ -63,6 +69,10 @@ typedef struct starg_cover {
     bool target_reached; /* weight is at least min(target, coverable weight)                     */
     bool time_limited;   /* the context's time limit cut the search short                        */
     size_t nodes;        /* branch-and-bound nodes that were used                                */
+    /* Where prices were asked for, by the method ILP and with everything to be covered; else NULL.
+     * One per column, 0 or more: what the bound of the linear relaxation pays for covering it. A
+     * new row whose columns' prices sum to more than 1 is one that can lower that bound. */
+    double *prices;
 } starg_cover;
 
 /* Solves `problem`. `options` may be NULL for the defaults. Free the result with

@@ -23,6 +23,7 @@ typedef struct block_solve {
     cover_names forced; /* rows that every better cover holds    */
     cover_names best;   /* the best cover of the block           */
     size_t lower_bound;
+    bool priced; /* the run's prices have those of the block */
 } block_solve;
 
 static bool is_closed(const block_solve *block) {
@@ -109,7 +110,7 @@ static starg_status fix_rest(block_solve *block, const cover_dual *dual, bool *a
     if (!cover_dual_fix(&block->rest, dual, most, keep, take))
         goto done;
     STARG_TRY(cover_take_rows(&block->rest, take, keep, &block->forced));
-    STARG_TRY(cover_reduce_full(block->run, &block->rest, &block->forced, &feasible));
+    STARG_TRY(cover_reduce_full(block->run, &block->rest, &block->forced, NULL, &feasible));
     if (!feasible) /* no better cover exists */
         block->lower_bound = block->best.count;
     raise_bound(block, 0);
@@ -118,6 +119,16 @@ done:
     starg_release(context, keep);
     starg_release(context, take);
     return status;
+}
+
+/* The multipliers before any row was fixed are good for the whole block. */
+static void tell_prices(block_solve *block, const cover_dual *dual) {
+    double *prices = block->run->prices;
+    if (prices == NULL || block->priced)
+        return;
+    for (size_t j = 0; j < block->rest.columns; j++)
+        prices[block->rest.column_names[j]] = (double)dual->multipliers[j] / (double)COVER_ONE;
+    block->priced = true;
 }
 
 static starg_status run_round(block_solve *block, bool *again) {
@@ -130,6 +141,7 @@ static starg_status run_round(block_solve *block, bool *again) {
     STARG_TRY(offer_cover(block, &cover));
     STARG_TRY(cover_dual_create(&block->rest, &dual));
     STARG_TRY(bound_rest(block, &dual, &cover));
+    tell_prices(block, &dual);
     if (is_closed(block) || cover_time_is_over(block->run))
         goto done;
     cover_state_free(&cover); /* the rest is about to change */
@@ -238,7 +250,7 @@ starg_status cover_solve_full(cover_run *run, cover_instance *instance, cover_an
     size_t count;
     bool feasible; /* always: the problem leaves out what cannot be covered */
     starg_progress_begin(run->context, "reduce");
-    STARG_TRY(cover_reduce_full(run, instance, &answer->rows, &feasible));
+    STARG_TRY(cover_reduce_full(run, instance, &answer->rows, run->prices, &feasible));
     starg_progress_end(run->context);
     answer->lower_bound = answer->rows.count;
     STARG_NEW(run->context, "reduce", blocks, instance->rows);

@@ -48,6 +48,11 @@ static starg_status check(starg_context *context, const starg_cover_problem *pro
         return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
                           "redundancy is %u; it must lie between 1 and %d", problem->redundancy,
                           MOST_REDUNDANCY);
+    for (size_t k = 0; k < problem->given_count; k++)
+        if (problem->given[k] >= problem->rows->rows)
+            return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
+                              "given row %zu has the index %u; there are %zu rows", k,
+                              problem->given[k], problem->rows->rows);
     if (options->method != STARG_COVER_GREEDY && options->method != STARG_COVER_ILP)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "cover", "unknown method %d",
                           (int)options->method);
@@ -149,7 +154,7 @@ done:
 }
 
 static starg_status finish(cover_run *run, const cover_instance *instance,
-                           const cover_answer *answer, uint64_t goal, uint64_t most,
+                           const cover_answer *answer, uint64_t goal, uint64_t most, uint64_t given,
                            starg_cover **out) {
     starg_status status = STARG_OK;
     owned_cover *owned = NULL;
@@ -157,12 +162,15 @@ static starg_status finish(cover_run *run, const cover_instance *instance,
     owned->context = run->context;
     starg_cover *cover = &owned->cover;
     STARG_TRY(order_rows(run, instance, &answer->rows, cover));
-    cover->weight_bound = most;
+    cover->target_reached = cover->weight >= goal;
+    cover->weight += given;
+    cover->weight_bound = most + given;
     cover->lower_bound = answer->lower_bound;
     cover->optimal = cover->count == cover->lower_bound;
-    cover->target_reached = cover->weight >= goal;
     cover->time_limited = run->time_limited;
     cover->nodes = run->nodes;
+    cover->prices = run->prices;
+    run->prices = NULL;
     *out = cover;
 done:
     if (status != STARG_OK && owned != NULL)
@@ -176,23 +184,29 @@ starg_status starg_cover_solve(starg_context *context, const starg_cover_problem
     starg_cover_options defaults;
     cover_instance instance = {.context = context};
     cover_answer answer = {0};
+    cover_run run = {.context = context};
+    uint64_t given;
     *out = NULL;
     starg_cover_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
     STARG_TRY(check(context, problem, options));
     STARG_TRY(starg_check_cancel(context, "cover"));
-
-    cover_run run = {.context = context, .max_nodes = options->max_nodes};
+    run.max_nodes = options->max_nodes;
     bool exact = options->method == STARG_COVER_ILP;
-    STARG_TRY(cover_instance_build(context, problem, &instance));
-    uint64_t goal = problem->target < instance.total ? problem->target : instance.total;
+    STARG_TRY(cover_instance_build(context, problem, &instance, &given));
+    uint64_t goal = problem->target > given ? problem->target - given : 0;
+    if (goal > instance.total)
+        goal = instance.total;
     uint64_t most = instance.total;
+    if (options->prices && exact && goal == instance.total)
+        STARG_NEW_ZERO(context, "cover", run.prices, problem->rows->columns);
     STARG_TRY(solve_goal(&run, &instance, goal, exact, &answer));
     if (problem->max_rows != 0 && answer.rows.count > problem->max_rows)
         STARG_TRY(solve_limit(&run, &instance, problem->max_rows, goal, exact, &answer, &most));
-    STARG_TRY(finish(&run, &instance, &answer, goal, most, out));
+    STARG_TRY(finish(&run, &instance, &answer, goal, most, given, out));
 done:
+    starg_release(context, run.prices);
     STARG_ARRAY_FREE(context, &answer.rows);
     cover_instance_free(&instance);
     return status;
@@ -203,5 +217,6 @@ void starg_cover_free(starg_cover *cover) {
         return;
     owned_cover *owned = (owned_cover *)cover;
     starg_release(owned->context, cover->rows);
+    starg_release(owned->context, cover->prices);
     starg_release(owned->context, owned);
 }

@@ -45,6 +45,7 @@ void cover_instance_free(cover_instance *instance) {
     starg_release(instance->context, instance->weights);
     starg_release(instance->context, instance->demands);
     starg_release(instance->context, instance->row_names);
+    starg_release(instance->context, instance->column_names);
     *instance = (cover_instance){.context = instance->context};
 }
 
@@ -60,6 +61,7 @@ static starg_status shape(starg_context *context, size_t rows, size_t columns,
     STARG_NEW(context, "cover", out->weights, columns);
     STARG_NEW(context, "cover", out->demands, columns);
     STARG_NEW(context, "cover", out->row_names, rows);
+    STARG_NEW(context, "cover", out->column_names, columns);
     out->row_bits = starg_allocate(context, rows, out->row_words * sizeof *out->row_bits);
     out->column_bits =
         starg_allocate(context, columns, out->column_words * sizeof *out->column_bits);
@@ -104,6 +106,7 @@ starg_status cover_instance_select(const cover_instance *from, const uint64_t *r
                    from->column_words * sizeof *tall);
         out->weights[j] = from->weights[kept_columns[j]];
         out->demands[j] = from->demands[kept_columns[j]];
+        out->column_names[j] = from->column_names[kept_columns[j]];
         out->total += out->weights[j];
     }
     STARG_NEW(context, "cover", wide, from->rows * out->row_words);
@@ -141,10 +144,37 @@ static starg_status import(starg_context *context, const starg_cover_problem *pr
         out->row_names[i] = (uint32_t)i;
     for (size_t j = 0; j < out->columns; j++) {
         size_t supply = starg_bit_count(cover_column(out, j), out->column_words);
+        out->column_names[j] = (uint32_t)j;
         out->weights[j] = problem->weights ? problem->weights[j] : 1;
         out->demands[j] = (uint32_t)(supply < problem->redundancy ? supply : problem->redundancy);
     }
     return STARG_OK;
+}
+
+static void empty_row(cover_instance *instance, size_t row) {
+    uint64_t *bits = instance->row_bits + row * instance->row_words;
+    for (size_t w = 0; w < instance->row_words; w++) {
+        STARG_FOR_BITS (bit, bits[w])
+            starg_bit_clear(instance->column_bits + (64 * w + bit) * instance->column_words, row);
+        bits[w] = 0;
+    }
+}
+
+/* Takes the given rows; *covered sums the weights of the columns that need no more. */
+static void take_given(const starg_cover_problem *problem, cover_instance *instance,
+                       uint64_t *covered) {
+    *covered = 0;
+    for (size_t k = 0; k < problem->given_count; k++) {
+        const uint64_t *bits = cover_row(instance, problem->given[k]);
+        for (size_t w = 0; w < instance->row_words; w++) {
+            STARG_FOR_BITS (bit, bits[w]) {
+                size_t column = 64 * w + bit;
+                if (instance->demands[column] > 0 && --instance->demands[column] == 0)
+                    *covered += instance->weights[column];
+            }
+        }
+        empty_row(instance, problem->given[k]);
+    }
 }
 
 typedef struct hashed_column {
@@ -169,7 +199,8 @@ static uint64_t hash_words(const uint64_t *words, size_t count) {
 }
 
 static bool same_column(const cover_instance *instance, size_t a, size_t b) {
-    return memcmp(cover_column(instance, a), cover_column(instance, b),
+    return instance->demands[a] == instance->demands[b] &&
+           memcmp(cover_column(instance, a), cover_column(instance, b),
                   instance->column_words * sizeof(uint64_t)) == 0;
 }
 
@@ -216,12 +247,13 @@ done:
 }
 
 starg_status cover_instance_build(starg_context *context, const starg_cover_problem *problem,
-                                  cover_instance *out) {
+                                  cover_instance *out, uint64_t *given) {
     starg_status status = STARG_OK;
     cover_instance all = {.context = context};
     uint64_t *keep = NULL;
     *out = (cover_instance){.context = context};
     STARG_TRY(import(context, problem, &all));
+    take_given(problem, &all, given);
     STARG_NEW_ZERO(context, "cover", keep, all.row_words);
     STARG_TRY(merge_columns(&all, keep));
     STARG_TRY(cover_instance_select(&all, NULL, keep, out));

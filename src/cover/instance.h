@@ -2,9 +2,10 @@
  * bits by rows and by columns.
  *
  * Columns of weight 0 and columns that no row holds never count, so they are left out. Columns
- * that the same rows hold have the same demand min(redundancy, number of rows) and are covered
- * together or not at all, so one column with the sum of their weights stands for all of them.
- * Both hold in every mode. Cost: O(rows x columns / 64 + columns log columns). */
+ * that the same rows hold, with the same demand, are covered together or not at all, so one column
+ * with the sum of their weights stands for all of them.
+ * Both hold in every mode. Given rows lower the demands of what they hold and are then left without
+ * columns. Cost: O(rows x columns / 64 + columns log columns). */
 #ifndef STARG_COVER_INSTANCE_H
 #define STARG_COVER_INSTANCE_H
 
@@ -21,11 +22,12 @@ typedef struct cover_instance {
     size_t row_words;    /* words of one row: one bit per column */
     size_t column_words; /* words of one column: one bit per row */
     uint64_t *row_bits, *column_bits;
-    uint64_t *weights;   /* per column, positive; their sum is below 2^62  */
-    uint32_t *demands;   /* per column, 1 to the number of rows that hold it,
-                            unless rows have been dropped since            */
-    uint32_t *row_names; /* per row: its index in the caller's matrix      */
-    uint64_t total;      /* sum of the weights                             */
+    uint64_t *weights;      /* per column, positive; their sum is below 2^62  */
+    uint32_t *demands;      /* per column, 1 to the number of rows that hold it,
+                               unless rows have been dropped since            */
+    uint32_t *row_names;    /* per row: its index in the caller's matrix      */
+    uint32_t *column_names; /* per column: the first of those it stands for */
+    uint64_t total;         /* sum of the weights                             */
 } cover_instance;
 
 /* What the stages of one call share. */
@@ -34,6 +36,7 @@ typedef struct cover_run {
     size_t max_nodes;
     size_t nodes;      /* branch-and-bound nodes used so far          */
     bool time_limited; /* some stage was cut short by the time limit  */
+    double *prices;    /* per column of the caller's matrix, or NULL  */
 } cover_run;
 
 /* A list of row names. */
@@ -54,9 +57,10 @@ static inline bool cover_time_is_over(cover_run *run) {
     return run->time_limited;
 }
 
-/* Builds the working form of a checked problem. Errors: MEMORY. */
+/* Builds the working form of a checked problem; *given gets the weight that the given rows cover,
+ * which is not part of the instance. Errors: MEMORY. */
 starg_status cover_instance_build(starg_context *context, const starg_cover_problem *problem,
-                                  cover_instance *out);
+                                  cover_instance *out, uint64_t *given);
 
 /* Builds the part of `from` whose rows and columns are set in the masks (NULL: all of them).
  * Weights, demands and names are carried over unchanged. Errors: MEMORY. */

@@ -248,11 +248,34 @@ done:
     return status;
 }
 
-static starg_status take_essentials(cover_instance *instance, cover_names *forced, bool *changed) {
+/* Every essential row is paid by one of the columns that hold it essential. */
+static starg_status price_essentials(const cover_instance *instance, double *prices) {
+    starg_status status = STARG_OK;
+    uint64_t *paid = NULL;
+    STARG_NEW_ZERO(instance->context, "reduce", paid, instance->column_words);
+    for (size_t j = 0; j < instance->columns; j++) {
+        if (supply(instance, j) != instance->demands[j])
+            continue;
+        for (size_t w = 0; w < instance->column_words; w++) {
+            uint64_t fresh = cover_column(instance, j)[w] & ~paid[w];
+            paid[w] |= fresh;
+            if (fresh != 0)
+                prices[instance->column_names[j]] = 1;
+        }
+    }
+done:
+    starg_release(instance->context, paid);
+    return status;
+}
+
+static starg_status take_essentials(cover_instance *instance, cover_names *forced, double *prices,
+                                    bool *changed) {
     starg_status status = STARG_OK;
     starg_context *context = instance->context;
     uint64_t *rows = NULL;
     STARG_NEW_ZERO(context, "reduce", rows, instance->column_words);
+    if (prices != NULL)
+        STARG_TRY(price_essentials(instance, prices));
     if (cover_mark_essential(instance, rows) != 0) {
         STARG_TRY(cover_take_rows(instance, rows, NULL, forced));
         *changed = true;
@@ -304,12 +327,12 @@ static bool every_demand_can_be_met(const cover_instance *instance) {
 }
 
 starg_status cover_reduce_full(cover_run *run, cover_instance *instance, cover_names *forced,
-                               bool *feasible) {
+                               double *prices, bool *feasible) {
     starg_status status = STARG_OK;
     *feasible = every_demand_can_be_met(instance);
     for (bool changed = *feasible; changed;) {
         changed = false;
-        STARG_TRY(take_essentials(instance, forced, &changed));
+        STARG_TRY(take_essentials(instance, forced, prices, &changed));
         if (cover_time_is_over(run))
             break;
         STARG_TRY(apply_column_dominance(run, instance, &changed));

@@ -39,10 +39,11 @@ starg_status cover_take_rows(cover_instance *instance, const uint64_t *taken, co
                              cover_names *forced);
 
 /* Rules (1) to (3) to a fixpoint, for covering everything. Names of essential rows are appended
- * to `forced`. *feasible is false when some column has fewer rows left than it demands (possible
- * only after rows were dropped by other means). Errors: MEMORY, CANCELLED. */
+ * to `forced`; the columns that ask for them get the price 1 in `prices` (by name), if not NULL.
+ * *feasible is false when some column has fewer rows left than it demands (possible only after rows
+ * were dropped by other means). Errors: MEMORY, CANCELLED. */
 starg_status cover_reduce_full(cover_run *run, cover_instance *instance, cover_names *forced,
-                               bool *feasible);
+                               double *prices, bool *feasible);
 
 /* Rule (2), for a partial target or a limit on the rows. Errors: MEMORY, CANCELLED. */
 starg_status cover_reduce_partial(cover_run *run, cover_instance *instance);

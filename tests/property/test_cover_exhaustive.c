@@ -7,6 +7,7 @@ typedef struct random_problem {
     starg_cover_problem problem;
     starg_bits *bits;
     uint64_t weights[64];
+    uint32_t given[3];
 } random_problem;
 
 static uint64_t random_weight(starg_rng *rng, int kind) {
@@ -64,6 +65,11 @@ static void make_problem(starg_context *context, starg_rng *rng, size_t most_row
     default:
         out->problem.target = coverable ? starg_rng_below(rng, coverable) : 0;
     }
+    out->problem.given = out->given;
+    if (rows > 0 && starg_rng_below(rng, 3) == 0)
+        out->problem.given_count = 1 + starg_rng_below(rng, 3);
+    for (size_t k = 0; k < out->problem.given_count; k++)
+        out->given[k] = (uint32_t)starg_rng_below(rng, rows);
     if (starg_rng_below(rng, 2))
         out->problem.max_rows = 1 + starg_rng_below(rng, rows + 2);
 }
@@ -127,14 +133,42 @@ static void check_result(const random_problem *random, const starg_cover *cover,
     }
 }
 
+/* What the prices promise: together they pay no more than any row can give, and all but rounding
+ * of what the first bound was; a problem that must not be covered whole has none. */
+static void check_prices(const random_problem *random, const starg_cover *cover) {
+    const starg_cover_problem *problem = &random->problem;
+    if (cover->prices == NULL) {
+        assert_true(problem->target < cover_oracle_coverable(problem));
+        return;
+    }
+    double bound = 0;
+    for (size_t j = 0; j < starg_bits_columns(problem->rows); j++)
+        assert_true(cover->prices[j] >= 0);
+    if (problem->redundancy != 1)
+        return;
+    for (size_t j = 0; j < starg_bits_columns(problem->rows); j++)
+        bound += cover->prices[j];
+    for (size_t i = 0; i < starg_bits_rows(problem->rows); i++) {
+        double paid = 0;
+        for (size_t j = 0; j < starg_bits_columns(problem->rows); j++)
+            paid += starg_bits_test(problem->rows, i, j) ? cover->prices[j] : 0;
+        bound += paid > 1 ? 1 - paid : 0;
+    }
+    if (problem->max_rows == 0)
+        assert_true(bound <= (double)cover->count + 1e-9);
+}
+
 static void solve_and_check(starg_context *context, const random_problem *random,
                             const uint64_t *best, starg_cover_method method) {
     starg_cover_options options;
     starg_cover_options_default(&options);
     options.method = method;
+    options.prices = method == STARG_COVER_ILP;
     starg_cover *cover;
     test_ok(context, starg_cover_solve(context, &random->problem, &options, &cover));
     check_result(random, cover, best, method == STARG_COVER_ILP);
+    if (options.prices)
+        check_prices(random, cover);
     starg_cover_free(cover);
 }
 

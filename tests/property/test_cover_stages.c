@@ -66,11 +66,12 @@ static void make_instance(starg_context *context, starg_rng *rng, int kind, cove
             starg_bits_set(bits, starg_rng_below(rng, rows), j);
     }
     starg_cover_problem problem;
+    uint64_t given;
     starg_cover_problem_default(&problem);
     problem.rows = bits;
     problem.weights = weights;
     problem.redundancy = 1 + (uint32_t)starg_rng_below(rng, 3);
-    test_ok(context, cover_instance_build(context, &problem, out));
+    test_ok(context, cover_instance_build(context, &problem, out, &given));
     starg_bits_free(bits);
 }
 
@@ -164,7 +165,7 @@ static void check_reduce_full(cover_run *run, starg_rng *rng, cover_instance *in
     size_t before = optimum(instance);
     cover_names forced = {0};
     bool feasible;
-    test_ok(run->context, cover_reduce_full(run, instance, &forced, &feasible));
+    test_ok(run->context, cover_reduce_full(run, instance, &forced, NULL, &feasible));
     assert_true(feasible);
     assert_int_equal(forced.count + optimum(instance), before);
     STARG_ARRAY_FREE(run->context, &forced);
@@ -315,10 +316,11 @@ static void make_wide_instance(starg_context *context, starg_rng *rng, cover_ins
             starg_bits_set(bits, starg_rng_below(rng, ROWS), j);
     }
     starg_cover_problem problem;
+    uint64_t given;
     starg_cover_problem_default(&problem);
     problem.rows = bits;
     problem.redundancy = 1 + (uint32_t)starg_rng_below(rng, 2);
-    test_ok(context, cover_instance_build(context, &problem, out));
+    test_ok(context, cover_instance_build(context, &problem, out, &given));
     starg_bits_free(bits);
 }
 

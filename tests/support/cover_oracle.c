@@ -15,6 +15,13 @@ static size_t holders(const starg_cover_problem *problem, size_t column) {
     return count;
 }
 
+static bool is_given(const starg_cover_problem *problem, size_t row) {
+    for (size_t k = 0; k < problem->given_count; k++)
+        if (problem->given[k] == row)
+            return true;
+    return false;
+}
+
 uint64_t cover_oracle_weight(const starg_cover_problem *problem, const uint32_t *rows,
                              size_t count) {
     uint64_t sum = 0;
@@ -23,6 +30,8 @@ uint64_t cover_oracle_weight(const starg_cover_problem *problem, const uint32_t 
         size_t demand = supply < problem->redundancy ? supply : problem->redundancy;
         for (size_t c = 0; c < count; c++)
             held += starg_bits_test(problem->rows, rows[c], j);
+        for (size_t i = 0; i < starg_bits_rows(problem->rows); i++)
+            held += is_given(problem, i) && starg_bits_test(problem->rows, i, j);
         if (supply > 0 && held >= demand)
             sum += weight_of_column(problem, j);
     }
@@ -55,6 +64,9 @@ static oracle_column look_at(const starg_cover_problem *problem, size_t column) 
 
 void cover_oracle_best(const starg_cover_problem *problem, uint64_t best[COVER_ORACLE_ROWS + 1]) {
     size_t rows = starg_bits_rows(problem->rows), columns = starg_bits_columns(problem->rows);
+    uint32_t given = 0;
+    for (size_t i = 0; i < rows; i++)
+        given |= (uint32_t)is_given(problem, i) << i;
     oracle_column *all = malloc((columns + 1) * sizeof *all);
     assert_non_null(all);
     for (size_t j = 0; j < columns; j++)
@@ -63,8 +75,10 @@ void cover_oracle_best(const starg_cover_problem *problem, uint64_t best[COVER_O
         best[c] = 0;
     for (uint32_t choice = 0; choice < (uint32_t)1 << rows; choice++) {
         uint64_t sum = 0;
+        if ((choice & given) != 0)
+            continue;
         for (size_t j = 0; j < columns; j++) {
-            uint32_t held = (uint32_t)__builtin_popcount(all[j].holders & choice);
+            uint32_t held = (uint32_t)__builtin_popcount(all[j].holders & (choice | given));
             if (all[j].holders != 0 && held >= all[j].demand)
                 sum += all[j].weight;
         }

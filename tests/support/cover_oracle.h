@@ -6,15 +6,16 @@
 
 enum { COVER_ORACLE_ROWS = 16 };
 
-/* Weight that a choice of rows covers, column by column as the header of cover.h defines it. */
+/* Weight that a choice of rows covers together with the given ones, column by column as the header
+ * of cover.h defines it. */
 uint64_t cover_oracle_weight(const starg_cover_problem *problem, const uint32_t *rows,
                              size_t count);
 
 /* Weight of all coverable columns. */
 uint64_t cover_oracle_coverable(const starg_cover_problem *problem);
 
-/* best[c]: the most weight that exactly c rows cover, for c from 0 to the number of rows, which is
- * at most COVER_ORACLE_ROWS. */
+/* best[c]: the most weight that exactly c further rows cover, for c from 0 to the number of rows,
+ * which is at most COVER_ORACLE_ROWS. */
 void cover_oracle_best(const starg_cover_problem *problem, uint64_t best[COVER_ORACLE_ROWS + 1]);
 
 /* The fewest rows that cover `weight`, from cover_oracle_best's answer; more than `rows` if none.
