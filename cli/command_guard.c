@@ -12,7 +12,7 @@
 #include "suggest.h"
 #include "view.h"
 
-static const char *const method_words[] = {"ilp", "greedy", NULL};
+static const char *const method_words[] = {"ilp", "greedy", "pilp", NULL};
 static const char *const candidate_words[] = {"medial", "interior"};
 
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
@@ -21,8 +21,9 @@ typedef struct values {
     const char *output, *marks, *picture;
     const char *candidates;
     int method;
-    uint64_t count, max_guards, redundancy, max_nodes;
-    double coverage, clearance;
+    uint64_t count, max_guards, redundancy, max_nodes, coarsest, step, refine_lines;
+    double coverage, clearance, significance, cone;
+    bool no_refine;
     cli_view view;
 } values;
 
@@ -36,10 +37,11 @@ static const cli_option options[] = {
     {.name = "method",
      .kind = CLI_CHOICE,
      .offset = offsetof(values, method),
-     .value = "ilp|greedy",
+     .value = "pilp|ilp|greedy",
      .choices = method_words,
-     .help = "ilp (default) finds the fewest guards and proves it, or gives its best and a bound; "
-             "greedy is fast, with a weaker bound."},
+     .help = "pilp (default) goes from coarse to fine levels of detail and then refines; ilp finds "
+             "the fewest of the candidates and proves it, or gives its best and a bound; greedy "
+             "is fastest, with more guards and a weaker bound."},
     {.name = "candidates",
      .kind = CLI_TEXT,
      .offset = offsetof(values, candidates),
@@ -55,6 +57,14 @@ static const cli_option options[] = {
      .help = "About how many candidates to make; more are added for faces that none of them sees. "
              "Default 1,000."},
     CLI_VIEW_OPTIONS(values, "visibility"),
+    {.name = "cone",
+     .kind = CLI_REAL,
+     .offset = offsetof(values, cone),
+     .value = "DEGREES",
+     .high = 360,
+     .above = true,
+     .help = "Guards look in one direction, with this full opening angle, like cameras. Default "
+             "360: all around."},
     {.name = "coverage",
      .kind = CLI_REAL,
      .offset = offsetof(values, coverage),
@@ -89,8 +99,39 @@ static const cli_option options[] = {
      .offset = offsetof(values, max_nodes),
      .value = "N",
      .most = UINT32_MAX,
-     .help = "ilp: branch-and-bound nodes for each independent part before the best so far is "
-             "taken. Default 100,000."},
+     .help = "Branch-and-bound nodes for each independent part before the best so far is taken. "
+             "Default 100,000 for ilp, 100 for each level of pilp."},
+    {.name = "no-refine",
+     .kind = CLI_FLAG,
+     .offset = offsetof(values, no_refine),
+     .help = "pilp: leave the guards as the levels give them; do not look for better places."},
+    {.name = "refine-lines",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, refine_lines),
+     .value = "N",
+     .most = UINT32_MAX,
+     .help = "pilp: sight lines that refinement may test. Default 10 million."},
+    {.name = "coarsest",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, coarsest),
+     .value = "N",
+     .least = 4,
+     .most = UINT32_MAX,
+     .help = "pilp: vertices of the coarsest level. Default 5,000."},
+    {.name = "step",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, step),
+     .value = "N",
+     .least = 1,
+     .most = UINT32_MAX,
+     .help = "pilp: vertices that each finer level has more. Default 10,000."},
+    {.name = "significance",
+     .kind = CLI_REAL,
+     .offset = offsetof(values, significance),
+     .value = "F",
+     .high = 1,
+     .help = "pilp: guards that see less than this fraction of a level's area are chosen anew "
+             "there. Default 0.1."},
     {.name = "picture",
      .kind = CLI_TEXT,
      .offset = offsetof(values, picture),
@@ -113,7 +154,12 @@ static void set_defaults(void *data) {
     v->count = library.candidate_count;
     v->max_guards = library.max_guards;
     v->redundancy = library.redundancy;
-    v->max_nodes = library.max_nodes;
+    v->max_nodes = UINT64_MAX;
+    v->coarsest = library.coarsest;
+    v->step = library.step;
+    v->significance = library.significance;
+    v->cone = library.visibility.cone;
+    v->refine_lines = library.refine_lines;
     v->coverage = library.coverage;
     v->clearance = library.clearance;
     cli_view_default(&v->view);
@@ -155,11 +201,18 @@ static starg_guard_options make_options(const values *v) {
     wanted.method = (starg_guard_method)v->method;
     wanted.candidate_count = v->count;
     wanted.visibility = cli_view_options(&v->view);
+    wanted.visibility.cone = v->cone;
     wanted.coverage = v->coverage;
     wanted.max_guards = v->max_guards;
     wanted.redundancy = (uint32_t)v->redundancy;
     wanted.clearance = v->clearance;
-    wanted.max_nodes = v->max_nodes;
+    if (v->max_nodes != UINT64_MAX)
+        wanted.max_nodes = v->max_nodes;
+    wanted.coarsest = v->coarsest;
+    wanted.step = v->step;
+    wanted.significance = v->significance;
+    wanted.refine = !v->no_refine;
+    wanted.refine_lines = v->refine_lines;
     return wanted;
 }
 
@@ -199,6 +252,26 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "time limit    reached; this is the best that was found\n");
 }
 
+static json_t *curve_json(cli_session *session, const starg_guards *g) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < g->count; i++)
+        cli_append(session, list, json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));
+    return list;
+}
+
+/* The levels in numbers; their guards stand in the file. */
+static json_t *levels_json(cli_session *session, const starg_guards *g) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < g->level_count; i++) {
+        const starg_guard_level *level = &g->level_list[i];
+        cli_append(session, list,
+                   json_pack("{s:I, s:I, s:I, s:I}", "vertices", (json_int_t)level->vertex_count,
+                             "faces", (json_int_t)level->face_count, "guards",
+                             (json_int_t)level->count, "kept", (json_int_t)level->kept));
+    }
+    return list;
+}
+
 static json_t *coverage_json(cli_session *session, const starg_guards *g) {
     json_t *coverage = json_object();
     cli_put(session, coverage, "faces", cli_json_real(g->coverage_faces));
@@ -206,6 +279,7 @@ static json_t *coverage_json(cli_session *session, const starg_guards *g) {
     cli_put(session, coverage, "coverable_faces", json_integer((json_int_t)g->coverable_faces));
     cli_put(session, coverage, "uncovered_faces",
             cli_json_indices(session, g->uncovered, g->uncovered_count));
+    cli_put(session, coverage, "curve", curve_json(session, g));
     if (g->options.max_guards > 0)
         cli_put(session, coverage, "area_bound", cli_json_real(g->area_bound));
     if (g->options.visibility.target != STARG_TARGET_VERTICES)
@@ -223,6 +297,8 @@ static void report_guards(cli_session *session, const starg_guards *g, const cha
     for (size_t i = 0; i < g->count; i++) {
         json_t *guard = json_object();
         cli_put(session, guard, "position", cli_json_point(g->positions + 3 * i));
+        if (g->directions != NULL)
+            cli_put(session, guard, "direction", cli_json_point(g->directions + 3 * i));
         cli_put(session, guard, "faces", json_integer((json_int_t)g->seen_faces[i]));
         cli_put(session, guard, "level", json_integer(g->levels[i]));
         cli_append(session, list, guard);
@@ -230,6 +306,9 @@ static void report_guards(cli_session *session, const starg_guards *g, const cha
     cli_put(session, report, "output", cli_json_text(output));
     cli_put(session, report, "guards", list);
     cli_put(session, report, "coverage", coverage_json(session, g));
+    if (g->level_count > 0)
+        cli_put(session, report, "levels", levels_json(session, g));
+    cli_put(session, report, "sight_lines", json_integer((json_int_t)g->lines_tested));
     cli_put(session, report, "candidates", json_integer((json_int_t)g->candidate_count));
     cli_put(session, report, "lower_bound", json_integer((json_int_t)g->lower_bound));
     cli_put(session, report, "optimal", json_boolean(g->optimal));
@@ -249,6 +328,7 @@ static starg_status write_marks(cli_session *session, const starg_solid *solid,
     starg_bits *seen = NULL;
     starg_visibility_options view = g->options.visibility;
     view.target = STARG_TARGET_FACES;
+    view.directions = g->directions;
     uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
     if (colors == NULL)
         return cli_fail_memory(session);

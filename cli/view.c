@@ -16,8 +16,11 @@ void cli_view_default(cli_view *view) {
 }
 
 starg_visibility_options cli_view_options(const cli_view *view) {
-    return (starg_visibility_options){.engine = (starg_visibility_engine)view->engine,
-                                      .target = (starg_target)view->target,
-                                      .face_rule = (starg_face_rule)view->face_rule,
-                                      .range = view->range};
+    starg_visibility_options options;
+    starg_visibility_options_default(&options);
+    options.engine = (starg_visibility_engine)view->engine;
+    options.target = (starg_target)view->target;
+    options.face_rule = (starg_face_rule)view->face_rule;
+    options.range = view->range;
+    return options;
 }

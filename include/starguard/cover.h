@@ -38,8 +38,11 @@ typedef struct starg_cover_problem {
 STARG_API void starg_cover_problem_default(starg_cover_problem *problem);
 
 typedef enum starg_cover_method {
-    STARG_COVER_GREEDY = 0, /* largest gain first, then needless rows dropped; weak bound */
-    STARG_COVER_ILP = 1     /* reductions, Lagrangian bound, then branch and bound        */
+    STARG_COVER_GREEDY = 0, /* the largest gain first, as it stands; weak bound           */
+    STARG_COVER_ILP = 1,    /* reductions, Lagrangian bound, then branch and bound        */
+    STARG_COVER_LP = 2      /* reductions, the linear relaxation's bound and prices, and a
+                               greedy cover that is improved; ILP's answer where not all
+                               is to be covered                                           */
 } starg_cover_method;
 
 typedef struct starg_cover_options {
@@ -69,9 +72,10 @@ typedef struct starg_cover {
     bool target_reached; /* weight is at least min(target, coverable weight)                     */
     bool time_limited;   /* the context's time limit cut the search short                        */
     size_t nodes;        /* branch-and-bound nodes that were used                                */
-    /* Where prices were asked for, by the method ILP and with everything to be covered; else NULL.
-     * One per column, 0 or more: what the bound of the linear relaxation pays for covering it. A
-     * new row whose columns' prices sum to more than 1 is one that can lower that bound. */
+    /* Where prices were asked for, by the methods ILP and LP and with everything to be covered;
+     * else NULL. One per column, 0 or more: what the bound of the linear relaxation pays for
+     * covering it. A new row whose columns' prices sum to more than 1 is one that can lower that
+     * bound. */
     double *prices;
 } starg_cover;
 

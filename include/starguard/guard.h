@@ -15,7 +15,14 @@
 extern "C" {
 #endif
 
-typedef enum starg_guard_method { STARG_GUARD_ILP = 0, STARG_GUARD_GREEDY = 1 } starg_guard_method;
+typedef enum starg_guard_method {
+    STARG_GUARD_ILP = 0,    /* the fewest candidates, proven                                    */
+    STARG_GUARD_GREEDY = 1, /* the candidate that sees most of the rest, again and again        */
+    STARG_GUARD_PILP = 2    /* ILP from coarse to fine levels of detail [YL11, 3.3]             */
+} starg_guard_method;
+
+/* Branch-and-bound nodes: 100,000 for ILP, 100 for each solve of PILP. */
+#define STARG_DEFAULT_NODES SIZE_MAX
 
 /* Where guards may stand. */
 typedef enum starg_candidates {
@@ -37,11 +44,32 @@ typedef struct starg_guard_options {
     size_t max_guards;   /* 0: no limit; else the best area that so many guards see     */
     uint32_t redundancy; /* every face by so many guards, as far as candidates allow    */
     double clearance;    /* guards at least this far from the boundary                  */
-    size_t max_nodes;    /* branch-and-bound nodes for each block                       */
+    size_t max_nodes;    /* branch-and-bound nodes for each block, or STARG_DEFAULT_NODES */
+
+    /* STARG_GUARD_PILP: the paper's constants */
+    size_t coarsest;     /* vertices of the coarsest level                              */
+    size_t step;         /* vertices that each finer level has more, at least 1         */
+    double significance; /* a guard that sees less than this fraction of a level's area is
+                            chosen anew there, 0 to 1                                   */
+
+    /* STARG_GUARD_PILP with all to be covered and candidates that are not given: once guards are
+     * found, candidates are added where they pay, and guards chosen again */
+    bool refine;
+    uint64_t refine_lines; /* sight lines that may be tested for that                   */
 } starg_guard_options;
 
-/* ILP, 1,000 medial candidates, grid, faces by vertices, all of it once, no clearance. */
+/* PILP (5,000, 10,000, 0.1) with refinement (10 million lines), 1,000 medial candidates, grid,
+ * faces by vertices, all of it once, no clearance, STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
+
+/* The guards of one level of detail, which see all of it that some candidate sees (or as much as
+ * was asked for). */
+typedef struct starg_guard_level {
+    size_t vertex_count, face_count;
+    size_t count;
+    double *positions; /* count x 3, those kept from the coarser level first               */
+    size_t kept;       /* from the coarser level, because they are significant              */
+} starg_guard_level;
 
 /* A set of guards and what is known about it. Faces are indices into the solid's mesh. */
 typedef struct starg_guards {
@@ -51,8 +79,12 @@ typedef struct starg_guards {
 
     size_t count;
     double *positions;  /* count x 3                                                  */
+    double *directions; /* count x 3, where each looks; NULL without a cone of view   */
     size_t *seen_faces; /* faces that each guard sees                                 */
     int *levels;        /* level of detail that asked for the guard; 0: the coarsest  */
+
+    size_t level_count;            /* of STARG_GUARD_PILP, before refinement; else 0             */
+    starg_guard_level *level_list; /* the coarsest first                              */
 
     double coverage_faces;  /* seen fraction of all faces                                 */
     double coverage_area;   /* seen fraction of the area of all faces                     */
@@ -66,7 +98,11 @@ typedef struct starg_guards {
     size_t uncovered_vertex_count;
     uint32_t *uncovered_vertices;
 
+    double *curve_faces; /* count: seen fraction of all faces by the first 1, 2, ... guards */
+    double *curve_area;  /* likewise of the area of all faces                             */
+
     size_t candidate_count; /* in the end, with those added                               */
+    uint64_t lines_tested;  /* by refinement                                              */
     size_t lower_bound;     /* no fewer candidates see as much (of what was asked for)    */
     bool optimal;           /* count == lower_bound                                       */
     double area_bound;      /* max_guards: no choice of so many sees a larger fraction of

@@ -35,14 +35,24 @@ typedef struct starg_visibility_options {
     starg_target target;       /* what a column of the result stands for            */
     starg_face_rule face_rule; /* for STARG_TARGET_FACES                            */
     double range;              /* vertices (all three of a face) at most this far; INFINITY: any */
+    double cone;               /* full opening angle of the view in degrees, above 0; 360: all
+                                  around. A vertex is within it when the angle to its direction,
+                                  whose cosine is held against that of half the opening, is small
+                                  enough. With STARG_FACES_WHOLE at most 180, or 360            */
+    const double *directions;  /* with a cone below 360: count x 3, where each point looks, of any
+                                  length but 0; not kept                                        */
 } starg_visibility_options;
 
-/* Grid, faces, by vertices, any distance. */
+/* Grid, faces, by vertices, any distance, all around. */
 STARG_API void starg_visibility_options_default(starg_visibility_options *options);
+
+/* The cosine of half an opening angle in degrees: the number that decides. */
+STARG_API double starg_cone_cosine(double degrees);
 
 /* Computes what each of `count` points (count x 3 doubles) sees: a matrix of count rows with one
  * column per face (or vertex). `options` may be NULL. Parallel over the points.
- * Errors: ARGUMENT (range negative or NaN, a point that is not finite), MEMORY, CANCELLED, TIME. */
+ * Errors: ARGUMENT (range negative or NaN, a cone that is no angle, a point or
+ * direction that is not finite), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_visibility(starg_context *context, const starg_solid *solid,
                                         const double *points, size_t count,
                                         const starg_visibility_options *options, starg_bits **out);

@@ -4,7 +4,8 @@
  *      the linear relaxation's bound if that is not enough, rows fixed by their reduced costs,
  *      reductions of the rest;
  *   3. branch and bound on what is left.
- * Each ends as soon as the bound meets the cover.
+ * Each ends as soon as the bound meets the cover. A relaxed run takes the linear relaxation's
+ * bound at once, and ends there.
  *
  * Invariant of a block: every cover with fewer rows than the best one consists of the forced rows
  * and a cover of the rest. */
@@ -65,15 +66,14 @@ done:
 }
 
 /* The linear relaxation's multipliers, where the subgradient method has not been enough. */
-static starg_status bound_by_lp(block_solve *block, cover_dual *dual) {
+static starg_status bound_by_lp(block_solve *block, cover_dual *dual, bool *found) {
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
     cover_relaxation relaxation = {0};
     int64_t *scratch = NULL;
-    bool found;
     STARG_NEW(context, "bound", scratch, block->rest.rows);
-    STARG_TRY(cover_relax(block->run, &block->rest, &relaxation, &found));
-    if (found)
+    STARG_TRY(cover_relax(block->run, &block->rest, &relaxation, found));
+    if (*found)
         cover_dual_offer(&block->rest, dual, relaxation.multipliers, scratch);
 done:
     starg_release(context, scratch);
@@ -83,13 +83,20 @@ done:
 
 static starg_status bound_rest(block_solve *block, cover_dual *dual, cover_state *cover) {
     starg_status status = STARG_OK;
+    bool relaxed = block->run->relaxed;
+    if (relaxed) {
+        STARG_TRY(bound_by_lp(block, dual, &relaxed));
+        raise_bound(block, cover_dual_rows(dual->value));
+    }
+    if (relaxed)
+        goto done;
     STARG_TRY(cover_lagrange(block->run, &block->rest, dual, cover));
     STARG_TRY(cover_local_search(block->run, cover_dual_rows(dual->value), cover));
     STARG_TRY(offer_cover(block, cover));
     raise_bound(block, cover_dual_rows(dual->value));
     if (is_closed(block) || cover_time_is_over(block->run))
         goto done;
-    STARG_TRY(bound_by_lp(block, dual));
+    STARG_TRY(bound_by_lp(block, dual, &relaxed));
     raise_bound(block, cover_dual_rows(dual->value));
 done:
     return status;
@@ -142,7 +149,7 @@ static starg_status run_round(block_solve *block, bool *again) {
     STARG_TRY(cover_dual_create(&block->rest, &dual));
     STARG_TRY(bound_rest(block, &dual, &cover));
     tell_prices(block, &dual);
-    if (is_closed(block) || cover_time_is_over(block->run))
+    if (is_closed(block) || block->run->relaxed || cover_time_is_over(block->run))
         goto done;
     cover_state_free(&cover); /* the rest is about to change */
     STARG_TRY(fix_rest(block, &dual, again));
@@ -188,9 +195,9 @@ static starg_status solve_block(block_solve *block) {
     starg_progress_begin(context, "bound");
     do {
         STARG_TRY(run_round(block, &again));
-    } while (again && !is_closed(block));
+    } while (again && !is_closed(block) && !block->run->relaxed);
     starg_progress_end(context);
-    if (is_closed(block) || cover_time_is_over(block->run))
+    if (is_closed(block) || block->run->relaxed || cover_time_is_over(block->run))
         goto done;
     starg_progress_begin(context, "ilp");
     STARG_TRY(branch_and_bound(block));
@@ -268,7 +275,7 @@ starg_status cover_solve_greedy(cover_run *run, const cover_instance *instance,
     cover_state cover = {0};
     cover_dual dual = {0};
     STARG_TRY(cover_state_create(instance, &cover));
-    STARG_TRY(find_first_cover(run, instance, &cover));
+    STARG_TRY(cover_greedy(run, &cover, instance->total, instance->rows));
     STARG_TRY(cover_state_names(&cover, &answer->rows));
     STARG_TRY(cover_dual_create(instance, &dual));
     answer->lower_bound = cover_dual_rows(dual.value);

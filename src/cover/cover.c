@@ -53,7 +53,7 @@ static starg_status check(starg_context *context, const starg_cover_problem *pro
             return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
                               "given row %zu has the index %u; there are %zu rows", k,
                               problem->given[k], problem->rows->rows);
-    if (options->method != STARG_COVER_GREEDY && options->method != STARG_COVER_ILP)
+    if (options->method > STARG_COVER_LP)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "cover", "unknown method %d",
                           (int)options->method);
     return check_weights(context, problem);
@@ -193,7 +193,8 @@ starg_status starg_cover_solve(starg_context *context, const starg_cover_problem
     STARG_TRY(check(context, problem, options));
     STARG_TRY(starg_check_cancel(context, "cover"));
     run.max_nodes = options->max_nodes;
-    bool exact = options->method == STARG_COVER_ILP;
+    bool exact = options->method != STARG_COVER_GREEDY;
+    run.relaxed = options->method == STARG_COVER_LP;
     STARG_TRY(cover_instance_build(context, problem, &instance, &given));
     uint64_t goal = problem->target > given ? problem->target - given : 0;
     if (goal > instance.total)

@@ -36,6 +36,7 @@ typedef struct cover_run {
     size_t max_nodes;
     size_t nodes;      /* branch-and-bound nodes used so far          */
     bool time_limited; /* some stage was cut short by the time limit  */
+    bool relaxed;      /* everything: no more than the linear relaxation */
     double *prices;    /* per column of the caller's matrix, or NULL  */
 } cover_run;
 

@@ -11,8 +11,9 @@
 #include <stdint.h>
 
 /* Doubles below 1e100 need at most 333 + 1074 bits above the smallest subnormal: 23 limbs for a
- * difference, 117 for the in-sphere determinant, which has degree five. */
-enum { EXACT_LIMBS = 120 };
+ * difference, 117 for the in-sphere determinant, which has degree five, 122 for the squares that
+ * tell whether a point is in a cone. */
+enum { EXACT_LIMBS = 128 };
 
 /* sign is -1, 0 or 1; limb[0 .. count - 1] is the magnitude, lowest first, no leading zeros. */
 typedef struct exact {

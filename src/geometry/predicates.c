@@ -236,3 +236,62 @@ bool collinear(const double a[3], const double b[3], const double c[3]) {
     return orient2d(a, b, c, 0, 1) == 0 && orient2d(a, b, c, 1, 2) == 0 &&
            orient2d(a, b, c, 2, 0) == 0;
 }
+
+/* Sign of ((q - p) . d)^2 - cosine^2 |q - p|^2 |d|^2, each factor in units of its own: the cosine's
+ * unit is made up for by a one. */
+static __attribute__((noinline)) int compare_cone_squares(const double p[3], const double d[3],
+                                                          double cosine, const double q[3]) {
+    const double points[6] = {p[0], p[1], p[2], q[0], q[1], q[2]}, cosines[2] = {cosine, 1};
+    int bits, point_scale = exact_scale(points, 6, &bits), scale = exact_scale(d, 3, &bits);
+    int cosine_scale = exact_scale(cosines, 2, &bits);
+    exact v[3], axis[3], dot = {0}, sum, term, one, c, left, right, length, product;
+    exact_difference(v, q, p, point_scale);
+    for (int k = 0; k < 3; k++) {
+        exact_set(&axis[k], d[k], scale);
+        exact_multiply(&term, &v[k], &axis[k]);
+        exact_add(&sum, &dot, &term);
+        dot = sum;
+    }
+    exact_set(&one, 1, cosine_scale);
+    exact_set(&c, cosine, cosine_scale);
+    exact_multiply(&term, &dot, &one);
+    exact_multiply(&left, &term, &term);
+    exact_square(&length, v);
+    exact_square(&product, axis);
+    exact_multiply(&term, &length, &product);
+    exact_multiply(&product, &c, &c);
+    exact_multiply(&right, &term, &product);
+    exact_subtract(&sum, &left, &right);
+    return sum.sign;
+}
+
+static __attribute__((noinline)) int compare_cone_exact(const double p[3], const double d[3],
+                                                        double cosine, const double q[3]) {
+    const double points[6] = {p[0], p[1], p[2], q[0], q[1], q[2]};
+    int bits, point_scale = exact_scale(points, 6, &bits), scale = exact_scale(d, 3, &bits);
+    exact v[3], x, dot = {0}, sum, term;
+    exact_difference(v, q, p, point_scale);
+    for (int k = 0; k < 3; k++) {
+        exact_set(&x, d[k], scale);
+        exact_multiply(&term, &v[k], &x);
+        exact_add(&sum, &dot, &term);
+        dot = sum;
+    }
+    bool apart = v[0].sign != 0 || v[1].sign != 0 || v[2].sign != 0;
+    int limit = apart ? sign_of(cosine) : 0;
+    if (dot.sign != limit)
+        return dot.sign > limit ? 1 : -1;
+    if (limit == 0)
+        return 0;
+    return limit * compare_cone_squares(p, d, cosine, q);
+}
+
+int compare_cone(const double p[3], const double d[3], double cosine, const double q[3]) {
+    double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
+    double far = sqrt(x * x + y * y + z * z);
+    double axis = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    double difference = x * d[0] + y * d[1] + z * d[2] - cosine * far * axis;
+    if (far > 1e-140 && axis > 1e-140 && fabs(difference) > 24 * EPSILON * far * axis)
+        return sign_of(difference);
+    return compare_cone_exact(p, d, cosine, q);
+}

@@ -25,6 +25,10 @@ int insphere(const double a[3], const double b[3], const double c[3], const doub
 /* Sign of |p - q| - radius, for radius >= 0 (below 1e100). */
 int compare_distance(const double p[3], const double q[3], double radius);
 
+/* 1 when q lies strictly within the cone of p about the direction d (any length but 0), whose half
+ * opening angle has the given cosine, from -1 to 1; 0 on its side or at p, -1 outside. */
+int compare_cone(const double p[3], const double d[3], double cosine, const double q[3]);
+
 /* True when a, b, c lie on one line (or coincide). */
 bool collinear(const double a[3], const double b[3], const double c[3]);
 

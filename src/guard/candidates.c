@@ -6,12 +6,21 @@
 
 static const char STAGE[] = "candidates";
 
-starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3]) {
+starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
+                             const double direction[3]) {
     starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
         STARG_PUSH(context, STAGE, &points->data, p[k]);
+    for (int k = 0; k < 3 && direction != NULL; k++)
+        STARG_PUSH(context, STAGE, &points->directions, direction[k]);
 done:
     return status;
+}
+
+void candidates_free(starg_context *context, candidate_points *points) {
+    STARG_ARRAY_FREE(context, &points->data);
+    STARG_ARRAY_FREE(context, &points->directions);
+    *points = (candidate_points){0};
 }
 
 static starg_status medial_candidates(starg_context *context, const starg_solid *solid,
@@ -24,14 +33,14 @@ static starg_status medial_candidates(starg_context *context, const starg_solid 
     STARG_NEW(context, STAGE, scratch, count);
     size_t chosen = medial_thin(balls, count, wanted, scratch);
     for (size_t i = 0; i < chosen; i++)
-        STARG_TRY(candidates_push(context, points, balls[i].centre));
+        STARG_TRY(candidates_push(context, points, balls[i].centre, NULL));
 done:
     starg_release(context, balls);
     starg_release(context, scratch);
     return status;
 }
 
-static bool is_allowed(const starg_solid *solid, const double p[3], double clearance) {
+bool candidates_allowed(const starg_solid *solid, const double p[3], double clearance) {
     return starg_solid_contains(solid, p) &&
            (clearance <= 0 || starg_solid_distance(solid, p) >= clearance);
 }
@@ -54,8 +63,8 @@ static starg_status lattice_points(starg_context *context, const starg_solid *so
                 const double p[3] = {lower[0] + step * (0.5 * (double)i + 0.3),
                                      lower[1] + step * (0.5 * (double)j + 0.3),
                                      lower[2] + step * (0.5 * (double)k + 0.3)};
-                if (is_allowed(solid, p, clearance))
-                    STARG_TRY(candidates_push(context, points, p));
+                if (candidates_allowed(solid, p, clearance))
+                    STARG_TRY(candidates_push(context, points, p, NULL));
             }
     }
 done:
@@ -108,7 +117,7 @@ starg_status starg_candidate_points(starg_context *context, const starg_solid *s
     *count = found.data.count / 3;
     found.data.data = NULL;
 done:
-    STARG_ARRAY_FREE(context, &found.data);
+    candidates_free(context, &found);
     return status;
 }
 

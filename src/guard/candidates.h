@@ -6,12 +6,28 @@
 #include "mesh/solid.h"
 #include "starguard/guard.h"
 
-/* Points of three doubles; data.count is three times their number. */
+/* Points of three doubles; data.count is three times their number. Where views are cones each has
+ * a direction as well; else `directions` is empty. */
 typedef struct candidate_points {
-    STARG_ARRAY(double) data;
+    STARG_ARRAY(double) data, directions;
 } candidate_points;
 
-starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3]);
+static inline size_t candidates_count(const candidate_points *points) {
+    return points->data.count / 3;
+}
+
+/* `direction` may be NULL where views are no cones. Errors: MEMORY. */
+starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
+                             const double direction[3]);
+void candidates_free(starg_context *context, candidate_points *points);
+
+/* Every point with directions that are spread evenly over the sphere, closer together the narrower
+ * the cone (in degrees); of many points some are left out (guard/directions.c). Errors: MEMORY. */
+starg_status candidates_turn(starg_context *context, const candidate_points *points, double cone,
+                             candidate_points *out);
+
+/* May a guard stand at p: strictly inside, with the clearance? */
+bool candidates_allowed(const starg_solid *solid, const double p[3], double clearance);
 
 /* Adds candidates for faces that no candidate sees (guard/complete.c): `unseen` marks the faces
  * (by index) for which points are wanted. The points that are appended see at least one of them

@@ -7,7 +7,8 @@
  * along directions that lean away from it, the depths of a falling geometric series are tried
  * until the face is seen. The deepest point of the normal and the deepest point of all directions
  * become candidates. Thin crevices end at depths near the rounding of the coordinates; faces that
- * are not even seen from there stay unseen.
+ * are not even seen from there stay unseen; with a cone of view, which looks at the centroid, so do
+ * those that fill more than the cone from wherever they are seen.
  *
  * Cost: O(log n) for each of at most DIRECTIONS x DEPTHS points a face; parallel over the faces. */
 #include <math.h>
@@ -23,7 +24,7 @@ static const char STAGE[] = "completion";
 static const double SHRINK = 0.7; /* 0.7^72 = 7e-12 of the diagonal */
 
 typedef struct found_point {
-    double p[2][3];
+    double p[2][3], direction[2][3];
     int count;
 } found_point;
 
@@ -35,11 +36,22 @@ typedef struct completion_job {
     found_point *found;
 } completion_job;
 
-static bool is_allowed(const completion_job *job, const double p[3], size_t rank) {
-    const starg_solid *solid = job->all->solid;
-    return starg_solid_contains(solid, p) &&
-           scene_sees_face(job->scene, p, rank, job->all->visibility) &&
-           (job->all->clearance <= 0 || starg_solid_distance(solid, p) >= job->all->clearance);
+static void look_at(const double from[3], const double at[3], double direction[3]) {
+    vec3_subtract(at, from, direction);
+    double length = vec3_length(direction);
+    for (int k = 0; k < 3 && length > 0; k++)
+        direction[k] /= length;
+}
+
+/* May a guard stand at p, and does it see the face, looking at its centroid? */
+static bool is_good(const completion_job *job, const double p[3], const double centroid[3],
+                    size_t rank) {
+    starg_visibility_options options = *job->all->visibility;
+    double direction[3];
+    look_at(p, centroid, direction);
+    options.directions = direction;
+    return candidates_allowed(job->all->solid, p, job->all->clearance) &&
+           scene_sees_face(job->scene, p, rank, &options);
 }
 
 /* The depth, from `limit` (exclusive) down, at which a point along the direction sees the face. */
@@ -48,7 +60,7 @@ static double deepest(const completion_job *job, size_t rank, const double from[
     double depth = 0.5 * job->all->solid->check->diagonal;
     for (int i = 0; i < DEPTHS && depth > limit; i++, depth *= SHRINK) {
         vec3_along(from, depth, direction, p);
-        if (is_allowed(job, p, rank))
+        if (is_good(job, p, from, rank))
             return depth;
     }
     return 0;
@@ -107,6 +119,7 @@ static starg_status complete_face(starg_context *context, void *shared, void *sc
         best = depth;
         int slot = d > 0 && found->count > 0;
         vec3_copy(p, found->p[slot]);
+        look_at(p, centroid, found->direction[slot]);
         found->count = slot + 1;
     }
     return STARG_OK;
@@ -135,6 +148,7 @@ starg_status complete_candidates(starg_context *context, const completion *all,
     starg_status status = STARG_OK;
     completion_job job = {.all = all};
     size_t face_count = all->solid->mesh->face_count;
+    bool cone = all->visibility->cone < 360;
     STARG_TRY(scene_create(context, all->solid, &job.scene));
     STARG_NEW(context, STAGE, job.rank_of, face_count);
     STARG_NEW(context, STAGE, job.faces, BATCH);
@@ -150,7 +164,8 @@ starg_status complete_candidates(starg_context *context, const completion *all,
     STARG_TRY(starg_parallel_for(context, &loop));
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < job.found[i].count; k++)
-            STARG_TRY(candidates_push(context, points, job.found[i].p[k]));
+            STARG_TRY(candidates_push(context, points, job.found[i].p[k],
+                                      cone ? job.found[i].direction[k] : NULL));
     *pending = count > 0;
 done:
     scene_free(job.scene);

@@ -12,7 +12,7 @@ static const char STAGE[] = "guards file";
 static const char FORMAT[] = "starguard-guards";
 enum { VERSION = 1, DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 
-static const char *const METHODS[] = {"ilp", "greedy"};
+static const char *const METHODS[] = {"ilp", "greedy", "pilp"};
 static const char *const CANDIDATES[] = {"medial", "interior", "given"};
 static const char *const TARGETS[] = {"faces", "vertices"};
 static const char *const FACE_RULES[] = {"vertices", "whole"};
@@ -21,14 +21,29 @@ static json_t *real_or_null(double x) {
     return isfinite(x) ? json_real(x) : json_null();
 }
 
+static int set(json_t *object, const char *key, json_t *value) {
+    return json_object_set_new(object, key, value);
+}
+
 static json_t *options_json(const starg_guard_options *o) {
-    return json_pack("{s:s, s:s, s:I, s:s, s:s, s:f, s:I, s:o, s:I, s:f}", "method",
-                     METHODS[o->method], "candidates", CANDIDATES[o->candidates], "count",
-                     (json_int_t)o->candidate_count, "target", TARGETS[o->visibility.target],
-                     "faces", FACE_RULES[o->visibility.face_rule], "coverage", o->coverage,
-                     "max_guards", (json_int_t)o->max_guards, "range",
-                     real_or_null(o->visibility.range), "redundancy", (json_int_t)o->redundancy,
-                     "clearance", o->clearance);
+    json_t *json =
+        json_pack("{s:s, s:s, s:I, s:s, s:s, s:f, s:I, s:o, s:o, s:I, s:f}", "method",
+                  METHODS[o->method], "candidates", CANDIDATES[o->candidates], "count",
+                  (json_int_t)o->candidate_count, "target", TARGETS[o->visibility.target], "faces",
+                  FACE_RULES[o->visibility.face_rule], "coverage", o->coverage, "max_guards",
+                  (json_int_t)o->max_guards, "range", real_or_null(o->visibility.range), "cone",
+                  o->visibility.cone < 360 ? json_real(o->visibility.cone) : json_null(),
+                  "redundancy", (json_int_t)o->redundancy, "clearance", o->clearance);
+    if (json == NULL || o->method != STARG_GUARD_PILP)
+        return json;
+    int failed = set(json, "coarsest", json_integer((json_int_t)o->coarsest)) |
+                 set(json, "step", json_integer((json_int_t)o->step)) |
+                 set(json, "significance", json_real(o->significance)) |
+                 set(json, "refine", json_boolean(o->refine));
+    if (failed == 0)
+        return json;
+    json_decref(json);
+    return NULL;
 }
 
 static json_t *index_list(const uint32_t *items, size_t count) {
@@ -41,6 +56,40 @@ static json_t *index_list(const uint32_t *items, size_t count) {
     return list;
 }
 
+/* Adds a value that is consumed to a list; the list is freed and NULL when that fails. */
+static json_t *append(json_t *list, json_t *value) {
+    if (json_array_append_new(list, value) == 0)
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
+/* What the first guards see, for each number of them: pairs of fractions, of faces and of area. */
+static json_t *curve_json(const starg_guards *g) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < g->count && list != NULL; i++)
+        list = append(list, json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));
+    return list;
+}
+
+static json_t *level_json(const starg_guard_level *level) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < level->count && list != NULL; i++) {
+        const double *p = level->positions + 3 * i;
+        list = append(list, json_pack("[f, f, f]", p[0], p[1], p[2]));
+    }
+    return json_pack("{s:I, s:I, s:I, s:o}", "vertices", (json_int_t)level->vertex_count, "faces",
+                     (json_int_t)level->face_count, "kept", (json_int_t)level->kept, "guards",
+                     list);
+}
+
+static json_t *levels_json(const starg_guards *g) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < g->level_count && list != NULL; i++)
+        list = append(list, level_json(&g->level_list[i]));
+    return list;
+}
+
 static json_t *coverage_json(const starg_guards *g) {
     json_t *coverage =
         json_pack("{s:f, s:f, s:I, s:o}", "faces", g->coverage_faces, "area", g->coverage_area,
@@ -48,16 +97,16 @@ static json_t *coverage_json(const starg_guards *g) {
                   index_list(g->uncovered, g->uncovered_count));
     if (coverage == NULL)
         return NULL;
-    int failed = 0;
+    int failed = set(coverage, "curve", curve_json(g));
     if (g->options.visibility.target == STARG_TARGET_VERTICES) {
-        failed |= json_object_set_new(coverage, "vertices", json_real(g->coverage_vertices));
-        failed |= json_object_set_new(coverage, "coverable_vertices",
-                                      json_integer((json_int_t)g->coverable_vertices));
-        failed |= json_object_set_new(coverage, "uncovered_vertices",
-                                      index_list(g->uncovered_vertices, g->uncovered_vertex_count));
+        failed |= set(coverage, "vertices", json_real(g->coverage_vertices));
+        failed |=
+            set(coverage, "coverable_vertices", json_integer((json_int_t)g->coverable_vertices));
+        failed |= set(coverage, "uncovered_vertices",
+                      index_list(g->uncovered_vertices, g->uncovered_vertex_count));
     }
     if (g->options.max_guards > 0)
-        failed |= json_object_set_new(coverage, "area_bound", json_real(g->area_bound));
+        failed |= set(coverage, "area_bound", json_real(g->area_bound));
     if (failed == 0)
         return coverage;
     json_decref(coverage);
@@ -66,8 +115,15 @@ static json_t *coverage_json(const starg_guards *g) {
 
 static json_t *guard_json(const starg_guards *g, size_t i) {
     const double *p = g->positions + 3 * i;
-    return json_pack("{s:[f, f, f], s:I, s:i}", "position", p[0], p[1], p[2], "faces",
-                     (json_int_t)g->seen_faces[i], "level", g->levels[i]);
+    json_t *guard = json_pack("{s:[f, f, f], s:I, s:i}", "position", p[0], p[1], p[2], "faces",
+                              (json_int_t)g->seen_faces[i], "level", g->levels[i]);
+    if (g->directions == NULL || guard == NULL)
+        return guard;
+    const double *d = g->directions + 3 * i;
+    if (set(guard, "direction", json_pack("[f, f, f]", d[0], d[1], d[2])) == 0)
+        return guard;
+    json_decref(guard);
+    return NULL;
 }
 
 /* Writes a value that is consumed; false when it could not be made (memory is out). */
@@ -90,7 +146,10 @@ static bool put_all(FILE *stream, const starg_guards *g, const char *model_file)
                 put(stream, "\"options\": ", options_json(&g->options), ",\n\"guards\": [\n");
     for (size_t i = 0; i < g->count && done; i++)
         done = put(stream, "", guard_json(g, i), i + 1 < g->count ? ",\n" : "\n");
-    return done && put(stream, "],\n\"coverage\": ", coverage_json(g), ",\n") &&
+    fputs("],\n", stream);
+    if (g->level_count > 0)
+        done = done && put(stream, "\"levels\": ", levels_json(g), ",\n");
+    return done && put(stream, "\"coverage\": ", coverage_json(g), ",\n") &&
            put(stream, "\"candidates\": ", json_integer((json_int_t)g->candidate_count), ",\n") &&
            put(stream, "\"lower_bound\": ", json_integer((json_int_t)g->lower_bound), ",\n") &&
            put(stream, "\"optimal\": ", json_boolean(g->optimal), ",\n") &&
@@ -207,7 +266,7 @@ static void read_options(json_reader *r, json_t *object, starg_guard_options *o)
         reject(r, "\"options\" must be an object");
         return;
     }
-    o->method = (starg_guard_method)read_name(r, object, "method", METHODS, 2);
+    o->method = (starg_guard_method)read_name(r, object, "method", METHODS, 3);
     o->candidates = (starg_candidates)read_name(r, object, "candidates", CANDIDATES, 3);
     o->candidate_count = read_count(r, object, "count");
     o->visibility.target = (starg_target)read_name(r, object, "target", TARGETS, 2);
@@ -218,24 +277,31 @@ static void read_options(json_reader *r, json_t *object, starg_guard_options *o)
     o->clearance = read_real(r, object, "clearance");
     if (!json_is_null(json_object_get(object, "range")))
         o->visibility.range = read_real(r, object, "range");
+    if (json_is_number(json_object_get(object, "cone")))
+        o->visibility.cone = read_real(r, object, "cone");
+    if (!(o->visibility.cone > 0 && o->visibility.cone <= 360))
+        reject(r, "\"cone\" must be above 0 and at most 360, or null");
     if (!(o->visibility.range >= 0) || !(o->clearance >= 0))
         reject(r, "\"range\" and \"clearance\" must not be negative");
 }
 
+/* An array of three numbers below 1e100. */
+static void read_triple(json_reader *r, json_t *array, const char *key, double out[3]) {
+    bool good = json_is_array(array) && json_array_size(array) == 3;
+    for (size_t k = 0; k < 3 && good; k++) {
+        json_t *x = json_array_get(array, k);
+        good = json_is_number(x) && fabs(json_number_value(x)) < 1e100;
+        if (good)
+            out[k] = json_number_value(x);
+    }
+    if (!good)
+        reject_key(r, key, "an array of three numbers below 1e100");
+}
+
 static void read_guard(json_reader *r, json_t *object, starg_guards *g, size_t i) {
-    json_t *position = json_object_get(object, "position");
-    if (!json_is_array(position) || json_array_size(position) != 3) {
-        reject_key(r, "position", "an array of three numbers");
-        return;
-    }
-    for (size_t k = 0; k < 3; k++) {
-        json_t *x = json_array_get(position, k);
-        if (!json_is_number(x) || !(fabs(json_number_value(x)) < 1e100)) {
-            reject_key(r, "position", "an array of three numbers below 1e100");
-            return;
-        }
-        g->positions[3 * i + k] = json_number_value(x);
-    }
+    read_triple(r, json_object_get(object, "position"), "position", g->positions + 3 * i);
+    if (g->directions != NULL)
+        read_triple(r, json_object_get(object, "direction"), "direction", g->directions + 3 * i);
     g->seen_faces[i] = read_count(r, object, "faces");
     g->levels[i] = (int)read_count(r, object, "level");
 }
@@ -248,6 +314,8 @@ static void read_guards(json_reader *r, json_t *list, starg_guards *g) {
     }
     g->count = json_array_size(list);
     STARG_NEW(r->context, STAGE, g->positions, 3 * g->count);
+    if (g->options.visibility.cone < 360)
+        STARG_NEW_ZERO(r->context, STAGE, g->directions, 3 * g->count);
     STARG_NEW(r->context, STAGE, g->seen_faces, g->count);
     STARG_NEW(r->context, STAGE, g->levels, g->count);
     for (size_t i = 0; i < g->count; i++)
@@ -282,6 +350,64 @@ done:
         r->status = status;
 }
 
+/* The curve, which files of earlier versions of this program lack: it stays NULL then. */
+static void read_curve(json_reader *r, json_t *list, starg_guards *g) {
+    starg_status status = STARG_OK;
+    if (list == NULL)
+        return;
+    if (!json_is_array(list) || json_array_size(list) != g->count) {
+        reject_key(r, "curve", "an array of a pair for each guard");
+        return;
+    }
+    STARG_NEW_ZERO(r->context, STAGE, g->curve_faces, g->count);
+    STARG_NEW_ZERO(r->context, STAGE, g->curve_area, g->count);
+    for (size_t i = 0; i < g->count; i++) {
+        json_t *pair = json_array_get(list, i);
+        json_t *faces = json_array_get(pair, 0), *area = json_array_get(pair, 1);
+        if (!json_is_number(faces) || !json_is_number(area))
+            reject_key(r, "curve", "an array of pairs of fractions");
+        g->curve_faces[i] = json_number_value(faces);
+        g->curve_area[i] = json_number_value(area);
+    }
+done:
+    if (status != STARG_OK)
+        r->status = status;
+}
+
+static void read_level(json_reader *r, json_t *object, starg_guard_level *level) {
+    starg_status status = STARG_OK;
+    json_t *list = json_object_get(object, "guards");
+    level->vertex_count = read_count(r, object, "vertices");
+    level->face_count = read_count(r, object, "faces");
+    level->kept = read_count(r, object, "kept");
+    STARG_NEW_ZERO(r->context, STAGE, level->positions, 3 * json_array_size(list));
+    level->count = json_array_size(list);
+    for (size_t i = 0; i < level->count; i++)
+        read_triple(r, json_array_get(list, i), "guards", level->positions + 3 * i);
+    if (level->kept > level->count)
+        reject_key(r, "kept", "at most the number of guards of its level");
+done:
+    if (status != STARG_OK)
+        r->status = status;
+}
+
+static void read_levels(json_reader *r, json_t *list, starg_guards *g) {
+    starg_status status = STARG_OK;
+    if (list == NULL)
+        return;
+    if (!json_is_array(list)) {
+        reject(r, "\"levels\" must be an array");
+        return;
+    }
+    STARG_NEW_ZERO(r->context, STAGE, g->level_list, json_array_size(list));
+    g->level_count = json_array_size(list);
+    for (size_t i = 0; i < g->level_count; i++)
+        read_level(r, json_array_get(list, i), &g->level_list[i]);
+done:
+    if (status != STARG_OK)
+        r->status = status;
+}
+
 static void read_coverage(json_reader *r, json_t *object, starg_guards *g) {
     if (!json_is_object(object)) {
         reject(r, "\"coverage\" must be an object");
@@ -291,6 +417,7 @@ static void read_coverage(json_reader *r, json_t *object, starg_guards *g) {
     g->coverage_area = read_real(r, object, "area");
     g->coverable_faces = read_count(r, object, "coverable_faces");
     read_list(r, object, "uncovered_faces", g->face_count, &g->uncovered, &g->uncovered_count);
+    read_curve(r, json_object_get(object, "curve"), g);
     g->area_bound = 1;
     if (g->options.max_guards > 0)
         g->area_bound = read_real(r, object, "area_bound");
@@ -333,6 +460,7 @@ static void read_document(json_reader *r, json_t *root, starg_guards *g) {
     read_model(r, json_object_get(root, "model"), g);
     read_options(r, json_object_get(root, "options"), &g->options);
     read_guards(r, json_object_get(root, "guards"), g);
+    read_levels(r, json_object_get(root, "levels"), g);
     read_coverage(r, json_object_get(root, "coverage"), g);
     g->candidate_count = read_count(r, root, "candidates");
     g->lower_bound = read_count(r, root, "lower_bound");

@@ -13,7 +13,7 @@ static starg_status take_positions(const starg_source *source, candidate_points 
     starg_status status = starg_guards_read_memory(source->context, source->bytes, source->size,
                                                    source->name, &guards);
     for (size_t i = 0; status == STARG_OK && i < guards->count; i++)
-        status = candidates_push(source->context, points, guards->positions + 3 * i);
+        status = candidates_push(source->context, points, guards->positions + 3 * i, NULL);
     starg_guards_free(source->context, guards);
     return status;
 }
@@ -41,7 +41,7 @@ static starg_status scan_line(starg_scan *scan, candidate_points *points) {
                                        "xyz"[k], p[k]);
             goto done;
         }
-    STARG_TRY(candidates_push(scan->source->context, points, p));
+    STARG_TRY(candidates_push(scan->source->context, points, p, NULL));
 done:
     return status;
 }
@@ -89,7 +89,7 @@ starg_status starg_points_read_memory(starg_context *context, const void *bytes,
     *count = found.data.count / 3;
     found.data.data = NULL;
 done:
-    STARG_ARRAY_FREE(context, &found.data);
+    candidates_free(context, &found);
     return status;
 }
 

@@ -27,10 +27,12 @@ typedef struct facts {
     bool *inside;         /* each guard                      */
     double *distance;     /* from each guard to the surface; only with a clearance */
     size_t *seen;         /* faces that each guard sees      */
-    atomic_uchar *vertex; /* 1: some guard sees it           */
-    atomic_uchar *face;
-    uint8_t *used; /* vertices that faces name        */
-    double *area;  /* of each face, in scaled units   */
+    atomic_uchar *united; /* 1: some guard sees the vertex; while threads work */
+    uint8_t *vertex;      /* the same afterwards             */
+    atomic_uint *first;   /* of each face the first guard that sees it, or UINT32_MAX */
+    uint8_t *face;        /* 1: some guard sees it           */
+    uint8_t *used;        /* vertices that faces name        */
+    double *area;         /* of each face, in scaled units   */
 
     size_t covered_faces, used_vertices, covered_vertices;
     double covered_area, total_area;
@@ -60,6 +62,16 @@ static void unite(atomic_uchar *all, const uint8_t *own, size_t count) {
             atomic_store_explicit(&all[i], 1, memory_order_relaxed);
 }
 
+/* The lowest guard that sees a face, whatever the order of the threads. */
+static void note_first(atomic_uint *first, const uint8_t *seen, size_t count, uint32_t guard) {
+    for (size_t f = 0; f < count; f++) {
+        uint32_t known = atomic_load_explicit(&first[f], memory_order_relaxed);
+        while (seen[f] && guard < known &&
+               !atomic_compare_exchange_weak(&first[f], &known, guard)) {
+        }
+    }
+}
+
 /* Finds out about one guard. One that is not inside sees nothing. */
 static starg_status examine_guard(starg_context *context, void *shared, void *scratch, size_t g) {
     (void)context;
@@ -78,14 +90,18 @@ static starg_status examine_guard(starg_context *context, void *shared, void *sc
         return STARG_OK;
 
     const uint8_t *vertices, *faces;
-    const starg_visibility_options *view = &options->visibility;
-    starg_status status = verify_look(scratch, p, view->range, view->face_rule, &vertices, &faces);
+    verify_view view = {.range = options->visibility.range, .rule = options->visibility.face_rule};
+    if (options->visibility.cone < 360 && known->guards->directions != NULL) {
+        view.direction = known->guards->directions + 3 * g;
+        view.cosine = starg_cone_cosine(options->visibility.cone);
+    }
+    starg_status status = verify_look(scratch, p, &view, &vertices, &faces);
     if (status != STARG_OK)
         return status;
     for (size_t f = 0; f < surface->face_count; f++)
         known->seen[g] += faces[f];
-    unite(known->vertex, vertices, surface->vertex_count);
-    unite(known->face, faces, surface->face_count);
+    unite(known->united, vertices, surface->vertex_count);
+    note_first(known->first, faces, surface->face_count, (uint32_t)g);
     return STARG_OK;
 }
 
@@ -95,11 +111,13 @@ static void sum_up(facts *known) {
         known->used[surface->faces[i]] = 1;
     for (size_t v = 0; v < surface->vertex_count; v++) {
         known->used_vertices += known->used[v];
+        known->vertex[v] = known->united[v];
         known->covered_vertices += known->vertex[v];
     }
     for (size_t f = 0; f < surface->face_count; f++) {
         known->area[f] = verify_area(surface, f, known->scale);
         known->total_area += known->area[f];
+        known->face[f] = known->first[f] != UINT32_MAX;
         if (!known->face[f])
             continue;
         known->covered_faces++;
@@ -114,9 +132,13 @@ static starg_status find_facts(starg_context *context, facts *known) {
     STARG_NEW_ZERO(context, STAGE, known->inside, guards);
     STARG_NEW_ZERO(context, STAGE, known->distance, guards);
     STARG_NEW_ZERO(context, STAGE, known->seen, guards);
+    STARG_NEW_ZERO(context, STAGE, known->united, known->surface->vertex_count);
     STARG_NEW_ZERO(context, STAGE, known->vertex, known->surface->vertex_count);
     STARG_NEW_ZERO(context, STAGE, known->used, known->surface->vertex_count);
     STARG_NEW_ZERO(context, STAGE, known->face, known->surface->face_count);
+    STARG_NEW(context, STAGE, known->first, known->surface->face_count);
+    for (size_t f = 0; f < known->surface->face_count; f++)
+        atomic_init(&known->first[f], UINT32_MAX);
     STARG_NEW(context, STAGE, known->area, known->surface->face_count);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = guards,
@@ -134,9 +156,11 @@ static void free_facts(starg_context *context, facts *known) {
     starg_release(context, known->inside);
     starg_release(context, known->distance);
     starg_release(context, known->seen);
+    starg_release(context, known->united);
     starg_release(context, known->vertex);
     starg_release(context, known->used);
     starg_release(context, known->face);
+    starg_release(context, known->first);
     starg_release(context, known->area);
 }
 
@@ -152,12 +176,15 @@ static void claim_model(starg_verdict *verdict, const facts *known) {
         guards->face_count, surface->vertex_count, surface->face_count);
 }
 
-static void claim_options(starg_verdict *verdict, const starg_guard_options *options) {
-    verify_claim(verdict,
-                 options->visibility.range >= 0 && options->coverage > 0 &&
-                     options->coverage <= 1 && options->clearance >= 0,
-                 "the options make sense: range %g, coverage %g, clearance %g",
-                 options->visibility.range, options->coverage, options->clearance);
+static void claim_options(starg_verdict *verdict, const starg_guard_options *options,
+                          bool directed) {
+    verify_claim(
+        verdict,
+        options->visibility.range >= 0 && options->coverage > 0 && options->coverage <= 1 &&
+            options->clearance >= 0 && options->visibility.cone > 0 &&
+            options->visibility.cone <= 360 && (options->visibility.cone == 360 || directed),
+        "the options make sense: range %g, cone %g, coverage %g, clearance %g",
+        options->visibility.range, options->visibility.cone, options->coverage, options->clearance);
 }
 
 /* ---- claims about single guards ---- */
@@ -225,7 +252,7 @@ typedef struct unseen_list {
     const char *name;
     const uint32_t *listed;
     size_t count, element_count;
-    const atomic_uchar *seen;
+    const uint8_t *seen;
     const uint8_t *relevant; /* NULL: all */
 } unseen_list;
 
@@ -302,6 +329,57 @@ static void claim_coverage(starg_verdict *verdict, const facts *known) {
     claim_unseen(verdict, &vertices);
     claim_fraction(verdict, "vertices", guards->coverage_vertices,
                    fraction((double)known->covered_vertices, (double)known->used_vertices));
+}
+
+/* The curve is what the first 1, 2, ... guards see; older files have none. */
+static starg_status claim_curve(starg_context *context, starg_verdict *verdict,
+                                const facts *known) {
+    starg_status status = STARG_OK;
+    const starg_guards *guards = known->guards;
+    size_t *faces = NULL, sum = 0, wrong = 0;
+    double *area = NULL, seen = 0;
+    if (guards->curve_faces == NULL || guards->curve_area == NULL)
+        return STARG_OK;
+    STARG_NEW_ZERO(context, STAGE, faces, guards->count);
+    STARG_NEW_ZERO(context, STAGE, area, guards->count);
+    for (size_t f = 0; f < known->surface->face_count; f++) {
+        if (known->first[f] == UINT32_MAX)
+            continue;
+        faces[known->first[f]]++;
+        area[known->first[f]] += known->area[f];
+    }
+    for (size_t g = 0; g < guards->count; g++) {
+        sum += faces[g];
+        seen += area[g];
+        wrong += !about_equal(guards->curve_faces[g],
+                              fraction((double)sum, (double)known->surface->face_count)) ||
+                 !about_equal(guards->curve_area[g], fraction(seen, known->total_area));
+    }
+    verify_claim(verdict, wrong == 0, "the curve tells what the first guards see (wrong for %zu)",
+                 wrong);
+done:
+    starg_release(context, faces);
+    starg_release(context, area);
+    return status;
+}
+
+/* Levels are checked against one another; their meshes are not in the file. */
+static void claim_levels(starg_verdict *verdict, const starg_guards *guards) {
+    bool grows = true, kept = true, named = true;
+    for (size_t i = 0; i < guards->level_count; i++) {
+        const starg_guard_level *level = &guards->level_list[i];
+        grows = grows && (i == 0 || guards->level_list[i - 1].vertex_count < level->vertex_count);
+        kept = kept && level->kept <= level->count &&
+               level->kept <= (i == 0 ? 0 : guards->level_list[i - 1].count);
+    }
+    for (size_t g = 0; g < guards->count; g++)
+        named =
+            named && (guards->level_count == 0 ||
+                      (guards->levels[g] >= 0 && (size_t)guards->levels[g] < guards->level_count));
+    if (guards->level_count > 0)
+        verify_claim(verdict, grows && kept && named,
+                     "%zu levels grow, keep guards of the one before, and are those of the guards",
+                     guards->level_count);
 }
 
 /* ---- claims about what could be seen ---- */
@@ -397,16 +475,20 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
 
     STARG_TRY(verify_verdict_create(context, &verdict));
     claim_model(verdict, &known);
-    claim_options(verdict, &guards->options);
+    claim_options(verdict, &guards->options, guards->directions != NULL);
     claim_inside(verdict, &known);
     claim_clearance(verdict, &known);
     claim_seen(verdict, &known);
     claim_coverage(verdict, &known);
+    STARG_TRY(claim_curve(context, verdict, &known));
+    claim_levels(verdict, guards);
     claim_coverable(verdict, &known);
     claim_goal(verdict, &known);
     claim_numbers(verdict, &known);
     *out = verdict;
+    verdict = NULL;
 done:
+    starg_verdict_free(context, verdict);
     free_facts(context, &known);
     verify_surface_free(surface);
     return status;

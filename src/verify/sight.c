@@ -16,6 +16,7 @@
 #include <math.h>
 
 #include "core/memory.h"
+#include "verify/cone.h"
 #include "verify/signs.h"
 
 enum { SIDES = 6, MAX_LEVELS = 8 };
@@ -228,11 +229,13 @@ static bool sees_whole(const verify_sight *sight, const double p[3], uint32_t fa
     return true;
 }
 
-static starg_status look_at_vertices(verify_sight *sight, const double p[3], double range) {
+static starg_status look_at_vertices(verify_sight *sight, const double p[3],
+                                     const verify_view *view) {
     for (size_t v = 0; v < sight->surface->vertex_count; v++) {
         const double *q = sight->surface->vertices + 3 * v;
         sight->vertices[v] = 0;
-        if (!sight->used[v] || !verify_within(p, q, range))
+        if (!sight->used[v] || !verify_within(p, q, view->range) ||
+            (view->direction != NULL && !verify_in_cone(p, view->direction, view->cosine, q)))
             continue;
         starg_status status = find_cells(sight, p, &q, 1);
         if (status != STARG_OK)
@@ -259,13 +262,13 @@ static starg_status look_at_faces(verify_sight *sight, const double p[3], starg_
     return STARG_OK;
 }
 
-starg_status verify_look(verify_sight *sight, const double p[3], double range, starg_face_rule rule,
+starg_status verify_look(verify_sight *sight, const double p[3], const verify_view *view,
                          const uint8_t **vertices, const uint8_t **faces) {
     starg_status status = STARG_OK;
     STARG_TRY(list_faces(sight, p));
     STARG_TRY(sort_listings(sight));
-    STARG_TRY(look_at_vertices(sight, p, range));
-    STARG_TRY(look_at_faces(sight, p, rule));
+    STARG_TRY(look_at_vertices(sight, p, view));
+    STARG_TRY(look_at_faces(sight, p, view->rule));
     *vertices = sight->vertices;
     *faces = sight->faces;
 done:

@@ -81,6 +81,11 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
                              size_t count, const starg_visibility_options *options,
                              uint8_t *finished, starg_bits **out);
 
+/* Does p, strictly inside, see the vertex in `slot`, by the tree? With a cone, options->directions
+ * has the one direction of p. */
+bool scene_sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
+                       const starg_visibility_options *options);
+
 /* Does p, strictly inside, see the one face? The rules of starg_visibility, by the tree. */
 bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
                      const starg_visibility_options *options);

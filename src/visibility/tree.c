@@ -25,19 +25,26 @@ static bool passes_alone(void *user, size_t rank) {
     return !scene_blocks(query->scene, rank, side, query->p, query->slot);
 }
 
+bool scene_sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
+                       const starg_visibility_options *options) {
+    const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
+    tree_query query = {scene, p, NULL, slot};
+    if (options->range < 1e100 && compare_distance(p, q, options->range) > 0)
+        return false;
+    if (options->cone < 360 &&
+        compare_cone(p, options->directions, starg_cone_cosine(options->cone), q) < 0)
+        return false;
+    return bvh_query_segment(scene->solid->tree, p, q, passes_alone, &query);
+}
+
 bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
                      const starg_visibility_options *options) {
     if (orient3d(scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
                  scene_corner(scene, rank, 2), p) <= 0)
         return false;
-    for (int k = 0; k < 3; k++) {
-        const double *q = scene_corner(scene, rank, k);
-        tree_query query = {scene, p, NULL, scene->corners[3 * rank + (size_t)k]};
-        if (options->range < 1e100 && compare_distance(p, q, options->range) > 0)
+    for (size_t k = 0; k < 3; k++)
+        if (!scene_sees_vertex(scene, p, scene->corners[3 * rank + k], options))
             return false;
-        if (!bvh_query_segment(scene->solid->tree, p, q, passes_alone, &query))
-            return false;
-    }
     return options->face_rule != STARG_FACES_WHOLE || face_is_wholly_visible(scene, p, NULL, rank);
 }
 

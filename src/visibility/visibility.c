@@ -17,18 +17,27 @@ typedef struct job {
     const double *points;
     starg_bits *rows;
     uint8_t *finished; /* by point; may be NULL */
+    double cosine;     /* of half the cone */
 } job;
 
 /* What one thread needs to work on a point. */
 typedef struct worker {
     void *engine_scratch;
     const job *job;
-    int8_t *side;     /* by rank */
-    uint8_t *visible; /* by slot */
+    int8_t *side;       /* by rank */
+    uint8_t *visible;   /* by slot */
+    uint8_t *within;    /* by slot: visible, and within the cone; only with one */
+    const double *last; /* point that side and visible are for, or NULL */
 } worker;
 
 void starg_visibility_options_default(starg_visibility_options *options) {
-    *options = (starg_visibility_options){.range = INFINITY};
+    *options = (starg_visibility_options){.range = INFINITY, .cone = 360};
+}
+
+double starg_cone_cosine(double degrees) {
+    if (degrees == 180)
+        return 0;
+    return degrees >= 360 ? -1 : cos(degrees * (3.14159265358979323846 / 360));
 }
 
 static void free_worker(starg_context *context, void *scratch) {
@@ -38,6 +47,7 @@ static void free_worker(starg_context *context, void *scratch) {
     w->job->engine->free_scratch(w->job->scene, w->engine_scratch);
     starg_release(context, w->side);
     starg_release(context, w->visible);
+    starg_release(context, w->within);
     starg_release(context, w);
 }
 
@@ -50,8 +60,9 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     w->job = all;
     w->side = starg_allocate(context, all->scene->face_count, sizeof *w->side);
     w->visible = starg_allocate(context, all->scene->vertex_count, sizeof *w->visible);
+    w->within = starg_allocate(context, all->scene->vertex_count, sizeof *w->within);
     starg_status status = STARG_ERROR_MEMORY;
-    if (w->side != NULL && w->visible != NULL)
+    if (w->side != NULL && w->visible != NULL && w->within != NULL)
         status = all->engine->make_scratch(all->scene, &w->engine_scratch);
     if (status != STARG_OK) {
         free_worker(context, w);
@@ -72,18 +83,33 @@ static void drop_out_of_range(const job *all, const double p[3], uint8_t *visibl
     }
 }
 
-static void write_vertices(const job *all, const worker *w, uint64_t *row) {
+static void look_all_around(const job *all, worker *w, const double p[3]) {
+    scene_sides(all->scene, p, w->side);
+    all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
+    drop_out_of_range(all, p, w->visible);
+}
+
+static void narrow(const job *all, worker *w, const double p[3], const double direction[3]) {
+    const visibility_scene *scene = all->scene;
+    for (size_t slot = 0; slot < scene->vertex_count; slot++) {
+        const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
+        w->within[slot] = w->visible[slot] && compare_cone(p, direction, all->cosine, q) >= 0;
+    }
+}
+
+static void write_vertices(const job *all, const uint8_t *visible, uint64_t *row) {
     for (size_t slot = 0; slot < all->scene->vertex_count; slot++)
-        if (w->visible[slot])
+        if (visible[slot])
             starg_bit_set(row, all->scene->vertex_of[slot]);
 }
 
-static void write_faces(const job *all, const worker *w, const double p[3], uint64_t *row) {
+static void write_faces(const job *all, const worker *w, const uint8_t *visible, const double p[3],
+                        uint64_t *row) {
     const visibility_scene *scene = all->scene;
     bool whole = all->options->face_rule == STARG_FACES_WHOLE;
     for (size_t rank = 0; rank < scene->face_count; rank++) {
         const uint32_t *c = scene->corners + 3 * rank;
-        if (w->side[rank] <= 0 || !(w->visible[c[0]] & w->visible[c[1]] & w->visible[c[2]]))
+        if (w->side[rank] <= 0 || !(visible[c[0]] & visible[c[1]] & visible[c[2]]))
             continue;
         if (!whole || face_is_wholly_visible(scene, p, w->side, rank))
             starg_bit_set(row, scene->face_of[rank]);
@@ -96,17 +122,52 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     const double *p = all->points + 3 * item;
     uint64_t *row = starg_bits_row_mutable(all->rows, item);
     (void)context;
+    const uint8_t *visible = w->visible;
     if (starg_solid_contains(all->scene->solid, p)) {
-        scene_sides(all->scene, p, w->side);
-        all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
-        drop_out_of_range(all, p, w->visible);
+        /* points that look several ways stand one after the other */
+        if (w->last == NULL || memcmp(w->last, p, 3 * sizeof *p) != 0)
+            look_all_around(all, w, p);
+        w->last = p;
+        if (all->options->cone < 360) {
+            narrow(all, w, p, all->options->directions + 3 * item);
+            visible = w->within;
+        }
         if (all->options->target == STARG_TARGET_VERTICES)
-            write_vertices(all, w, row);
+            write_vertices(all, visible, row);
         else
-            write_faces(all, w, p, row);
+            write_faces(all, w, visible, p, row);
     }
     if (all->finished != NULL)
         all->finished[item] = 1;
+    return STARG_OK;
+}
+
+static starg_status check_cone(starg_context *context, size_t count,
+                               const starg_visibility_options *options) {
+    const double *d = options->directions;
+    if (!(options->cone > 0 && options->cone <= 360))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the cone is %g degrees; it must be above 0 and at most 360",
+                          options->cone);
+    if (options->cone == 360)
+        return STARG_OK;
+    if (options->face_rule == STARG_FACES_WHOLE && options->cone > 180)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the cone is %g degrees; whole faces need one of at most 180, or of 360",
+                          options->cone);
+    if (d == NULL)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a cone needs a direction for each point");
+    for (size_t i = 0; i < count; i++, d += 3) {
+        uint64_t point = i;
+        if (!(fabs(d[0]) < 1e100 && fabs(d[1]) < 1e100 && fabs(d[2]) < 1e100) ||
+            (d[0] == 0 && d[1] == 0 && d[2] == 0))
+            return starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_CANDIDATE,
+                                 &point, 1,
+                                 "the direction of point %zu is (%g, %g, %g); it must be finite "
+                                 "and not zero",
+                                 i, d[0], d[1], d[2]);
+    }
     return STARG_OK;
 }
 
@@ -143,11 +204,13 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     if (options == NULL)
         options = &defaults;
     STARG_TRY(check_arguments(context, points, count, options));
+    STARG_TRY(check_cone(context, count, options));
     STARG_TRY(scene_create(context, solid, &scene));
     size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                               : solid->mesh->face_count;
     STARG_TRY(starg_bits_create(context, count, columns, &rows));
-    job all = {scene, engines[options->engine], options, points, rows, finished};
+    job all = {scene,    engines[options->engine],        options, points, rows,
+               finished, starg_cone_cosine(options->cone)};
     starg_parallel_loop loop = {.stage = STAGE,
                                 .count = count,
                                 .shared = &all,

@@ -29,6 +29,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
     test_ok(context, starg_solid_create(context, mesh, &solid));
     starg_guard_options_default(&options);
     options.candidate_count = 200;
+    options.method = STARG_GUARD_ILP;
     test_ok(context, starg_guard(context, solid, &options, &best));
     verify(context, name, mesh, best);
     assert_true(best->lower_bound <= best->count);

@@ -185,6 +185,33 @@ int oracle_compare_distance(const double p[3], const double q[3], double radius)
     return (sign > 0) - (sign < 0);
 }
 
+int oracle_compare_cone(const double p[3], const double d[3], double cosine, const double q[3]) {
+    const double origin[3] = {0, 0, 0};
+    vector v, axis;
+    mpq_t dot, far, length, c;
+    vector_init(&v);
+    vector_init(&axis);
+    mpq_inits(dot, far, length, c, (mpq_ptr)NULL);
+    vector_difference(&v, q, p);
+    vector_difference(&axis, d, origin);
+    vector_dot(dot, &v, &axis);
+    vector_dot(far, &v, &v);
+    vector_dot(length, &axis, &axis);
+    mpq_set_d(c, cosine);
+    /* x |x| grows with x, and so compares two numbers by squares that keep their signs */
+    mpq_mul(far, far, length);
+    mpq_mul(far, far, c);
+    mpq_abs(c, c);
+    mpq_mul(far, far, c);
+    mpq_abs(length, dot);
+    mpq_mul(dot, dot, length);
+    int sign = mpq_cmp(dot, far);
+    mpq_clears(dot, far, length, c, (mpq_ptr)NULL);
+    vector_clear(&axis);
+    vector_clear(&v);
+    return (sign > 0) - (sign < 0);
+}
+
 /* ---- linear systems ---- */
 
 enum { VARIABLES = 5 }; /* the most that any pair of shapes needs */

@@ -14,6 +14,7 @@ int oracle_orient2d(const double a[3], const double b[3], const double c[3], int
 int oracle_insphere(const double a[3], const double b[3], const double c[3], const double d[3],
                     const double e[3]);
 int oracle_compare_distance(const double p[3], const double q[3], double radius);
+int oracle_compare_cone(const double p[3], const double d[3], double cosine, const double q[3]);
 bool oracle_collinear(const double a[3], const double b[3], const double c[3]);
 
 /* The contracts of geometry/intersect.h. */

@@ -41,6 +41,7 @@ static starg_guard_options small_options(void) {
     starg_guard_options options;
     starg_guard_options_default(&options);
     options.candidate_count = 150;
+    options.method = STARG_GUARD_ILP;
     return options;
 }
 

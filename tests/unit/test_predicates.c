@@ -5,6 +5,7 @@
 #include "exact_oracle.h"
 #include "geometry/predicates.h"
 #include "support.h"
+#include "verify/cone.h"
 
 enum { ROUNDS = 1500, POINTS = 5 };
 
@@ -103,6 +104,34 @@ static void test_compare_distance(void **state) {
     for_all(check_distance);
 }
 
+static void check_cone(point_family family, points x) {
+    double *p = x[0], *q = x[1], *d = x[2];
+    if (d[0] == 0 && d[1] == 0 && d[2] == 0)
+        return;
+    double far = 0, axis = 0, dot = 0;
+    for (int k = 0; k < 3; k++) {
+        far = hypot(far, q[k] - p[k]);
+        axis = hypot(axis, d[k]);
+        dot += (q[k] - p[k]) / 2 * d[k];
+    }
+    double edge = far > 0 && axis > 0 ? 2 * (dot / far / axis) : 0; /* the angle of q itself */
+    edge = edge >= -1 && edge <= 1 ? edge : 1;
+    const double cosines[] = {edge, nextafter(edge, -1), nextafter(edge, 1), 0, 1, -1, 0.5, -0.5};
+    for (size_t i = 0; i < sizeof cosines / sizeof *cosines; i++) {
+        int expected = oracle_compare_cone(p, d, cosines[i], q);
+        int found = compare_cone(p, d, cosines[i], q);
+        if (found != expected)
+            refute("compare_cone", family, x, expected, found);
+        if (verify_in_cone(p, d, cosines[i], q) != (expected >= 0))
+            refute("verify_in_cone", family, x, expected, !(expected >= 0));
+    }
+}
+
+static void test_compare_cone(void **state) {
+    (void)state;
+    for_all(check_cone);
+}
+
 static void check_collinear(point_family family, points x) {
     int expected = oracle_collinear(x[0], x[1], x[2]);
     int found = collinear(x[0], x[1], x[2]);
@@ -153,13 +182,10 @@ static void test_families_reach_every_sign(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orient3d),
-        cmocka_unit_test(test_orient2d),
-        cmocka_unit_test(test_insphere),
-        cmocka_unit_test(test_compare_distance),
-        cmocka_unit_test(test_collinear),
-        cmocka_unit_test(test_meaning),
-        cmocka_unit_test(test_families_reach_every_sign),
+        cmocka_unit_test(test_orient3d),     cmocka_unit_test(test_orient2d),
+        cmocka_unit_test(test_insphere),     cmocka_unit_test(test_compare_distance),
+        cmocka_unit_test(test_compare_cone), cmocka_unit_test(test_collinear),
+        cmocka_unit_test(test_meaning),      cmocka_unit_test(test_families_reach_every_sign),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

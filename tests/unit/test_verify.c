@@ -286,8 +286,8 @@ static void compare_sight(const model *m, const double p[3], starg_face_rule rul
     visibility_oracle_vertices(s->vertices, s->vertex_count, s->faces, s->face_count, p, vertices);
     visibility_oracle_faces(s->vertices, s->vertex_count, s->faces, s->face_count, p,
                             rule == STARG_FACES_WHOLE, faces);
-    assert_int_equal(verify_look(sight, p, INFINITY, rule, &found_vertices, &found_faces),
-                     STARG_OK);
+    const verify_view view = {.range = INFINITY, .rule = rule};
+    assert_int_equal(verify_look(sight, p, &view, &found_vertices, &found_faces), STARG_OK);
     for (size_t v = 0; v < s->vertex_count; v++)
         if (found_vertices[v] != vertices[v])
             fail_msg("%s from (%a, %a, %a): vertex %zu, expected %d", m->name, p[0], p[1], p[2], v,
@@ -459,7 +459,7 @@ static void free_result(result *r) {
     free(r->uncovered_vertices);
 }
 
-static const starg_visibility_options PLAIN = {.range = INFINITY};
+static const starg_visibility_options PLAIN = {.range = INFINITY, .cone = 360};
 
 static starg_verdict *verify(starg_context *context, const starg_mesh *mesh, const result *r) {
     starg_verdict *verdict;
@@ -486,10 +486,10 @@ static void expect_pass(starg_context *context, const starg_mesh *mesh, const re
 static void test_true_results_pass(void **state) {
     (void)state;
     static const starg_visibility_options views[] = {
-        {.range = INFINITY},
-        {.range = INFINITY, .face_rule = STARG_FACES_WHOLE},
-        {.range = INFINITY, .target = STARG_TARGET_VERTICES},
-        {.range = 2.25},
+        {.range = INFINITY, .cone = 360},
+        {.range = INFINITY, .cone = 360, .face_rule = STARG_FACES_WHOLE},
+        {.range = INFINITY, .cone = 360, .target = STARG_TARGET_VERTICES},
+        {.range = 2.25, .cone = 360},
     };
     starg_context *context = test_context(2);
     for (int which = 0; which < MODELS; which++) {
@@ -748,7 +748,8 @@ static void test_vertex_falsifications_fail(void **state) {
         {raise_vertex_coverage, "coverage by vertices", true},
         {leave_coverable_vertex, "guards see a fraction", true},
     };
-    const starg_visibility_options view = {.range = INFINITY, .target = STARG_TARGET_VERTICES};
+    const starg_visibility_options view = {
+        .range = INFINITY, .cone = 360, .target = STARG_TARGET_VERTICES};
     starg_context *context = test_context(1);
     model m = make_model(4);
     starg_mesh *mesh = make_mesh(context, &m.given);

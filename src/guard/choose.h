@@ -1,0 +1,23 @@
+/* The cover problem of a pool. */
+#ifndef STARG_GUARD_CHOOSE_H
+#define STARG_GUARD_CHOOSE_H
+
+#include "guard/pool.h"
+#include "guard/weights.h"
+#include "starguard/cover.h"
+
+/* What a stage wants of the cover. */
+typedef struct choice {
+    starg_cover_method method;
+    size_t max_nodes;
+    const uint32_t *given; /* candidates that are chosen already */
+    size_t given_count;
+    bool prices;
+} choice;
+
+/* Chooses candidates of a pool that is not empty: as many as the options' coverage, redundancy and
+ * limit ask for. Errors: MEMORY, CANCELLED. */
+starg_status choose_candidates(const guard_pool *pool, const column_weights *weights,
+                               const choice *how, starg_cover **out);
+
+#endif

@@ -1,0 +1,36 @@
+/* One call of starg_guard: its inputs, what its stages hand on, and what they found. */
+#ifndef STARG_GUARD_JOB_H
+#define STARG_GUARD_JOB_H
+
+#include "guard/choose.h"
+
+typedef struct guard_job {
+    starg_context *context;
+    const starg_solid *solid;
+    const starg_guard_options *options;
+    guard_pool pool;
+    column_weights weights;
+    STARG_ARRAY(uint32_t) chosen; /* candidates, the one that adds most first */
+    STARG_ARRAY(int) levels;      /* of `chosen` */
+    STARG_ARRAY(starg_guard_level) records;
+    size_t lower_bound;
+    uint64_t weight_bound; /* no max_guards candidates see more */
+    uint64_t lines_tested;
+    bool time_limited;
+} guard_job;
+
+/* Takes a cover's rows as the chosen ones, all of `level`, with its bounds. Errors: MEMORY. */
+starg_status job_take_cover(guard_job *job, const starg_cover *cover, int level);
+
+/* STARG_GUARD_PILP: fills chosen, levels, records and bounds (guard/progressive.c).
+ * Errors: MEMORY, CANCELLED. */
+starg_status progressive_guards(guard_job *job);
+
+/* Adds candidates where they pay and chooses again (guard/refine.c). Errors: MEMORY, CANCELLED. */
+starg_status refine_guards(guard_job *job);
+
+/* Fills the coverage, the counts and the curve of a result that has its positions
+ * (guard/measure.c). Errors: MEMORY, CANCELLED. */
+starg_status measure_guards(guard_job *job, starg_guards *result);
+
+#endif

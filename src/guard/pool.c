@@ -1,0 +1,193 @@
+#include "guard/pool.h"
+
+#include "visibility/scene.h"
+
+static const char STAGE[] = "guard";
+
+starg_status pool_create(starg_context *context, const starg_solid *solid,
+                         const starg_guard_options *options, guard_pool *pool) {
+    starg_status status = STARG_OK;
+    const starg_mesh *mesh = solid->mesh;
+    bool vertices = options->visibility.target == STARG_TARGET_VERTICES;
+    *pool = (guard_pool){.context = context,
+                         .solid = solid,
+                         .options = options,
+                         .columns = vertices ? mesh->vertex_count : mesh->face_count};
+    STARG_NEW_ZERO(context, STAGE, pool->coverable, starg_bit_words(pool->columns));
+done:
+    return status;
+}
+
+void pool_free(guard_pool *pool) {
+    if (pool->context == NULL)
+        return;
+    candidates_free(pool->context, &pool->points);
+    starg_release(pool->context, pool->coverable);
+    starg_bits_free(pool->rows);
+    *pool = (guard_pool){0};
+}
+
+static const double *direction_of(const candidate_points *points, size_t index) {
+    return points->directions.count > 0 ? points->directions.data + 3 * index : NULL;
+}
+
+/* Most directions of a point see nothing whole. */
+static bool is_wanted(const guard_pool *pool, const starg_bits *rows, size_t i) {
+    return pool->options->visibility.cone >= 360 || starg_bits_count(rows, i) > 0;
+}
+
+/* Moves the finished rows together and appends their points. */
+static starg_status keep_finished(guard_pool *pool, const candidate_points *points,
+                                  const uint8_t *finished, starg_bits *rows) {
+    starg_status status = STARG_OK;
+    size_t kept = 0;
+    for (size_t i = 0; i < rows->rows; i++) {
+        pool->time_limited = pool->time_limited || !finished[i];
+        if (!finished[i] || !is_wanted(pool, rows, i))
+            continue;
+        STARG_TRY(candidates_push(pool->context, &pool->points, points->data.data + 3 * i,
+                                  direction_of(points, i)));
+        memmove(starg_bits_row_mutable(rows, kept), starg_bits_row(rows, i),
+                rows->words * sizeof *rows->data);
+        kept++;
+    }
+    rows->rows = kept;
+done:
+    return status;
+}
+
+/* Appends the rows of `added`, which is consumed in any case. */
+static starg_status append_rows(guard_pool *pool, starg_bits *added) {
+    starg_status status = STARG_OK;
+    starg_bits *all = NULL;
+    for (size_t i = 0; i < added->rows; i++)
+        for (size_t w = 0; w < added->words; w++)
+            pool->coverable[w] |= starg_bits_row(added, i)[w];
+    if (pool->rows == NULL) {
+        pool->rows = added;
+        return STARG_OK;
+    }
+    STARG_TRY(
+        starg_bits_create(pool->context, pool->rows->rows + added->rows, added->columns, &all));
+    memcpy(all->data, pool->rows->data, pool->rows->rows * all->words * sizeof *all->data);
+    memcpy(starg_bits_row_mutable(all, pool->rows->rows), added->data,
+           added->rows * all->words * sizeof *all->data);
+    starg_bits_free(pool->rows);
+    pool->rows = all;
+done:
+    starg_bits_free(added);
+    return status;
+}
+
+/* The rows of points that have all they need. */
+static starg_status add_rows(guard_pool *pool, const candidate_points *points) {
+    starg_status status = STARG_OK;
+    starg_visibility_options view = pool->options->visibility;
+    starg_bits *added = NULL;
+    uint8_t *finished = NULL;
+    size_t count = candidates_count(points);
+    view.directions = points->directions.data;
+    STARG_NEW_ZERO(pool->context, STAGE, finished, count);
+    STARG_TRY(visibility_rows(pool->context, pool->solid, points->data.data, count, &view, finished,
+                              &added));
+    STARG_TRY(keep_finished(pool, points, finished, added));
+    starg_bits *rows = added;
+    added = NULL;
+    STARG_TRY(append_rows(pool, rows));
+done:
+    starg_bits_free(added);
+    starg_release(pool->context, finished);
+    return status;
+}
+
+starg_status pool_add(guard_pool *pool, const candidate_points *points) {
+    starg_status status = STARG_OK;
+    candidate_points turned = {0};
+    if (pool->options->visibility.cone >= 360 || points->directions.count > 0)
+        return add_rows(pool, points);
+    STARG_TRY(candidates_turn(pool->context, points, pool->options->visibility.cone, &turned));
+    STARG_TRY(add_rows(pool, &turned));
+done:
+    candidates_free(pool->context, &turned);
+    return status;
+}
+
+starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out) {
+    starg_status status = STARG_OK;
+    starg_context *context = finest->context;
+    uint8_t *finished = NULL;
+    size_t count = pool_count(finest);
+    STARG_TRY(pool_create(context, level, finest->options, out));
+    STARG_NEW_ZERO(context, STAGE, finished, count);
+    for (size_t i = 0; i < count; i++)
+        STARG_TRY(candidates_push(context, &out->points, pool_point(finest, i),
+                                  pool_direction(finest, i)));
+    starg_visibility_options view = out->options->visibility;
+    view.directions = out->points.directions.data;
+    STARG_TRY(
+        visibility_rows(context, level, out->points.data.data, count, &view, finished, &out->rows));
+    for (size_t i = 0; i < count; i++) {
+        out->time_limited = out->time_limited || !finished[i];
+        for (size_t w = 0; w < out->rows->words; w++)
+            out->coverable[w] |= starg_bits_row(out->rows, i)[w];
+    }
+done:
+    starg_release(context, finished);
+    if (status != STARG_OK)
+        pool_free(out);
+    return status;
+}
+
+/* Marks the faces that are wanted but not coverable; with vertices as the target, the faces around
+ * a vertex that is not. */
+static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
+    const starg_mesh *mesh = pool->solid->mesh;
+    bool vertices = pool->options->visibility.target == STARG_TARGET_VERTICES;
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        const uint32_t *c = mesh->faces + 3 * f;
+        if (vertices)
+            unseen[f] = !starg_bit_test(pool->coverable, c[0]) ||
+                        !starg_bit_test(pool->coverable, c[1]) ||
+                        !starg_bit_test(pool->coverable, c[2]);
+        else
+            unseen[f] = !starg_bit_test(pool->coverable, f);
+    }
+}
+
+starg_status pool_complete(guard_pool *pool) {
+    starg_status status = STARG_OK;
+    uint8_t *unseen = NULL;
+    candidate_points found = {0};
+    completion all = {pool->solid, &pool->options->visibility, pool->options->clearance, NULL};
+    bool pending = true;
+    STARG_NEW_ZERO(pool->context, STAGE, all.tried, pool->solid->mesh->face_count);
+    STARG_NEW(pool->context, STAGE, unseen, pool->solid->mesh->face_count);
+    while (pending && !pool->time_limited) {
+        mark_unseen(pool, unseen);
+        found.data.count = found.directions.count = 0;
+        status = complete_candidates(pool->context, &all, unseen, &found, &pending);
+        if (status == STARG_ERROR_TIME) {
+            status = STARG_OK;
+            pool->time_limited = true;
+            break;
+        }
+        STARG_TRY(status);
+        if (found.data.count > 0)
+            STARG_TRY(pool_add(pool, &found));
+    }
+done:
+    candidates_free(pool->context, &found);
+    starg_release(pool->context, all.tried);
+    starg_release(pool->context, unseen);
+    return status;
+}
+
+starg_status pool_join_rows(starg_context *context, const starg_bits *rows, uint64_t **joined) {
+    starg_status status = STARG_OK;
+    STARG_NEW_ZERO(context, STAGE, *joined, rows->words);
+    for (size_t i = 0; i < rows->rows; i++)
+        for (size_t w = 0; w < rows->words; w++)
+            (*joined)[w] |= starg_bits_row(rows, i)[w];
+done:
+    return status;
+}

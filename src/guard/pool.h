@@ -1,0 +1,54 @@
+/* A pool: the candidates of one job and what each of them sees. */
+#ifndef STARG_GUARD_POOL_H
+#define STARG_GUARD_POOL_H
+
+#include "core/bits.h"
+#include "guard/candidates.h"
+
+typedef struct guard_pool {
+    starg_context *context;
+    const starg_solid *solid;
+    const starg_guard_options *options; /* visibility, clearance, where guards may stand */
+    candidate_points points;
+    starg_bits *rows;    /* by candidate; columns are faces or vertices; NULL before the first */
+    size_t columns;      /* of the rows */
+    uint64_t *coverable; /* bits of the columns that some row holds */
+    bool time_limited;   /* candidates were left out because the time was over */
+} guard_pool;
+
+/* An empty pool. Errors: MEMORY. */
+starg_status pool_create(starg_context *context, const starg_solid *solid,
+                         const starg_guard_options *options, guard_pool *pool);
+void pool_free(guard_pool *pool);
+
+static inline size_t pool_count(const guard_pool *pool) {
+    return candidates_count(&pool->points);
+}
+
+static inline const double *pool_point(const guard_pool *pool, size_t candidate) {
+    return pool->points.data.data + 3 * candidate;
+}
+
+/* The direction of a candidate, or NULL where views are no cones. */
+static inline const double *pool_direction(const guard_pool *pool, size_t candidate) {
+    return pool->points.directions.count > 0 ? pool->points.directions.data + 3 * candidate : NULL;
+}
+
+/* Adds points and their rows. Where views are cones, points without directions look in all of them
+ * (guard/directions.c). Those that the time limit leaves unfinished are left out.
+ * Errors: MEMORY, CANCELLED. */
+starg_status pool_add(guard_pool *pool, const candidate_points *points);
+
+/* The same candidates, with the same indices, and what they see of another solid: one level of
+ * detail. Rows that the time limit leaves unfinished are empty. Errors: MEMORY, CANCELLED. */
+starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out);
+
+/* Adds candidates for faces that none sees yet, until every face that can be seen is seen by one
+ * (guard/complete.c). Errors: MEMORY, CANCELLED. */
+starg_status pool_complete(guard_pool *pool);
+
+/* Joins the rows of a matrix: a bit set per column that one of them holds; starg_release frees it.
+ * Errors: MEMORY. */
+starg_status pool_join_rows(starg_context *context, const starg_bits *rows, uint64_t **joined);
+
+#endif

@@ -1,0 +1,310 @@
+/* Column generation for guards: where would a new candidate pay?
+ *
+ * The linear relaxation of the cover pays a price for each face; a point lowers its bound only if
+ * the prices of the faces that it sees sum to more than 1. Nearly all of the price lies on a few
+ * hundred faces, those that are hard to see: the niches. Each niche remembers the most valuable
+ * point known that sees it, at first one of the pool, and lets it move:
+ *   - about where it stands, by a step that shrinks from generation to generation;
+ *   - towards the best point of another niche nearby, into the space that both could share;
+ *   - in front of its own face, where it is seen from.
+ * All proposals of a generation are looked at together, and a point that is better for any niche
+ * replaces that niche's point. At the end the niches' points that are worth more than 1 are the
+ * new candidates.
+ *
+ * A proposal is looked at by the niches only, by the tree, and not at all if its own niche does not
+ * see it: that takes hardly longer on a large model than on a small one.
+ *
+ * Everything depends on the seed, the round and the niche only. Cost: O(log n) for each sight line;
+ * at most PROPOSALS x GENERATIONS x niches^2 of them a call. */
+#include "guard/pricing.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "geometry/vec3.h"
+#include "visibility/scene.h"
+
+static const char STAGE[] = "refine";
+
+enum {
+    MOST_NICHES = 512,
+    WORDS = MOST_NICHES / 64,
+    GENERATIONS = 5,
+    PROPOSALS = 6,
+    NEIGHBOURS = 8
+};
+
+static const double LEAST_PRICE = 1e-3, WORTH = 1 + 1e-6, FIRST_STEP = 0.6, STEP_FACTOR = 0.6;
+
+typedef struct niche {
+    uint32_t column;
+    uint32_t place; /* in the scene: rank of the face, slot of the vertex */
+    double price;
+    double centre[3];    /* of the face; the vertex */
+    double best[3];      /* the most valuable point known that sees it */
+    double direction[3]; /* in which it looks, if views are cones */
+    double value;
+    bool is_new;               /* `best` is no candidate yet */
+    uint32_t near[NEIGHBOURS]; /* niches; count in near_count */
+    int near_count;
+} niche;
+
+/* A point that one niche proposes. */
+typedef struct proposal {
+    double p[3], direction[3];
+    uint32_t by;          /* the niche */
+    uint32_t lines;       /* sight lines that it took to find out: */
+    uint64_t seen[WORDS]; /* the niches that it sees; none if it does not see its own */
+} proposal;
+
+typedef struct work {
+    pricing *all;
+    visibility_scene *scene;
+    niche *niches;
+    size_t count;
+    proposal *proposals; /* of a generation: PROPOSALS a niche */
+} work;
+
+static int by_price(const void *a, const void *b) {
+    const niche *x = a, *y = b;
+    if (x->price != y->price)
+        return x->price > y->price ? -1 : 1;
+    return (x->column > y->column) - (x->column < y->column);
+}
+
+static void find_centre(const guard_pool *pool, niche *n) {
+    const starg_mesh *mesh = pool->solid->mesh;
+    if (pool->options->visibility.target == STARG_TARGET_VERTICES) {
+        vec3_copy(mesh->vertices + 3 * (size_t)n->column, n->centre);
+        return;
+    }
+    const uint32_t *c = mesh->faces + 3 * (size_t)n->column;
+    for (int k = 0; k < 3; k++)
+        n->centre[k] = mesh->vertices[3 * (size_t)c[0] + (size_t)k] / 3 +
+                       mesh->vertices[3 * (size_t)c[1] + (size_t)k] / 3 +
+                       mesh->vertices[3 * (size_t)c[2] + (size_t)k] / 3;
+}
+
+static starg_status list_niches(work *w) {
+    starg_status status = STARG_OK;
+    const guard_pool *pool = w->all->pool;
+    size_t priced = 0;
+    for (size_t j = 0; j < pool->columns; j++)
+        priced += w->all->prices[j] > LEAST_PRICE;
+    STARG_NEW_ZERO(pool->context, STAGE, w->niches, priced);
+    for (size_t j = 0; j < pool->columns; j++)
+        if (w->all->prices[j] > LEAST_PRICE)
+            w->niches[w->count++] = (niche){.column = (uint32_t)j, .price = w->all->prices[j]};
+    qsort(w->niches, w->count, sizeof *w->niches, by_price);
+    if (w->count > MOST_NICHES)
+        w->count = MOST_NICHES;
+    for (size_t i = 0; i < w->count; i++)
+        find_centre(pool, &w->niches[i]);
+done:
+    return status;
+}
+
+/* Looks up where the scene has the niches. */
+static starg_status place_niches(work *w) {
+    starg_status status = STARG_OK;
+    starg_context *context = w->all->pool->context;
+    bool vertices = w->all->pool->options->visibility.target == STARG_TARGET_VERTICES;
+    uint32_t *rank_of = NULL;
+    STARG_NEW(context, STAGE, rank_of, w->scene->face_count);
+    for (size_t rank = 0; rank < w->scene->face_count; rank++)
+        rank_of[w->scene->face_of[rank]] = (uint32_t)rank;
+    for (size_t i = 0; i < w->count; i++) {
+        niche *n = &w->niches[i];
+        n->place = vertices ? w->scene->slot_of[n->column] : rank_of[n->column];
+    }
+done:
+    starg_release(context, rank_of);
+    return status;
+}
+
+/* Offers a point to the niches that it sees. */
+static void offer(work *w, const double p[3], const double *direction, const uint64_t seen[WORDS],
+                  bool is_new) {
+    double value = 0;
+    for (size_t i = 0; i < w->count; i++)
+        if (starg_bit_test(seen, i))
+            value += w->niches[i].price;
+    for (size_t i = 0; i < w->count; i++) {
+        niche *n = &w->niches[i];
+        if (value <= n->value || !starg_bit_test(seen, i))
+            continue;
+        n->value = value;
+        n->is_new = is_new;
+        vec3_copy(p, n->best);
+        if (direction != NULL)
+            vec3_copy(direction, n->direction);
+    }
+}
+
+static void offer_pool(work *w) {
+    const guard_pool *pool = w->all->pool;
+    for (size_t i = 0; i < pool_count(pool); i++) {
+        uint64_t seen[WORDS] = {0};
+        for (size_t k = 0; k < w->count; k++)
+            if (starg_bits_test(pool->rows, i, w->niches[k].column))
+                starg_bit_set(seen, k);
+        offer(w, pool_point(pool, i), pool_direction(pool, i), seen, false);
+    }
+}
+
+/* The niches whose best points stand closest, nearest first. */
+static void find_neighbours(work *w) {
+    for (size_t i = 0; i < w->count; i++) {
+        niche *n = &w->niches[i];
+        double distance[NEIGHBOURS];
+        n->near_count = 0;
+        for (size_t j = 0; j < w->count; j++) {
+            double d = vec3_distance(n->best, w->niches[j].best);
+            int at = n->near_count;
+            if (j == i || !(d > 0) || (at == NEIGHBOURS && d >= distance[at - 1]))
+                continue;
+            if (at < NEIGHBOURS)
+                n->near_count++;
+            else
+                at--;
+            for (; at > 0 && distance[at - 1] > d; at--) {
+                distance[at] = distance[at - 1];
+                n->near[at] = n->near[at - 1];
+            }
+            distance[at] = d;
+            n->near[at] = (uint32_t)j;
+        }
+    }
+}
+
+/* A vector in the unit ball. */
+static void random_ball(starg_rng *rng, double out[3]) {
+    do {
+        for (int k = 0; k < 3; k++)
+            out[k] = 2 * starg_rng_unit(rng) - 1;
+    } while (vec3_dot(out, out) > 1);
+}
+
+static void propose(const work *w, const niche *n, int kind, double step, starg_rng *rng,
+                    double p[3]) {
+    double shift[3], reach = vec3_distance(n->best, n->centre);
+    random_ball(rng, shift);
+    if (kind == 1 && n->near_count > 0) {
+        const niche *other = &w->niches[n->near[starg_rng_below(rng, (uint64_t)n->near_count)]];
+        double t = starg_rng_unit(rng);
+        for (int k = 0; k < 3; k++)
+            p[k] = n->best[k] + t * (other->best[k] - n->best[k]);
+        reach = vec3_distance(n->best, other->best);
+        vec3_along(p, 0.3 * step * reach, shift, p);
+    } else if (kind == 2) {
+        double t = 0.3 + 1.2 * starg_rng_unit(rng);
+        for (int k = 0; k < 3; k++)
+            p[k] = n->centre[k] + t * (n->best[k] - n->centre[k]);
+        vec3_along(p, step * t * reach, shift, p);
+    } else {
+        vec3_along(n->best, step * reach, shift, p);
+    }
+}
+
+/* A direction near that of the niche's best. */
+static void turn(const niche *n, double step, starg_rng *rng, double direction[3]) {
+    double shift[3];
+    random_ball(rng, shift);
+    vec3_along(n->direction, step, shift, direction);
+    double length = vec3_length(direction);
+    for (int k = 0; k < 3 && length > 0; k++)
+        direction[k] /= length;
+}
+
+static bool sees_niche(const work *w, proposal *q, size_t index) {
+    starg_visibility_options options = w->all->pool->options->visibility;
+    const niche *n = &w->niches[index];
+    options.directions = q->direction;
+    q->lines++;
+    if (options.target == STARG_TARGET_VERTICES)
+        return scene_sees_vertex(w->scene, q->p, n->place, &options);
+    return scene_sees_face(w->scene, q->p, n->place, &options);
+}
+
+static starg_status look_from(starg_context *context, void *shared, void *scratch, size_t item) {
+    const work *w = shared;
+    proposal *q = &w->proposals[item];
+    const guard_pool *pool = w->all->pool;
+    (void)context;
+    (void)scratch;
+    if (!candidates_allowed(pool->solid, q->p, pool->options->clearance) ||
+        !sees_niche(w, q, q->by))
+        return STARG_OK;
+    for (size_t i = 0; i < w->count; i++)
+        if (i == q->by || sees_niche(w, q, i))
+            starg_bit_set(q->seen, i);
+    return STARG_OK;
+}
+
+static void spend(pricing *all, size_t lines) {
+    all->lines_left -= lines < all->lines_left ? lines : all->lines_left;
+}
+
+/* One generation: every niche proposes, all proposals are looked at, the niches take the best. */
+static starg_status move_niches(work *w, uint64_t generation, double step) {
+    starg_status status = STARG_OK;
+    starg_context *context = w->all->pool->context;
+    for (size_t i = 0; i < w->count; i++) {
+        starg_rng rng = starg_rng_make(context->seed, w->all->round * GENERATIONS + generation,
+                                       w->niches[i].column);
+        for (size_t kind = 0; kind < PROPOSALS; kind++) {
+            proposal *q = &w->proposals[PROPOSALS * i + kind];
+            *q = (proposal){.by = (uint32_t)i};
+            propose(w, &w->niches[i], (int)kind % 3, step, &rng, q->p);
+            turn(&w->niches[i], step, &rng, q->direction);
+        }
+    }
+    starg_parallel_loop loop = {
+        .stage = STAGE, .count = PROPOSALS * w->count, .shared = w, .item = look_from};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    for (size_t k = 0; k < PROPOSALS * w->count; k++) {
+        offer(w, w->proposals[k].p, w->proposals[k].direction, w->proposals[k].seen, true);
+        spend(w->all, w->proposals[k].lines);
+    }
+done:
+    return status;
+}
+
+static bool stands_before(const work *w, size_t index) {
+    for (size_t i = 0; i < index; i++)
+        if (memcmp(w->niches[i].best, w->niches[index].best, sizeof w->niches[i].best) == 0 &&
+            memcmp(w->niches[i].direction, w->niches[index].direction,
+                   sizeof w->niches[i].direction) == 0)
+            return true;
+    return false;
+}
+
+starg_status price_candidates(pricing *all, candidate_points *found) {
+    starg_status status = STARG_OK;
+    starg_context *context = all->pool->context;
+    work w = {.all = all};
+    bool cone = all->pool->options->visibility.cone < 360;
+    STARG_TRY(scene_create(context, all->pool->solid, &w.scene));
+    STARG_TRY(list_niches(&w));
+    STARG_TRY(place_niches(&w));
+    STARG_NEW(context, STAGE, w.proposals, PROPOSALS * w.count);
+    offer_pool(&w);
+    double step = FIRST_STEP;
+    for (uint64_t g = 0; g < GENERATIONS && all->lines_left > 0; g++, step *= STEP_FACTOR) {
+        find_neighbours(&w);
+        STARG_TRY(move_niches(&w, g, step));
+        if (starg_time_is_over(context))
+            break;
+    }
+    for (size_t i = 0; i < w.count; i++)
+        if (w.niches[i].is_new && w.niches[i].value > WORTH && !stands_before(&w, i))
+            STARG_TRY(candidates_push(context, found, w.niches[i].best,
+                                      cone ? w.niches[i].direction : NULL));
+done:
+    starg_release(context, w.niches);
+    starg_release(context, w.proposals);
+    scene_free(w.scene);
+    return status;
+}

@@ -1,0 +1,103 @@
+/* Refinement: better places than the candidates that there were, the paper's future work.
+ *
+ * Rounds of column generation: the linear relaxation of the cover problem gives a bound and prices;
+ * points where a candidate pays by these prices
+ * are looked for (guard/pricing.c) and added. It ends when none is found, when the sight lines are
+ * spent, after ROUNDS, or when the bound, a whole number of guards, has not fallen PATIENCE times;
+ * then the problem over all candidates, old and new, is solved by branch and bound.
+ *
+ * Guards that stay keep their level; new ones get that of the model. The bound is that of the last
+ * problem, over everything that was added. Cost: the sight
+ * lines, and a linear program a round. */
+#include "guard/job.h"
+#include "guard/pricing.h"
+
+static const char STAGE[] = "refine";
+
+enum { ROUNDS = 12, PATIENCE = 3 };
+
+static int finest_level(const guard_job *job) {
+    return job->records.count > 0 ? (int)job->records.count - 1 : 0;
+}
+
+/* The chosen ones become the cover's rows; those that were chosen before keep their level. */
+static starg_status take_rows(guard_job *job, const starg_cover *cover) {
+    starg_status status = STARG_OK;
+    int *levels = NULL;
+    STARG_NEW(job->context, STAGE, levels, cover->count);
+    for (size_t i = 0; i < cover->count; i++) {
+        levels[i] = finest_level(job);
+        for (size_t k = 0; k < job->chosen.count; k++)
+            if (job->chosen.data[k] == cover->rows[i])
+                levels[i] = job->levels.data[k];
+    }
+    STARG_TRY(job_take_cover(job, cover, 0));
+    for (size_t i = 0; i < cover->count; i++)
+        job->levels.data[i] = levels[i];
+done:
+    starg_release(job->context, levels);
+    return status;
+}
+
+/* Chooses among all candidates; what was chosen stays where it is as good. */
+static starg_status choose_again(guard_job *job, const choice *how, starg_cover **out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(choose_candidates(&job->pool, &job->weights, how, out));
+    if ((*out)->count < job->chosen.count)
+        STARG_TRY(take_rows(job, *out));
+    job->lower_bound = (*out)->lower_bound;
+done:
+    return status;
+}
+
+/* One round. *bound: the fewest candidates that the linear relaxation allows; *again: points were
+ * found and added. */
+static starg_status add_round(guard_job *job, pricing *prices, size_t *bound, bool *again) {
+    starg_status status = STARG_OK;
+    starg_cover *cover = NULL;
+    candidate_points found = {0};
+    const choice how = {.method = STARG_COVER_LP, .prices = true};
+    STARG_TRY(choose_again(job, &how, &cover));
+    *bound = cover->lower_bound;
+    prices->prices = cover->prices;
+    STARG_TRY(price_candidates(prices, &found));
+    *again = found.data.count > 0;
+    if (*again)
+        STARG_TRY(pool_add(&job->pool, &found));
+done:
+    candidates_free(job->context, &found);
+    starg_cover_free(cover);
+    return status;
+}
+
+static starg_status add_rounds(guard_job *job, pricing *prices) {
+    starg_status status = STARG_OK;
+    size_t best = SIZE_MAX;
+    int idle = 0;
+    bool again = true;
+    while (again && idle < PATIENCE && prices->lines_left > 0 && !job->time_limited) {
+        size_t bound;
+        starg_progress_step(job->context, prices->round, ROUNDS);
+        STARG_TRY(add_round(job, prices, &bound, &again));
+        idle = bound < best ? 0 : idle + 1;
+        best = bound < best ? bound : best;
+        prices->round++;
+        again = again && prices->round < ROUNDS;
+        job->time_limited = starg_time_is_over(job->context);
+    }
+done:
+    return status;
+}
+
+starg_status refine_guards(guard_job *job) {
+    starg_status status = STARG_OK;
+    starg_cover *cover = NULL;
+    pricing prices = {.pool = &job->pool, .lines_left = job->options->refine_lines};
+    const choice last = {.method = STARG_COVER_ILP, .max_nodes = job->options->max_nodes};
+    STARG_TRY(add_rounds(job, &prices));
+    job->lines_tested = job->options->refine_lines - prices.lines_left;
+    STARG_TRY(choose_again(job, &last, &cover));
+done:
+    starg_cover_free(cover);
+    return status;
+}

@@ -1,0 +1,47 @@
+#include "guard/weights.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+
+static const char STAGE[] = "guard";
+
+static starg_status measure_areas(starg_context *context, const starg_mesh *mesh,
+                                  column_weights *out) {
+    starg_status status = STARG_OK;
+    STARG_NEW(context, STAGE, out->areas, mesh->face_count);
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        const uint32_t *c = mesh->faces + 3 * f;
+        out->areas[f] =
+            vec3_triangle_area(mesh->vertices + 3 * (size_t)c[0], mesh->vertices + 3 * (size_t)c[1],
+                               mesh->vertices + 3 * (size_t)c[2]);
+        out->area += out->areas[f];
+    }
+done:
+    return status;
+}
+
+starg_status column_weights_create(starg_context *context, const starg_mesh *mesh,
+                                   starg_target target, column_weights *out) {
+    starg_status status = STARG_OK;
+    bool vertices = target == STARG_TARGET_VERTICES;
+    size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
+    *out = (column_weights){0};
+    STARG_TRY(measure_areas(context, mesh, out));
+    STARG_NEW(context, STAGE, out->weights, columns);
+    for (size_t j = 0; j < columns; j++) {
+        double share = vertices || !(out->area > 0) ? 0 : out->areas[j] / out->area;
+        uint64_t weight = (uint64_t)llround(share * 0x1p40);
+        out->weights[j] = weight > 0 ? weight : 1;
+        out->total += out->weights[j];
+    }
+done:
+    return status;
+}
+
+void column_weights_free(starg_context *context, column_weights *weights) {
+    starg_release(context, weights->areas);
+    starg_release(context, weights->weights);
+    *weights = (column_weights){0};
+}

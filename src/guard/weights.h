@@ -1,0 +1,22 @@
+/* What the columns of a pool weigh: a coverage below 1 is meant by area, so each face weighs its
+ * share of the total area in units of 2^-40, at least one, that the cover works on integers;
+ * vertices weigh one unit each. */
+#ifndef STARG_GUARD_WEIGHTS_H
+#define STARG_GUARD_WEIGHTS_H
+
+#include "mesh/mesh.h"
+#include "starguard/visibility.h"
+
+typedef struct column_weights {
+    double *areas; /* by face */
+    double area;   /* of all faces */
+    uint64_t *weights;
+    uint64_t total;
+} column_weights;
+
+/* Errors: MEMORY. */
+starg_status column_weights_create(starg_context *context, const starg_mesh *mesh,
+                                   starg_target target, column_weights *out);
+void column_weights_free(starg_context *context, column_weights *weights);
+
+#endif

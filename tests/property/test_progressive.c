@@ -1,0 +1,231 @@
+/* Guarding by levels: every level's guards see their level, refinement only helps, and the result
+ * is the same for any number of threads. */
+#include "support.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "starguard/guard.h"
+#include "starguard/sample.h"
+#include "starguard/simplify.h"
+#include "starguard/verify.h"
+
+static starg_guard_options level_options(void) {
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.candidate_count = 150;
+    options.coarsest = 300;
+    options.step = 400;
+    options.refine = false;
+    return options;
+}
+
+static void verify(starg_context *context, const char *name, const starg_mesh *mesh,
+                   const starg_guards *guards) {
+    starg_verdict *verdict = NULL;
+    test_ok(context, starg_verify_guards(context, mesh, guards, &verdict));
+    for (size_t i = 0; i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            print_error("%s: %s\n", name, verdict->claims[i].text);
+    assert_true(verdict->passed);
+    starg_verdict_free(context, verdict);
+}
+
+/* The faces of a level that the points see; by the tree, which guarding does not use here. */
+static uint64_t *seen_by(starg_context *context, const starg_solid *solid, const double *points,
+                         size_t count) {
+    size_t faces = starg_mesh_face_count(starg_solid_mesh(solid));
+    uint64_t *seen = calloc(faces / 64 + 1, sizeof *seen);
+    starg_visibility_options options;
+    starg_bits *rows = NULL;
+    assert_non_null(seen);
+    starg_visibility_options_default(&options);
+    options.engine = STARG_VISIBILITY_BVH;
+    test_ok(context, starg_visibility(context, solid, points, count, &options, &rows));
+    for (size_t i = 0; i < count; i++)
+        for (size_t f = 0; f < faces; f++)
+            if (starg_bits_test(rows, i, f))
+                seen[f / 64] |= (uint64_t)1 << (f % 64);
+    starg_bits_free(rows);
+    return seen;
+}
+
+/* Guards of a level see all that the candidates see; the candidates of the job are not known here,
+ * those that it starts with are among them. */
+static void check_level(starg_context *context, const char *name, const starg_mesh *mesh,
+                        const starg_guard_level *level, const double *candidates, size_t count) {
+    starg_solid *solid = NULL;
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    size_t faces = starg_mesh_face_count(mesh);
+    assert_int_equal(level->vertex_count, starg_mesh_vertex_count(mesh));
+    assert_int_equal(level->face_count, faces);
+    uint64_t *wanted = seen_by(context, solid, candidates, count);
+    uint64_t *found = seen_by(context, solid, level->positions, level->count);
+    for (size_t w = 0; w <= faces / 64; w++)
+        if (wanted[w] & ~found[w])
+            fail_msg("%s: a level of %zu faces is not covered", name, faces);
+    free(wanted);
+    free(found);
+    starg_solid_free(solid);
+}
+
+static void check_model(starg_context *context, const char *name, const starg_mesh *mesh) {
+    starg_solid *solid = NULL;
+    starg_guards *guards = NULL, *refined = NULL, *best = NULL;
+    starg_levels *levels = NULL;
+    starg_guard_options options = level_options();
+    double *candidates = NULL;
+    size_t count = 0;
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    test_ok(context, starg_guard(context, solid, &options, &guards));
+    verify(context, name, mesh, guards);
+    test_ok(context, starg_candidate_points(context, solid, options.candidates,
+                                            options.candidate_count, 0, &candidates, &count));
+    test_ok(context, starg_mesh_levels(context, starg_solid_mesh(solid), options.coarsest,
+                                       options.step, NULL, &levels));
+    assert_int_equal(guards->level_count, levels->count);
+    for (size_t i = 0; i < levels->count; i++)
+        check_level(context, name, levels->levels[i].mesh, &guards->level_list[i], candidates,
+                    count);
+    assert_int_equal(guards->level_list[levels->count - 1].count, guards->count);
+
+    /* more candidates: never more guards, and their own bound */
+    options.refine = true;
+    options.refine_lines = 300000;
+    test_ok(context, starg_guard(context, solid, &options, &refined));
+    verify(context, name, mesh, refined);
+    assert_true(refined->count <= guards->count);
+    assert_true(refined->candidate_count >= guards->candidate_count);
+
+    /* the best of the first candidates cannot be fewer than their bound */
+    options.method = STARG_GUARD_ILP;
+    test_ok(context, starg_guard(context, solid, &options, &best));
+    assert_true(guards->lower_bound <= best->count && best->count <= guards->count);
+    assert_int_equal(best->candidate_count, guards->candidate_count);
+    starg_guards_free(context, guards);
+    starg_guards_free(context, refined);
+    starg_guards_free(context, best);
+    starg_points_free(context, candidates);
+    starg_levels_free(context, levels);
+    starg_solid_free(solid);
+}
+
+static void test_samples(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    const char *const names[] = {"gallery", "human", "plate"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_sample_options options;
+        starg_mesh *mesh = NULL;
+        starg_sample_options_default(&options);
+        options.vertex_count = 1500;
+        test_ok(context, starg_sample_create(context, names[i], &options, &mesh));
+        check_model(context, names[i], mesh);
+        starg_mesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
+static void test_shared(void **state) {
+    (void)state;
+    const char *const names[] = {"table2/bunny_998.off", "table2/bimba_752.off", "solids/bumpy.off",
+                                 "solids/elephant_g3.off"};
+    const char *data = test_shared_data();
+    if (data == NULL)
+        skip();
+    starg_context *context = test_context(2);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        char path[4400];
+        starg_mesh *mesh = NULL;
+        snprintf(path, sizeof path, "%s/%s", data, names[i]);
+        test_ok(context, starg_mesh_read(context, path, &mesh));
+        check_model(context, names[i], mesh);
+        starg_mesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
+static void test_threads(void **state) {
+    (void)state;
+    starg_guards *first = NULL;
+    starg_context *contexts[3];
+    for (int t = 0; t < 3; t++) {
+        starg_context *context = contexts[t] = test_context(t == 2 ? 7 : t + 1);
+        starg_sample_options sample;
+        starg_mesh *mesh = NULL;
+        starg_solid *solid = NULL;
+        starg_guards *guards = NULL;
+        starg_guard_options options = level_options();
+        options.refine = true;
+        options.refine_lines = 200000;
+        starg_sample_options_default(&sample);
+        sample.vertex_count = 1000;
+        test_ok(context, starg_sample_create(context, "gallery", &sample, &mesh));
+        test_ok(context, starg_solid_create(context, mesh, &solid));
+        test_ok(context, starg_guard(context, solid, &options, &guards));
+        if (first == NULL) {
+            first = guards;
+        } else {
+            assert_int_equal(guards->count, first->count);
+            assert_int_equal(guards->lines_tested, first->lines_tested);
+            assert_memory_equal(guards->positions, first->positions,
+                                3 * guards->count * sizeof *guards->positions);
+            starg_guards_free(context, guards);
+        }
+        starg_solid_free(solid);
+        starg_mesh_free(mesh);
+    }
+    starg_guards_free(contexts[0], first);
+    for (int t = 0; t < 3; t++)
+        test_context_free(contexts[t]);
+}
+
+/* Written and read back, nothing is lost. */
+static void test_round_trip(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_sample_options sample;
+    starg_mesh *mesh = NULL;
+    starg_solid *solid = NULL;
+    starg_guards *guards = NULL, *back = NULL;
+    starg_guard_options options = level_options();
+    starg_sample_options_default(&sample);
+    sample.vertex_count = 1000;
+    options.visibility.cone = 170;
+    options.candidate_count = 30;
+    test_ok(context, starg_sample_create(context, "human", &sample, &mesh));
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    test_ok(context, starg_guard(context, solid, &options, &guards));
+    test_ok(context, starg_guards_write(context, guards, "human.off", "test_progressive.json"));
+    test_ok(context, starg_guards_read(context, "test_progressive.json", &back));
+    assert_int_equal(back->count, guards->count);
+    assert_memory_equal(back->directions, guards->directions, 24 * guards->count);
+    assert_memory_equal(back->curve_faces, guards->curve_faces, 8 * guards->count);
+    assert_memory_equal(back->curve_area, guards->curve_area, 8 * guards->count);
+    assert_int_equal(back->level_count, guards->level_count);
+    for (size_t i = 0; i < guards->level_count; i++) {
+        assert_int_equal(back->level_list[i].kept, guards->level_list[i].kept);
+        assert_int_equal(back->level_list[i].count, guards->level_list[i].count);
+        assert_memory_equal(back->level_list[i].positions, guards->level_list[i].positions,
+                            24 * guards->level_list[i].count);
+    }
+    assert_true(back->options.visibility.cone == 170);
+    verify(context, "human", mesh, back);
+    remove("test_progressive.json");
+    starg_guards_free(context, guards);
+    starg_guards_free(context, back);
+    starg_solid_free(solid);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_round_trip),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

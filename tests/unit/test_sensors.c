@@ -1,0 +1,184 @@
+/* Guards that look in one direction: cones of view against their definition, and end to end. */
+#include "support.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/rng.h"
+#include "exact_oracle.h"
+#include "starguard/guard.h"
+#include "starguard/sample.h"
+#include "starguard/verify.h"
+
+static starg_solid *make_solid(starg_context *context, const char *name, size_t vertices) {
+    starg_sample_options options;
+    starg_mesh *mesh = NULL;
+    starg_solid *solid = NULL;
+    starg_sample_options_default(&options);
+    options.vertex_count = vertices;
+    test_ok(context, starg_sample_create(context, name, &options, &mesh));
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    starg_mesh_free(mesh);
+    return solid;
+}
+
+enum { POINTS = 12 };
+
+/* Points inside, some of them one after the other at the same place, with directions to vertices,
+ * along axes and at random: the cases in which cosines are ties. */
+static void pick_views(const starg_solid *solid, double *points, double *directions) {
+    const starg_mesh *mesh = starg_solid_mesh(solid);
+    const double *v = starg_mesh_vertices(mesh);
+    double lower[3], upper[3];
+    starg_mesh_bounds(mesh, lower, upper);
+    starg_rng rng = starg_rng_make(3, 1, 4);
+    for (size_t i = 0; i < POINTS; i++) {
+        double *p = points + 3 * i, *d = directions + 3 * i;
+        do {
+            for (size_t k = 0; k < 3; k++)
+                p[k] = lower[k] + (upper[k] - lower[k]) * starg_rng_unit(&rng);
+        } while (!starg_solid_contains(solid, p));
+        if (i % 3 != 0)
+            memcpy(p, p - 3, 3 * sizeof *p);
+        size_t target = starg_rng_below(&rng, starg_mesh_vertex_count(mesh));
+        for (size_t k = 0; k < 3; k++)
+            d[k] = i % 4 == 0   ? v[3 * target + k] - p[k]
+                   : i % 4 == 1 ? (double)(k == i % 3)
+                                : starg_rng_unit(&rng) - 0.5;
+    }
+}
+
+/* A row with a cone holds what the row without one holds, as far as it lies in the cone. */
+static void check_rows(starg_context *context, const starg_solid *solid,
+                       starg_visibility_options options, const double *points) {
+    const starg_mesh *mesh = starg_solid_mesh(solid);
+    const double *v = starg_mesh_vertices(mesh);
+    starg_bits *narrow = NULL, *wide = NULL;
+    bool vertices = options.target == STARG_TARGET_VERTICES;
+    test_ok(context, starg_visibility(context, solid, points, POINTS, &options, &narrow));
+    double cosine = starg_cone_cosine(options.cone);
+    const double *directions = options.directions;
+    options.cone = 360;
+    options.directions = NULL;
+    test_ok(context, starg_visibility(context, solid, points, POINTS, &options, &wide));
+    size_t inside = 0, outside = 0;
+    for (size_t i = 0; i < POINTS; i++)
+        for (size_t j = 0; j < starg_bits_columns(wide); j++) {
+            bool within = true;
+            for (size_t k = 0; k < (vertices ? 1u : 3u); k++) {
+                size_t corner = vertices ? j : starg_mesh_faces(mesh)[3 * j + k];
+                within = within && oracle_compare_cone(points + 3 * i, directions + 3 * i, cosine,
+                                                       v + 3 * corner) >= 0;
+            }
+            bool expected = within && starg_bits_test(wide, i, j);
+            assert_int_equal(starg_bits_test(narrow, i, j), expected);
+            inside += expected;
+            outside += starg_bits_test(wide, i, j) && !expected;
+        }
+    assert_true(inside > 0 && outside > 0);
+    starg_bits_free(narrow);
+    starg_bits_free(wide);
+}
+
+static void test_rows(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = make_solid(context, "gallery", 500);
+    double points[3 * POINTS], directions[3 * POINTS];
+    pick_views(solid, points, directions);
+    const double cones[] = {40, 90, 180, 250};
+    for (size_t c = 0; c < sizeof cones / sizeof *cones; c++)
+        for (int what = 0; what < 3; what++) {
+            starg_visibility_options options;
+            starg_visibility_options_default(&options);
+            options.cone = cones[c];
+            options.directions = directions;
+            options.target = what == 0 ? STARG_TARGET_VERTICES : STARG_TARGET_FACES;
+            options.face_rule = what == 2 ? STARG_FACES_WHOLE : STARG_FACES_VERTICES;
+            if (what < 2 || cones[c] <= 180)
+                check_rows(context, solid, options, points);
+        }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+static void test_bad_cones(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = make_solid(context, "sphere", 500);
+    const double point[3] = {0, 0, 0}, zero[3] = {0, 0, 0}, endless[3] = {INFINITY, 0, 0};
+    const double forward[3] = {1, 0, 0};
+    const struct {
+        double cone;
+        const double *direction;
+        starg_face_rule rule;
+    } bad[] = {{0, forward, STARG_FACES_VERTICES},   {-5, forward, STARG_FACES_VERTICES},
+               {361, forward, STARG_FACES_VERTICES}, {NAN, forward, STARG_FACES_VERTICES},
+               {90, NULL, STARG_FACES_VERTICES},     {90, zero, STARG_FACES_VERTICES},
+               {90, endless, STARG_FACES_VERTICES},  {200, forward, STARG_FACES_WHOLE}};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        starg_visibility_options options;
+        starg_bits *rows = NULL;
+        starg_visibility_options_default(&options);
+        options.cone = bad[i].cone;
+        options.directions = bad[i].direction;
+        options.face_rule = bad[i].rule;
+        assert_int_equal(starg_visibility(context, solid, point, 1, &options, &rows),
+                         STARG_ERROR_ARGUMENT);
+        assert_null(rows);
+    }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+static starg_guards *guard(starg_context *context, const starg_solid *solid,
+                           const starg_guard_options *options) {
+    starg_guards *guards = NULL;
+    starg_verdict *verdict = NULL;
+    test_ok(context, starg_guard(context, solid, options, &guards));
+    test_ok(context, starg_verify_guards(context, starg_solid_mesh(solid), guards, &verdict));
+    for (size_t i = 0; i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            print_error("%s\n", verdict->claims[i].text);
+    assert_true(verdict->passed);
+    starg_verdict_free(context, verdict);
+    return guards;
+}
+
+/* The narrower the view, the more guards; all of them look somewhere. */
+static void test_guards_with_cones(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = make_solid(context, "sphere", 500);
+    const double cones[] = {360, 180, 100};
+    const int methods[] = {STARG_GUARD_PILP, STARG_GUARD_ILP, STARG_GUARD_GREEDY};
+    for (size_t m = 0; m < 3; m++) {
+        size_t before = 0;
+        for (size_t c = 0; c < 3; c++) {
+            starg_guard_options options;
+            starg_guard_options_default(&options);
+            options.method = (starg_guard_method)methods[m];
+            options.candidate_count = 20;
+            options.max_nodes = 20;
+            options.refine_lines = 100000;
+            options.visibility.cone = cones[c];
+            starg_guards *guards = guard(context, solid, &options);
+            assert_int_equal(guards->uncovered_count, 0);
+            assert_true(guards->count > before);
+            assert_int_equal(guards->directions != NULL, cones[c] < 360);
+            before = guards->count;
+            starg_guards_free(context, guards);
+        }
+    }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_bad_cones),
+        cmocka_unit_test(test_guards_with_cones),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
