@@ -124,7 +124,7 @@ class Mistakes(support.Case):
 
     def test_choices(self):
         wrong = {
-            "--method": ("pilp", "ilp or greedy"),
+            "--method": ("pilq", "did you mean 'pilp'?"),
             "--visibility": ("gird", "did you mean 'grid'?"),
             "--target": ("edges", "faces or vertices"),
             "--faces": ("half", "vertices or whole"),
