@@ -100,7 +100,7 @@ static const cli_option options[] = {
      .value = "N",
      .most = UINT32_MAX,
      .help = "Branch-and-bound nodes for each independent part before the best so far is taken. "
-             "Default 100,000 for ilp, 100 for each level of pilp."},
+             "Default 100,000 for ilp, 30 for each level of pilp."},
     {.name = "no-refine",
      .kind = CLI_FLAG,
      .offset = offsetof(values, no_refine),

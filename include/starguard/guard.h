@@ -21,7 +21,7 @@ typedef enum starg_guard_method {
     STARG_GUARD_PILP = 2    /* ILP from coarse to fine levels of detail [YL11, 3.3]             */
 } starg_guard_method;
 
-/* Branch-and-bound nodes: 100,000 for ILP, 100 for each solve of PILP. */
+/* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
 /* Where guards may stand. */

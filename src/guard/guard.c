@@ -162,6 +162,8 @@ static starg_status choose(guard_job *job) {
     if (options->refine && options->coverage == 1 && options->max_guards == 0 &&
         options->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(refine_guards(job));
+    else
+        STARG_TRY(bound_guards(job));
 done:
     return status;
 }
@@ -240,7 +242,7 @@ starg_status starg_guard(starg_context *context, const starg_solid *solid,
     guard_job job = {.context = context, .solid = solid, .options = &used};
     *out = NULL;
     if (used.max_nodes == STARG_DEFAULT_NODES)
-        used.max_nodes = used.method == STARG_GUARD_PILP ? 100 : 100000;
+        used.max_nodes = used.method == STARG_GUARD_PILP ? 30 : 100000;
     STARG_TRY(check_options(context, job.options));
     STARG_TRY(pool_create(context, solid, job.options, &job.pool));
     STARG_TRY(

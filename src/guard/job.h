@@ -22,9 +22,10 @@ typedef struct guard_job {
 /* Takes a cover's rows as the chosen ones, all of `level`, with its bounds. Errors: MEMORY. */
 starg_status job_take_cover(guard_job *job, const starg_cover *cover, int level);
 
-/* STARG_GUARD_PILP: fills chosen, levels, records and bounds (guard/progressive.c).
- * Errors: MEMORY, CANCELLED. */
+/* STARG_GUARD_PILP (guard/progressive.c): fills chosen, levels and records. The bounds are found
+ * apart. Errors: MEMORY, CANCELLED. */
 starg_status progressive_guards(guard_job *job);
+starg_status bound_guards(guard_job *job);
 
 /* Adds candidates where they pay and chooses again (guard/refine.c). Errors: MEMORY, CANCELLED. */
 starg_status refine_guards(guard_job *job);

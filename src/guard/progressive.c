@@ -9,7 +9,7 @@
  * The guards of the last level are those of the model. A guard's level is the one that first asked
  * for it and from which on it was chosen at every level.
  *
- * The bound of the result is that of the whole problem of the finest level, without branching.
+ * A bound for the model is another matter: bound_guards solves the whole problem without branching.
  *
  * Invariant: the guards of every level see all of it that a candidate sees (or as much as asked).
  * Cost: visibility of all candidates on all levels, which is below twice that of the model where
@@ -167,9 +167,7 @@ done:
     return status;
 }
 
-/* The bound of the whole problem; where its search for one comes upon fewer guards, they are
- * better than those of the levels. */
-static starg_status bound_all(guard_job *job) {
+starg_status bound_guards(guard_job *job) {
     starg_status status = STARG_OK;
     starg_cover *bound = NULL;
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = 0};
@@ -196,7 +194,6 @@ starg_status progressive_guards(guard_job *job) {
     for (int level = 0; level < last && !job->time_limited; level++)
         STARG_TRY(guard_coarse_level(job, level, levels->levels[level].mesh));
     STARG_TRY(guard_level(job, last, &job->pool));
-    STARG_TRY(bound_all(job));
 done:
     starg_levels_free(job->context, levels);
     return status;
