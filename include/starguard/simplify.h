@@ -55,7 +55,7 @@ typedef struct starg_levels {
 
 /* Makes levels of about `coarsest`, `coarsest` + `step`, `coarsest` + 2 `step`, ... vertices, and
  * the input [YL11, section 3.3, with 5,000 and 10,000]; every level is simplified further into the
- * next coarser one. A level that would be less than half a step smaller than the next finer one is
+ * next coarser one. A level that would be less than a quarter of a step smaller than the next finer one is
  * left out, also where the target cannot be reached; so there may be the input alone. Levels,
  * meshes and maps belong to the result. `options` and errors are those of starg_mesh_simplify, and
  * ARGUMENT (step is 0). */

@@ -125,17 +125,29 @@ done:
     return status;
 }
 
+int job_level_of(const guard_job *job, uint32_t candidate, int otherwise) {
+    for (size_t i = 0; i < job->chosen.count; i++)
+        if (job->chosen.data[i] == candidate)
+            return job->levels.data[i];
+    return otherwise;
+}
+
 starg_status job_take_cover(guard_job *job, const starg_cover *cover, int level) {
     starg_status status = STARG_OK;
+    int *levels = NULL;
+    STARG_NEW(job->context, STAGE, levels, cover->count);
+    for (size_t i = 0; i < cover->count; i++)
+        levels[i] = job_level_of(job, cover->rows[i], level);
     job->chosen.count = job->levels.count = 0;
     for (size_t i = 0; i < cover->count; i++) {
         STARG_PUSH(job->context, STAGE, &job->chosen, cover->rows[i]);
-        STARG_PUSH(job->context, STAGE, &job->levels, level);
+        STARG_PUSH(job->context, STAGE, &job->levels, levels[i]);
     }
     job->lower_bound = cover->lower_bound;
     job->weight_bound = cover->weight_bound;
     job->time_limited = job->time_limited || cover->time_limited;
 done:
+    starg_release(job->context, levels);
     return status;
 }
 

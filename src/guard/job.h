@@ -19,7 +19,11 @@ typedef struct guard_job {
     bool time_limited;
 } guard_job;
 
-/* Takes a cover's rows as the chosen ones, all of `level`, with its bounds. Errors: MEMORY. */
+/* The level of a candidate that is chosen already, else `otherwise`. */
+int job_level_of(const guard_job *job, uint32_t candidate, int otherwise);
+
+/* Takes a cover's rows as the chosen ones, with its bounds; those that were chosen before keep
+ * their level, the others are of `level`. Errors: MEMORY. */
 starg_status job_take_cover(guard_job *job, const starg_cover *cover, int level);
 
 /* STARG_GUARD_PILP (guard/progressive.c): fills chosen, levels and records. The bounds are found

@@ -10,6 +10,7 @@
  * for it and from which on it was chosen at every level.
  *
  * A bound for the model is another matter: bound_guards solves the whole problem without branching.
+ * Where that comes upon fewer guards than the levels did, they are taken instead.
  *
  * Invariant: the guards of every level see all of it that a candidate sees (or as much as asked).
  * Cost: visibility of all candidates on all levels, which is below twice that of the model where
@@ -51,14 +52,6 @@ done:
     return status;
 }
 
-/* The level of a guard that the level before had as well stays. */
-static int level_of(const guard_job *job, uint32_t candidate, int level) {
-    for (size_t i = 0; i < job->chosen.count; i++)
-        if (job->chosen.data[i] == candidate)
-            return job->levels.data[i];
-    return level;
-}
-
 /* Of the kept and the added candidates the fewest that see as much as all of them, in the order of
  * what they add; they become the chosen ones. */
 static starg_status take_needed(level_work *work, const starg_cover *added) {
@@ -75,7 +68,7 @@ static starg_status take_needed(level_work *work, const starg_cover *added) {
     STARG_TRY(starg_bits_create(job->context, count, work->pool->columns, &rows));
     for (size_t i = 0; i < count; i++) {
         all[i] = i < work->kept.count ? work->kept.data[i] : added->rows[i - work->kept.count];
-        levels[i] = level_of(job, all[i], work->level);
+        levels[i] = job_level_of(job, all[i], work->level);
         memcpy(starg_bits_row_mutable(rows, i), starg_bits_row(work->pool->rows, all[i]),
                rows->words * sizeof *rows->data);
     }
@@ -167,11 +160,34 @@ done:
     return status;
 }
 
+/* Fewer guards matter more than keeping some: the cover becomes that of the last level. */
+static starg_status take_smaller(guard_job *job, const starg_cover *cover) {
+    starg_status status = STARG_OK;
+    int last = (int)job->records.count - 1;
+    level_work work = {.job = job, .level = last, .pool = &job->pool};
+    starg_guard_level *record = &job->records.data[last];
+    for (size_t i = 0; i < record->kept; i++)
+        for (size_t k = 0; k < job->chosen.count; k++)
+            if (memcmp(pool_point(&job->pool, job->chosen.data[k]), record->positions + 3 * i,
+                       3 * sizeof *record->positions) == 0)
+                STARG_PUSH(job->context, STAGE, &work.kept, job->chosen.data[k]);
+    STARG_TRY(job_take_cover(job, cover, last));
+    starg_release(job->context, record->positions);
+    record->positions = NULL;
+    job->records.count--;
+    STARG_TRY(record_level(&work));
+done:
+    STARG_ARRAY_FREE(job->context, &work.kept);
+    return status;
+}
+
 starg_status bound_guards(guard_job *job) {
     starg_status status = STARG_OK;
     starg_cover *bound = NULL;
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = 0};
     STARG_TRY(choose_candidates(&job->pool, &job->weights, &how, &bound));
+    if (bound->target_reached && bound->count < job->chosen.count)
+        STARG_TRY(take_smaller(job, bound));
     job->lower_bound = bound->lower_bound;
     job->weight_bound = bound->weight_bound;
 done:

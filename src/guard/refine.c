@@ -12,31 +12,10 @@
 #include "guard/job.h"
 #include "guard/pricing.h"
 
-static const char STAGE[] = "refine";
-
 enum { ROUNDS = 12, PATIENCE = 3 };
 
 static int finest_level(const guard_job *job) {
     return job->records.count > 0 ? (int)job->records.count - 1 : 0;
-}
-
-/* The chosen ones become the cover's rows; those that were chosen before keep their level. */
-static starg_status take_rows(guard_job *job, const starg_cover *cover) {
-    starg_status status = STARG_OK;
-    int *levels = NULL;
-    STARG_NEW(job->context, STAGE, levels, cover->count);
-    for (size_t i = 0; i < cover->count; i++) {
-        levels[i] = finest_level(job);
-        for (size_t k = 0; k < job->chosen.count; k++)
-            if (job->chosen.data[k] == cover->rows[i])
-                levels[i] = job->levels.data[k];
-    }
-    STARG_TRY(job_take_cover(job, cover, 0));
-    for (size_t i = 0; i < cover->count; i++)
-        job->levels.data[i] = levels[i];
-done:
-    starg_release(job->context, levels);
-    return status;
 }
 
 /* Chooses among all candidates; what was chosen stays where it is as good. */
@@ -44,7 +23,7 @@ static starg_status choose_again(guard_job *job, const choice *how, starg_cover 
     starg_status status = STARG_OK;
     STARG_TRY(choose_candidates(&job->pool, &job->weights, how, out));
     if ((*out)->count < job->chosen.count)
-        STARG_TRY(take_rows(job, *out));
+        STARG_TRY(job_take_cover(job, *out, finest_level(job)));
     job->lower_bound = (*out)->lower_bound;
 done:
     return status;

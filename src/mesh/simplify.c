@@ -334,7 +334,7 @@ static starg_status add_level(simplifier *s, level_list *list, size_t step, uint
     size_t finer = list->out->levels[list->out->count - 1].mesh->vertex_count;
     uint32_t *map = NULL;
     starg_mesh *mesh = NULL;
-    if (finer - s->surface->vertices_left < step - step / 2)
+    if (finer - s->surface->vertices_left < step - 3 * (step / 4))
         return STARG_OK;
     STARG_NEW(context, "simplify", map, finer);
     STARG_TRY(snapshot(s->surface, number, &mesh));

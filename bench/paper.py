@@ -1,0 +1,307 @@
+#!/usr/bin/env python3
+"""The paper's tables and figures, done again [YL11].
+
+usage: paper.py COMMAND STARGUARD DATA [options]
+
+  table1     guards and seconds of ILP, greedy, PILP and PILP with refinement, at coverage 1 and 0.99
+  table2     skeletal against interior candidates, proven optima
+  figure1    stability: what happens to the guards when the boundary is moved by noise
+  figure2    greedy against PILP over many models; --svg FILE draws it
+  figure3    pictures of guarded models into the folder --pictures FOLDER
+  growth     cost of a point's visibility against the number of vertices, engine by engine
+
+DATA is the folder of models. Every guards file is verified. Tables are Markdown.
+"""
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+
+# The paper's Table 1: guards by ILP, greedy, PILP, and seconds; other meshes of the same shapes.
+PAPER1 = {
+    "david": (16, 22, 17, 107391.2, 233.9, 235.2),
+    "cat": (14, 19, 15, 3173, 375.4, 393.1),
+    "wolf": (13, 18, 15, 8044, 328.1, 349.9),
+    "dog": (None, 39, 27, None, 412.3, 433.2),
+    "victoria": (None, 35, 27, None, 408.7, 421.2),
+    "horse": (None, 38, 29, None, 376.1, 384.2),
+    "michael": (None, 46, 31, None, 321.0, 332.9),
+    "gorilla": (None, 60, 46, None, 462.4, 490.1),
+    "centaur": (None, 52, 32, None, 488.1, 514.5),
+    "female": (13, 18, 14, 2046.2, 264.2, 281.1),
+    "male": (14, 16, 15, 3074.3, 298.6, 310.2),
+}
+# Table 2: guards with all tetrahedral vertices and with skeletal nodes as candidates.
+PAPER2 = {"kitten_400": (3, 3), "beethoven_502": (2, 2), "bimba_752": (2, 2),
+          "buddha_502": (2, 2), "bunny_998": (5, 5)}
+METHODS = {
+    "ilp": ["--method", "ilp"],
+    "greedy": ["--method", "greedy"],
+    "pilp": ["--method", "pilp", "--no-refine"],
+    "refined": ["--method", "pilp"],
+}
+
+
+class Guards:
+    """One run of the program: what it wrote and what it said."""
+
+    def __init__(self, program, model, words, keep=None):
+        with tempfile.TemporaryDirectory() as folder:
+            path = keep or os.path.join(folder, "guards.json")
+            start = time.monotonic()
+            done = subprocess.run([program, "guard", model, "-o", path, "--json"] + words,
+                                  capture_output=True, text=True, check=False)
+            self.seconds = time.monotonic() - start
+            if done.returncode != 0:
+                raise RuntimeError(f"{model}: {done.stderr.strip() or done.stdout[:300]}")
+            self.told = json.loads(done.stdout)
+            with open(path, encoding="utf-8") as file:
+                self.file = json.load(file)
+            verdict = subprocess.run([program, "verify", model, path, "--quiet"], check=False)
+            if verdict.returncode != 0:
+                raise RuntimeError(f"{model}: not verified")
+        self.count = len(self.file["guards"])
+        self.bound = self.file["lower_bound"]
+        self.positions = [tuple(g["position"]) for g in self.file["guards"]]
+        self.megabytes = self.told["memory"]["peak_resident_bytes"] / 2**20
+
+    def mark(self):
+        """The number of guards, starred if proven the fewest of the candidates."""
+        return f"{self.count}{'*' if self.file['optimal'] else ''}"
+
+
+def models_of(data, *folders):
+    found = []
+    for folder in folders:
+        path = os.path.join(data, folder)
+        found += [os.path.join(path, n) for n in sorted(os.listdir(path)) if n.endswith(".off")]
+    return found
+
+
+def short(path):
+    return os.path.splitext(os.path.basename(path))[0]
+
+
+def vertices_of(guards):
+    return guards.file["model"]["vertices"]
+
+
+def paper_row(name):
+    key = name.rstrip("0123456789_")
+    row = PAPER1.get(key)
+    if row is None:
+        return "-"
+    return " / ".join("-" if n is None else str(n) for n in row[:3])
+
+
+def table1(options):
+    for coverage in ("1", "0.99"):
+        print(f"\nCoverage {coverage}:\n")
+        print("| model | vertices | ILP | s | greedy | s | PILP | s | levels s | refined | s | MB "
+              "| paper: ILP / greedy / PILP |")
+        print("|---|---|---|---|---|---|---|---|---|---|---|---|---|")
+        sums = dict.fromkeys(METHODS, 0)
+        ratios = []
+        for model in models_of(options.data, "tosca_paper", "table1_extra"):
+            runs = {}
+            for method, words in METHODS.items():
+                words = words + ["--coverage", coverage, "--time-limit", "120"]
+                runs[method] = Guards(options.starguard, model, words)
+                sums[method] += runs[method].count
+            seconds = runs["pilp"].told["seconds"]
+            making = seconds.get("levels", 0) + seconds.get("simplify", 0)
+            ratios.append((runs["pilp"].count / runs["ilp"].count,
+                           runs["pilp"].count / runs["greedy"].count,
+                           runs["refined"].count / runs["ilp"].count))
+            print(f"| {short(model)} | {vertices_of(runs['ilp']):,} | "
+                  + " | ".join(f"{r.mark()} | {r.seconds:.1f}" for r in
+                               (runs["ilp"], runs["greedy"], runs["pilp"]))
+                  + f" | {making:.1f} | {runs['refined'].mark()} | {runs['refined'].seconds:.1f} | "
+                  f"{runs['pilp'].megabytes:.0f} | {paper_row(short(model))} |", flush=True)
+        print(f"\nSums: {sums}. Mean of PILP / ILP "
+              f"{sum(r[0] for r in ratios) / len(ratios):.3f}, PILP / greedy "
+              f"{sum(r[1] for r in ratios) / len(ratios):.3f}, refined / ILP "
+              f"{sum(r[2] for r in ratios) / len(ratios):.3f}; PILP above greedy on "
+              f"{sum(r[1] > 1 for r in ratios)}, refined above ILP on "
+              f"{sum(r[2] > 1 for r in ratios)}, below it on {sum(r[2] < 1 for r in ratios)} "
+              f"of {len(ratios)}.")
+
+
+def table2(options):
+    print("| model | vertices | skeletal nodes | guards | interior points | guards | refined | "
+          "paper: interior / skeletal |")
+    print("|---|---|---|---|---|---|---|---|")
+    for name, paper in PAPER2.items():
+        model = os.path.join(options.data, "table2", name + ".off")
+        skeletal = Guards(options.starguard, model, ["--method", "ilp"])
+        interior = Guards(options.starguard, model, ["--method", "ilp", "--candidates", "interior",
+                                                     "--count", "8000"])
+        refined = Guards(options.starguard, model, [])
+        print(f"| {name} | {vertices_of(skeletal):,} | {skeletal.file['candidates']} | "
+              f"{skeletal.mark()} | {interior.file['candidates']} | {interior.mark()} | "
+              f"{refined.mark()} | {paper[0]} / {paper[1]} |", flush=True)
+
+
+def read_off(path):
+    with open(path, encoding="utf-8") as file:
+        words = file.read().split()
+    count, faces = int(words[1]), int(words[2])
+    values = [float(w) for w in words[4:4 + 3 * count]]
+    rest = words[4 + 3 * count:4 + 3 * count + 4 * faces]
+    return [values[3 * i:3 * i + 3] for i in range(count)], rest
+
+
+def write_noisy(path, vertices, rest, size, seed):
+    """Moves every vertex by a random vector of a ball of the given radius."""
+    draw = random.Random(seed)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"OFF\n{len(vertices)} {len(rest) // 4} 0\n")
+        for v in vertices:
+            while True:
+                shift = [draw.uniform(-1, 1) for _ in range(3)]
+                if sum(s * s for s in shift) <= 1:
+                    break
+            file.write(" ".join(repr(x + size * s) for x, s in zip(v, shift)) + "\n")
+        for i in range(0, len(rest), 4):
+            file.write(" ".join(rest[i:i + 4]) + "\n")
+
+
+def same(first, second, near):
+    """How many of the first points have one of the second within `near`."""
+    return sum(any(sum((a - b) ** 2 for a, b in zip(p, q)) <= near * near for q in second)
+               for p in first)
+
+
+def figure1(options):
+    print("| model | noise | greedy: guards, kept | PILP: guards, kept | "
+          "PILP, coarsest level: guards, kept |")
+    print("|---|---|---|---|---|")
+    shares = {"greedy": [], "pilp": [], "coarse": []}
+    names = ("tosca_paper/centaur0", "tosca_paper/david0", "tosca_paper/cat0",
+             "tosca_paper/victoria0")
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            model = os.path.join(options.data, name + ".off")
+            vertices, rest = read_off(model)
+            diagonal = sum((max(v[k] for v in vertices) - min(v[k] for v in vertices)) ** 2
+                           for k in range(3)) ** 0.5
+            noisy = os.path.join(folder, "noisy.off")
+            first = {m: Guards(options.starguard, model, METHODS[m]) for m in ("greedy", "pilp")}
+            write_noisy(noisy, vertices, rest, options.noise / 100 * diagonal, 1)
+            second = {m: Guards(options.starguard, noisy, METHODS[m]) for m in ("greedy", "pilp")}
+            near = options.near * diagonal
+            cells = []
+            for m in ("greedy", "pilp"):
+                kept = same(first[m].positions, second[m].positions, near)
+                shares[m].append(kept / first[m].count)
+                cells.append(f"{first[m].count}, {kept} ({100 * kept / first[m].count:.0f} %)")
+            coarse = [[tuple(p) for p in r["pilp"].file["levels"][0]["guards"]]
+                      for r in (first, second)]
+            kept = same(coarse[0], coarse[1], near)
+            shares["coarse"].append(kept / len(coarse[0]))
+            cells.append(f"{len(coarse[0])}, {kept} ({100 * kept / len(coarse[0]):.0f} %)")
+            print(f"| {short(model)} | {options.noise} % | " + " | ".join(cells) + " |",
+                  flush=True)
+    print("\nMeans: " + ", ".join(f"{k} {100 * sum(v) / len(v):.0f} %" for k, v in shares.items())
+          + f". Kept: another guard within {100 * options.near:g} % of the diagonal.")
+
+
+def draw_bars(path, rows):
+    """Figure 2 as SVG: a pair of bars for each model."""
+    width, height, left, bottom = 12 * len(rows) + 60, 260, 40, 90
+    top = max(r[1] for r in rows)
+    scale = (height - 20) / top
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" '
+                   f'height="{height + bottom}" font-family="sans-serif" font-size="9">\n'
+                   f'<rect width="100%" height="100%" fill="white"/>\n')
+        for tick in range(0, top + 1, 10):
+            y = height - tick * scale
+            file.write(f'<line x1="{left}" x2="{width}" y1="{y:.1f}" y2="{y:.1f}" '
+                       f'stroke="#ddd"/><text x="{left - 4}" y="{y + 3:.1f}" '
+                       f'text-anchor="end">{tick}</text>\n')
+        for i, (name, *counts) in enumerate(rows):
+            x = left + 12 * i + 2
+            for k, color in enumerate(("#c44", "#46a", "#4a6")):
+                h = counts[k] * scale
+                file.write(f'<rect x="{x + 3 * k}" y="{height - h:.1f}" width="3" '
+                           f'height="{h:.1f}" fill="{color}"/>\n')
+            file.write(f'<text transform="translate({x + 6},{height + 5}) rotate(90)">{name}'
+                       '</text>\n')
+        for k, (word, color) in enumerate((("greedy", "#c44"), ("PILP", "#46a"),
+                                           ("PILP, refined", "#4a6"))):
+            file.write(f'<rect x="{left + 10 + 90 * k}" y="6" width="8" height="8" '
+                       f'fill="{color}"/><text x="{left + 22 + 90 * k}" y="13">{word}</text>\n')
+        file.write("</svg>\n")
+
+
+def figure2(options):
+    rows = []
+    print("| model | greedy | PILP | refined |\n|---|---|---|---|")
+    for model in models_of(options.data, "retrieval_tosca", "retrieval_shrec07"):
+        counts = [Guards(options.starguard, model, METHODS[m]).count
+                  for m in ("greedy", "pilp", "refined")]
+        rows.append((short(model), *counts))
+        print(f"| {short(model)} | " + " | ".join(map(str, counts)) + " |", flush=True)
+    mean = [sum(r[k] / r[1] for r in rows) / len(rows) for k in (2, 3)]
+    print(f"\n{len(rows)} models: PILP / greedy {mean[0]:.3f}, refined / greedy {mean[1]:.3f} in "
+          f"the mean; PILP above greedy on {sum(r[2] > r[1] for r in rows)}.")
+    if options.svg:
+        draw_bars(options.svg, rows)
+
+
+def figure3(options):
+    os.makedirs(options.pictures, exist_ok=True)
+    for model in models_of(options.data, "tosca_paper"):
+        picture = os.path.join(options.pictures, short(model) + ".png")
+        Guards(options.starguard, model, ["--picture", picture])
+        print(picture)
+
+
+def growth(options):
+    """Seconds for each point, on samples of one shape at several sizes."""
+    print("| vertices | grid us | tree us | sweep us | sweep us / (N log2 N) x 1e3 |")
+    print("|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        for vertices in (1000, 2000, 5000, 10000, 20000, 50000, 100000):
+            model = os.path.join(folder, "model.off")
+            subprocess.run([options.starguard, "sample", "human", "--vertices", str(vertices),
+                            "-o", model, "--quiet"], check=True)
+            cells = []
+            for engine in ("grid", "bvh", "sweep"):
+                points = max(8, min(400, 400000 // vertices))
+                run = Guards(options.starguard, model,
+                             ["--method", "greedy", "--candidates", "interior", "--count",
+                              str(points), "--coverage", "0.5", "--threads", "1",
+                              "--visibility", engine])
+                cells.append(1e6 * run.told["seconds"]["visibility"] / run.file["candidates"])
+                size = vertices_of(run)
+            law = 1e3 * cells[2] / (size * max(1, size.bit_length() - 1))
+            print(f"| {size:,} | " + " | ".join(f"{c:.0f}" for c in cells) + f" | {law:.1f} |",
+                  flush=True)
+
+
+COMMANDS = {f.__name__: f for f in (table1, table2, figure1, figure2, figure3, growth)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("command", choices=COMMANDS)
+    parser.add_argument("starguard")
+    parser.add_argument("data")
+    parser.add_argument("--svg", help="figure2: where to draw the bars")
+    parser.add_argument("--pictures", default="pictures", help="figure3: folder for pictures")
+    parser.add_argument("--noise", type=float, default=0.5, help="figure1: per cent of the diagonal")
+    parser.add_argument("--near", type=float, default=0.02,
+                        help="figure1: how far, in diagonals, a guard may be to be the same")
+    options = parser.parse_args()
+    COMMANDS[options.command](options)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
