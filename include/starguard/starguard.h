@@ -12,6 +12,7 @@
 #include "repair.h"
 #include "sample.h"
 #include "simplify.h"
+#include "skeleton.h"
 #include "solid.h"
 #include "status.h"
 #include "verify.h"

@@ -42,9 +42,12 @@ typedef struct open_edge {
     uint32_t stamp;
 } open_edge;
 
-typedef struct builder {
+typedef struct delaunay_builder {
     starg_context *context;
     const double *points;
+    size_t count;       /* points inserted or passed over */
+    uint32_t *incident; /* a cell at each point, or NOWHERE */
+    bool *changed;      /* of each point: since the caller last asked */
     STARG_ARRAY(cell) cells;
     uint32_t free_cells;
     uint32_t last; /* where the next walk starts */
@@ -54,6 +57,9 @@ typedef struct builder {
     open_edge *edges;
     size_t edge_capacity; /* a power of two */
     starg_rng rng;
+    STARG_ARRAY(uint32_t) star;
+    uint32_t (*corners)[3]; /* of the star, as handed out */
+    size_t corner_capacity;
 } builder;
 
 typedef struct sort_key {
@@ -96,8 +102,10 @@ static int compare_keys(const void *left, const void *right) {
 }
 
 /* Rounds: a point is in the last round with probability 1/2, in the one before with 1/4, ... */
-static void order_points(const double *points, size_t count, uint64_t seed, sort_key *order) {
+static void order_points(const double *points, size_t begin, size_t count, uint64_t seed,
+                         sort_key *order) {
     double lower[3], scale[3];
+    points += 3 * begin;
     for (int k = 0; k < 3; k++) {
         double upper = lower[k] = points[k];
         for (size_t i = 1; i < count; i++) {
@@ -111,11 +119,11 @@ static void order_points(const double *points, size_t count, uint64_t seed, sort
         uint32_t position[3];
         for (size_t k = 0; k < 3; k++)
             position[k] = (uint32_t)((points[3 * i + k] - lower[k]) * scale[k]);
-        starg_rng rng = starg_rng_make(seed, 0xde1a, i);
+        starg_rng rng = starg_rng_make(seed, 0xde1a, begin + i);
         uint64_t draw = starg_rng_next(&rng) | 1;
         uint64_t round = (uint64_t)__builtin_clzll(draw);
         round = round > 14 ? 0 : 15 - round;
-        order[i] = (sort_key){round << 60 | hilbert_index(position), (uint32_t)i};
+        order[i] = (sort_key){round << 60 | hilbert_index(position), (uint32_t)(begin + i)};
     }
     qsort(order, count, sizeof *order, compare_keys);
 }
@@ -262,6 +270,14 @@ static void join_across(builder *b, uint32_t index, uint32_t side, uint64_t key)
     }
 }
 
+static void note_change(builder *b, const uint32_t vertex[4], uint32_t index) {
+    for (int k = 0; k < 4; k++)
+        if (vertex[k] != GHOST) {
+            b->incident[vertex[k]] = index;
+            b->changed[vertex[k]] = true;
+        }
+}
+
 /* The new cell on a border face: the old one with its corner inside the zone moved to p. */
 static starg_status fill_face(builder *b, border_face face, uint32_t vertex) {
     uint32_t index;
@@ -275,6 +291,7 @@ static starg_status fill_face(builder *b, border_face face, uint32_t vertex) {
     c->vertex[face.side] = vertex;
     c->neighbour[face.side] = outside;
     c->mark = b->stamp;
+    note_change(b, c->vertex, index);
     cell *beyond = &b->cells.data[outside];
     for (int k = 0; k < 4; k++)
         if (beyond->neighbour[k] == face.cell)
@@ -365,14 +382,18 @@ static starg_status make_first(builder *b, const sort_key *order) {
         ghost->neighbour[k] = 0;
         first->neighbour[k] = 1 + k;
     }
+    for (int k = 0; k < 4; k++) {
+        b->incident[v[k]] = 0;
+        b->changed[v[k]] = true;
+    }
     b->last = 0;
     return STARG_OK;
 }
 
-static starg_status insert_all(builder *b, const sort_key *order, size_t count) {
-    starg_status status = make_first(b, order);
+static starg_status insert_all(builder *b, const sort_key *order, size_t first, size_t count) {
+    starg_status status = STARG_OK;
     starg_progress_begin(b->context, "delaunay");
-    for (size_t i = 4; i < count && status == STARG_OK; i++) {
+    for (size_t i = first; i < count && status == STARG_OK; i++) {
         if (i % 1024 == 0) {
             starg_progress_step(b->context, i, count);
             status = starg_check_cancel(b->context, "delaunay");
@@ -412,31 +433,165 @@ done:
     return status;
 }
 
+/* Makes room for what is known of each point. */
+static starg_status reserve_points(builder *b, size_t count) {
+    starg_status status = STARG_OK;
+    uint32_t *incident = starg_reallocate(b->context, b->incident, b->count, count,
+                                          sizeof *b->incident);
+    if (incident == NULL)
+        return starg_fail_memory(b->context, "delaunay");
+    b->incident = incident;
+    bool *changed = starg_reallocate(b->context, b->changed, b->count, count, sizeof *b->changed);
+    if (changed == NULL)
+        return starg_fail_memory(b->context, "delaunay");
+    b->changed = changed;
+    for (size_t i = b->count; i < count; i++) {
+        b->incident[i] = NOWHERE;
+        b->changed[i] = true;
+    }
+    return status;
+}
+
+/* Points that lie in one plane with all before them wait: only the first call may bring them. */
+starg_status delaunay_extend(delaunay_builder *b, const double *points, size_t count) {
+    starg_status status = STARG_OK;
+    sort_key *order = NULL;
+    size_t added = count - b->count, first = 0;
+    b->points = points;
+    STARG_TRY(reserve_points(b, count));
+    STARG_NEW(b->context, "delaunay", order, added);
+    if (added > 0)
+        order_points(points, b->count, added, b->context->seed, order);
+    b->count = count;
+    if (b->cells.count == 0) {
+        if (!find_first_four(b, order, added))
+            goto done;
+        STARG_TRY(make_first(b, order));
+        first = 4;
+    }
+    STARG_TRY(insert_all(b, order, first, added));
+done:
+    starg_release(b->context, order);
+    return status;
+}
+
+starg_status delaunay_begin(starg_context *context, const double *points, size_t count,
+                            delaunay_builder **out) {
+    starg_status status = STARG_OK;
+    builder *b = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, "delaunay", b, 1);
+    b->context = context;
+    b->free_cells = NOWHERE;
+    b->rng = starg_rng_make(context->seed, 0xde1b, 0);
+    STARG_TRY(delaunay_extend(b, points, count));
+    *out = b;
+    b = NULL;
+done:
+    delaunay_builder_free(b);
+    return status;
+}
+
+void delaunay_builder_free(delaunay_builder *b) {
+    if (b == NULL)
+        return;
+    STARG_ARRAY_FREE(b->context, &b->cells);
+    STARG_ARRAY_FREE(b->context, &b->zone);
+    STARG_ARRAY_FREE(b->context, &b->border);
+    STARG_ARRAY_FREE(b->context, &b->star);
+    starg_release(b->context, b->edges);
+    starg_release(b->context, b->incident);
+    starg_release(b->context, b->changed);
+    starg_release(b->context, b->corners);
+    starg_release(b->context, b);
+}
+
+bool delaunay_take_change(delaunay_builder *b, uint32_t point_index) {
+    bool changed = b->changed[point_index];
+    b->changed[point_index] = false;
+    return changed;
+}
+
+/* Room for the corners of as many cells as the star has. */
+static starg_status reserve_corners(builder *b) {
+    starg_status status = STARG_OK;
+    if (b->star.count <= b->corner_capacity)
+        return STARG_OK;
+    starg_release(b->context, b->corners);
+    b->corners = NULL;
+    b->corner_capacity = 0;
+    STARG_NEW(b->context, "delaunay", b->corners, 2 * b->star.count);
+    b->corner_capacity = 2 * b->star.count;
+done:
+    return status;
+}
+
+/* All cells at a vertex, ghosts among them, from one of them on across the faces at the vertex. */
+static starg_status find_star(builder *b, uint32_t vertex) {
+    starg_status status = STARG_OK;
+    b->star.count = 0;
+    b->stamp += 2;
+    if (b->incident[vertex] == NOWHERE)
+        return STARG_OK;
+    b->cells.data[b->incident[vertex]].mark = b->stamp;
+    STARG_PUSH(b->context, "delaunay", &b->star, b->incident[vertex]);
+    for (size_t i = 0; i < b->star.count; i++) {
+        const cell *c = &b->cells.data[b->star.data[i]];
+        for (int k = 0; k < 4; k++) {
+            cell *next = &b->cells.data[c->neighbour[k]];
+            if (c->vertex[k] == vertex || next->mark == b->stamp)
+                continue;
+            next->mark = b->stamp;
+            STARG_PUSH(b->context, "delaunay", &b->star, c->neighbour[k]);
+        }
+    }
+done:
+    return status;
+}
+
+starg_status delaunay_star(delaunay_builder *b, uint32_t point_index, uint32_t (**corners)[3],
+                           size_t *count) {
+    starg_status status = STARG_OK;
+    *count = 0;
+    STARG_TRY(find_star(b, point_index));
+    STARG_TRY(reserve_corners(b));
+    for (size_t i = 0; i < b->star.count; i++) {
+        const cell *c = &b->cells.data[b->star.data[i]];
+        if (ghost_side(c) >= 0)
+            continue;
+        for (int k = 0, n = 0; k < 4; k++)
+            if (c->vertex[k] != point_index)
+                b->corners[*count][n++] = c->vertex[k];
+        ++*count;
+    }
+done:
+    *corners = b->corners;
+    return status;
+}
+
+starg_status delaunay_finish(delaunay_builder *b, delaunay **out) {
+    starg_status status = STARG_OK;
+    delaunay *result = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(b->context, "delaunay", result, 1);
+    result->context = b->context;
+    STARG_TRY(collect(b, result));
+    *out = result;
+    result = NULL;
+done:
+    delaunay_free(result);
+    return status;
+}
+
 starg_status delaunay_create(starg_context *context, const double *points, size_t count,
                              delaunay **out) {
     starg_status status = STARG_OK;
-    builder b = {.context = context, .points = points, .free_cells = NOWHERE};
-    sort_key *order = NULL;
-    delaunay *result = NULL;
+    delaunay_builder *b = NULL;
     *out = NULL;
-    b.rng = starg_rng_make(context->seed, 0xde1b, 0);
-    STARG_NEW_ZERO(context, "delaunay", result, 1);
-    result->context = context;
-    STARG_NEW(context, "delaunay", order, count);
-    if (count > 0)
-        order_points(points, count, context->seed, order);
-    if (find_first_four(&b, order, count))
-        STARG_TRY(insert_all(&b, order, count));
-    STARG_TRY(collect(&b, result));
-    *out = result;
+    STARG_TRY(delaunay_begin(context, points, count, &b));
+    STARG_TRY(delaunay_finish(b, out));
 done:
-    STARG_ARRAY_FREE(context, &b.cells);
-    STARG_ARRAY_FREE(context, &b.zone);
-    STARG_ARRAY_FREE(context, &b.border);
-    starg_release(context, b.edges);
-    starg_release(context, order);
-    if (status != STARG_OK)
-        delaunay_free(result);
+    delaunay_builder_free(b);
     return status;
 }
 

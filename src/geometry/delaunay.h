@@ -2,6 +2,7 @@
 #ifndef STARG_GEOMETRY_DELAUNAY_H
 #define STARG_GEOMETRY_DELAUNAY_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -23,5 +24,26 @@ typedef struct delaunay {
 starg_status delaunay_create(starg_context *context, const double *points, size_t count,
                              delaunay **out);
 void delaunay_free(delaunay *tetrahedra);
+
+/* The same in steps, for callers that look at the tetrahedra and then add points. */
+typedef struct delaunay_builder delaunay_builder;
+
+starg_status delaunay_begin(starg_context *context, const double *points, size_t count,
+                            delaunay_builder **out);
+/* Adds the points behind those that were inserted before. `points` is the whole array, which may
+ * have moved. */
+starg_status delaunay_extend(delaunay_builder *builder, const double *points, size_t count);
+
+/* The tetrahedra at a point, by their other three corners; none at a point that lies where an
+ * earlier one does. *corners is valid until the next call. */
+starg_status delaunay_star(delaunay_builder *builder, uint32_t point, uint32_t (**corners)[3],
+                           size_t *count);
+
+/* Have the tetrahedra at a point changed since this was last asked? */
+bool delaunay_take_change(delaunay_builder *builder, uint32_t point);
+
+/* Copies the tetrahedra out; the builder must not be extended after that. */
+starg_status delaunay_finish(delaunay_builder *builder, delaunay **out);
+void delaunay_builder_free(delaunay_builder *builder);
 
 #endif

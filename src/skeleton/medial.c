@@ -20,7 +20,7 @@
 static const char STAGE[] = "medial axis";
 
 /* Solves |x - a| = |x - b| = |x - c| = |x - d| by Cramer's rule about a. */
-static bool circumscribe(const double *const v[4], medial_ball *ball) {
+bool medial_circumscribe(const double *const v[4], medial_ball *ball) {
     double u[3][3], square[3], normal[3][3];
     for (int k = 0; k < 3; k++) {
         vec3_subtract(v[k + 1], v[0], u[k]);
@@ -53,7 +53,7 @@ static bool examine(const ball_job *job, size_t t) {
     for (int k = 0; k < 4; k++)
         v[k] = job->solid->mesh->vertices + 3 * (size_t)job->tetrahedra->tetrahedra[t][k];
     medial_ball *ball = &job->balls[t];
-    if (!circumscribe(v, ball))
+    if (!medial_circumscribe(v, ball))
         return false;
     for (int k = 0; k < 3; k++)
         if (!(job->lower[k] < ball->centre[k] && ball->centre[k] < job->upper[k]))

@@ -9,6 +9,9 @@ typedef struct medial_ball {
     double radius; /* distance to the four vertices that make it */
 } medial_ball;
 
+/* The sphere through four points; false when it is too large for doubles or they are flat. */
+bool medial_circumscribe(const double *const v[4], medial_ball *ball);
+
 /* All balls whose centre lies strictly inside the solid, at least `clearance` from its boundary;
  * in an order that depends on the input and the seed only. Free with starg_release.
  * Errors: MEMORY, CANCELLED. */

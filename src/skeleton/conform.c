@@ -1,0 +1,635 @@
+/* Conforming samples: a closed triangle mesh is changed by moves that keep it a closed manifold of
+ * the same topology, until all of its faces are faces of the Delaunay tetrahedra of its points. The
+ * mesh then bounds a set of whole tetrahedra, and that set has the topology of the solid for
+ * certain, without a tolerance.
+ *
+ * Rounds of three moves, each only where an edge or a face is not one of the tetrahedra (is lost):
+ *
+ *   - flip: a lost edge between faces u v w and v u x gives way to w x, where u w x and v w x are
+ *     faces of tetrahedra and the four points lie nearly in a plane. Nothing else can lie between
+ *     the old faces and the new ones but what those tetrahedra would show. Most lost edges of
+ *     scanned models are of this kind, and cost no point.
+ *   - split: another lost edge is cut where the point that keeps it out (the one that sees it under
+ *     the widest angle) comes nearest, so that sheets that lie close together get their points in
+ *     pairs; at a corner where both meet, at equal distances from it, so that cuts do not answer
+ *     one another for ever [Si and Gaertner 2005].
+ *   - pierce: a lost face whose edges are all there is pierced by an edge of tetrahedra; the point
+ *     where that happens is added to the face.
+ *
+ * Only points whose tetrahedra have changed are looked at again. Mesh edges that meet at very small
+ * angles, and surfaces that cross themselves, may never be followed: the number of points is
+ * bounded, and what is still lost is counted.
+ *
+ * Cost: that of the Delaunay tetrahedra, and linear for each round in what has changed. */
+#include "skeleton/conform.h"
+
+#include "core/memory.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "mesh/topology.h"
+
+static const char STAGE[] = "surface samples";
+
+
+/* Flips of the two kinds could answer one another for ever; and rounds without progress. */
+enum { MAX_PASSES = 20, MAX_DEPTH = 12 };
+
+/* By its ends, as moves nearby renumber halfedges. */
+typedef struct mesh_edge {
+    uint32_t u, v;
+} mesh_edge;
+
+/* Cosine of the bend that still counts as flat: eight degrees. */
+static const double FLAT = 0.99;
+/* And of the angle below which two faces lie on one another: eleven degrees. */
+static const double FOLD = -0.98;
+
+
+typedef struct conformer {
+    starg_context *context;
+    delaunay_builder *builder;
+    STARG_ARRAY(double) points; /* x, y, z, one after the other */
+    STARG_ARRAY(uint32_t) faces;
+    STARG_ARRAY(uint32_t) twins;   /* of each halfedge, named by its first corner */
+    STARG_ARRAY(uint32_t) leaving; /* of each point: a halfedge that leaves it */
+    STARG_ARRAY(uint8_t) depth;    /* of each point: how often what it lies on had been cut */
+    STARG_ARRAY(bool) dirty;       /* of each point: to be looked at */
+    STARG_ARRAY(uint32_t) ring;    /* halfedges that leave the point looked at, in turn */
+    STARG_ARRAY(mesh_edge) lost_edges;
+    STARG_ARRAY(uint32_t) lost_faces; /* by one of their halfedges */
+    uint32_t *place; /* of each point: its number in the ring looked at, from 1, or 0 */
+    size_t place_capacity;
+    conform_manner manner;
+    conform_report *report;
+} conformer;
+
+static size_t point_count(const conformer *c) {
+    return c->points.count / 3;
+}
+
+static const double *at(const conformer *c, uint32_t v) {
+    return c->points.data + 3 * (size_t)v;
+}
+
+static uint32_t tail(const conformer *c, uint32_t h) {
+    return c->faces.data[h];
+}
+
+static uint32_t head(const conformer *c, uint32_t h) {
+    return c->faces.data[corner_next(h)];
+}
+
+static uint32_t apex(const conformer *c, uint32_t h) {
+    return c->faces.data[corner_previous(h)];
+}
+
+/* ---- the mesh ---- */
+
+static starg_status take_mesh(conformer *c, surface_samples *samples) {
+    starg_status status = STARG_OK;
+    mesh_topology *topology = NULL;
+    const starg_mesh mesh = {c->context, samples->point_count, samples->face_count, samples->points,
+                             samples->faces};
+    c->points.data = samples->points;
+    c->points.count = c->points.capacity = 3 * samples->point_count;
+    c->faces.data = samples->faces;
+    c->faces.count = c->faces.capacity = 3 * samples->face_count;
+    *samples = (surface_samples){0};
+    STARG_TRY(topology_create(c->context, &mesh, &topology));
+    for (size_t h = 0; h < 3 * mesh.face_count; h++)
+        STARG_PUSH(c->context, STAGE, &c->twins, topology->twin[h]);
+    for (size_t v = 0; v < mesh.vertex_count; v++) {
+        STARG_PUSH(c->context, STAGE, &c->leaving, TOPOLOGY_NONE);
+        STARG_PUSH(c->context, STAGE, &c->depth, 0);
+        STARG_PUSH(c->context, STAGE, &c->dirty, true);
+    }
+    for (uint32_t h = 0; h < 3 * mesh.face_count; h++)
+        c->leaving.data[mesh.faces[h]] = h;
+done:
+    topology_free(topology);
+    return status;
+}
+
+static void give_mesh(conformer *c, surface_samples *samples) {
+    samples->points = c->points.data;
+    samples->faces = c->faces.data;
+    samples->point_count = c->points.count / 3;
+    samples->face_count = c->faces.count / 3;
+    c->points.data = NULL;
+    c->faces.data = NULL;
+}
+
+static void join_halves(conformer *c, uint32_t a, uint32_t b) {
+    c->twins.data[a] = b;
+    c->twins.data[b] = a;
+}
+
+/* Writes face f; its halfedges become the ones that leave its corners. */
+static void set_face(conformer *c, uint32_t f, uint32_t a, uint32_t b, uint32_t d) {
+    const uint32_t v[3] = {a, b, d};
+    for (uint32_t k = 0; k < 3; k++) {
+        c->faces.data[3 * f + k] = v[k];
+        c->leaving.data[v[k]] = 3 * f + k;
+        c->dirty.data[v[k]] = true;
+    }
+}
+
+static starg_status new_face(conformer *c, uint32_t *f) {
+    starg_status status = STARG_OK;
+    *f = (uint32_t)(c->faces.count / 3);
+    for (int k = 0; k < 3; k++) {
+        STARG_PUSH(c->context, STAGE, &c->faces, 0);
+        STARG_PUSH(c->context, STAGE, &c->twins, TOPOLOGY_NONE);
+    }
+done:
+    return status;
+}
+
+static uint8_t deeper(uint8_t a, uint8_t b) {
+    return a > b ? a : b;
+}
+
+static starg_status new_point(conformer *c, const double p[3], uint8_t depth, uint32_t *v) {
+    starg_status status = STARG_OK;
+    *v = (uint32_t)point_count(c);
+    for (int k = 0; k < 3; k++)
+        STARG_PUSH(c->context, STAGE, &c->points, p[k]);
+    STARG_PUSH(c->context, STAGE, &c->leaving, TOPOLOGY_NONE);
+    STARG_PUSH(c->context, STAGE, &c->depth, depth);
+    STARG_PUSH(c->context, STAGE, &c->dirty, true);
+    c->report->added++;
+done:
+    return status;
+}
+
+/* Faces u v w and v u x become w u x and x v w. */
+static void flip(conformer *c, uint32_t h) {
+    uint32_t t = c->twins.data[h], f = h / 3, g = t / 3;
+    uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, t);
+    uint32_t vw = c->twins.data[corner_next(h)], wu = c->twins.data[corner_previous(h)];
+    uint32_t ux = c->twins.data[corner_next(t)], xv = c->twins.data[corner_previous(t)];
+    set_face(c, f, w, u, x);
+    set_face(c, g, x, v, w);
+    join_halves(c, 3 * f, wu);
+    join_halves(c, 3 * f + 1, ux);
+    join_halves(c, 3 * f + 2, 3 * g + 2);
+    join_halves(c, 3 * g, xv);
+    join_halves(c, 3 * g + 1, vw);
+    c->report->flips++;
+}
+
+/* Faces u v w and v u x become u p w, p v w, v p x and p u x. */
+static starg_status split_edge(conformer *c, uint32_t h, const double place[3]) {
+    starg_status status = STARG_OK;
+    uint32_t t = c->twins.data[h], f = h / 3, g = t / 3, f2, g2, p;
+    uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, t);
+    uint32_t vw = c->twins.data[corner_next(h)], wu = c->twins.data[corner_previous(h)];
+    uint32_t ux = c->twins.data[corner_next(t)], xv = c->twins.data[corner_previous(t)];
+    uint8_t depth = deeper(c->depth.data[u], c->depth.data[v]);
+    if (depth == MAX_DEPTH)
+        return STARG_OK;
+    STARG_TRY(new_point(c, place, depth + 1, &p));
+    STARG_TRY(new_face(c, &f2));
+    STARG_TRY(new_face(c, &g2));
+    set_face(c, f, u, p, w);
+    set_face(c, f2, p, v, w);
+    set_face(c, g, v, p, x);
+    set_face(c, g2, p, u, x);
+    join_halves(c, 3 * f, 3 * g2);
+    join_halves(c, 3 * f + 1, 3 * f2 + 2);
+    join_halves(c, 3 * f + 2, wu);
+    join_halves(c, 3 * f2, 3 * g);
+    join_halves(c, 3 * f2 + 1, vw);
+    join_halves(c, 3 * g + 1, 3 * g2 + 2);
+    join_halves(c, 3 * g + 2, xv);
+    join_halves(c, 3 * g2 + 1, ux);
+done:
+    return status;
+}
+
+/* Face a b d becomes a b p, b d p and d a p. */
+static starg_status split_face(conformer *c, uint32_t f, const double place[3]) {
+    starg_status status = STARG_OK;
+    uint32_t v[3], beyond[3], part[3] = {f}, p;
+    for (uint32_t k = 0; k < 3; k++) {
+        v[k] = c->faces.data[3 * f + k];
+        beyond[k] = c->twins.data[3 * f + k];
+    }
+    uint8_t depth = deeper(deeper(c->depth.data[v[0]], c->depth.data[v[1]]), c->depth.data[v[2]]);
+    if (depth == MAX_DEPTH)
+        return STARG_OK;
+    STARG_TRY(new_point(c, place, depth + 1, &p));
+    STARG_TRY(new_face(c, &part[1]));
+    STARG_TRY(new_face(c, &part[2]));
+    for (int k = 0; k < 3; k++)
+        set_face(c, part[k], v[k], v[(k + 1) % 3], p);
+    for (int k = 0; k < 3; k++) {
+        join_halves(c, 3 * part[k], beyond[k]);
+        join_halves(c, 3 * part[k] + 1, 3 * part[(k + 1) % 3] + 2);
+    }
+done:
+    return status;
+}
+
+/* The halfedges that leave v, counter-clockwise. */
+static starg_status find_ring(conformer *c, uint32_t v) {
+    starg_status status = STARG_OK;
+    uint32_t first = c->leaving.data[v], h = first;
+    c->ring.count = 0;
+    do {
+        STARG_PUSH(c->context, STAGE, &c->ring, h);
+        h = c->twins.data[corner_previous(h)];
+    } while (h != first);
+done:
+    return status;
+}
+
+/* The halfedge from v to w, or TOPOLOGY_NONE. */
+static uint32_t halfedge_between(const conformer *c, uint32_t v, uint32_t w) {
+    uint32_t first = c->leaving.data[v], h = first;
+    do {
+        if (head(c, h) == w)
+            return h;
+        h = c->twins.data[corner_previous(h)];
+    } while (h != first);
+    return TOPOLOGY_NONE;
+}
+
+static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
+    return halfedge_between(c, v, w) != TOPOLOGY_NONE;
+}
+
+/* ---- what is lost ---- */
+
+/* Looks for the edges and faces at v among the tetrahedra at v. Each edge is asked for at its lower
+ * end and each face at its lowest corner. */
+static starg_status look_at(conformer *c, uint32_t v) {
+    starg_status status = STARG_OK;
+    uint32_t(*star)[3];
+    size_t count;
+    uint8_t *found = NULL; /* bit 0: the edge, bit 1: the face after it */
+    STARG_TRY(find_ring(c, v));
+    STARG_TRY(delaunay_star(c->builder, v, &star, &count));
+    size_t n = c->ring.count;
+    STARG_NEW_ZERO(c->context, STAGE, found, n);
+    for (size_t i = 0; i < n; i++)
+        c->place[head(c, c->ring.data[i])] = (uint32_t)i + 1;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = c->place[star[i][k]], b = c->place[star[i][(k + 1) % 3]];
+            if (a == 0)
+                continue;
+            found[a - 1] |= 1;
+            if (b != 0 && b == a % n + 1)
+                found[a - 1] |= 2;
+            if (b != 0 && a == b % n + 1)
+                found[b - 1] |= 2;
+        }
+    for (size_t i = 0; i < n; i++) {
+        uint32_t h = c->ring.data[i];
+        if (!(found[i] & 1) && v < head(c, h))
+            STARG_PUSH(c->context, STAGE, &c->lost_edges, ((mesh_edge){v, head(c, h)}));
+        if (!(found[i] & 2) && v < head(c, h) && v < apex(c, h))
+            STARG_PUSH(c->context, STAGE, &c->lost_faces, h);
+    }
+    for (size_t i = 0; i < n; i++) {
+        c->place[head(c, c->ring.data[i])] = 0;
+        c->dirty.data[v] |= found[i] != 3; /* to be looked at until it is there */
+    }
+done:
+    starg_release(c->context, found);
+    return status;
+}
+
+static starg_status find_lost(conformer *c) {
+    starg_status status = STARG_OK;
+    c->lost_edges.count = c->lost_faces.count = 0;
+    for (uint32_t v = 0; v < point_count(c); v++) {
+        bool changed = delaunay_take_change(c->builder, v);
+        if (c->leaving.data[v] == TOPOLOGY_NONE || !(changed || c->dirty.data[v]))
+            continue;
+        c->dirty.data[v] = false;
+        STARG_TRY(look_at(c, v));
+    }
+done:
+    return status;
+}
+
+/* Is a b d a face of tetrahedra? */
+static starg_status is_face(conformer *c, uint32_t a, uint32_t b, uint32_t d, bool *answer) {
+    uint32_t(*star)[3];
+    size_t count;
+    starg_status status = delaunay_star(c->builder, a, &star, &count);
+    *answer = false;
+    for (size_t i = 0; status == STARG_OK && i < count && !*answer; i++) {
+        int shared = 0;
+        for (int k = 0; k < 3; k++)
+            shared += star[i][k] == b || star[i][k] == d;
+        *answer = shared == 2;
+    }
+    return status;
+}
+
+/* ---- flips ---- */
+
+/* The old faces lean to one another by less than a quarter turn (or one has next to no area), and
+ * the new ones face the same way. */
+static bool is_flat_enough(const conformer *c, uint32_t h) {
+    uint32_t t = c->twins.data[h];
+    const double *u = at(c, tail(c, h)), *v = at(c, head(c, h)), *w = at(c, apex(c, h)),
+                 *x = at(c, apex(c, t));
+    double m[2][3], n[2][3], sum[3];
+    vec3_triangle_normal(u, v, w, m[0]);
+    vec3_triangle_normal(v, u, x, m[1]);
+    vec3_triangle_normal(w, u, x, n[0]);
+    vec3_triangle_normal(x, v, w, n[1]);
+    for (int k = 0; k < 3; k++)
+        sum[k] = m[0][k] + m[1][k];
+    return vec3_dot(n[0], sum) >= 0 && vec3_dot(n[1], sum) >= 0 && vec3_dot(m[0], sum) >= 0 &&
+           vec3_dot(m[1], sum) >= 0;
+}
+
+/* Is the edge of two faces in one plane, but for rounding or a slight bend, and is it no Delaunay
+ * edge in that plane (the angles opposite add up to more than a half turn)? */
+static bool is_flat_and_poor(const conformer *c, uint32_t h) {
+    uint32_t t = c->twins.data[h];
+    const double *u = at(c, tail(c, h)), *v = at(c, head(c, h)), *w = at(c, apex(c, h)),
+                 *x = at(c, apex(c, t));
+    double m[2][3], n[2][3], wu[3], wv[3], xu[3], xv[3];
+    vec3_triangle_normal(u, v, w, m[0]);
+    vec3_triangle_normal(v, u, x, m[1]);
+    vec3_triangle_normal(w, u, x, n[0]);
+    vec3_triangle_normal(x, v, w, n[1]);
+    vec3_subtract(u, w, wu);
+    vec3_subtract(v, w, wv);
+    vec3_subtract(u, x, xu);
+    vec3_subtract(v, x, xv);
+    double s0 = vec3_length(m[0]), s1 = vec3_length(m[1]), t0 = vec3_length(n[0]),
+           t1 = vec3_length(n[1]);
+    if (vec3_dot(m[0], m[1]) < FLAT * s0 * s1 || vec3_dot(n[0], n[1]) < FLAT * t0 * t1)
+        return false;
+    return vec3_dot(wu, wv) * s1 + vec3_dot(xu, xv) * s0 < -1e-9 * (s0 * s1);
+}
+
+static starg_status try_flip(conformer *c, uint32_t h, bool *flipped) {
+    starg_status status = STARG_OK;
+    uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, c->twins.data[h]);
+    bool one = false, other = false;
+    *flipped = false;
+    if (w == x || is_mesh_edge(c, w, x))
+        return STARG_OK;
+    if (is_flat_and_poor(c, h)) {
+        flip(c, h);
+        *flipped = true;
+        return STARG_OK;
+    }
+    if (!is_flat_enough(c, h))
+        return STARG_OK;
+    STARG_TRY(is_face(c, u, w, x, &one));
+    if (one)
+        STARG_TRY(is_face(c, v, w, x, &other));
+    if (one && other) {
+        flip(c, h);
+        *flipped = true;
+    }
+done:
+    return status;
+}
+
+/* Do the two faces of an edge lie nearly on one another? Then a flip closes the crack between them,
+ * or takes the fin away. */
+static bool is_fold(const conformer *c, uint32_t h) {
+    uint32_t t = c->twins.data[h];
+    const double *u = at(c, tail(c, h)), *v = at(c, head(c, h));
+    double m[2][3];
+    vec3_triangle_normal(u, v, at(c, apex(c, h)), m[0]);
+    vec3_triangle_normal(v, u, at(c, apex(c, t)), m[1]);
+    return vec3_dot(m[0], m[1]) < FOLD * vec3_length(m[0]) * vec3_length(m[1]);
+}
+
+static void unfold(conformer *c, uint32_t f, size_t *flips) {
+    const uint32_t *v = c->faces.data + 3 * (size_t)f;
+    if (deeper(deeper(c->depth.data[v[0]], c->depth.data[v[1]]), c->depth.data[v[2]]) == 0)
+        return; /* it may still be found as it is */
+    for (uint32_t k = 0; k < 3; k++) {
+        uint32_t h = 3 * f + k, w = apex(c, h), x = apex(c, c->twins.data[h]);
+        if (w != x && is_fold(c, h) && !is_mesh_edge(c, w, x)) {
+            flip(c, h);
+            ++*flips;
+            return;
+        }
+    }
+}
+
+static starg_status flip_lost(conformer *c, size_t *flips) {
+    starg_status status = STARG_OK;
+    *flips = 0;
+    for (size_t i = 0; c->manner != CONFORM_BISECT && i < c->lost_faces.count; i++)
+        unfold(c, c->lost_faces.data[i] / 3, flips);
+    if (*flips > 0)
+        return STARG_OK;
+    for (size_t i = 0; i < c->lost_edges.count; i++) {
+        bool flipped;
+        const mesh_edge *e = &c->lost_edges.data[i];
+        STARG_TRY(try_flip(c, halfedge_between(c, e->u, e->v), &flipped));
+        *flips += flipped;
+    }
+done:
+    return status;
+}
+
+/* ---- points ---- */
+
+static starg_status cut_lost_edges(conformer *c) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < c->lost_edges.count; i++) {
+        uint32_t u = c->lost_edges.data[i].u, v = c->lost_edges.data[i].v;
+        double p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = 0.5 * at(c, u)[k] + 0.5 * at(c, v)[k];
+        STARG_TRY(split_edge(c, halfedge_between(c, u, v), p));
+    }
+done:
+    return status;
+}
+
+static double determinant(const double *a, const double *b, const double *d, const double *p) {
+    double u[3], v[3], w[3];
+    vec3_subtract(a, p, u);
+    vec3_subtract(b, p, v);
+    vec3_subtract(d, p, w);
+    return vec3_triple(u, v, w);
+}
+
+/* Does the segment p q pass through the inside of the triangle? */
+static bool pierces(const double *const t[3], const double *p, const double *q) {
+    int side = orient3d(t[0], t[1], t[2], p);
+    if (side == 0 || orient3d(t[0], t[1], t[2], q) != -side)
+        return false;
+    for (int k = 0; k < 3; k++)
+        if (orient3d(p, q, t[k], t[(k + 1) % 3]) == 0 ||
+            orient3d(p, q, t[k], t[(k + 1) % 3]) != orient3d(p, q, t[0], t[1]))
+            return false;
+    return true;
+}
+
+/* The edge of tetrahedra that pierces the face of h lies opposite one of the face's own edges. */
+static starg_status find_piercing(conformer *c, uint32_t h, double place[3], bool *found) {
+    starg_status status = STARG_OK;
+    const uint32_t v[3] = {tail(c, h), head(c, h), apex(c, h)};
+    const double *const t[3] = {at(c, v[0]), at(c, v[1]), at(c, v[2])};
+    *found = false;
+    for (int k = 0; k < 3 && !*found; k++) {
+        uint32_t(*star)[3];
+        size_t count;
+        STARG_TRY(delaunay_star(c->builder, v[k], &star, &count));
+        for (size_t i = 0; i < 3 * count && !*found; i++) {
+            const double *p = at(c, star[i / 3][i % 3]), *q = at(c, star[i / 3][(i % 3 + 1) % 3]);
+            if (!pierces(t, p, q))
+                continue;
+            double a = fabs(determinant(t[0], t[1], t[2], p)),
+                   b = fabs(determinant(t[0], t[1], t[2], q)), s = a + b > 0 ? a / (a + b) : 0.5;
+            for (int j = 0; j < 3; j++)
+                place[j] = (1 - s) * p[j] + s * q[j];
+            *found = true;
+        }
+    }
+done:
+    return status;
+}
+
+/* Faces with a lost edge have been cut with it: their corners have changed, or wait. */
+static starg_status pierce_lost_faces(conformer *c, const bool *cut) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < c->lost_faces.count; i++) {
+        uint32_t h = c->lost_faces.data[i];
+        double p[3];
+        bool found;
+        if (cut[h / 3])
+            continue;
+        STARG_TRY(find_piercing(c, h, p, &found));
+        if (found)
+            STARG_TRY(split_face(c, h / 3, p));
+    }
+done:
+    return status;
+}
+
+static double length_squared(const conformer *c, uint32_t h) {
+    return vec3_distance_squared(at(c, tail(c, h)), at(c, head(c, h)));
+}
+
+static uint32_t longest_edge(const conformer *c, uint32_t h) {
+    uint32_t next = corner_next(h), last = corner_previous(h);
+    double a = length_squared(c, h), b = length_squared(c, next), d = length_squared(c, last);
+    return a >= b && a >= d ? h : b >= d ? next : last;
+}
+
+/* The edge that ends the path of ever longer edges from the face of h [Rivara 1997]: it is the
+ * longest of both of its faces. */
+static uint32_t terminal_edge(const conformer *c, uint32_t h) {
+    h = longest_edge(c, h);
+    for (;;) {
+        uint32_t t = c->twins.data[h], next = longest_edge(c, t);
+        if (!(length_squared(c, next) > length_squared(c, h)))
+            return h;
+        h = next;
+    }
+}
+
+static starg_status cut_and_pierce(conformer *c) {
+    starg_status status = STARG_OK;
+    bool *cut = NULL; /* faces with a lost edge */
+    STARG_NEW_ZERO(c->context, STAGE, cut, c->faces.count / 3);
+    for (size_t i = 0; i < c->lost_edges.count; i++) {
+        uint32_t h = halfedge_between(c, c->lost_edges.data[i].u, c->lost_edges.data[i].v);
+        cut[h / 3] = cut[c->twins.data[h] / 3] = true;
+    }
+    STARG_TRY(pierce_lost_faces(c, cut));
+    STARG_TRY(cut_lost_edges(c));
+done:
+    starg_release(c->context, cut);
+    return status;
+}
+
+static starg_status bisect_lost_faces(conformer *c) {
+    starg_status status = STARG_OK;
+    size_t first = point_count(c);
+    for (size_t i = 0; i < c->lost_faces.count; i++) {
+        uint32_t h = c->lost_faces.data[i];
+        if (tail(c, h) >= first || head(c, h) >= first || apex(c, h) >= first)
+            continue; /* cut in this round */
+        h = terminal_edge(c, h);
+        double p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = 0.5 * at(c, tail(c, h))[k] + 0.5 * at(c, head(c, h))[k];
+        STARG_TRY(split_edge(c, h, p));
+    }
+done:
+    return status;
+}
+
+static starg_status reserve_places(conformer *c) {
+    starg_status status = STARG_OK;
+    size_t count = point_count(c);
+    if (count <= c->place_capacity)
+        return STARG_OK;
+    starg_release(c->context, c->place);
+    c->place = NULL;
+    c->place_capacity = 0;
+    STARG_NEW_ZERO(c->context, STAGE, c->place, 2 * count);
+    c->place_capacity = 2 * count;
+done:
+    return status;
+}
+
+static starg_status run_rounds(conformer *c) {
+    starg_status status = STARG_OK;
+    size_t most = 3 * point_count(c) / 2 + 2000;
+    for (;; c->report->rounds++) {
+        size_t flips;
+        STARG_TRY(starg_check_cancel(c->context, STAGE));
+        STARG_TRY(reserve_places(c));
+        for (int pass = 0;; pass++) {
+            STARG_TRY(find_lost(c));
+            if (pass == MAX_PASSES)
+                break;
+            STARG_TRY(flip_lost(c, &flips));
+            if (flips == 0)
+                break;
+        }
+        size_t before = point_count(c);
+        c->report->lost = c->lost_faces.count;
+        STARG_TRY(c->manner == CONFORM_PIERCE ? cut_and_pierce(c) : bisect_lost_faces(c));
+        if (point_count(c) == before || point_count(c) > most)
+            return STARG_OK;
+        STARG_TRY(delaunay_extend(c->builder, c->points.data, point_count(c)));
+    }
+done:
+    return status;
+}
+
+starg_status conform_samples(starg_context *context, surface_samples *samples,
+                             conform_manner manner, delaunay **tetrahedra,
+                             conform_report *report) {
+    starg_status status = STARG_OK;
+    conformer c = {.context = context, .manner = manner, .report = report};
+    *tetrahedra = NULL;
+    *report = (conform_report){0};
+    STARG_TRY(take_mesh(&c, samples));
+    STARG_TRY(delaunay_begin(context, c.points.data, point_count(&c), &c.builder));
+    STARG_TRY(run_rounds(&c));
+    STARG_TRY(delaunay_finish(c.builder, tetrahedra));
+done:
+    delaunay_builder_free(c.builder);
+    give_mesh(&c, samples);
+    STARG_ARRAY_FREE(context, &c.twins);
+    STARG_ARRAY_FREE(context, &c.leaving);
+    STARG_ARRAY_FREE(context, &c.dirty);
+    STARG_ARRAY_FREE(context, &c.depth);
+    STARG_ARRAY_FREE(context, &c.ring);
+    STARG_ARRAY_FREE(context, &c.lost_edges);
+    STARG_ARRAY_FREE(context, &c.lost_faces);
+    starg_release(context, c.place);
+    return status;
+}

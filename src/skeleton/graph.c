@@ -1,0 +1,33 @@
+/* Lists of neighbours by counting; each list in the order of the links. Linear. */
+#include "skeleton/graph.h"
+
+#include "core/memory.h"
+
+static const char STAGE[] = "curve graph";
+
+starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*links)[2],
+                          const bool *marked, size_t link_count, curve_graph *graph) {
+    starg_status status = STARG_OK;
+    *graph = (curve_graph){.node_count = node_count};
+    STARG_NEW_ZERO(context, STAGE, graph->first, node_count + 2);
+    STARG_NEW(context, STAGE, graph->next, 2 * link_count);
+    uint32_t *end = graph->first + 1; /* of each list as it fills */
+    for (size_t l = 0; l < link_count; l++)
+        for (int k = 0; marked[l] && k < 2; k++)
+            end[links[l][k] + 1]++;
+    for (size_t v = 0; v < node_count; v++)
+        end[v + 1] += end[v];
+    for (size_t l = 0; l < link_count; l++)
+        for (int k = 0; marked[l] && k < 2; k++)
+            graph->next[end[links[l][k]]++] = links[l][1 - k];
+done:
+    if (status != STARG_OK)
+        graph_free(context, graph);
+    return status;
+}
+
+void graph_free(starg_context *context, curve_graph *graph) {
+    starg_release(context, graph->first);
+    starg_release(context, graph->next);
+    *graph = (curve_graph){0};
+}

@@ -1,0 +1,22 @@
+/* Undirected graphs as lists of neighbours. */
+#ifndef STARG_SKELETON_GRAPH_H
+#define STARG_SKELETON_GRAPH_H
+
+#include "core/context.h"
+
+typedef struct curve_graph {
+    size_t node_count;
+    uint32_t *first; /* neighbours of v: next[first[v] .. first[v + 1]) */
+    uint32_t *next;
+} curve_graph;
+
+/* The graph of those of link_count pairs that are marked. Errors: MEMORY. */
+starg_status graph_create(starg_context *context, size_t node_count, uint32_t (*links)[2],
+                          const bool *marked, size_t link_count, curve_graph *graph);
+void graph_free(starg_context *context, curve_graph *graph);
+
+static inline uint32_t graph_degree(const curve_graph *graph, size_t v) {
+    return graph->first[v + 1] - graph->first[v];
+}
+
+#endif

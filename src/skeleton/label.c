@@ -1,0 +1,214 @@
+/* Labels by the surface itself: a tetrahedron on a face of the samples lies on the side that an
+ * exact predicate tells, and labels spread to neighbours across all other faces. That is a
+ * statement about how cells join and so exact, however flat a tetrahedron is; where faces are lost
+ * labels could leak, and exact inside tests of the rounded centroids take the place of spreading.
+ *
+ * Cost: linear, and an inside test for each tetrahedron that needs one. */
+#include "skeleton/label.h"
+
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/rng.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "mesh/topology.h"
+
+static const char STAGE[] = "skeleton labels";
+
+enum { UNKNOWN = 0, INSIDE = 1, OUTSIDE = -1, BLOCK = 256 };
+static const uint32_t NOTHING = UINT32_MAX;
+
+typedef struct labelling {
+    starg_context *context;
+    const starg_solid *solid;
+    const surface_samples *samples;
+    const delaunay *tetrahedra;
+    inside_labels *labels;
+    uint32_t *slots; /* hash table of faces by their corners */
+    size_t mask;
+    int8_t *side;
+    uint8_t *walls; /* bit k: the face opposite corner k is a face of the samples */
+} labelling;
+
+static void sort_corners(uint32_t v[3]) {
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; k < 2 - pass; k++)
+            if (v[k] > v[k + 1]) {
+                uint32_t swap = v[k];
+                v[k] = v[k + 1];
+                v[k + 1] = swap;
+            }
+}
+
+/* The slot of the face with these corners, or the free one where it would be. */
+static size_t find_slot(const labelling *l, const uint32_t sorted[3]) {
+    uint64_t key = starg_hash64((uint64_t)sorted[0] << 32 | sorted[1]) + sorted[2];
+    size_t slot = starg_hash64(key) & l->mask;
+    for (; l->slots[slot] != NOTHING; slot = (slot + 1) & l->mask) {
+        uint32_t v[3];
+        memcpy(v, l->samples->faces + 3 * (size_t)l->slots[slot], sizeof v);
+        sort_corners(v);
+        if (v[0] == sorted[0] && v[1] == sorted[1] && v[2] == sorted[2])
+            break;
+    }
+    return slot;
+}
+
+static starg_status enter_faces(labelling *l) {
+    starg_status status = STARG_OK;
+    size_t capacity = 16;
+    while (capacity < 2 * l->samples->face_count)
+        capacity *= 2;
+    l->mask = capacity - 1;
+    STARG_NEW(l->context, STAGE, l->slots, capacity);
+    memset(l->slots, 0xff, capacity * sizeof *l->slots);
+    for (size_t f = 0; f < l->samples->face_count; f++) {
+        uint32_t v[3];
+        memcpy(v, l->samples->faces + 3 * f, sizeof v);
+        sort_corners(v);
+        l->slots[find_slot(l, v)] = (uint32_t)f;
+    }
+done:
+    return status;
+}
+
+static const double *sample(const labelling *l, uint32_t index) {
+    return l->samples->points + 3 * (size_t)index;
+}
+
+/* Labels tetrahedron t where its face opposite corner k is one of the samples'. */
+static void match_face(labelling *l, size_t t, int k) {
+    const uint32_t *corners = l->tetrahedra->tetrahedra[t];
+    uint32_t v[3];
+    for (int j = 0, n = 0; j < 4; j++)
+        if (j != k)
+            v[n++] = corners[j];
+    sort_corners(v);
+    uint32_t face = l->slots[find_slot(l, v)];
+    if (face == NOTHING)
+        return;
+    const uint32_t *f = l->samples->faces + 3 * (size_t)face;
+    l->labels->found[face] = true;
+    l->walls[t] |= (uint8_t)(1 << k);
+    l->side[t] =
+        orient3d(sample(l, f[0]), sample(l, f[1]), sample(l, f[2]), sample(l, corners[k])) > 0
+            ? INSIDE
+            : OUTSIDE;
+}
+
+static void match_faces(labelling *l) {
+    for (size_t t = 0; t < l->tetrahedra->count; t++)
+        for (int k = 0; k < 4; k++)
+            match_face(l, t, k);
+    l->labels->lost_count = 0;
+    for (size_t f = 0; f < l->samples->face_count; f++)
+        l->labels->lost_count += !l->labels->found[f];
+}
+
+/* A passage between two tetrahedra: a triangle that is no wall. */
+typedef struct passage {
+    double width; /* square of the triangle's circumradius */
+    uint32_t t, side;
+} passage;
+
+static int compare_passages(const void *left, const void *right) {
+    const passage *a = left, *b = right;
+    if (a->width != b->width)
+        return a->width > b->width ? -1 : 1;
+    if (a->t != b->t)
+        return a->t < b->t ? -1 : 1;
+    return (a->side > b->side) - (a->side < b->side);
+}
+
+static double width_of(const labelling *l, uint32_t t, uint32_t side) {
+    const double *v[3];
+    const uint32_t *corners = l->tetrahedra->tetrahedra[t];
+    for (uint32_t j = 0, n = 0; j < 4; j++)
+        if (j != side)
+            v[n++] = sample(l, corners[j]);
+    double area = vec3_triangle_area(v[0], v[1], v[2]);
+    double product = vec3_distance_squared(v[0], v[1]) * vec3_distance_squared(v[1], v[2]) *
+                     vec3_distance_squared(v[2], v[0]);
+    double width = product / (16 * area * area);
+    return isfinite(width) ? width : 0;
+}
+
+static starg_status find_passages(const labelling *l, passage **passages, size_t *count) {
+    starg_status status = STARG_OK;
+    STARG_NEW(l->context, STAGE, *passages, 2 * l->tetrahedra->count);
+    for (uint32_t t = 0; t < l->tetrahedra->count; t++)
+        for (uint32_t k = 0; k < 4; k++) {
+            uint32_t other = l->tetrahedra->neighbours[t][k];
+            if (!(l->walls[t] >> k & 1) && other != DELAUNAY_NONE && t < other)
+                (*passages)[(*count)++] = (passage){width_of(l, t, k), t, k};
+        }
+    qsort(*passages, *count, sizeof **passages, compare_passages);
+done:
+    return status;
+}
+
+/* Joins tetrahedra through passages, the widest first, but never an inside to an outside: where
+ * walls have gaps, the two sides so meet in the narrowest triangles of the gap. */
+static starg_status spread(labelling *l) {
+    starg_status status = STARG_OK;
+    uint32_t *sets = NULL;
+    passage *passages = NULL;
+    size_t count = 0;
+    STARG_NEW(l->context, STAGE, sets, l->tetrahedra->count);
+    sets_make(sets, l->tetrahedra->count);
+    STARG_TRY(find_passages(l, &passages, &count));
+    for (size_t i = 0; i < count; i++) {
+        uint32_t a = sets_find(sets, passages[i].t);
+        uint32_t b = sets_find(sets, l->tetrahedra->neighbours[passages[i].t][passages[i].side]);
+        if (a == b || l->side[a] * l->side[b] < 0)
+            continue;
+        int8_t side = l->side[a] != UNKNOWN ? l->side[a] : l->side[b];
+        sets_join(sets, a, b);
+        l->side[sets_find(sets, a)] = side;
+    }
+    for (uint32_t t = 0; t < l->tetrahedra->count; t++)
+        l->side[t] = l->side[sets_find(sets, t)];
+done:
+    starg_release(l->context, sets);
+    starg_release(l->context, passages);
+    return status;
+}
+
+starg_status labels_create(starg_context *context, const starg_solid *solid,
+                           const surface_samples *samples, const delaunay *tetrahedra,
+                           inside_labels *labels) {
+    starg_status status = STARG_OK;
+    labelling l = {.context = context,
+                   .solid = solid,
+                   .samples = samples,
+                   .tetrahedra = tetrahedra,
+                   .labels = labels};
+    *labels = (inside_labels){0};
+    STARG_NEW(context, STAGE, labels->inside, tetrahedra->count);
+    STARG_NEW(context, STAGE, labels->open, tetrahedra->count);
+    STARG_NEW_ZERO(context, STAGE, labels->found, samples->face_count);
+    STARG_NEW_ZERO(context, STAGE, l.side, tetrahedra->count);
+    STARG_NEW_ZERO(context, STAGE, l.walls, tetrahedra->count);
+    STARG_TRY(enter_faces(&l));
+    match_faces(&l);
+    for (size_t t = 0; t < tetrahedra->count; t++)
+        labels->open[t] = l.side[t] == UNKNOWN;
+    STARG_TRY(spread(&l));
+    for (size_t t = 0; t < tetrahedra->count; t++)
+        labels->inside[t] = l.side[t] == INSIDE;
+done:
+    starg_release(context, l.slots);
+    starg_release(context, l.side);
+    starg_release(context, l.walls);
+    if (status != STARG_OK)
+        labels_free(context, labels);
+    return status;
+}
+
+void labels_free(starg_context *context, inside_labels *labels) {
+    starg_release(context, labels->inside);
+    starg_release(context, labels->open);
+    starg_release(context, labels->found);
+    *labels = (inside_labels){0};
+}

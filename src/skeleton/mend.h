@@ -1,0 +1,17 @@
+/* Mending: loops of an eroded graph that the solid does not have. */
+#ifndef STARG_SKELETON_MEND_H
+#define STARG_SKELETON_MEND_H
+
+#include "skeleton/complex.h"
+
+/* Cuts the shortest loops (in links), one after the other, until `excess` are cut or none is left.
+ * Errors: MEMORY, CANCELLED. */
+starg_status mend_loops(starg_context *context, const medial_complex *complex, bool *link_left,
+                        size_t excess);
+
+/* Keeps the `wanted` parts that hold the largest balls, and tells which nodes those are.
+ * Errors: MEMORY. */
+starg_status mend_parts(starg_context *context, const medial_complex *complex, bool *link_left,
+                        bool *node_left, size_t wanted);
+
+#endif

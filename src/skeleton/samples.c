@@ -1,0 +1,170 @@
+/* Surface samples by subdivision: edges are split in the middle, each decided by itself, and a face
+ * is cut into two, three or four by the edges of it that are. So the result is again a closed mesh
+ * of the same topology, whatever is split.
+ *
+ * Cost: linear in the result for each round; a round halves what is too long. */
+#include "skeleton/samples.h"
+
+#include "geometry/vec3.h"
+#include "skeleton/edge_table.h"
+
+static const char STAGE[] = "surface samples";
+
+enum { MAX_ROUNDS = 24 };
+
+/* Numbers the edges to be split; each appears in two faces and is asked for once. */
+static starg_status number_splits(starg_context *context, const surface_samples *samples,
+                                  samples_split *split, void *user, edge_table *table) {
+    starg_status status = edge_table_make(context, STAGE, samples->face_count * 3 / 2, table);
+    for (size_t f = 0; status == STARG_OK && f < samples->face_count; f++)
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t u = samples->faces[3 * f + k], v = samples->faces[3 * f + (k + 1) % 3];
+            if (u < v && split(user, u, v))
+                edge_table_number(table, u, v);
+        }
+    return status;
+}
+
+static void place_points(const surface_samples *samples, const edge_table *table, double *points) {
+    memcpy(points, samples->points, 3 * samples->point_count * sizeof *points);
+    for (size_t slot = 0; slot <= table->mask; slot++) {
+        if (table->keys[slot] == 0)
+            continue;
+        const double *a = samples->points + 3 * (table->keys[slot] >> 32);
+        const double *b = samples->points + 3 * (table->keys[slot] & UINT32_MAX);
+        double *p = points + 3 * (samples->point_count + table->numbers[slot]);
+        for (int k = 0; k < 3; k++)
+            p[k] = 0.5 * a[k] + 0.5 * b[k];
+    }
+}
+
+static uint32_t *push_face(uint32_t *out, uint32_t a, uint32_t b, uint32_t c) {
+    out[0] = a;
+    out[1] = b;
+    out[2] = c;
+    return out + 3;
+}
+
+/* A quadrilateral is cut along its shorter diagonal. */
+static uint32_t *push_quad(uint32_t *out, const double *points, const uint32_t q[4]) {
+    double first = vec3_distance_squared(points + 3 * (size_t)q[0], points + 3 * (size_t)q[2]);
+    double second = vec3_distance_squared(points + 3 * (size_t)q[1], points + 3 * (size_t)q[3]);
+    size_t s = second < first;
+    out = push_face(out, q[s], q[s + 1], q[s + 2]);
+    return push_face(out, q[s + 2], q[(s + 3) % 4], q[s]);
+}
+
+/* Cuts one face; m[k] is the new point on the edge from corner k, or EDGE_NONE. */
+static uint32_t *cut_face(uint32_t *out, const double *points, const uint32_t v[3],
+                          const uint32_t m[3]) {
+    size_t count = 0, k = 0;
+    for (size_t i = 0; i < 3; i++)
+        count += m[i] != EDGE_NONE;
+    if (count == 0)
+        return push_face(out, v[0], v[1], v[2]);
+    if (count == 3) {
+        for (size_t i = 0; i < 3; i++)
+            out = push_face(out, v[i], m[i], m[(i + 2) % 3]);
+        return push_face(out, m[0], m[1], m[2]);
+    }
+    if (count == 1) {
+        while (m[k] == EDGE_NONE)
+            k++;
+        out = push_face(out, v[k], m[k], v[(k + 2) % 3]);
+        return push_face(out, m[k], v[(k + 1) % 3], v[(k + 2) % 3]);
+    }
+    while (m[k] != EDGE_NONE) /* the edge that stays */
+        k++;
+    uint32_t next = m[(k + 1) % 3], last = m[(k + 2) % 3];
+    out = push_face(out, next, v[(k + 2) % 3], last);
+    const uint32_t quad[4] = {v[k], v[(k + 1) % 3], next, last};
+    return push_quad(out, points, quad);
+}
+
+static size_t cut_faces(const surface_samples *samples, const edge_table *table,
+                        const double *points, uint32_t *faces) {
+    uint32_t *out = faces;
+    for (size_t f = 0; f < samples->face_count; f++) {
+        const uint32_t *v = samples->faces + 3 * f;
+        uint32_t m[3];
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t number = edge_table_find(table, v[k], v[(k + 1) % 3]);
+            m[k] = number == EDGE_NONE ? EDGE_NONE : (uint32_t)samples->point_count + number;
+        }
+        out = cut_face(out, points, v, m);
+    }
+    return (size_t)(out - faces) / 3;
+}
+
+starg_status samples_refine(starg_context *context, surface_samples *samples, samples_split *split,
+                            void *user, size_t *splits) {
+    starg_status status = STARG_OK;
+    edge_table table = {0};
+    surface_samples finer = {0};
+    *splits = 0;
+    STARG_TRY(number_splits(context, samples, split, user, &table));
+    if (table.count == 0)
+        goto done;
+    finer.point_count = samples->point_count + table.count;
+    finer.face_count = samples->face_count + 2 * (size_t)table.count;
+    STARG_NEW(context, STAGE, finer.points, 3 * finer.point_count);
+    STARG_NEW(context, STAGE, finer.faces, 3 * finer.face_count);
+    place_points(samples, &table, finer.points);
+    finer.face_count = cut_faces(samples, &table, finer.points, finer.faces);
+    *splits = table.count;
+    samples_free(context, samples);
+    *samples = finer;
+    finer = (surface_samples){0};
+done:
+    samples_free(context, &finer);
+    edge_table_free(context, &table);
+    return status;
+}
+
+static starg_status copy_mesh(starg_context *context, const starg_mesh *mesh,
+                              surface_samples *samples) {
+    starg_status status = STARG_OK;
+    samples->point_count = mesh->vertex_count;
+    samples->face_count = mesh->face_count;
+    STARG_NEW(context, STAGE, samples->points, 3 * mesh->vertex_count);
+    STARG_NEW(context, STAGE, samples->faces, 3 * mesh->face_count);
+    memcpy(samples->points, mesh->vertices, 3 * mesh->vertex_count * sizeof *samples->points);
+    memcpy(samples->faces, mesh->faces, 3 * mesh->face_count * sizeof *samples->faces);
+done:
+    return status;
+}
+
+typedef struct length_rule {
+    const surface_samples *samples;
+    double longest;
+} length_rule;
+
+static bool is_long(void *user, uint32_t u, uint32_t v) {
+    const length_rule *rule = user;
+    return vec3_distance(rule->samples->points + 3 * (size_t)u,
+                         rule->samples->points + 3 * (size_t)v) > rule->longest;
+}
+
+starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
+                            surface_samples *samples) {
+    starg_status status = STARG_OK;
+    *samples = (surface_samples){0};
+    STARG_TRY(copy_mesh(context, solid->mesh, samples));
+    /* Twice the edge of equilateral triangles that share the area evenly. */
+    length_rule rule = {samples, 2 * sqrt(1.1547 * solid->check->area / (double)wanted)};
+    size_t splits = 1;
+    for (int round = 0; round < MAX_ROUNDS && splits > 0; round++) {
+        STARG_TRY(starg_check_cancel(context, STAGE));
+        STARG_TRY(samples_refine(context, samples, is_long, &rule, &splits));
+    }
+done:
+    if (status != STARG_OK)
+        samples_free(context, samples);
+    return status;
+}
+
+void samples_free(starg_context *context, surface_samples *samples) {
+    starg_release(context, samples->points);
+    starg_release(context, samples->faces);
+    *samples = (surface_samples){0};
+}

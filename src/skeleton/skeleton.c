@@ -1,0 +1,272 @@
+/* Curve skeletons by erosion of the medial axis [DS06], homotopic by construction.
+ *
+ * Stages: samples of the surface; moves that make them follow their own Delaunay tetrahedra
+ * (conform.c); which tetrahedra are inside, exact when no face is lost; the dual complex, which is
+ * the medial axis; its erosion to a graph by collapses; pruning; resampling.
+ *
+ * When the samples conform, every stage after that keeps the homotopy type, as no coordinate takes
+ * part in it. Conforming may fail at cracks and fins of next to no width; then other manners of
+ * adding points are tried, and the attempt whose parts and loops are nearest to those that the
+ * surface demands is taken. What it has in excess is cut and counted as mended.
+ *
+ * Cost: O(n log n) in practice for n samples, for each attempt. */
+#include "skeleton/complex.h"
+#include "skeleton/conform.h"
+#include "skeleton/curve.h"
+#include "skeleton/erosion.h"
+#include "skeleton/graph.h"
+#include "skeleton/label.h"
+#include "skeleton/mend.h"
+#include "skeleton/prune.h"
+#include "skeleton/samples.h"
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/topology.h"
+#include "skeleton/edge_table.h"
+#include "starguard/skeleton.h"
+
+static const char STAGE[] = "skeleton";
+
+enum { LEAST_SAMPLES = 4000, MAX_MENDS = 100, MAX_NODES = 10000000 };
+
+/* What one manner of sampling leads to. */
+typedef struct attempt {
+    medial_complex *complex;
+    inside_labels labels;
+    erosion eroded;
+    size_t parts, loops; /* of the eroded graph */
+    double spacing;      /* of the samples, were they even */
+    size_t lost;         /* faces of the samples that the tetrahedra do not follow */
+    bool *node_left;     /* nodes of parts that are kept */
+    size_t mends;        /* parts and loops cut from it after that */
+} attempt;
+
+static void attempt_free(starg_context *context, attempt *a) {
+    complex_free(a->complex);
+    labels_free(context, &a->labels);
+    erosion_free(context, &a->eroded);
+    starg_release(context, a->node_left);
+    *a = (attempt){0};
+}
+
+/* Parts and loops of a graph of pairs; `marked` may be NULL for all of them. */
+static starg_status count_topology(starg_context *context, size_t node_count, const uint32_t *links,
+                                   const bool *marked, size_t link_count, size_t *parts,
+                                   size_t *loops) {
+    starg_status status = STARG_OK;
+    uint32_t *sets = NULL;
+    size_t joined = 0, used = 0;
+    STARG_NEW(context, STAGE, sets, node_count);
+    sets_make(sets, node_count);
+    for (size_t l = 0; l < link_count; l++) {
+        if (marked != NULL && !marked[l])
+            continue;
+        uint32_t a = sets_find(sets, links[2 * l]), b = sets_find(sets, links[2 * l + 1]);
+        used++;
+        joined += a != b;
+        sets_join(sets, a, b);
+    }
+    *parts = node_count - joined;
+    *loops = used - joined;
+done:
+    starg_release(context, sets);
+    return status;
+}
+
+static starg_status count_attempt(starg_context *context, attempt *a) {
+    return count_topology(context, a->complex->node_count, &a->complex->links[0][0],
+                          a->eroded.link_left, a->complex->link_count, &a->parts, &a->loops);
+}
+
+static starg_status make_attempt(starg_context *context, const starg_solid *solid,
+                                 conform_manner manner, attempt *a) {
+    starg_status status = STARG_OK;
+    surface_samples samples = {0};
+    delaunay *tetrahedra = NULL;
+    conform_report report;
+    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
+    STARG_TRY(conform_samples(context, &samples, manner, &tetrahedra, &report));
+    STARG_TRY(labels_create(context, solid, &samples, tetrahedra, &a->labels));
+    STARG_TRY(complex_create(context, solid, samples.points, samples.point_count, tetrahedra,
+                             a->labels.inside, &a->complex));
+    STARG_TRY(erosion_run(context, a->complex, &a->eroded));
+    STARG_TRY(count_attempt(context, a));
+    a->lost = report.lost;
+    a->spacing = sqrt(1.1547 * solid->check->area / (double)samples.point_count);
+done:
+    samples_free(context, &samples);
+    delaunay_free(tetrahedra);
+    return status;
+}
+
+/* The topology that the surface demands: half its Euler characteristic is the solid's. */
+static bool is_as_expected(const starg_check *check, size_t parts, size_t loops) {
+    return parts == check->components - check->cavities && loops == (size_t)check->genus;
+}
+
+/* How far an attempt is from the topology demanded; what is missing weighs more than what is too
+ * much, as it cannot be mended. */
+static size_t count_faults(const starg_check *check, const attempt *a) {
+    enum { MISSING = 1000 };
+    size_t parts = check->components - check->cavities, loops = (size_t)check->genus;
+    return (a->parts < parts ? MISSING * (parts - a->parts) : a->parts - parts) +
+           (a->loops < loops ? MISSING * (loops - a->loops) : a->loops - loops);
+}
+
+static starg_status find_best(starg_context *context, const starg_solid *solid, attempt *best) {
+    starg_status status = STARG_OK;
+    attempt a = {0};
+    int manners = solid->check->embedded ? CONFORM_MANNERS : 1;
+    for (int manner = 0; manner < manners; manner++) {
+        STARG_TRY(make_attempt(context, solid, (conform_manner)manner, &a));
+        if (best->complex == NULL ||
+            count_faults(solid->check, &a) < count_faults(solid->check, best)) {
+            attempt_free(context, best);
+            *best = a;
+            a = (attempt){0};
+        }
+        attempt_free(context, &a);
+        if (count_faults(solid->check, best) == 0)
+            break;
+    }
+done:
+    attempt_free(context, &a);
+    return status;
+}
+
+/* Takes away parts and loops that the solid has not. */
+static starg_status mend(starg_context *context, const starg_solid *solid, attempt *a) {
+    starg_status status = STARG_OK;
+    const starg_check *check = solid->check;
+    size_t parts = check->components - check->cavities, loops = (size_t)check->genus;
+    STARG_NEW(context, STAGE, a->node_left, a->complex->node_count);
+    memset(a->node_left, true, a->complex->node_count * sizeof *a->node_left);
+    if (a->parts > parts) {
+        a->mends += a->parts - parts;
+        STARG_TRY(mend_parts(context, a->complex, a->eroded.link_left, a->node_left, parts));
+        STARG_TRY(count_attempt(context, a));
+    }
+    if (a->loops > loops && a->loops - loops <= MAX_MENDS) {
+        a->mends += a->loops - loops;
+        STARG_TRY(mend_loops(context, a->complex, a->eroded.link_left, a->loops - loops));
+    }
+done:
+    return status;
+}
+
+static starg_status find_graph(starg_context *context, const starg_solid *solid, attempt *a) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_best(context, solid, a));
+    if (a->complex->node_count == 0)
+        STARG_TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
+                             "the solid is too flat for tetrahedra inside it"));
+    STARG_TRY(mend(context, solid, a));
+done:
+    return status;
+}
+
+static void count_degrees(const starg_skeleton *skeleton, uint32_t *degrees, size_t *joints,
+                          size_t *ends) {
+    for (size_t e = 0; e < 2 * skeleton->edge_count; e++)
+        degrees[skeleton->edges[e]]++;
+    for (size_t v = 0; v < skeleton->node_count; v++) {
+        *joints += degrees[v] > 2;
+        *ends += degrees[v] == 1;
+    }
+}
+
+static starg_status describe(starg_context *context, const starg_solid *solid, const attempt *a,
+                             starg_skeleton *skeleton) {
+    starg_status status = STARG_OK;
+    uint32_t *degrees = NULL;
+    STARG_NEW_ZERO(context, STAGE, degrees, skeleton->node_count);
+    count_degrees(skeleton, degrees, &skeleton->joints, &skeleton->ends);
+    STARG_TRY(count_topology(context, skeleton->node_count, skeleton->edges, NULL,
+                             skeleton->edge_count, &skeleton->components, &skeleton->loops));
+    skeleton->cuts = a->eroded.cut_count;
+    skeleton->mends = a->mends;
+    skeleton->homotopic = solid->check->cavities == 0 &&
+                          is_as_expected(solid->check, skeleton->components, skeleton->loops);
+done:
+    starg_release(context, degrees);
+    return status;
+}
+
+static void tell(starg_context *context, const starg_solid *solid, const starg_skeleton *skeleton) {
+    const starg_check *check = solid->check;
+    if (skeleton->mends > 0)
+        starg_log(context, STARG_LOG_WARNING,
+                  "%zu parts and loops were taken from the skeleton that the solid has not; its "
+                  "surface is too thin in places, or crosses itself",
+                  skeleton->mends);
+    if (skeleton->homotopic)
+        return;
+    if (is_as_expected(check, skeleton->components, skeleton->loops))
+        starg_log(
+            context, STARG_LOG_WARNING,
+            "the solid has %zu cavities, which no curve can surround; the skeleton is that of "
+            "the solid with walls cut open",
+            check->cavities);
+    else
+        starg_log(context, STARG_LOG_WARNING,
+                  "the skeleton has %zu parts and %zu loops where the solid has %zu and %lld; its "
+                  "surface is too coarse, too thin or crosses itself",
+                  skeleton->components, skeleton->loops, check->components - check->cavities,
+                  (long long)check->genus);
+}
+
+void starg_skeleton_options_default(starg_skeleton_options *options) {
+    *options = (starg_skeleton_options){.node_count = 1000, .prune = 1.5};
+}
+
+static starg_status check_options(starg_context *context, const starg_skeleton_options *options) {
+    if (options->node_count >= 1 && options->node_count <= MAX_NODES && options->prune >= 1)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                      "1 to %d nodes can be asked for, and branches of at least one radius; got "
+                      "%zu and %g",
+                      MAX_NODES, options->node_count, options->prune);
+}
+
+starg_status starg_skeleton_create(starg_context *context, const starg_solid *solid,
+                                   const starg_skeleton_options *options, starg_skeleton **out) {
+    starg_status status = STARG_OK;
+    starg_skeleton_options defaults;
+    starg_skeleton *skeleton = NULL;
+    attempt a = {0};
+    curve_graph graph = {0};
+    pruned_graph pruned = {0};
+    *out = NULL;
+    starg_skeleton_options_default(&defaults);
+    options = options != NULL ? options : &defaults;
+    STARG_TRY(check_options(context, options));
+    STARG_NEW_ZERO(context, STAGE, skeleton, 1);
+    STARG_TRY(find_graph(context, solid, &a));
+    STARG_TRY(graph_create(context, a.complex->node_count, a.complex->links, a.eroded.link_left,
+                           a.complex->link_count, &graph));
+    STARG_TRY(prune_graph(context, a.complex, &graph, a.node_left, options->prune, a.spacing,
+                          &pruned));
+    STARG_TRY(
+        curve_create(context, solid, a.complex, &graph, &pruned, options->node_count, skeleton));
+    STARG_TRY(describe(context, solid, &a, skeleton));
+    tell(context, solid, skeleton);
+    *out = skeleton;
+    skeleton = NULL;
+done:
+    attempt_free(context, &a);
+    graph_free(context, &graph);
+    prune_free(context, &pruned);
+    starg_skeleton_free(context, skeleton);
+    return status;
+}
+
+void starg_skeleton_free(starg_context *context, starg_skeleton *skeleton) {
+    if (skeleton == NULL)
+        return;
+    starg_release(context, skeleton->positions);
+    starg_release(context, skeleton->radii);
+    starg_release(context, skeleton->edges);
+    starg_release(context, skeleton->vertex_nodes);
+    starg_release(context, skeleton);
+}
