@@ -58,6 +58,8 @@ typedef struct delaunay_builder {
     size_t edge_capacity; /* a power of two */
     starg_rng rng;
     STARG_ARRAY(uint32_t) star;
+    uint32_t star_of;       /* the point whose star was handed out last, or NOWHERE */
+    size_t star_count;
     uint32_t (*corners)[3]; /* of the star, as handed out */
     size_t corner_capacity;
 } builder;
@@ -458,6 +460,7 @@ starg_status delaunay_extend(delaunay_builder *b, const double *points, size_t c
     sort_key *order = NULL;
     size_t added = count - b->count, first = 0;
     b->points = points;
+    b->star_of = NOWHERE;
     STARG_TRY(reserve_points(b, count));
     STARG_NEW(b->context, "delaunay", order, added);
     if (added > 0)
@@ -552,7 +555,11 @@ done:
 starg_status delaunay_star(delaunay_builder *b, uint32_t point_index, uint32_t (**corners)[3],
                            size_t *count) {
     starg_status status = STARG_OK;
+    *count = b->star_count;
+    if (b->star_of == point_index)
+        goto done;
     *count = 0;
+    b->star_of = NOWHERE;
     STARG_TRY(find_star(b, point_index));
     STARG_TRY(reserve_corners(b));
     for (size_t i = 0; i < b->star.count; i++) {
@@ -564,6 +571,8 @@ starg_status delaunay_star(delaunay_builder *b, uint32_t point_index, uint32_t (
                 b->corners[*count][n++] = c->vertex[k];
         ++*count;
     }
+    b->star_of = point_index;
+    b->star_count = *count;
 done:
     *corners = b->corners;
     return status;

@@ -31,12 +31,14 @@
 static const char STAGE[] = "surface samples";
 
 
-/* Flips of the two kinds could answer one another for ever; and rounds without progress. */
-enum { MAX_PASSES = 20, MAX_DEPTH = 12 };
+/* Flips of the two kinds could answer one another for ever, and so could points. WORK is for each
+ * point: some thirty times what looking at all of them once takes. */
+enum { MAX_PASSES = 20, MAX_DEPTH = 12, WORK = 1000 };
 
 /* By its ends, as moves nearby renumber halfedges. */
 typedef struct mesh_edge {
     uint32_t u, v;
+    uint32_t halfedge; /* where it was */
 } mesh_edge;
 
 /* Cosine of the bend that still counts as flat: eight degrees. */
@@ -60,6 +62,7 @@ typedef struct conformer {
     uint32_t *place; /* of each point: its number in the ring looked at, from 1, or 0 */
     size_t place_capacity;
     conform_manner manner;
+    size_t work; /* corners of tetrahedra looked at */
     conform_report *report;
 } conformer;
 
@@ -255,6 +258,12 @@ static uint32_t halfedge_between(const conformer *c, uint32_t v, uint32_t w) {
     return TOPOLOGY_NONE;
 }
 
+static uint32_t find_edge(const conformer *c, const mesh_edge *e) {
+    if (tail(c, e->halfedge) == e->u && head(c, e->halfedge) == e->v)
+        return e->halfedge;
+    return halfedge_between(c, e->u, e->v);
+}
+
 static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
     return halfedge_between(c, v, w) != TOPOLOGY_NONE;
 }
@@ -271,6 +280,7 @@ static starg_status look_at(conformer *c, uint32_t v) {
     STARG_TRY(find_ring(c, v));
     STARG_TRY(delaunay_star(c->builder, v, &star, &count));
     size_t n = c->ring.count;
+    c->work += count + n;
     STARG_NEW_ZERO(c->context, STAGE, found, n);
     for (size_t i = 0; i < n; i++)
         c->place[head(c, c->ring.data[i])] = (uint32_t)i + 1;
@@ -288,7 +298,7 @@ static starg_status look_at(conformer *c, uint32_t v) {
     for (size_t i = 0; i < n; i++) {
         uint32_t h = c->ring.data[i];
         if (!(found[i] & 1) && v < head(c, h))
-            STARG_PUSH(c->context, STAGE, &c->lost_edges, ((mesh_edge){v, head(c, h)}));
+            STARG_PUSH(c->context, STAGE, &c->lost_edges, ((mesh_edge){v, head(c, h), h}));
         if (!(found[i] & 2) && v < head(c, h) && v < apex(c, h))
             STARG_PUSH(c->context, STAGE, &c->lost_faces, h);
     }
@@ -320,6 +330,7 @@ static starg_status is_face(conformer *c, uint32_t a, uint32_t b, uint32_t d, bo
     uint32_t(*star)[3];
     size_t count;
     starg_status status = delaunay_star(c->builder, a, &star, &count);
+    c->work += count;
     *answer = false;
     for (size_t i = 0; status == STARG_OK && i < count && !*answer; i++) {
         int shared = 0;
@@ -385,9 +396,9 @@ static starg_status try_flip(conformer *c, uint32_t h, bool *flipped) {
     }
     if (!is_flat_enough(c, h))
         return STARG_OK;
-    STARG_TRY(is_face(c, u, w, x, &one));
+    STARG_TRY(is_face(c, w, u, x, &one));
     if (one)
-        STARG_TRY(is_face(c, v, w, x, &other));
+        STARG_TRY(is_face(c, w, v, x, &other));
     if (one && other) {
         flip(c, h);
         *flipped = true;
@@ -430,8 +441,7 @@ static starg_status flip_lost(conformer *c, size_t *flips) {
         return STARG_OK;
     for (size_t i = 0; i < c->lost_edges.count; i++) {
         bool flipped;
-        const mesh_edge *e = &c->lost_edges.data[i];
-        STARG_TRY(try_flip(c, halfedge_between(c, e->u, e->v), &flipped));
+        STARG_TRY(try_flip(c, find_edge(c, &c->lost_edges.data[i]), &flipped));
         *flips += flipped;
     }
 done:
@@ -447,7 +457,7 @@ static starg_status cut_lost_edges(conformer *c) {
         double p[3];
         for (int k = 0; k < 3; k++)
             p[k] = 0.5 * at(c, u)[k] + 0.5 * at(c, v)[k];
-        STARG_TRY(split_edge(c, halfedge_between(c, u, v), p));
+        STARG_TRY(split_edge(c, find_edge(c, &c->lost_edges.data[i]), p));
     }
 done:
     return status;
@@ -542,7 +552,7 @@ static starg_status cut_and_pierce(conformer *c) {
     bool *cut = NULL; /* faces with a lost edge */
     STARG_NEW_ZERO(c->context, STAGE, cut, c->faces.count / 3);
     for (size_t i = 0; i < c->lost_edges.count; i++) {
-        uint32_t h = halfedge_between(c, c->lost_edges.data[i].u, c->lost_edges.data[i].v);
+        uint32_t h = find_edge(c, &c->lost_edges.data[i]);
         cut[h / 3] = cut[c->twins.data[h] / 3] = true;
     }
     STARG_TRY(pierce_lost_faces(c, cut));
@@ -585,14 +595,14 @@ done:
 
 static starg_status run_rounds(conformer *c) {
     starg_status status = STARG_OK;
-    size_t most = 3 * point_count(c) / 2 + 2000;
+    size_t most = 3 * point_count(c) / 2 + 2000, most_work = WORK * point_count(c);
     for (;; c->report->rounds++) {
         size_t flips;
         STARG_TRY(starg_check_cancel(c->context, STAGE));
         STARG_TRY(reserve_places(c));
         for (int pass = 0;; pass++) {
             STARG_TRY(find_lost(c));
-            if (pass == MAX_PASSES)
+            if (pass == MAX_PASSES || c->work > most_work)
                 break;
             STARG_TRY(flip_lost(c, &flips));
             if (flips == 0)
@@ -601,7 +611,7 @@ static starg_status run_rounds(conformer *c) {
         size_t before = point_count(c);
         c->report->lost = c->lost_faces.count;
         STARG_TRY(c->manner == CONFORM_PIERCE ? cut_and_pierce(c) : bisect_lost_faces(c));
-        if (point_count(c) == before || point_count(c) > most)
+        if (point_count(c) == before || point_count(c) > most || c->work > most_work)
             return STARG_OK;
         STARG_TRY(delaunay_extend(c->builder, c->points.data, point_count(c)));
     }

@@ -65,6 +65,20 @@ static bool borrow_place(curve *c, bool *placed, bool *tried, uint32_t v) {
     return false;
 }
 
+/* Whole branches outside, as of surfaces that cross themselves, shrink to a place inside. */
+static starg_status place_rest(curve *c, const bool *placed) {
+    size_t count = c->graph->node_count, some = 0;
+    while (some < count && !placed[some])
+        some++;
+    if (some == count)
+        return starg_fail(c->context, STARG_ERROR_MESH, STAGE,
+                          "the solid is too thin to hold a point in double precision");
+    for (size_t v = 0; v < count; v++)
+        if (c->pruned->kept[v] && !placed[v])
+            vec3_copy(c->places[some], c->places[v]);
+    return STARG_OK;
+}
+
 /* Centres that rounding has put outside (of tetrahedra flat to the last digit) are replaced by
  * those of neighbours. */
 static starg_status place_kept(curve *c) {
@@ -89,8 +103,7 @@ static starg_status place_kept(curve *c) {
             }
     }
     if (missing > 0)
-        status = starg_fail(c->context, STARG_ERROR_MESH, STAGE,
-                            "a part of the solid is too thin to hold a point in double precision");
+        STARG_TRY(place_rest(c, placed));
 done:
     starg_release(c->context, placed);
     starg_release(c->context, tried);

@@ -181,7 +181,9 @@ starg_status erosion_run(starg_context *context, const medial_complex *complex, 
         STARG_TRY(collapse_all(&e));
     }
     result->link_left = e.link_left;
+    result->values = e.values;
     e.link_left = NULL;
+    e.values = NULL;
 done:
     STARG_ARRAY_FREE(context, &e.heap);
     starg_release(context, e.sheet);
@@ -193,5 +195,6 @@ done:
 
 void erosion_free(starg_context *context, erosion *result) {
     starg_release(context, result->link_left);
+    starg_release(context, result->values);
     *result = (erosion){0};
 }

@@ -6,6 +6,7 @@
 
 typedef struct erosion {
     bool *link_left;  /* of each link: is it in the graph that remains? */
+    double *values;   /* of each edge: its medial geodesic function */
     size_t cut_count; /* sheets that had to be cut open, because no order of collapses goes on */
 } erosion;
 

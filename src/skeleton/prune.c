@@ -4,8 +4,8 @@
  * the others end there, so that the trees fall into paths from a joint to a tip.
  *
  * A path is kept when the path it springs from is, and when one of its balls reaches beyond `reach`
- * radii of the joint's ball, from the joint's centre: a measure that does not depend on the size of
- * the model; and what is no longer than some steps of the samples is their noise. Twigs of twigs
+ * times the solid's half width at the joint, from the joint's centre: a measure that does not depend
+ * on the size of the model; and what is no longer than some steps of the samples is their noise. Twigs of twigs
  * thus never count, and a ball keeps a point only. Kept paths end at the first ball that reaches
  * nearly as far as any on them.
  *
@@ -18,6 +18,7 @@
 
 static const char STAGE[] = "pruning";
 
+static const double WIDTH_SHARE = 0.3;
 enum { SPACINGS = 4 }; /* what samples cannot tell from their own unevenness */
 
 typedef struct pruner {
@@ -26,6 +27,7 @@ typedef struct pruner {
     const curve_graph *graph;
     const bool *node_left;
     double reach, spacing;
+    double *widths;   /* of the solid at nodes: see measure_widths */
     double *radii;    /* of balls about the centres that lie in those of neighbours, or their own */
     bool *root;       /* not to be peeled */
     uint32_t *degree; /* in what is left */
@@ -41,17 +43,31 @@ static double distance(const pruner *p, uint32_t a, uint32_t b) {
     return vec3_distance(p->complex->centres[a], p->complex->centres[b]);
 }
 
-/* The distance to the surface changes by no more than the way, so that a node near a large ball's
- * centre has a large ball too, even where its own centre is a poor one. */
-static void level_radii(pruner *p) {
+/* A value at v that falls no faster than the way to a neighbour with a larger one: a node near a
+ * large ball's centre has a large ball too, even where its own centre is a poor one. */
+static void level(const pruner *p, double *values) {
     enum { PASSES = 8 };
-    memcpy(p->radii, p->complex->radii, p->graph->node_count * sizeof *p->radii);
     for (int pass = 0; pass < PASSES; pass++)
         for (uint32_t v = 0; v < p->graph->node_count; v++)
             for (uint32_t j = p->graph->first[v]; j < p->graph->first[v + 1]; j++) {
                 uint32_t w = p->graph->next[j];
-                p->radii[v] = fmax(p->radii[v], p->radii[w] - distance(p, v, w));
+                values[v] = fmax(values[v], values[w] - distance(p, v, w));
             }
+}
+
+/* On a tube the medial geodesic function is half the girth, on a plate the width: a share of it
+ * stands for the radius where the ball only knows the thickness. */
+static void measure_widths(pruner *p, const double *values) {
+    const medial_complex *c = p->complex;
+    memcpy(p->radii, c->radii, p->graph->node_count * sizeof *p->radii);
+    memcpy(p->widths, c->radii, p->graph->node_count * sizeof *p->widths);
+    for (size_t l = 0; l < c->link_count; l++)
+        for (int k = 0; k < 6; k++) {
+            double *width = &p->widths[c->links[l][k / 3]];
+            *width = fmax(*width, WIDTH_SHARE * values[c->link_edges[l][k % 3]]);
+        }
+    level(p, p->radii);
+    level(p, p->widths);
 }
 
 /* Visits the part of `start` and returns its largest ball if the part is a tree, else EDGE_NONE.
@@ -129,7 +145,7 @@ static void find_ways_up(pruner *p) {
 
 /* Does the path that starts with `first` reach beyond the ball of its joint? */
 static bool is_feature(const pruner *p, uint32_t joint, uint32_t first) {
-    double limit = fmax(p->reach * p->radii[joint], p->radii[joint] + SPACINGS * p->spacing);
+    double limit = fmax(p->reach * p->widths[joint], p->radii[joint] + SPACINGS * p->spacing);
     for (uint32_t v = first; v != EDGE_NONE; v = p->up[v])
         if (distance(p, joint, v) + p->radii[v] > limit)
             return true;
@@ -177,8 +193,8 @@ static void find_owners(pruner *p) {
 }
 
 starg_status prune_graph(starg_context *context, const medial_complex *complex,
-                         const curve_graph *graph, const bool *node_left, double reach,
-                         double spacing,
+                         const curve_graph *graph, const bool *node_left,
+                         const double *values, double reach, double spacing,
                          pruned_graph *pruned) {
     starg_status status = STARG_OK;
     size_t count = graph->node_count;
@@ -193,13 +209,14 @@ starg_status prune_graph(starg_context *context, const medial_complex *complex,
     STARG_NEW(context, STAGE, pruned->kept, count);
     STARG_NEW(context, STAGE, pruned->owner, count);
     STARG_NEW(context, STAGE, p.radii, count);
+    STARG_NEW(context, STAGE, p.widths, count);
     STARG_NEW_ZERO(context, STAGE, p.root, count);
     STARG_NEW(context, STAGE, p.degree, count);
     STARG_NEW(context, STAGE, p.below, count);
     STARG_NEW(context, STAGE, p.order, count);
     STARG_NEW(context, STAGE, p.up, count);
     STARG_NEW(context, STAGE, p.height, count);
-    level_radii(&p);
+    measure_widths(&p, values);
     STARG_TRY(find_roots(&p));
     peel(&p);
     find_ways_up(&p);
@@ -207,6 +224,7 @@ starg_status prune_graph(starg_context *context, const medial_complex *complex,
     find_owners(&p);
 done:
     starg_release(context, p.radii);
+    starg_release(context, p.widths);
     starg_release(context, p.root);
     starg_release(context, p.degree);
     starg_release(context, p.below);

@@ -10,7 +10,8 @@
 
 static const char STAGE[] = "surface samples";
 
-enum { MAX_ROUNDS = 24 };
+/* Long thin faces would ask for far more points than wanted. */
+enum { MAX_ROUNDS = 24, MOST_ADDED = 2 };
 
 /* Numbers the edges to be split; each appears in two faces and is asked for once. */
 static starg_status number_splits(starg_context *context, const surface_samples *samples,
@@ -153,7 +154,8 @@ starg_status samples_create(starg_context *context, const starg_solid *solid, si
     /* Twice the edge of equilateral triangles that share the area evenly. */
     length_rule rule = {samples, 2 * sqrt(1.1547 * solid->check->area / (double)wanted)};
     size_t splits = 1;
-    for (int round = 0; round < MAX_ROUNDS && splits > 0; round++) {
+    size_t most = solid->mesh->vertex_count + MOST_ADDED * wanted;
+    for (int round = 0; splits > 0 && samples->point_count < most && round < MAX_ROUNDS; round++) {
         STARG_TRY(starg_check_cancel(context, STAGE));
         STARG_TRY(samples_refine(context, samples, is_long, &rule, &splits));
     }

@@ -28,7 +28,7 @@
 
 static const char STAGE[] = "skeleton";
 
-enum { LEAST_SAMPLES = 4000, MAX_MENDS = 100, MAX_NODES = 10000000 };
+enum { LEAST_SAMPLES = 4000, MAX_MENDS = 600, MAX_NODES = 10000000 };
 
 /* What one manner of sampling leads to. */
 typedef struct attempt {
@@ -245,8 +245,8 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     STARG_TRY(find_graph(context, solid, &a));
     STARG_TRY(graph_create(context, a.complex->node_count, a.complex->links, a.eroded.link_left,
                            a.complex->link_count, &graph));
-    STARG_TRY(prune_graph(context, a.complex, &graph, a.node_left, options->prune, a.spacing,
-                          &pruned));
+    STARG_TRY(prune_graph(context, a.complex, &graph, a.node_left, a.eroded.values, options->prune,
+                          a.spacing, &pruned));
     STARG_TRY(
         curve_create(context, solid, a.complex, &graph, &pruned, options->node_count, skeleton));
     STARG_TRY(describe(context, solid, &a, skeleton));
