@@ -6,6 +6,7 @@ const cli_command *const cli_commands[] = {
     &cli_command_sample,
     &cli_command_check,
     &cli_command_repair,
+    &cli_command_skeleton,
     &cli_command_visible,
     &cli_command_guard,
     &cli_command_verify,

@@ -17,11 +17,11 @@ extern "C" {
 typedef struct starg_skeleton_options {
     size_t node_count; /* about how many nodes, 1 to 10,000,000; joints, ends and what loops need
                           are kept in any case                                              */
-    double prune;      /* a branch must reach this many radii of the ball at its joint, from the
-                          joint's centre; 1 or more keeps fewer branches the larger it is    */
+    double prune;      /* a branch must reach this many times as far from its joint as the solid is
+                          wide there (half its width); 1 or more keeps fewer, the larger it is    */
 } starg_skeleton_options;
 
-/* 1,000 nodes; branches of 1.5 radii. */
+/* 1,000 nodes; branches of twice the half width. */
 STARG_API void starg_skeleton_options_default(starg_skeleton_options *options);
 
 /* A graph without parallel edges. Every node lies strictly inside the solid. */

@@ -58,7 +58,7 @@ typedef struct delaunay_builder {
     size_t edge_capacity; /* a power of two */
     starg_rng rng;
     STARG_ARRAY(uint32_t) star;
-    uint32_t star_of;       /* the point whose star was handed out last, or NOWHERE */
+    uint32_t star_of; /* the point whose star was handed out last, or NOWHERE */
     size_t star_count;
     uint32_t (*corners)[3]; /* of the star, as handed out */
     size_t corner_capacity;
@@ -438,8 +438,8 @@ done:
 /* Makes room for what is known of each point. */
 static starg_status reserve_points(builder *b, size_t count) {
     starg_status status = STARG_OK;
-    uint32_t *incident = starg_reallocate(b->context, b->incident, b->count, count,
-                                          sizeof *b->incident);
+    uint32_t *incident =
+        starg_reallocate(b->context, b->incident, b->count, count, sizeof *b->incident);
     if (incident == NULL)
         return starg_fail_memory(b->context, "delaunay");
     b->incident = incident;

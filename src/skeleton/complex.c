@@ -81,8 +81,8 @@ static void place_node(const builder *b, size_t node) {
         for (int j = 0; j < 3; j++)
             ball.centre[j] = 0.25 * v[0][j] + 0.25 * v[1][j] + 0.25 * v[2][j] + 0.25 * v[3][j];
         ball.radius = starg_solid_contains(b->solid, ball.centre)
-                         ? starg_solid_distance(b->solid, ball.centre)
-                         : 0;
+                          ? starg_solid_distance(b->solid, ball.centre)
+                          : 0;
     }
     vec3_copy(ball.centre, c->centres[node]);
     c->radii[node] = ball.radius;

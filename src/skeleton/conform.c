@@ -30,7 +30,6 @@
 
 static const char STAGE[] = "surface samples";
 
-
 /* Flips of the two kinds could answer one another for ever, and so could points. WORK is for each
  * point: some thirty times what looking at all of them once takes. */
 enum { MAX_PASSES = 20, MAX_DEPTH = 12, WORK = 1000 };
@@ -45,7 +44,6 @@ typedef struct mesh_edge {
 static const double FLAT = 0.99;
 /* And of the angle below which two faces lie on one another: eleven degrees. */
 static const double FOLD = -0.98;
-
 
 typedef struct conformer {
     starg_context *context;
@@ -620,8 +618,7 @@ done:
 }
 
 starg_status conform_samples(starg_context *context, surface_samples *samples,
-                             conform_manner manner, delaunay **tetrahedra,
-                             conform_report *report) {
+                             conform_manner manner, delaunay **tetrahedra, conform_report *report) {
     starg_status status = STARG_OK;
     conformer c = {.context = context, .manner = manner, .report = report};
     *tetrahedra = NULL;

@@ -4,10 +4,10 @@
  * the others end there, so that the trees fall into paths from a joint to a tip.
  *
  * A path is kept when the path it springs from is, and when one of its balls reaches beyond `reach`
- * times the solid's half width at the joint, from the joint's centre: a measure that does not depend
- * on the size of the model; and what is no longer than some steps of the samples is their noise. Twigs of twigs
- * thus never count, and a ball keeps a point only. Kept paths end at the first ball that reaches
- * nearly as far as any on them.
+ * times the solid's half width at the joint, from the joint's centre: a measure that does not
+ * depend on the size of the model; and what is no longer than some steps of the samples is their
+ * noise. Twigs of twigs thus never count, and a ball keeps a point only. Kept paths end at the
+ * first ball that reaches nearly as far as any on them.
  *
  * Cost: linear. */
 #include "skeleton/prune.h"
@@ -193,9 +193,8 @@ static void find_owners(pruner *p) {
 }
 
 starg_status prune_graph(starg_context *context, const medial_complex *complex,
-                         const curve_graph *graph, const bool *node_left,
-                         const double *values, double reach, double spacing,
-                         pruned_graph *pruned) {
+                         const curve_graph *graph, const bool *node_left, const double *values,
+                         double reach, double spacing, pruned_graph *pruned) {
     starg_status status = STARG_OK;
     size_t count = graph->node_count;
     pruner p = {.context = context,

@@ -10,14 +10,13 @@ typedef struct pruned_graph {
     uint32_t *owner; /* the kept node that each node stands behind; itself when kept */
 } pruned_graph;
 
-/* `values`: the medial geodesic function of the complex's edges. Keeps all loops, and branches that reach `reach` times as far from their joint's centre as the
- * joint's ball and some `spacing`s of the samples beyond it. Every connected part keeps a node,
- * unless it is one of nodes that are not left, which all are dropped.
- * Errors: MEMORY. */
+/* `values`: the medial geodesic function of the complex's edges. Keeps all loops, and branches that
+ * reach `reach` times as far from their joint's centre as the joint's ball and some `spacing`s of
+ * the samples beyond it. Every connected part keeps a node, unless it is one of nodes that are not
+ * left, which all are dropped. Errors: MEMORY. */
 starg_status prune_graph(starg_context *context, const medial_complex *complex,
-                         const curve_graph *graph, const bool *node_left,
-                         const double *values, double reach, double spacing,
-                         pruned_graph *pruned);
+                         const curve_graph *graph, const bool *node_left, const double *values,
+                         double reach, double spacing, pruned_graph *pruned);
 void prune_free(starg_context *context, pruned_graph *pruned);
 
 #endif

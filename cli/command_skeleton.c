@@ -1,0 +1,190 @@
+/* starguard skeleton: the curve skeleton of a solid. */
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/picture.h"
+#include "starguard/skeleton.h"
+
+typedef struct values {
+    const char *output, *picture;
+    uint64_t nodes;
+    double prune;
+} values;
+
+static const cli_option options[] = {
+    {.name = "output",
+     .letter = 'o',
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, output),
+     .value = "FILE.obj|.cg|.vtk",
+     .help = "Where to write the skeleton, by the name's ending: OBJ lines, a curve graph, or VTK "
+             "with radii (docs/formats.md); '-' writes VTK to standard output."},
+    {.name = "nodes",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, nodes),
+     .value = "N",
+     .least = 1,
+     .most = 10000000,
+     .help = "About how many nodes; joints, ends and what loops need are kept in any case. Default "
+             "1,000."},
+    {.name = "prune",
+     .kind = CLI_REAL,
+     .offset = offsetof(values, prune),
+     .value = "X",
+     .low = 1,
+     .high = 1e6,
+     .help = "A branch must reach X times as far from its joint as the solid is wide there (half "
+             "its width). 1 keeps the most branches. Default 2."},
+    {.name = "picture",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, picture),
+     .value = "FILE.png",
+     .help = "Draw the model half transparent with its skeleton."},
+};
+
+static void set_defaults(void *data) {
+    values *v = data;
+    starg_skeleton_options library;
+    starg_skeleton_options_default(&library);
+    v->nodes = library.node_count;
+    v->prune = library.prune;
+}
+
+static starg_status choose_format(cli_session *session, const char *name,
+                                  starg_skeleton_format *format) {
+    static const struct {
+        const char *ending;
+        starg_skeleton_format format;
+    } known[] = {
+        {".obj", STARG_SKELETON_OBJ}, {".cg", STARG_SKELETON_CG}, {".vtk", STARG_SKELETON_VTK}};
+    *format = STARG_SKELETON_VTK;
+    if (strcmp(name, "-") == 0)
+        return STARG_OK;
+    const char *dot = strrchr(name, '.');
+    for (size_t i = 0; dot != NULL && i < sizeof known / sizeof *known; i++)
+        if (strcasecmp(dot, known[i].ending) == 0) {
+            *format = known[i].format;
+            return STARG_OK;
+        }
+    return cli_fail(session, STARG_ERROR_ARGUMENT,
+                    "'%s' does not tell a format; end the name with .obj, .cg or .vtk", name);
+}
+
+static starg_status announce_files(cli_session *session, const values *v,
+                                   starg_skeleton_format *format) {
+    starg_status status = STARG_OK;
+    if (v->output == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o FILE.obj, .cg or .vtk");
+    CLI_TRY(choose_format(session, v->output, format));
+    CLI_TRY(cli_announce(session, v->output));
+    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+done:
+    return status;
+}
+
+/* Nodes as small balls, ends and joints in colours of their own. */
+static starg_status write_picture(cli_session *session, const starg_solid *solid,
+                                  const starg_skeleton *s, const char *name) {
+    static const uint8_t curve[3] = {200, 30, 30}, joint[3] = {20, 60, 200}, end[3] = {0, 130, 60};
+    starg_picture_options picture;
+    starg_picture_options_default(&picture);
+    uint8_t *colors = calloc(s->node_count + 1, 3);
+    uint32_t *degrees = calloc(s->node_count + 1, sizeof *degrees);
+    starg_status status = STARG_OK;
+    if (colors == NULL || degrees == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (size_t i = 0; i < 2 * s->edge_count; i++)
+        degrees[s->edges[i]]++;
+    for (size_t i = 0; i < s->node_count; i++)
+        memcpy(colors + 3 * i, degrees[i] > 2 ? joint : degrees[i] == 1 ? end : curve, 3);
+    picture.points = s->positions;
+    picture.point_count = s->node_count;
+    picture.point_colors = colors;
+    picture.point_radius = 0.004;
+    CLI_TRY(starg_picture_write(session->context, starg_solid_mesh(solid), &picture,
+                                cli_outputs_place(&session->outputs, name)));
+done:
+    free(colors);
+    free(degrees);
+    return status;
+}
+
+static void say_skeleton(cli_session *session, const starg_skeleton *s) {
+    cli_say(session, "nodes         %zu\n", s->node_count);
+    cli_say(session, "edges         %zu\n", s->edge_count);
+    cli_say(session, "components    %zu\n", s->components);
+    cli_say(session, "loops         %zu\n", s->loops);
+    cli_say(session, "joints        %zu\n", s->joints);
+    cli_say(session, "ends          %zu\n", s->ends);
+    cli_say(session, "homotopic     %s\n", s->homotopic ? "yes" : "no");
+}
+
+static void report_skeleton(cli_session *session, const starg_skeleton *s, const char *output) {
+    json_t *report = session->report;
+    const struct {
+        const char *key;
+        size_t value;
+    } counts[] = {{"nodes", s->node_count}, {"edges", s->edge_count}, {"components", s->components},
+                  {"loops", s->loops},      {"joints", s->joints},    {"ends", s->ends},
+                  {"cuts", s->cuts},        {"mends", s->mends}};
+    cli_put(session, report, "output", cli_json_text(output));
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        cli_put(session, report, counts[i].key, json_integer((json_int_t)counts[i].value));
+    cli_put(session, report, "homotopic", json_boolean(s->homotopic));
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    starg_skeleton_format format = STARG_SKELETON_VTK;
+    starg_solid *solid = NULL;
+    starg_skeleton *skeleton = NULL;
+    const starg_skeleton_options wanted = {.node_count = (size_t)v->nodes, .prune = v->prune};
+    CLI_TRY(announce_files(session, v, &format));
+    CLI_TRY(cli_solid_read(session, &solid));
+    CLI_TRY(starg_skeleton_create(session->context, solid, &wanted, &skeleton));
+    if (v->picture != NULL)
+        CLI_TRY(write_picture(session, solid, skeleton, v->picture));
+    CLI_TRY(starg_skeleton_write(session->context, skeleton,
+                                 cli_outputs_place(&session->outputs, v->output), format));
+    say_skeleton(session, skeleton);
+    if (session->report != NULL) {
+        cli_report_head(session, "starguard-skeleton", session->operands[0],
+                        starg_solid_mesh(solid));
+        report_skeleton(session, skeleton, v->output);
+    }
+done:
+    starg_skeleton_free(session->context, skeleton);
+    starg_solid_free(solid);
+    return status;
+}
+
+const cli_command cli_command_skeleton = {
+    .name = "skeleton",
+    .usage = "MODEL -o FILE.obj|.cg|.vtk [options]",
+    .summary = "the curve along the middle of a solid, with its topology",
+    .description =
+        "Finds the curve skeleton by erosion of the medial axis: a graph of points strictly inside "
+        "that has as many parts and loops as the solid (a solid with cavities has no such curve, "
+        "which is told). Each node comes with its distance from the surface.",
+    .examples =
+        "# a skeleton to load into a mesh viewer\n"
+        "starguard skeleton horse.off -o horse.obj\n"
+        "# few nodes, only long branches, and a picture\n"
+        "starguard skeleton horse.off -o horse.vtk --nodes 100 --prune 3 --picture horse.png\n"
+        "# parts, loops, joints and ends as JSON\n"
+        "starguard skeleton horse.off -o horse.cg --json",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .least_operands = 1,
+    .most_operands = 1,
+    .values_size = sizeof(values),
+    .defaults = set_defaults,
+    .run = run,
+};
