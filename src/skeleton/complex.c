@@ -3,10 +3,10 @@
  * the complex dual to these simplices is homotopy equivalent to it.
  *
  * The combinatorics follow from the tetrahedra alone. Centres only give measures and positions, so
- * that no rounding of them can change the topology: a circumcentre that is not strictly inside
- * (coarse samples, flat tetrahedra) is replaced by the centroid.
+ * that no rounding of them can change the topology: a circumcentre beyond the border of the region
+ * (coarse samples) is replaced by the centroid, that of a flat tetrahedron by a neighbour's.
  *
- * Cost: linear, and an inside test for each tetrahedron. */
+ * Cost: linear, and an inside test where a centre is replaced. */
 #include "skeleton/complex.h"
 
 #include "core/memory.h"
@@ -19,6 +19,9 @@ static const char STAGE[] = "medial complex";
 
 enum { BLOCK = 256 };
 
+/* Six times the volume over the cube of the longest edge. */
+static const double FLAT = 1e-4;
+
 typedef struct builder {
     starg_context *context;
     const starg_solid *solid;
@@ -26,6 +29,7 @@ typedef struct builder {
     const delaunay *tetrahedra;
     uint32_t *node_of; /* of each tetrahedron, or EDGE_NONE */
     uint8_t *borders;  /* of each node: bit k, the face opposite corner k bounds the region */
+    bool *poor;        /* of each node: its tetrahedron is flat */
     edge_table edges;
     medial_complex *complex;
 } builder;
@@ -40,6 +44,7 @@ static starg_status take_nodes(builder *b, const bool *inside) {
     STARG_NEW(b->context, STAGE, c->centres, c->node_count);
     STARG_NEW(b->context, STAGE, c->radii, c->node_count);
     STARG_NEW_ZERO(b->context, STAGE, b->borders, c->node_count);
+    STARG_NEW(b->context, STAGE, b->poor, c->node_count);
     for (size_t t = 0; t < b->tetrahedra->count; t++)
         if (inside[t])
             memcpy(c->corners[b->node_of[t]], b->tetrahedra->tetrahedra[t], sizeof *c->corners);
@@ -71,13 +76,25 @@ static bool is_beyond_border(const builder *b, size_t node, const double *const 
     return false;
 }
 
+/* Flat: four points next to one circle, whose sphere rounding could put anywhere. */
+static bool is_flat(const double *const v[4]) {
+    double u[3][3], longest = 0;
+    for (int k = 0; k < 3; k++) {
+        vec3_subtract(v[k], v[3], u[k]);
+        longest = fmax(longest, vec3_length(u[k]));
+    }
+    return !(fabs(vec3_triple(u[0], u[1], u[2])) > FLAT * longest * longest * longest);
+}
+
 static void place_node(const builder *b, size_t node) {
     medial_complex *c = b->complex;
     const double *v[4];
     for (int k = 0; k < 4; k++)
         v[k] = b->points + 3 * (size_t)c->corners[node][k];
     medial_ball ball;
-    if (!medial_circumscribe(v, &ball) || is_beyond_border(b, node, v, ball.centre)) {
+    b->poor[node] = is_flat(v);
+    if (b->poor[node] || !medial_circumscribe(v, &ball) ||
+        is_beyond_border(b, node, v, ball.centre)) {
         for (int j = 0; j < 3; j++)
             ball.centre[j] = 0.25 * v[0][j] + 0.25 * v[1][j] + 0.25 * v[2][j] + 0.25 * v[3][j];
         ball.radius = starg_solid_contains(b->solid, ball.centre)
@@ -86,6 +103,20 @@ static void place_node(const builder *b, size_t node) {
     }
     vec3_copy(ball.centre, c->centres[node]);
     c->radii[node] = ball.radius;
+}
+
+/* A flat tetrahedron takes the largest ball of its neighbours: their spheres pass through three of
+ * its points, and next to the fourth. */
+static void place_flat_nodes(const builder *b) {
+    medial_complex *c = b->complex;
+    for (size_t l = 0; l < c->link_count; l++)
+        for (int k = 0; k < 2; k++) {
+            uint32_t flat = c->links[l][k], other = c->links[l][1 - k];
+            if (b->poor[flat] && !b->poor[other] && c->radii[other] > c->radii[flat]) {
+                vec3_copy(c->centres[other], c->centres[flat]);
+                c->radii[flat] = c->radii[other];
+            }
+        }
 }
 
 static starg_status place_block(starg_context *context, void *shared, void *scratch, size_t item) {
@@ -201,6 +232,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
                                 .item = place_block};
     STARG_TRY(starg_parallel_for(context, &loop));
     STARG_TRY(take_links(&b));
+    place_flat_nodes(&b);
     STARG_TRY(take_edges(&b));
     STARG_TRY(invert_links(&b));
     *out = complex;
@@ -208,6 +240,7 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
 done:
     starg_release(context, b.node_of);
     starg_release(context, b.borders);
+    starg_release(context, b.poor);
     edge_table_free(context, &b.edges);
     complex_free(complex);
     return status;

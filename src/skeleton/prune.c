@@ -46,7 +46,7 @@ static double distance(const pruner *p, uint32_t a, uint32_t b) {
 /* A value at v that falls no faster than the way to a neighbour with a larger one: a node near a
  * large ball's centre has a large ball too, even where its own centre is a poor one. */
 static void level(const pruner *p, double *values) {
-    enum { PASSES = 8 };
+    enum { PASSES = 32 };
     for (int pass = 0; pass < PASSES; pass++)
         for (uint32_t v = 0; v < p->graph->node_count; v++)
             for (uint32_t j = p->graph->first[v]; j < p->graph->first[v + 1]; j++) {
