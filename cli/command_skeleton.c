@@ -38,7 +38,7 @@ static const cli_option options[] = {
      .low = 1,
      .high = 1e6,
      .help = "A branch must reach X times as far from its joint as the solid is wide there (half "
-             "its width). 1 keeps the most branches. Default 2."},
+             "its width). 1 keeps the most branches. Default 1.5."},
     {.name = "picture",
      .kind = CLI_TEXT,
      .offset = offsetof(values, picture),

@@ -21,7 +21,7 @@ typedef struct starg_skeleton_options {
                           wide there (half its width); 1 or more keeps fewer, the larger it is    */
 } starg_skeleton_options;
 
-/* 1,000 nodes; branches of twice the half width. */
+/* 1,000 nodes; branches of 1.5 half widths. */
 STARG_API void starg_skeleton_options_default(starg_skeleton_options *options);
 
 /* A graph without parallel edges. Every node lies strictly inside the solid. */

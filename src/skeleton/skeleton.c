@@ -217,7 +217,7 @@ static void tell(starg_context *context, const starg_solid *solid, const starg_s
 }
 
 void starg_skeleton_options_default(starg_skeleton_options *options) {
-    *options = (starg_skeleton_options){.node_count = 1000, .prune = 2};
+    *options = (starg_skeleton_options){.node_count = 1000, .prune = 1.5};
 }
 
 static starg_status check_options(starg_context *context, const starg_skeleton_options *options) {

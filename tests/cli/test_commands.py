@@ -119,6 +119,51 @@ class Repair(support.Case):
         self.assertEqual(self.names(), ["m.off"])
 
 
+class Skeleton(support.Case):
+    """Each format holds the graph that the report tells of."""
+
+    def graph(self, name):
+        nodes, edges = 0, []
+        for line in self.read(name).decode().splitlines():
+            word, *rest = line.split()
+            nodes += word == "v"
+            if word in ("l", "e"):
+                edges.append(tuple(map(int, rest)))
+        return nodes, edges
+
+    def test_formats(self):
+        torus = self.sample("torus")
+        for ending in ("obj", "cg"):
+            name = "s." + ending
+            report = self.run_json("skeleton", torus, "-o", name, "--nodes", "60")
+            nodes, edges = self.graph(name)
+            self.assertEqual((nodes, len(edges)), (report["nodes"], report["edges"]))
+            self.assertEqual((report["components"], report["loops"]), (1, 1))
+            self.assertEqual(report["edges"] - report["nodes"] + 1, 1)
+            self.assertIs(report["homotopic"], True)
+            self.assertTrue(all(1 <= i <= nodes for edge in edges for i in edge))
+        self.assertEqual(self.read("s.cg").decode().splitlines()[0],
+                         f"# D:3 NV:{report['nodes']} NE:{report['edges']}")
+        out, _ = self.run_text("skeleton", torus, "-o", "-", "--nodes", "60")
+        self.assertIn(f"POINTS {report['nodes']} double", out)
+        self.assertIn("SCALARS radius double 1", out)
+
+    def test_threads_and_picture(self):
+        torus = self.sample("torus")
+        self.run_text("skeleton", torus, "-o", "a.obj", "--threads", "1")
+        self.run_text("skeleton", torus, "-o", "b.obj", "--threads", "4", "--picture", "p.png")
+        self.assertEqual(self.read("a.obj"), self.read("b.obj"))
+        self.assertTrue(os.path.getsize(os.path.join(self.folder, "p.png")) > 1000)
+
+    def test_bad(self):
+        torus = self.sample("torus")
+        self.run_text("skeleton", torus, status=1)
+        self.run_text("skeleton", torus, "-o", "s.xyz", status=1)
+        self.run_text("skeleton", torus, "-o", "s.obj", "--prune", "0.5", status=1)
+        self.run_text("skeleton", torus, "-o", "s.obj", "--nodes", "0", status=1)
+        self.run_text("skeleton", "none.off", "-o", "s.obj", status=2)
+
+
 class Visible(support.Case):
     def test_convex(self):
         self.write("m.off", TETRAHEDRON)
@@ -320,6 +365,7 @@ class Documentation(support.Case):
             self.run_json("check", "open.off", status=2),
             self.run_json("check", "none.off", status=2),
             self.run_json("repair", "open.off", "-o", "m.off"),
+            self.run_json("skeleton", room, "-o", "s.cg"),
             self.run_json(*look, "faces"),
             self.run_json(*look, "vertices"),
             self.run_json(*guard),
