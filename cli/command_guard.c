@@ -13,7 +13,12 @@
 #include "view.h"
 
 static const char *const method_words[] = {"ilp", "greedy", "pilp", NULL};
-static const char *const candidate_words[] = {"medial", "interior"};
+static const struct {
+    const char *word;
+    starg_candidates source;
+} sources[] = {{"skeleton", STARG_CANDIDATES_SKELETON},
+               {"medial", STARG_CANDIDATES_MEDIAL},
+               {"interior", STARG_CANDIDATES_INTERIOR}};
 
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
 
@@ -45,9 +50,10 @@ static const cli_option options[] = {
     {.name = "candidates",
      .kind = CLI_TEXT,
      .offset = offsetof(values, candidates),
-     .value = "medial|interior|FILE",
-     .help = "Where guards may stand: on the medial axis (default), on a lattice inside, or at the "
-             "points of a file: three numbers a line, or another GUARDS.json."},
+     .value = "skeleton|medial|interior|FILE",
+     .help = "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
+             "lattice inside, or at the points of a file: three numbers a line, or another "
+             "GUARDS.json."},
     {.name = "count",
      .kind = CLI_COUNT,
      .offset = offsetof(values, count),
@@ -149,7 +155,7 @@ static void set_defaults(void *data) {
     values *v = data;
     starg_guard_options library;
     starg_guard_options_default(&library);
-    v->candidates = "medial";
+    v->candidates = "skeleton";
     v->method = (int)library.method;
     v->count = library.candidate_count;
     v->max_guards = library.max_guards;
@@ -173,19 +179,20 @@ static starg_status take_candidates(cli_session *session, const char *word,
                                     starg_guard_options *wanted, double **points) {
     cli_suggestion near;
     cli_suggest_begin(&near, word);
-    for (int i = 0; i < 2; i++) {
-        if (strcmp(word, candidate_words[i]) == 0) {
-            wanted->candidates = (starg_candidates)i;
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) {
+        if (strcmp(word, sources[i].word) == 0) {
+            wanted->candidates = sources[i].source;
             return STARG_OK;
         }
-        cli_suggest_try(&near, candidate_words[i]);
+        cli_suggest_try(&near, sources[i].word);
     }
     if (strpbrk(word, "./") == NULL && strcmp(word, "-") != 0 && access(word, F_OK) != 0)
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "--candidates takes medial, interior or a file of points, and there is no "
-                        "file '%.100s'%s%s%s",
-                        word, near.best != NULL ? "; did you mean '" : "",
-                        near.best != NULL ? near.best : "", near.best != NULL ? "'?" : "");
+        return cli_fail(
+            session, STARG_ERROR_ARGUMENT,
+            "--candidates takes skeleton, medial, interior or a file of points, and there is no "
+            "file '%.100s'%s%s%s",
+            word, near.best != NULL ? "; did you mean '" : "", near.best != NULL ? near.best : "",
+            near.best != NULL ? "'?" : "");
     if (strcmp(word, "-") == 0 && strcmp(session->operands[0], "-") == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "the model and the candidates cannot both come from standard input");

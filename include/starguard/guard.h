@@ -28,7 +28,8 @@ typedef enum starg_guard_method {
 typedef enum starg_candidates {
     STARG_CANDIDATES_MEDIAL = 0,   /* centres of maximal balls                       */
     STARG_CANDIDATES_INTERIOR = 1, /* a lattice of points inside                     */
-    STARG_CANDIDATES_GIVEN = 2     /* the points of the options, and no others       */
+    STARG_CANDIDATES_GIVEN = 2,    /* the points of the options, and no others       */
+    STARG_CANDIDATES_SKELETON = 3  /* nodes of the curve skeleton                    */
 } starg_candidates;
 
 typedef struct starg_guard_options {
@@ -58,7 +59,7 @@ typedef struct starg_guard_options {
     uint64_t refine_lines; /* sight lines that may be tested for that                   */
 } starg_guard_options;
 
-/* PILP (5,000, 10,000, 0.1) with refinement (10 million lines), 1,000 medial candidates, grid,
+/* PILP (5,000, 10,000, 0.1) with refinement (10 million lines), 1,000 skeletal candidates, grid,
  * faces by vertices, all of it once, no clearance, STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
 

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "skeleton/medial.h"
+#include "starguard/skeleton.h"
 
 static const char STAGE[] = "candidates";
 
@@ -23,6 +24,11 @@ void candidates_free(starg_context *context, candidate_points *points) {
     *points = (candidate_points){0};
 }
 
+bool candidates_allowed(const starg_solid *solid, const double p[3], double clearance) {
+    return starg_solid_contains(solid, p) &&
+           (clearance <= 0 || starg_solid_distance(solid, p) >= clearance);
+}
+
 static starg_status medial_candidates(starg_context *context, const starg_solid *solid,
                                       size_t wanted, double clearance, candidate_points *points) {
     starg_status status = STARG_OK;
@@ -40,9 +46,27 @@ done:
     return status;
 }
 
-bool candidates_allowed(const starg_solid *solid, const double p[3], double clearance) {
-    return starg_solid_contains(solid, p) &&
-           (clearance <= 0 || starg_solid_distance(solid, p) >= clearance);
+static starg_status skeletal_candidates(starg_context *context, const starg_solid *solid,
+                                        size_t wanted, double clearance, candidate_points *points) {
+    starg_status status = STARG_OK;
+    starg_skeleton *skeleton = NULL;
+    starg_skeleton_options options;
+    starg_skeleton_options_default(&options);
+    options.node_count = wanted;
+    status = starg_skeleton_create(context, solid, &options, &skeleton);
+    if (status == STARG_ERROR_MESH) {
+        starg_log(context, STARG_LOG_NOTICE,
+                  "there is no curve skeleton (%s): candidates are taken from the medial axis",
+                  starg_context_error(context)->message);
+        return medial_candidates(context, solid, wanted, clearance, points);
+    }
+    STARG_TRY(status);
+    for (size_t i = 0; i < skeleton->node_count; i++)
+        if (candidates_allowed(solid, skeleton->positions + 3 * i, clearance))
+            STARG_TRY(candidates_push(context, points, skeleton->positions + 3 * i, NULL));
+done:
+    starg_skeleton_free(context, skeleton);
+    return status;
 }
 
 /* Points of a body-centred cubic lattice: the most even one for covering. The half step that
@@ -104,7 +128,9 @@ starg_status starg_candidate_points(starg_context *context, const starg_solid *s
                             wanted, clearance);
         goto done;
     }
-    if (source == STARG_CANDIDATES_MEDIAL) {
+    if (source == STARG_CANDIDATES_SKELETON) {
+        STARG_TRY(skeletal_candidates(context, solid, wanted, clearance, &found));
+    } else if (source == STARG_CANDIDATES_MEDIAL) {
         STARG_TRY(medial_candidates(context, solid, wanted, clearance, &found));
     } else if (source == STARG_CANDIDATES_INTERIOR) {
         STARG_TRY(interior_candidates(context, solid, wanted, clearance, &found));

@@ -18,6 +18,7 @@ static const char STAGE[] = "guard";
 
 void starg_guard_options_default(starg_guard_options *options) {
     *options = (starg_guard_options){.method = STARG_GUARD_PILP,
+                                     .candidates = STARG_CANDIDATES_SKELETON,
                                      .candidate_count = 1000,
                                      .coverage = 1,
                                      .redundancy = 1,
@@ -31,7 +32,7 @@ void starg_guard_options_default(starg_guard_options *options) {
 }
 
 static starg_status check_enums(starg_context *context, const starg_guard_options *o) {
-    if (o->method > STARG_GUARD_PILP || o->candidates > STARG_CANDIDATES_GIVEN)
+    if (o->method > STARG_GUARD_PILP || o->candidates > STARG_CANDIDATES_SKELETON)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "an option holds a number that its enum does not have");
     return STARG_OK;

@@ -13,7 +13,7 @@ static const char FORMAT[] = "starguard-guards";
 enum { VERSION = 1, DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 
 static const char *const METHODS[] = {"ilp", "greedy", "pilp"};
-static const char *const CANDIDATES[] = {"medial", "interior", "given"};
+static const char *const CANDIDATES[] = {"medial", "interior", "given", "skeleton"};
 static const char *const TARGETS[] = {"faces", "vertices"};
 static const char *const FACE_RULES[] = {"vertices", "whole"};
 
@@ -267,7 +267,7 @@ static void read_options(json_reader *r, json_t *object, starg_guard_options *o)
         return;
     }
     o->method = (starg_guard_method)read_name(r, object, "method", METHODS, 3);
-    o->candidates = (starg_candidates)read_name(r, object, "candidates", CANDIDATES, 3);
+    o->candidates = (starg_candidates)read_name(r, object, "candidates", CANDIDATES, 4);
     o->candidate_count = read_count(r, object, "count");
     o->visibility.target = (starg_target)read_name(r, object, "target", TARGETS, 2);
     o->visibility.face_rule = (starg_face_rule)read_name(r, object, "faces", FACE_RULES, 2);

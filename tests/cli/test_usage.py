@@ -132,8 +132,8 @@ class Mistakes(support.Case):
         }
         for option, (word, says) in wrong.items():
             self.usage_error("guard", "m.off", "-o", "g.json", option, word, says=says)
-        self.usage_error("guard", "m.off", "-o", "g.json", "--candidates", "skeleton",
-                         says="medial, interior or a file")
+        self.usage_error("guard", "m.off", "-o", "g.json", "--candidates", "bones",
+                         says="skeleton, medial, interior or a file")
         self.usage_error("visible", "m.off", "--from", "0,0,0", "--engine", "swep",
                          says="did you mean 'sweep'?")
 
