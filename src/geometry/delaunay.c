@@ -454,7 +454,7 @@ static starg_status reserve_points(builder *b, size_t count) {
     return status;
 }
 
-/* Points that lie in one plane with all before them wait: only the first call may bring them. */
+/* As long as all points lie in one plane there are no cells, and those passed over stay so. */
 starg_status delaunay_extend(delaunay_builder *b, const double *points, size_t count) {
     starg_status status = STARG_OK;
     sort_key *order = NULL;

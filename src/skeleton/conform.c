@@ -3,22 +3,21 @@
  * mesh then bounds a set of whole tetrahedra, and that set has the topology of the solid for
  * certain, without a tolerance.
  *
- * Rounds of three moves, each only where an edge or a face is not one of the tetrahedra (is lost):
+ * Rounds of moves, each only where an edge or a face is not one of the tetrahedra (is lost):
  *
- *   - flip: a lost edge between faces u v w and v u x gives way to w x, where u w x and v w x are
- *     faces of tetrahedra and the four points lie nearly in a plane. Nothing else can lie between
- *     the old faces and the new ones but what those tetrahedra would show. Most lost edges of
- *     scanned models are of this kind, and cost no point.
- *   - split: another lost edge is cut where the point that keeps it out (the one that sees it under
- *     the widest angle) comes nearest, so that sheets that lie close together get their points in
- *     pairs; at a corner where both meet, at equal distances from it, so that cuts do not answer
- *     one another for ever [Si and Gaertner 2005].
- *   - pierce: a lost face whose edges are all there is pierced by an edge of tetrahedra; the point
- *     where that happens is added to the face.
+ *   - flip: a lost edge between faces u v w and v u x gives way to w x where it is not Delaunay in
+ *     its plane, or where u w x and v w x are faces of tetrahedra and the fold is no sharp one.
+ *     Most lost edges of scanned models are of this kind, and cost no point.
+ *   - unfold: two lost faces that lie nearly on one another have their common edge flipped, which
+ *     closes a crack or takes a fin of next to no volume away.
+ *   - points, by manner: the middle of a lost edge, and where an edge of tetrahedra pierces a lost
+ *     face; or the middle of the terminal longest edge, which keeps angles from getting small
+ *     [Rivara 1997].
  *
- * Only points whose tetrahedra have changed are looked at again. Mesh edges that meet at very small
- * angles, and surfaces that cross themselves, may never be followed: the number of points is
- * bounded, and what is still lost is counted.
+ * That a flip sweeps over no other part of the surface need not be proven: when all faces are faces
+ * of tetrahedra in the end, the surface is embedded. Only points whose tetrahedra have changed are
+ * looked at again. Edges that meet at next to no angle, and surfaces that cross themselves, may
+ * never be followed: points, their depth and work are bounded, and what is still lost is counted.
  *
  * Cost: that of the Delaunay tetrahedra, and linear for each round in what has changed. */
 #include "skeleton/conform.h"

@@ -19,7 +19,7 @@ typedef enum conform_manner {
 } conform_manner;
 
 /* Changes the samples, a closed manifold mesh, until each of its faces is a face of the Delaunay
- * tetrahedra of its points or their number has grown too much. Errors: MEMORY, CANCELLED. */
+ * tetrahedra of its points or the work is over. Errors: MEMORY, CANCELLED. */
 starg_status conform_samples(starg_context *context, surface_samples *samples,
                              conform_manner manner, delaunay **tetrahedra, conform_report *report);
 

@@ -1,9 +1,9 @@
 /* Labels by the surface itself: a tetrahedron on a face of the samples lies on the side that an
- * exact predicate tells, and labels spread to neighbours across all other faces. That is a
- * statement about how cells join and so exact, however flat a tetrahedron is; where faces are lost
- * labels could leak, and exact inside tests of the rounded centroids take the place of spreading.
+ * exact predicate tells, and labels spread to neighbours across all other faces, the widest first.
+ * That is a statement about how cells join and so exact, however flat a tetrahedron is, as long as
+ * no face is lost. Where faces are lost, an inside and an outside that meet are left apart.
  *
- * Cost: linear, and an inside test for each tetrahedron that needs one. */
+ * Cost: O(n log n). */
 #include "skeleton/label.h"
 
 #include <stdlib.h>
@@ -186,14 +186,11 @@ starg_status labels_create(starg_context *context, const starg_solid *solid,
                    .labels = labels};
     *labels = (inside_labels){0};
     STARG_NEW(context, STAGE, labels->inside, tetrahedra->count);
-    STARG_NEW(context, STAGE, labels->open, tetrahedra->count);
     STARG_NEW_ZERO(context, STAGE, labels->found, samples->face_count);
     STARG_NEW_ZERO(context, STAGE, l.side, tetrahedra->count);
     STARG_NEW_ZERO(context, STAGE, l.walls, tetrahedra->count);
     STARG_TRY(enter_faces(&l));
     match_faces(&l);
-    for (size_t t = 0; t < tetrahedra->count; t++)
-        labels->open[t] = l.side[t] == UNKNOWN;
     STARG_TRY(spread(&l));
     for (size_t t = 0; t < tetrahedra->count; t++)
         labels->inside[t] = l.side[t] == INSIDE;
@@ -208,7 +205,6 @@ done:
 
 void labels_free(starg_context *context, inside_labels *labels) {
     starg_release(context, labels->inside);
-    starg_release(context, labels->open);
     starg_release(context, labels->found);
     *labels = (inside_labels){0};
 }

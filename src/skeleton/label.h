@@ -8,14 +8,12 @@
 
 typedef struct inside_labels {
     bool *inside;      /* of each tetrahedron                                                  */
-    bool *open;        /* of each tetrahedron: is it on no face that was found?                */
     bool *found;       /* of each face of the samples: is it a face of tetrahedra?             */
     size_t lost_count; /* faces that are not                                                   */
 } inside_labels;
 
-/* With no face lost in an embedded mesh, the tetrahedra inside fill exactly what the samples bound.
- * Else those that touch no found face are judged by their centroids, and those of a mesh that
- * crosses itself all are. Errors: MEMORY, CANCELLED. */
+/* With no face lost the tetrahedra inside fill exactly what the samples bound. Else the two sides
+ * meet in the narrowest triangles of the gaps. Errors: MEMORY. */
 starg_status labels_create(starg_context *context, const starg_solid *solid,
                            const surface_samples *samples, const delaunay *tetrahedra,
                            inside_labels *labels);
