@@ -8,8 +8,6 @@
  * Cost: linear for each loop cut, plus the searches, which end early. */
 #include "skeleton/mend.h"
 
-#include <math.h>
-
 #include "core/memory.h"
 #include "mesh/topology.h"
 #include "skeleton/graph.h"
@@ -73,24 +71,22 @@ starg_status mend_parts(starg_context *context, const medial_complex *complex, b
                         bool *node_left, size_t wanted) {
     starg_status status = STARG_OK;
     uint32_t *sets = NULL;
-    double *largest = NULL;
+    size_t *sizes = NULL;
     bool *chosen = NULL;
     size_t count = complex->node_count;
     STARG_NEW(context, STAGE, sets, count);
-    STARG_NEW_ZERO(context, STAGE, largest, count);
+    STARG_NEW_ZERO(context, STAGE, sizes, count);
     STARG_NEW_ZERO(context, STAGE, chosen, count);
     sets_make(sets, count);
     for (size_t l = 0; l < complex->link_count; l++)
         if (link_left[l])
             sets_join(sets, complex->links[l][0], complex->links[l][1]);
-    for (uint32_t v = 0; v < count; v++) {
-        double *radius = &largest[sets_find(sets, v)];
-        *radius = fmax(*radius, complex->radii[v]);
-    }
+    for (uint32_t v = 0; v < count; v++)
+        sizes[sets_find(sets, v)]++;
     for (size_t i = 0; i < wanted; i++) {
         size_t best = count;
         for (size_t v = 0; v < count; v++)
-            if (sets[v] == v && !chosen[v] && (best == count || largest[v] > largest[best]))
+            if (sets[v] == v && !chosen[v] && (best == count || sizes[v] > sizes[best]))
                 best = v;
         if (best < count)
             chosen[best] = true;
@@ -101,7 +97,7 @@ starg_status mend_parts(starg_context *context, const medial_complex *complex, b
         link_left[l] = link_left[l] && node_left[complex->links[l][0]];
 done:
     starg_release(context, sets);
-    starg_release(context, largest);
+    starg_release(context, sizes);
     starg_release(context, chosen);
     return status;
 }

@@ -9,7 +9,7 @@
 starg_status mend_loops(starg_context *context, const medial_complex *complex, bool *link_left,
                         size_t excess);
 
-/* Keeps the `wanted` parts that hold the largest balls, and tells which nodes those are.
+/* Keeps the `wanted` parts of the most nodes, and tells which nodes those are.
  * Errors: MEMORY. */
 starg_status mend_parts(starg_context *context, const medial_complex *complex, bool *link_left,
                         bool *node_left, size_t wanted);
