@@ -18,6 +18,10 @@
 #include "cover/reduce.h"
 #include "cover/relax.h"
 
+/* Programs of many entries take long for each node, and even for their relaxation: a run that may
+ * use few nodes leaves them to the Lagrangian bound and the local search. */
+enum { RELAXATION_ENTRIES = 300000, NODE_ENTRIES = 10000 };
+
 typedef struct block_solve {
     cover_run *run;
     cover_instance rest;
@@ -65,12 +69,22 @@ done:
     return status;
 }
 
+static bool is_too_large(const block_solve *block, size_t allowance) {
+    const cover_instance *rest = &block->rest;
+    size_t nodes = block->run->max_nodes;
+    size_t entries = starg_bit_count(rest->row_bits, rest->rows * rest->row_words);
+    return entries > allowance && (entries - allowance) / NODE_ENTRIES > nodes;
+}
+
 /* The linear relaxation's multipliers, where the subgradient method has not been enough. */
 static starg_status bound_by_lp(block_solve *block, cover_dual *dual, bool *found) {
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
     cover_relaxation relaxation = {0};
     int64_t *scratch = NULL;
+    *found = false;
+    if (is_too_large(block, RELAXATION_ENTRIES))
+        return STARG_OK;
     STARG_NEW(context, "bound", scratch, block->rest.rows);
     STARG_TRY(cover_relax(block->run, &block->rest, &relaxation, found));
     if (*found)
@@ -197,7 +211,8 @@ static starg_status solve_block(block_solve *block) {
         STARG_TRY(run_round(block, &again));
     } while (again && !is_closed(block) && !block->run->relaxed);
     starg_progress_end(context);
-    if (is_closed(block) || block->run->relaxed || cover_time_is_over(block->run))
+    if (is_closed(block) || block->run->relaxed || is_too_large(block, 0) ||
+        cover_time_is_over(block->run))
         goto done;
     starg_progress_begin(context, "ilp");
     STARG_TRY(branch_and_bound(block));
