@@ -1,11 +1,16 @@
-/* How many segment queries a second and core, engine by engine, beside Embree in the same run.
+/* How many segment queries a second and core, engine by engine, beside Embree in the same run: a
+ * line of a table for each model.
  *
  * A query is one segment from an inside point to one vertex. Embree (single precision, and so not
- * exact) answers the same queries by rtcOccluded1 with the segment's end drawn back a little; how
- * many of its answers differ is printed.
+ * exact) answers the same queries with the segment's end drawn back a little, in four modes: one
+ * call for each segment or one for all of a point (rtcOccluded1, rtcOccluded1M), the segments in
+ * the order of the mesh or of cells of their directions; sorting is not counted. "times" is the
+ * first engine over Embree's best mode; "differ" are answers that are not those of the exact
+ * engines, which must agree among themselves.
  *
- * Usage: bench_visibility MODEL [POINTS [REPEATS]] */
+ * Usage: bench_visibility POINTS REPEATS MODEL... */
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,19 +63,14 @@ static void make_points(setting *s) {
     }
 }
 
-static void print_rate(const setting *s, const char *name, size_t points, double seconds,
-                       size_t different) {
-    double queries = (double)points * (double)s->vertex_count;
-    printf("%-16s %6zu points %8.3f s %8.2f million queries/s   %zu different answers\n", name,
-           points, seconds, 1e-6 * queries / seconds, different);
+static double rate(const setting *s, size_t points, double seconds) {
+    return 1e-6 * (double)points * (double)s->vertex_count / seconds;
 }
 
-/* Best of the repeats: what the machine can do when nobody else uses it. */
-static void run_engine(setting *s, starg_visibility_engine engine, const char *name, size_t points,
-                       int repeats) {
+/* Best of the repeats: what the machine can do when nobody else uses it. In millions a second. */
+static double run_engine(setting *s, starg_visibility_engine engine, size_t points, int repeats) {
     starg_visibility_options options;
     double best = INFINITY;
-    size_t different = 0;
     starg_visibility_options_default(&options);
     options.engine = engine;
     options.target = STARG_TARGET_VERTICES;
@@ -80,16 +80,19 @@ static void run_engine(setting *s, starg_visibility_engine engine, const char *n
         stop_unless(s->context,
                     starg_visibility(s->context, s->solid, s->points, points, &options, &bits));
         best = fmin(best, now() - start);
-        different = 0;
         for (size_t p = 0; s->reference != NULL && p < points; p++)
             for (size_t v = 0; v < s->vertex_count; v++)
-                different += starg_bits_test(bits, p, v) != starg_bits_test(s->reference, p, v);
+                if (starg_bits_test(bits, p, v) != starg_bits_test(s->reference, p, v)) {
+                    fprintf(stderr, "engine %d differs at point %zu, vertex %zu\n", (int)engine, p,
+                            v);
+                    exit(1);
+                }
         if (s->reference == NULL)
             s->reference = bits;
         else
             starg_bits_free(bits);
     }
-    print_rate(s, name, points, best, different);
+    return rate(s, points, best);
 }
 
 #ifdef HAVE_EMBREE
@@ -112,71 +115,155 @@ static RTCScene make_scene(RTCDevice device, const setting *s) {
     return scene;
 }
 
-static void run_embree(const setting *s, size_t points, int repeats) {
+/* A ray and where its direction lies. */
+typedef struct order {
+    uint32_t cell, vertex;
+} order;
+
+static int compare_orders(const void *left, const void *right) {
+    const order *a = left, *b = right;
+    return a->cell != b->cell ? (a->cell > b->cell) - (a->cell < b->cell)
+                              : (a->vertex > b->vertex) - (a->vertex < b->vertex);
+}
+
+/* Cells of 64 x 64 on each face of a cube about the point, along a Morton curve. */
+static uint32_t cell_of(const double d[3]) {
+    int k = fabs(d[0]) >= fabs(d[1]) && fabs(d[0]) >= fabs(d[2]) ? 0
+            : fabs(d[1]) >= fabs(d[2])                           ? 1
+                                                                 : 2;
+    uint32_t cell = 0;
+    for (int j = 1; j < 3; j++) {
+        double t = 32 * (d[(k + j) % 3] / fabs(d[k]) + 1);
+        uint32_t at = t < 63 ? (uint32_t)t : 63;
+        for (uint32_t bit = 0; bit < 6; bit++)
+            cell |= (at >> bit & 1) << (2 * bit + (uint32_t)j - 1);
+    }
+    return cell + 4096 * (uint32_t)(2 * k + (d[k] < 0));
+}
+
+static void make_rays(const setting *s, const double p[3], bool by_cells, order *orders,
+                      struct RTCRay *rays) {
+    for (size_t v = 0; v < s->vertex_count; v++) {
+        double d[3];
+        for (int k = 0; k < 3; k++)
+            d[k] = s->vertices[3 * v + (size_t)k] - p[k];
+        orders[v] = (order){by_cells ? cell_of(d) : 0, (uint32_t)v};
+    }
+    if (by_cells)
+        qsort(orders, s->vertex_count, sizeof *orders, compare_orders);
+    for (size_t i = 0; i < s->vertex_count; i++) {
+        const double *q = s->vertices + 3 * (size_t)orders[i].vertex;
+        rays[i] = (struct RTCRay){.org_x = (float)p[0],
+                                  .org_y = (float)p[1],
+                                  .org_z = (float)p[2],
+                                  .tfar = 0.9999f,
+                                  .mask = UINT32_MAX};
+        rays[i].dir_x = (float)q[0] - rays[i].org_x;
+        rays[i].dir_y = (float)q[1] - rays[i].org_y;
+        rays[i].dir_z = (float)q[2] - rays[i].org_z;
+    }
+}
+
+static void trace(RTCScene scene, const setting *s, bool together, struct RTCRay *rays) {
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    if (together) {
+        rtcOccluded1M(scene, &context, rays, (unsigned)s->vertex_count, sizeof *rays);
+        return;
+    }
+    for (size_t i = 0; i < s->vertex_count; i++)
+        rtcOccluded1(scene, &context, &rays[i]);
+}
+
+/* Millions a second in the best mode, and which that is. */
+static double run_embree(const setting *s, size_t points, int repeats, int *best_mode,
+                         size_t *different) {
     RTCDevice device = rtcNewDevice("threads=1");
     RTCScene scene = make_scene(device, s);
+    struct RTCRay *rays = aligned_alloc(64, (s->vertex_count * sizeof *rays + 63) / 64 * 64);
+    order *orders = malloc(s->vertex_count * sizeof *orders);
     double best = INFINITY;
-    size_t different = 0;
-    for (int i = 0; i < repeats; i++) {
-        double start = now();
-        different = 0;
-        for (size_t p = 0; p < points; p++)
-            for (size_t v = 0; v < s->vertex_count; v++) {
-                struct RTCIntersectContext context;
-                rtcInitIntersectContext(&context);
-                context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-                struct RTCRay ray = {0};
-                ray.org_x = (float)s->points[3 * p];
-                ray.org_y = (float)s->points[3 * p + 1];
-                ray.org_z = (float)s->points[3 * p + 2];
-                ray.dir_x = (float)s->vertices[3 * v] - ray.org_x;
-                ray.dir_y = (float)s->vertices[3 * v + 1] - ray.org_y;
-                ray.dir_z = (float)s->vertices[3 * v + 2] - ray.org_z;
-                ray.tfar = 0.9999f;
-                ray.mask = UINT32_MAX;
-                rtcOccluded1(scene, &context, &ray);
-                different += (ray.tfar > 0) != starg_bits_test(s->reference, p, v);
+    if (rays == NULL || orders == NULL)
+        exit(1);
+    for (int i = 0; i < repeats; i++)
+        for (int mode = 0; mode < 4; mode++) {
+            double seconds = 0;
+            *different = 0;
+            for (size_t p = 0; p < points; p++) {
+                make_rays(s, s->points + 3 * p, mode / 2, orders, rays);
+                double start = now();
+                trace(scene, s, mode % 2, rays);
+                seconds += now() - start;
+                for (size_t k = 0; k < s->vertex_count; k++)
+                    *different +=
+                        (rays[k].tfar > 0) != starg_bits_test(s->reference, p, orders[k].vertex);
             }
-        best = fmin(best, now() - start);
-    }
-    print_rate(s, "embree (float)", points, best, different);
+            if (seconds < best) {
+                best = seconds;
+                *best_mode = mode;
+            }
+        }
+    free(rays);
+    free(orders);
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
+    return rate(s, points, best);
 }
 #endif
 
-int main(int count, char **arguments) {
-    setting s = {0};
-    starg_context_options options;
+/* Points are fewer on large meshes, and for slow engines. */
+static void run_model(starg_context *context, const char *path, size_t points, int repeats) {
+    setting s = {.context = context};
     starg_mesh *mesh = NULL;
-    if (count < 2) {
-        fprintf(stderr, "usage: bench_visibility MODEL [POINTS [REPEATS]]\n");
-        return 1;
-    }
-    s.point_count = count > 2 ? strtoul(arguments[2], NULL, 10) : 1000;
-    int repeats = count > 3 ? (int)strtol(arguments[3], NULL, 10) : 3;
-    starg_context_options_default(&options);
-    options.threads = 1;
-    stop_unless(NULL, starg_context_create(&options, &s.context));
-    stop_unless(s.context, starg_mesh_read(s.context, arguments[1], &mesh));
-    stop_unless(s.context, starg_solid_create(s.context, mesh, &s.solid));
+    stop_unless(context, starg_mesh_read(context, path, &mesh));
+    stop_unless(context, starg_solid_create(context, mesh, &s.solid));
     s.vertices = starg_mesh_vertices(starg_solid_mesh(s.solid));
     s.faces = starg_mesh_faces(starg_solid_mesh(s.solid));
     s.vertex_count = starg_mesh_vertex_count(mesh);
     s.face_count = starg_mesh_face_count(mesh);
+    s.point_count = points * 10000 / (s.vertex_count + 10000) * 2 + 1;
     make_points(&s);
-    size_t few = s.point_count / 10 + 1;
-    printf("%s: %zu vertices, one thread, best of %d\n", arguments[1], s.vertex_count, repeats);
-    run_engine(&s, STARG_VISIBILITY_GRID, "grid", s.point_count, repeats);
-    run_engine(&s, STARG_VISIBILITY_BVH, "bvh", few, 1);
-    run_engine(&s, STARG_VISIBILITY_SWEEP, "sweep", few, 1);
+    size_t few = s.point_count / 20 + 1;
+    double contours = run_engine(&s, STARG_VISIBILITY_CONTOURS, s.point_count, repeats);
+    double grid = run_engine(&s, STARG_VISIBILITY_GRID, s.point_count, repeats);
+    double tree = run_engine(&s, STARG_VISIBILITY_BVH, few, 1);
+    double sweep = run_engine(&s, STARG_VISIBILITY_SWEEP, few, 1);
+    const char *name = strrchr(path, '/');
+    printf("| %s | %zu | %.1f | %.1f | %.1f | %.1f |", name ? name + 1 : path, s.vertex_count,
+           contours, grid, tree, sweep);
 #ifdef HAVE_EMBREE
-    run_embree(&s, few, repeats);
+    static const char *const modes[] = {"1, mesh", "1M, mesh", "1, cells", "1M, cells"};
+    int mode = 0;
+    size_t different = 0, enough = s.point_count / 4 + 1;
+    double embree = run_embree(&s, enough, repeats, &mode, &different);
+    printf(" %.1f (%s) | %.1f | %zu in %.1f million |", embree, modes[mode], contours / embree,
+           different, 1e-6 * (double)enough * (double)s.vertex_count);
 #endif
+    printf("\n");
+    fflush(stdout);
     starg_bits_free(s.reference);
     starg_solid_free(s.solid);
     starg_mesh_free(mesh);
-    starg_context_free(s.context);
     free(s.points);
+}
+
+int main(int count, char **arguments) {
+    starg_context_options options;
+    starg_context *context = NULL;
+    if (count < 4) {
+        fprintf(stderr, "usage: bench_visibility POINTS REPEATS MODEL...\n");
+        return 1;
+    }
+    starg_context_options_default(&options);
+    options.threads = 1;
+    stop_unless(NULL, starg_context_create(&options, &context));
+    printf(
+        "| model | vertices | contours | grid | tree | sweep | Embree (mode) | times | differ |\n"
+        "|---|---|---|---|---|---|---|---|---|\n");
+    for (int i = 3; i < count; i++)
+        run_model(context, arguments[i], strtoul(arguments[1], NULL, 10),
+                  (int)strtol(arguments[2], NULL, 10));
+    starg_context_free(context);
     return 0;
 }

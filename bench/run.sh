@@ -22,7 +22,13 @@ else
 fi
 
 echo "== queries per second"
-"$build/bench/bench_visibility" "$model" 1000
+sizes=""
+for n in 10000 25000 100000 1000000; do
+    "$build/starguard" sample horse --vertices $n -o "$work/horse_$n.off" --quiet
+    sizes="$sizes $work/horse_$n.off"
+done
+# shellcheck disable=SC2086
+"$build/bench/bench_visibility" 400 3 $models $sizes
 
 echo "== guarding"
 for method in greedy ilp; do

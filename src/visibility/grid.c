@@ -34,12 +34,7 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_release(context, g->rows);
     starg_release(context, g->cell_start);
     starg_release(context, g->cube);
-    starg_release(context, g->x);
-    starg_release(context, g->y);
-    starg_release(context, g->z);
-    starg_release(context, g->u);
-    starg_release(context, g->v);
-    starg_release(context, g->cube_face);
+    cube_free(context, &g->at);
     starg_release(context, g->in_use);
     starg_release(context, g->used);
     starg_release(context, g->kept);
@@ -64,12 +59,6 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->rows = starg_allocate(context, g->row_limit, sizeof *g->rows);
     g->cell_start = starg_allocate(context, 2 * n + g->row_limit + 1, sizeof *g->cell_start);
     g->cube = starg_allocate(context, n, sizeof *g->cube);
-    g->x = starg_allocate(context, n, sizeof *g->x);
-    g->y = starg_allocate(context, n, sizeof *g->y);
-    g->z = starg_allocate(context, n, sizeof *g->z);
-    g->u = starg_allocate(context, n, sizeof *g->u);
-    g->v = starg_allocate(context, n, sizeof *g->v);
-    g->cube_face = starg_allocate(context, n, sizeof *g->cube_face);
     g->in_use = starg_allocate(context, n, sizeof *g->in_use);
     g->used = starg_allocate(context, n + 1, sizeof *g->used);
     g->kept = starg_allocate(context, scene->face_count + 1, sizeof *g->kept);
@@ -80,10 +69,10 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->sz = starg_allocate_zero(context, n + LANES, sizeof *g->sz);
     g->hidden = starg_allocate(context, starg_bit_words(n) + 1, sizeof *g->hidden);
     g->chunks = starg_allocate(context, scene->face_count / CHUNK + 1, sizeof *g->chunks);
-    if (g->rows && g->cell_start && g->cube && g->x && g->y && g->z && g->u && g->v &&
-        g->cube_face && g->in_use && g->used && g->kept && g->place && g->slot && g->sx && g->sy &&
-        g->sz && g->hidden && g->chunks) {
-        g->run = grid_choose_form(GRID_WIDEST);
+    if (cube_make(context, n, &g->at) && g->rows && g->cell_start && g->cube && g->in_use &&
+        g->used && g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hidden &&
+        g->chunks) {
+        g->run = grid_choose_form(FORM_WIDEST);
         *scratch = g;
         return STARG_OK;
     }
@@ -91,20 +80,7 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     return STARG_ERROR_MEMORY;
 }
 
-static bool supports(grid_form form) {
-#if defined(__x86_64__)
-    bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
-    bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
-    return form == GRID_PLAIN || (avx2 && (form == GRID_AVX2 || avx512));
-#else
-    return form == GRID_PLAIN;
-#endif
-}
-
-/* All forms give the same bits: what floating point does not decide beyond its error bound is
- * decided exactly. */
-grid_run *grid_choose_form(grid_form wanted) {
+grid_run *grid_choose_form(visibility_form wanted) {
     static grid_run *const forms[] = {
         grid_run_plain,
 #if defined(__x86_64__)
@@ -112,9 +88,8 @@ grid_run *grid_choose_form(grid_form wanted) {
         grid_run_avx512,
 #endif
     };
-    if (wanted == GRID_WIDEST)
-        wanted = supports(GRID_AVX512) ? GRID_AVX512 : supports(GRID_AVX2) ? GRID_AVX2 : GRID_PLAIN;
-    return supports(wanted) ? forms[wanted] : NULL;
+    wanted = form_resolve(wanted);
+    return form_is_supported(wanted) ? forms[wanted] : NULL;
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
@@ -123,4 +98,4 @@ static void find(const visibility_scene *scene, void *scratch, const double p[3]
     g->run(scene, g, p, side, visible);
 }
 
-const visibility_engine visibility_grid = {make_scratch, free_scratch, find};
+const visibility_engine visibility_grid = {make_scratch, free_scratch, find, NULL};

@@ -3,19 +3,17 @@
 #ifndef STARG_VISIBILITY_GRID_H
 #define STARG_VISIBILITY_GRID_H
 
+#include "visibility/cube.h"
+#include "visibility/forms.h"
 #include "visibility/scene.h"
 
-enum { CHUNK = 128, CUBE_FACES = 6, BINS = 1024, LANES = 8, RIM = 8 };
+enum { CHUNK = 128, LANES = 8 };
 
 /* Rows of a cube face with m vertices: this times sqrt(m). Flat long cells are best: a face then
  * touches few rows, and in each of them one run of vertices. */
 static const double ROW_FACTOR = 0.2;
 
-/* Far above the rounding of a projected coordinate in single precision (2^-23). */
-static const float CELL_MARGIN = 0x1p-20f;
-
-/* Where a direction meets the cube: face 2 k or 2 k + 1 for the largest coordinate k, positive or
- * negative; u and v in [-1, 1] are the next two coordinates over it. */
+/* Where a direction meets the cube, and the rows there. */
 typedef struct cube_point {
     float u;
     uint32_t face;              /* plus RIM where rounding could put it on another face */
@@ -47,11 +45,9 @@ typedef struct grid_scratch {
     size_t row_limit;
     uint32_t *cell_start; /* two cells a vertex and one a row, and the end */
     cube_point *cube;     /* by slot */
-    double *x, *y, *z;    /* relative to p, by slot */
-    float *u, *v;         /* by slot */
-    uint32_t *cube_face;  /* by slot, plus RIM */
-    uint8_t *in_use;      /* slot has a kept face */
-    uint32_t *used;       /* the slots in use */
+    cube_directions at;
+    uint8_t *in_use; /* slot has a kept face */
+    uint32_t *used;  /* the slots in use */
     size_t used_count;
     uint32_t *kept; /* ranks of the kept faces, chunk by chunk, near ones first */
     size_t kept_count;
@@ -61,20 +57,7 @@ typedef struct grid_scratch {
     double *sx, *sy, *sz; /* LANES more than there are vertices, of any value */
     uint64_t *hidden;     /* bits by position, one word more than it takes */
     chunk_distance *chunks;
-    double bound; /* of the error of a determinant; infinite: always exact */
 } grid_scratch;
-
-/* Index among equal parts of which the last has number `last`; what lies outside (and NaN) goes to
- * the ends. Monotone, which is all that correctness asks of it; without branches. */
-static inline uint32_t part_of(float distance, float scale, float last) {
-    float t = distance * scale;
-    t = t > 0 ? t : 0;
-    return (uint32_t)(int32_t)(t < last ? t : last);
-}
-
-static inline uint32_t bin_of(float v) {
-    return part_of(v + 1, 0.5f * BINS, BINS - 1);
-}
 
 static inline uint32_t cell_of(const grid_row *row, float u) {
     return row->first_cell + part_of(u - row->u_low, row->scale, row->last_cell);
@@ -86,9 +69,7 @@ grid_run grid_run_plain;
 grid_run grid_run_avx2, grid_run_avx512;
 #endif
 
-typedef enum grid_form { GRID_PLAIN, GRID_AVX2, GRID_AVX512, GRID_WIDEST } grid_form;
-
 /* NULL where the processor does not have what the form needs. */
-grid_run *grid_choose_form(grid_form wanted);
+grid_run *grid_choose_form(visibility_form wanted);
 
 #endif

@@ -14,53 +14,12 @@ enum { RUN = 56 };
 /* From so many rows on a face's edges are followed from row to row. */
 enum { TALL = 6 };
 
-static double larger(double a, double b) {
-    return a > b ? a : b; /* unlike fmax, one instruction */
-}
-
-/* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
- * most 6 mx my mz and an error of at most 8 roundings of it; the sum of three and D come to 30. */
-static void make_relative(const visibility_scene *scene, const double p[3], grid_scratch *g) {
-    double mx = 0, my = 0, mz = 0;
-    for (size_t i = 0; i < scene->vertex_count; i++) {
-        g->x[i] = scene->x[i] - p[0];
-        g->y[i] = scene->y[i] - p[1];
-        g->z[i] = scene->z[i] - p[2];
-        mx = larger(mx, fabs(g->x[i]));
-        my = larger(my, fabs(g->y[i]));
-        mz = larger(mz, fabs(g->z[i]));
-    }
-    g->bound = 6 * 32 * 0x1p-53 * mx * my * mz;
-    if (!(g->bound > 1e-200))
-        g->bound = INFINITY;
-}
-
-/* Projects all vertices; without branches, so that the compiler takes several at a time. */
-static void project(const visibility_scene *scene, grid_scratch *g) {
-    const float rim = 1 - CELL_MARGIN;
-    for (size_t i = 0; i < scene->vertex_count; i++) {
-        double x = g->x[i], y = g->y[i], z = g->z[i];
-        double ax = fabs(x), ay = fabs(y), az = fabs(z);
-        bool by_x = (ax >= ay) & (ax >= az), by_y = ay >= az;
-        double major = by_x ? x : by_y ? y : z;
-        double first = by_x ? y : by_y ? z : x;
-        double second = by_x ? z : by_y ? x : y;
-        double scale = 1 / fabs(major);
-        float u = (float)(first * scale), v = (float)(second * scale);
-        uint32_t face = by_x ? 0 : by_y ? 2 : 4;
-        bool inner = (fabsf(u) < rim) & (fabsf(v) < rim);
-        g->u[i] = u;
-        g->v[i] = v;
-        g->cube_face[i] = face + (major < 0 ? 1 : 0) + (inner ? 0 : RIM);
-    }
-}
-
 /* Cuts each cube face into rows of about equally many vertices, by a histogram of v. */
 static void cut_rows(grid_scratch *g) {
     memset(g->row_of_bin, 0, sizeof g->row_of_bin);
     for (size_t i = 0; i < g->used_count; i++) {
         uint32_t slot = g->used[i];
-        g->row_of_bin[g->cube_face[slot] % RIM][bin_of(g->v[slot])]++;
+        g->row_of_bin[g->at.face[slot] % RIM][bin_of(g->at.v[slot])]++;
     }
     g->row_count = 0;
     for (int face = 0; face < CUBE_FACES; face++) {
@@ -85,10 +44,10 @@ static uint32_t cut_cells(grid_scratch *g) {
     for (size_t i = 0; i < g->used_count; i++) {
         uint32_t slot = g->used[i];
         cube_point *c = &g->cube[slot];
-        const uint32_t *rows = g->row_of_bin[g->cube_face[slot] % RIM];
-        float v = g->v[slot], u = g->u[slot];
+        const uint32_t *rows = g->row_of_bin[g->at.face[slot] % RIM];
+        float v = g->at.v[slot], u = g->at.u[slot];
         c->u = u;
-        c->face = g->cube_face[slot];
+        c->face = g->at.face[slot];
         c->row_low = rows[bin_of(v - CELL_MARGIN)];
         c->row_high = rows[bin_of(v + CELL_MARGIN)];
         g->place[slot] = rows[bin_of(v)];
@@ -120,7 +79,7 @@ static void sort_into_cells(const visibility_scene *scene, grid_scratch *g) {
     memset(g->cell_start, 0, (cells + 1) * sizeof *g->cell_start);
     for (size_t i = 0; i < g->used_count; i++) {
         uint32_t slot = g->used[i];
-        g->place[slot] = cell_of(&g->rows[g->place[slot]], g->u[slot]);
+        g->place[slot] = cell_of(&g->rows[g->place[slot]], g->at.u[slot]);
         g->cell_start[g->place[slot]]++;
     }
     uint32_t sum = 0;
@@ -130,9 +89,9 @@ static void sort_into_cells(const visibility_scene *scene, grid_scratch *g) {
         uint32_t slot = g->used[i], position = --g->cell_start[g->place[slot]];
         g->place[slot] = position;
         g->slot[position] = slot;
-        g->sx[position] = g->x[slot];
-        g->sy[position] = g->y[slot];
-        g->sz[position] = g->z[slot];
+        g->sx[position] = g->at.x[slot];
+        g->sy[position] = g->at.y[slot];
+        g->sz[position] = g->at.z[slot];
     }
 }
 
@@ -149,8 +108,8 @@ static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
     for (size_t c = 0; c < count; c++) {
         uint32_t slot = scene->corners[3 * (c * CHUNK)];
         g->chunks[c].chunk = (uint32_t)c;
-        g->chunks[c].distance =
-            g->x[slot] * g->x[slot] + g->y[slot] * g->y[slot] + g->z[slot] * g->z[slot];
+        g->chunks[c].distance = g->at.x[slot] * g->at.x[slot] + g->at.y[slot] * g->at.y[slot] +
+                                g->at.z[slot] * g->at.z[slot];
     }
     qsort(g->chunks, count, sizeof *g->chunks, compare_chunks);
     return count;
@@ -190,9 +149,9 @@ typedef struct blocker {
 } blocker;
 
 static void cross(const grid_scratch *g, uint32_t a, uint32_t b, double sign, double out[3]) {
-    out[0] = sign * (g->y[a] * g->z[b] - g->z[a] * g->y[b]);
-    out[1] = sign * (g->z[a] * g->x[b] - g->x[a] * g->z[b]);
-    out[2] = sign * (g->x[a] * g->y[b] - g->y[a] * g->x[b]);
+    out[0] = sign * (g->at.y[a] * g->at.z[b] - g->at.z[a] * g->at.y[b]);
+    out[1] = sign * (g->at.z[a] * g->at.x[b] - g->at.x[a] * g->at.z[b]);
+    out[2] = sign * (g->at.x[a] * g->at.y[b] - g->at.y[a] * g->at.x[b]);
 }
 
 /* With the sign of the side D is positive, and so are the planes inside the cone. */
@@ -202,7 +161,7 @@ static void prepare(const grid_scratch *g, blocker *f) {
     cross(g, c[1], c[2], sign, f->w0);
     cross(g, c[2], c[0], sign, f->w1);
     cross(g, c[0], c[1], sign, f->w2);
-    f->volume = f->w0[0] * g->x[c[0]] + f->w0[1] * g->y[c[0]] + f->w0[2] * g->z[c[0]];
+    f->volume = f->w0[0] * g->at.x[c[0]] + f->w0[1] * g->at.y[c[0]] + f->w0[2] * g->at.z[c[0]];
     f->prepared = true;
 }
 
@@ -214,14 +173,14 @@ static inline void test_lanes(const grid_scratch *g, const blocker *f, size_t i,
     lanes w2 = lanes_dot(f->w2, x, y, z);
     lanes beyond = lanes_beyond(w0, w1, w2, f->volume);
     lanes least = lanes_min(lanes_min(w0, w1), lanes_min(w2, beyond));
-    *sure = lanes_above(least, g->bound);
-    *maybe = lanes_above(least, -g->bound);
+    *sure = lanes_above(least, g->at.bound);
+    *maybe = lanes_above(least, -g->at.bound);
 }
 
 /* The same for a face in whose plane p lies: off that plane it hides nothing. */
 static inline uint64_t test_coplanar_lanes(const grid_scratch *g, const blocker *f, size_t i) {
     lanes x = lanes_load(g->sx + i), y = lanes_load(g->sy + i), z = lanes_load(g->sz + i);
-    double e = g->bound;
+    double e = g->at.bound;
     return ~(lanes_beyond_either(lanes_dot(f->w0, x, y, z), e) |
              lanes_beyond_either(lanes_dot(f->w1, x, y, z), e) |
              lanes_beyond_either(lanes_dot(f->w2, x, y, z), e)) &
@@ -292,37 +251,6 @@ static inline void test_rows(const visibility_scene *scene, const double p[3], g
         test_cells(scene, p, g, f, &g->rows[row], u_low, u_high);
 }
 
-static void widen(float u, float span[2]) {
-    span[0] = u < span[0] ? u : span[0];
-    span[1] = u > span[1] ? u : span[1];
-}
-
-/* Where one edge of a projected triangle lies within a row: its ends there, and where it enters
- * and leaves. The slack covers the rounding of the slope, which counts where an edge is nearly
- * level; the ends bound it. */
-static void span_edge(const float from[2], const float to[2], float v_low, float v_high,
-                      float span[2]) {
-    float u_low = from[0] < to[0] ? from[0] : to[0], u_high = from[0] < to[0] ? to[0] : from[0];
-    float slope = (to[0] - from[0]) / (to[1] - from[1]);
-    float slack = (fabsf(slope) + 1) * CELL_MARGIN;
-    if (from[1] >= v_low && from[1] <= v_high)
-        widen(from[0], span);
-    for (int side = 0; side < 2; side++) {
-        float v = side ? v_high : v_low;
-        if ((from[1] < v) == (to[1] < v))
-            continue;
-        float u = from[0] + (v - from[1]) * slope;
-        widen(u - slack > u_low ? u - slack : u_low, span);
-        widen(u + slack < u_high ? u + slack : u_high, span);
-    }
-}
-
-/* A convex polygon on one cube face: a face, or the part of one that lies before the cube face. */
-typedef struct cube_polygon {
-    int count;
-    float corner[8][2]; /* u, v */
-} cube_polygon;
-
 /* In each row only the cells between the polygon's edges. */
 static void test_polygon(const visibility_scene *scene, const double p[3], grid_scratch *g,
                          blocker *f, const cube_polygon *polygon, uint32_t row, uint32_t last_row) {
@@ -342,107 +270,26 @@ static void test_tall(const visibility_scene *scene, const double p[3], grid_scr
                       uint32_t row, uint32_t last_row) {
     cube_polygon polygon = {.count = 3};
     for (int k = 0; k < 3; k++) {
-        polygon.corner[k][0] = g->u[f->corner[k]];
-        polygon.corner[k][1] = g->v[f->corner[k]];
+        polygon.corner[k][0] = g->at.u[f->corner[k]];
+        polygon.corner[k][1] = g->at.v[f->corner[k]];
     }
     test_polygon(scene, p, g, f, &polygon, row, last_row);
-}
-
-/* Vectors from p with the cube face's axis first, then u and v. */
-typedef struct cone_polygon {
-    int count;
-    double corner[8][3];
-} cone_polygon;
-
-/* The sides of a widened frustum, as planes through p: axis x SLACK - sign x coordinate k. */
-static const double SLACK = 1 + 0x1p-18;
-
-static double beyond_side(const double v[3], int plane) {
-    return SLACK * v[0] - (plane % 2 ? -v[1 + plane / 2] : v[1 + plane / 2]);
-}
-
-/* Cuts off what lies outside one side. */
-static void clip_cone(const cone_polygon *in, int plane, cone_polygon *out) {
-    out->count = 0;
-    for (int i = 0; i < in->count; i++) {
-        const double *a = in->corner[i], *b = in->corner[(i + 1) % in->count];
-        double at_a = beyond_side(a, plane), at_b = beyond_side(b, plane);
-        if (at_a >= 0)
-            memcpy(out->corner[out->count++], a, sizeof out->corner[0]);
-        if ((at_a >= 0) == (at_b >= 0))
-            continue;
-        double t = at_a / (at_a - at_b);
-        for (int j = 0; j < 3; j++)
-            out->corner[out->count][j] = a[j] + t * (b[j] - a[j]);
-        out->count++;
-    }
-}
-
-/* The part of a face in the frustum of a cube face: mostly nothing, which one side tells, or what
- * a single side cuts off. */
-static void clip_to_frustum(cone_polygon *polygon) {
-    cone_polygon clipped;
-    bool cut[4];
-    if (polygon->corner[0][0] <= 0 && polygon->corner[1][0] <= 0 && polygon->corner[2][0] <= 0) {
-        polygon->count = 0;
-        return;
-    }
-    for (int plane = 0; plane < 4; plane++) {
-        int outside = 0;
-        for (int i = 0; i < 3; i++)
-            outside += beyond_side(polygon->corner[i], plane) < 0;
-        if (outside == 3) {
-            polygon->count = 0;
-            return;
-        }
-        cut[plane] = outside > 0;
-    }
-    for (int plane = 0; plane < 4; plane++)
-        if (cut[plane]) {
-            clip_cone(polygon, plane, &clipped);
-            *polygon = clipped;
-        }
-}
-
-/* The same on the cube face. Corners that come so near to p that their direction is not known
- * within the margin are told by `whole`. */
-static void clip_to_cube_face(const grid_scratch *g, const uint32_t *corner, uint32_t cube_face,
-                              cube_polygon *polygon, bool *whole) {
-    const double *const axis[3] = {g->x, g->y, g->z};
-    uint32_t k = cube_face / 2;
-    double sign = cube_face % 2 ? -1 : 1, size = 0;
-    cone_polygon cone = {.count = 3};
-    for (int i = 0; i < 3; i++) {
-        cone.corner[i][0] = sign * axis[k][corner[i]];
-        cone.corner[i][1] = axis[(k + 1) % 3][corner[i]];
-        cone.corner[i][2] = axis[(k + 2) % 3][corner[i]];
-        for (int j = 0; j < 3; j++)
-            size = fabs(cone.corner[i][j]) > size ? fabs(cone.corner[i][j]) : size;
-    }
-    clip_to_frustum(&cone);
-    polygon->count = cone.count;
-    *whole = false;
-    for (int i = 0; i < cone.count; i++) {
-        *whole = *whole || !(cone.corner[i][0] > 0x1p-20 * size);
-        polygon->corner[i][0] = (float)(cone.corner[i][1] / cone.corner[i][0]);
-        polygon->corner[i][1] = (float)(cone.corner[i][2] / cone.corner[i][0]);
-    }
 }
 
 /* A face that does not project into one cube face. */
 static void test_clipped(const visibility_scene *scene, const double p[3], grid_scratch *g,
                          blocker *f) {
+    bool near = triangle_is_near(&g->at, f->corner);
     for (uint32_t cube_face = 0; cube_face < CUBE_FACES; cube_face++) {
         const uint32_t *rows = g->row_of_bin[cube_face];
         cube_polygon polygon;
-        bool whole;
-        clip_to_cube_face(g, f->corner, cube_face, &polygon, &whole);
-        if (polygon.count == 0)
-            continue;
-        if (whole) {
-            test_rows(scene, p, g, f, rows[0], rows[BINS - 1], -1, 1);
+        if (near) {
+            test_rows(scene, p, g, f, rows[0], rows[BINS - 1], -2, 2);
             continue;
         }
+        cube_clip_triangle(&g->at, f->corner, cube_face, &polygon);
+        if (polygon.count == 0)
+            continue;
         float low = 2, high = -2;
         for (int i = 0; i < polygon.count; i++) {
             float v = polygon.corner[i][1];
@@ -500,9 +347,9 @@ static void test_faces(const visibility_scene *scene, const double p[3], const i
 
 void GRID_RUN(const visibility_scene *scene, grid_scratch *g, const double p[3], const int8_t *side,
               uint8_t *visible) {
-    make_relative(scene, p, g);
+    cube_make_relative(scene, p, &g->at);
     keep_faces(scene, side, g);
-    project(scene, g);
+    cube_project(scene->vertex_count, &g->at);
     sort_into_cells(scene, g);
     test_faces(scene, p, side, g);
     for (size_t i = 0; i < scene->vertex_count; i++)

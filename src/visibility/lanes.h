@@ -1,9 +1,12 @@
-/* Eight doubles at a time, in the form that the including file has chosen by LANES_PLAIN,
- * LANES_AVX2 or LANES_AVX512. Bit k of a mask stands for lane k; comparisons with NaN are false. */
+/* Eight doubles or WIDE floats at a time, in the form that the including file has chosen by
+ * LANES_PLAIN, LANES_AVX2 or LANES_AVX512. Bit k of a mask stands for lane k; comparisons with NaN
+ * are false. */
 #ifndef STARG_VISIBILITY_LANES_H
 #define STARG_VISIBILITY_LANES_H
 
 #include <stdint.h>
+
+enum { WIDE = 16 };
 
 #if defined(LANES_AVX512)
 
@@ -37,6 +40,53 @@ static inline uint64_t lanes_above(lanes a, double limit) {
 /* |a| > limit */
 static inline uint64_t lanes_beyond_either(lanes a, double limit) {
     return lanes_above(_mm512_abs_pd(a), limit);
+}
+
+typedef __m512 wide;
+
+static inline wide wide_load(const float *p) {
+    return _mm512_loadu_ps(p);
+}
+
+static inline wide wide_set(float a) {
+    return _mm512_set1_ps(a);
+}
+
+static inline wide wide_add(wide a, wide b) {
+    return _mm512_add_ps(a, b);
+}
+
+static inline wide wide_subtract(wide a, wide b) {
+    return _mm512_sub_ps(a, b);
+}
+
+static inline wide wide_multiply(wide a, wide b) {
+    return _mm512_mul_ps(a, b);
+}
+
+static inline wide wide_abs(wide a) {
+    return _mm512_abs_ps(a);
+}
+
+static inline wide wide_min(wide a, wide b) {
+    return _mm512_min_ps(a, b);
+}
+
+static inline wide wide_max(wide a, wide b) {
+    return _mm512_max_ps(a, b);
+}
+
+static inline uint32_t wide_above(wide a, wide b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
+}
+
+static inline uint32_t wide_equal(const uint32_t *p, uint32_t value) {
+    return _mm512_cmpeq_epi32_mask(_mm512_loadu_si512(p), _mm512_set1_epi32((int)value));
+}
+
+/* Which of the numbers have the bit? */
+static inline uint32_t wide_marked(const uint32_t *p, uint32_t bit) {
+    return _mm512_test_epi32_mask(_mm512_loadu_si512(p), _mm512_set1_epi32((int)bit));
 }
 
 #elif defined(LANES_AVX2)
@@ -79,6 +129,68 @@ static inline uint64_t lanes_beyond_either(lanes a, double limit) {
     __m256d sign = _mm256_set1_pd(-0.0);
     return lanes_above((lanes){_mm256_andnot_pd(sign, a.low), _mm256_andnot_pd(sign, a.high)},
                        limit);
+}
+
+typedef struct wide {
+    __m256 low, high;
+} wide;
+
+static inline wide wide_load(const float *p) {
+    return (wide){_mm256_loadu_ps(p), _mm256_loadu_ps(p + 8)};
+}
+
+static inline wide wide_set(float a) {
+    return (wide){_mm256_set1_ps(a), _mm256_set1_ps(a)};
+}
+
+static inline wide wide_add(wide a, wide b) {
+    return (wide){_mm256_add_ps(a.low, b.low), _mm256_add_ps(a.high, b.high)};
+}
+
+static inline wide wide_subtract(wide a, wide b) {
+    return (wide){_mm256_sub_ps(a.low, b.low), _mm256_sub_ps(a.high, b.high)};
+}
+
+static inline wide wide_multiply(wide a, wide b) {
+    return (wide){_mm256_mul_ps(a.low, b.low), _mm256_mul_ps(a.high, b.high)};
+}
+
+static inline wide wide_abs(wide a) {
+    __m256 sign = _mm256_set1_ps(-0.0f);
+    return (wide){_mm256_andnot_ps(sign, a.low), _mm256_andnot_ps(sign, a.high)};
+}
+
+static inline wide wide_min(wide a, wide b) {
+    return (wide){_mm256_min_ps(a.low, b.low), _mm256_min_ps(a.high, b.high)};
+}
+
+static inline wide wide_max(wide a, wide b) {
+    return (wide){_mm256_max_ps(a.low, b.low), _mm256_max_ps(a.high, b.high)};
+}
+
+static inline uint32_t wide_above(wide a, wide b) {
+    unsigned low = (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a.low, b.low, _CMP_GT_OQ));
+    unsigned high = (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a.high, b.high, _CMP_GT_OQ));
+    return low | high << 8;
+}
+
+static inline uint32_t wide_equal(const uint32_t *p, uint32_t value) {
+    __m256i all = _mm256_set1_epi32((int)value);
+    __m256i low = _mm256_cmpeq_epi32(_mm256_loadu_si256((const __m256i *)(const void *)p), all);
+    __m256i high =
+        _mm256_cmpeq_epi32(_mm256_loadu_si256((const __m256i *)(const void *)(p + 8)), all);
+    return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(low)) |
+           (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(high)) << 8;
+}
+
+static inline uint32_t wide_marked(const uint32_t *p, uint32_t bit) {
+    __m256i all = _mm256_set1_epi32((int)bit);
+    __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)p);
+    __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)(p + 8));
+    low = _mm256_cmpeq_epi32(_mm256_and_si256(low, all), all);
+    high = _mm256_cmpeq_epi32(_mm256_and_si256(high, all), all);
+    return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(low)) |
+           (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(high)) << 8;
 }
 
 #else
@@ -125,6 +237,81 @@ static inline uint64_t lanes_beyond_either(lanes a, double limit) {
     for (int k = 0; k < 8; k++)
         a.lane[k] = fabs(a.lane[k]);
     return lanes_above(a, limit);
+}
+
+typedef struct wide {
+    float lane[WIDE];
+} wide;
+
+static inline wide wide_load(const float *p) {
+    wide a;
+    for (int k = 0; k < WIDE; k++)
+        a.lane[k] = p[k];
+    return a;
+}
+
+static inline wide wide_set(float a) {
+    wide all;
+    for (int k = 0; k < WIDE; k++)
+        all.lane[k] = a;
+    return all;
+}
+
+static inline wide wide_add(wide a, wide b) {
+    for (int k = 0; k < WIDE; k++)
+        a.lane[k] += b.lane[k];
+    return a;
+}
+
+static inline wide wide_subtract(wide a, wide b) {
+    for (int k = 0; k < WIDE; k++)
+        a.lane[k] -= b.lane[k];
+    return a;
+}
+
+static inline wide wide_multiply(wide a, wide b) {
+    for (int k = 0; k < WIDE; k++)
+        a.lane[k] *= b.lane[k];
+    return a;
+}
+
+static inline wide wide_abs(wide a) {
+    for (int k = 0; k < WIDE; k++)
+        a.lane[k] = fabsf(a.lane[k]);
+    return a;
+}
+
+static inline wide wide_min(wide a, wide b) {
+    for (int k = 0; k < WIDE; k++)
+        a.lane[k] = a.lane[k] < b.lane[k] ? a.lane[k] : b.lane[k];
+    return a;
+}
+
+static inline wide wide_max(wide a, wide b) {
+    for (int k = 0; k < WIDE; k++)
+        a.lane[k] = a.lane[k] > b.lane[k] ? a.lane[k] : b.lane[k];
+    return a;
+}
+
+static inline uint32_t wide_above(wide a, wide b) {
+    uint32_t mask = 0;
+    for (int k = 0; k < WIDE; k++)
+        mask |= (uint32_t)(a.lane[k] > b.lane[k]) << k;
+    return mask;
+}
+
+static inline uint32_t wide_equal(const uint32_t *p, uint32_t value) {
+    uint32_t mask = 0;
+    for (int k = 0; k < WIDE; k++)
+        mask |= (uint32_t)(p[k] == value) << k;
+    return mask;
+}
+
+static inline uint32_t wide_marked(const uint32_t *p, uint32_t bit) {
+    uint32_t mask = 0;
+    for (int k = 0; k < WIDE; k++)
+        mask |= (uint32_t)((p[k] & bit) != 0) << k;
+    return mask;
 }
 
 #endif

@@ -6,6 +6,7 @@
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
+#include "visibility/net.h"
 
 /* Vertices get their slots in the order in which the faces, taken leaf by leaf, name them. */
 static void order_vertices(visibility_scene *scene) {
@@ -92,6 +93,7 @@ void scene_free(visibility_scene *scene) {
     if (scene == NULL)
         return;
     starg_context *context = scene->context;
+    net_free(scene->net);
     starg_release(context, scene->vertex_of);
     starg_release(context, scene->slot_of);
     starg_release(context, scene->x);
@@ -103,6 +105,10 @@ void scene_free(visibility_scene *scene) {
     starg_release(context, scene->nz);
     starg_release(context, scene->offset);
     starg_release(context, scene);
+}
+
+starg_status scene_add_net(visibility_scene *scene) {
+    return scene->cull ? net_create(scene->context, scene, &scene->net) : STARG_OK;
 }
 
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side) {

@@ -39,11 +39,16 @@ typedef struct visibility_scene {
     double centre[3];
     double extent;     /* longest side of the bounding box */
     double side_bound; /* larger than the rounding error of that expression for p in the box */
+
+    struct visibility_net *net; /* made for the engine by contours where `cull` holds, else NULL */
 } visibility_scene;
 
 /* Errors: MEMORY. */
 starg_status scene_create(starg_context *context, const starg_solid *solid, visibility_scene **out);
 void scene_free(visibility_scene *scene);
+
+/* Makes the net, if the boundary is embedded. Errors: MEMORY. */
+starg_status scene_add_net(visibility_scene *scene);
 
 /* side[rank] = 1 where p lies strictly on the inner side of the face, -1 outer, 0 in its plane. */
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side);
@@ -71,9 +76,13 @@ typedef struct visibility_engine {
     /* visible[slot] = 1 where p sees the vertex, else 0. p is strictly inside. */
     void (*find)(const visibility_scene *scene, void *scratch, const double p[3],
                  const int8_t *side, uint8_t *visible);
+    /* After find, for a face that has p on its inner side and three visible vertices: true only if
+     * all of it is visible; false may mean that this is not known. NULL: never known. */
+    bool (*sees_plainly)(const visibility_scene *scene, void *scratch, size_t rank);
 } visibility_engine;
 
-extern const visibility_engine visibility_grid, visibility_tree, visibility_sweep;
+extern const visibility_engine visibility_grid, visibility_tree, visibility_sweep,
+    visibility_contours;
 
 /* starg_visibility for callers that can use a part: when the time limit strikes, the rows that are
  * finished by then are told by finished[i] = 1, and there is no error. */

@@ -69,4 +69,4 @@ static void find(const visibility_scene *scene, void *scratch, const double p[3]
     }
 }
 
-const visibility_engine visibility_tree = {make_scratch, free_scratch, find};
+const visibility_engine visibility_tree = {make_scratch, free_scratch, find, NULL};

@@ -10,6 +10,9 @@
 
 static const char STAGE[] = "visibility";
 
+/* Up to so many points the net costs more than it saves: the engine by contours does without. */
+enum { FEW_POINTS = 2 };
+
 typedef struct job {
     const visibility_scene *scene;
     const visibility_engine *engine;
@@ -31,7 +34,8 @@ typedef struct worker {
 } worker;
 
 void starg_visibility_options_default(starg_visibility_options *options) {
-    *options = (starg_visibility_options){.range = INFINITY, .cone = 360};
+    *options = (starg_visibility_options){
+        .engine = STARG_VISIBILITY_CONTOURS, .range = INFINITY, .cone = 360};
 }
 
 double starg_cone_cosine(double degrees) {
@@ -103,6 +107,13 @@ static void write_vertices(const job *all, const uint8_t *visible, uint64_t *row
             starg_bit_set(row, all->scene->vertex_of[slot]);
 }
 
+static bool sees_whole(const job *all, const worker *w, const double p[3], size_t rank) {
+    const visibility_engine *engine = all->engine;
+    if (engine->sees_plainly != NULL && engine->sees_plainly(all->scene, w->engine_scratch, rank))
+        return true;
+    return face_is_wholly_visible(all->scene, p, w->side, rank);
+}
+
 static void write_faces(const job *all, const worker *w, const uint8_t *visible, const double p[3],
                         uint64_t *row) {
     const visibility_scene *scene = all->scene;
@@ -111,7 +122,7 @@ static void write_faces(const job *all, const worker *w, const uint8_t *visible,
         const uint32_t *c = scene->corners + 3 * rank;
         if (w->side[rank] <= 0 || !(visible[c[0]] & visible[c[1]] & visible[c[2]]))
             continue;
-        if (!whole || face_is_wholly_visible(scene, p, w->side, rank))
+        if (!whole || sees_whole(all, w, p, rank))
             starg_bit_set(row, scene->face_of[rank]);
     }
 }
@@ -176,7 +187,7 @@ static starg_status check_arguments(starg_context *context, const double *points
     if (!(options->range >= 0))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "the range is %g; it must be zero or more", options->range);
-    if (options->engine > STARG_VISIBILITY_SWEEP || options->target > STARG_TARGET_VERTICES ||
+    if (options->engine > STARG_VISIBILITY_CONTOURS || options->target > STARG_TARGET_VERTICES ||
         options->face_rule > STARG_FACES_WHOLE)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "an option holds a number that its enum does not have");
@@ -194,7 +205,7 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
                              size_t count, const starg_visibility_options *options,
                              uint8_t *finished, starg_bits **out) {
     static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
-                                                       &visibility_sweep};
+                                                       &visibility_sweep, &visibility_contours};
     starg_status status = STARG_OK;
     starg_visibility_options defaults;
     visibility_scene *scene = NULL;
@@ -206,6 +217,8 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     STARG_TRY(check_arguments(context, points, count, options));
     STARG_TRY(check_cone(context, count, options));
     STARG_TRY(scene_create(context, solid, &scene));
+    if (options->engine == STARG_VISIBILITY_CONTOURS && count > FEW_POINTS)
+        STARG_TRY(scene_add_net(scene));
     size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                               : solid->mesh->face_count;
     STARG_TRY(starg_bits_create(context, count, columns, &rows));

@@ -10,6 +10,7 @@
 #include "core/rng.h"
 #include "starguard/sample.h"
 #include "starguard/visibility.h"
+#include "visibility/contours.h"
 #include "visibility/grid.h"
 #include "visibility_oracle.h"
 
@@ -49,7 +50,7 @@ static void compare_row(const char *name, const char *what, const starg_bits *bi
 
 static void check_engines(starg_context *context, const char *name, const starg_solid *solid,
                           const double *points, size_t count) {
-    static const char *const engines[] = {"grid", "bvh", "sweep"};
+    static const char *const engines[] = {"grid", "bvh", "sweep", "contours"};
     const starg_mesh *mesh = starg_solid_mesh(solid);
     size_t n = starg_mesh_vertex_count(mesh), m = starg_mesh_face_count(mesh);
     bool *expected = malloc(3 * count * (n + m) * sizeof *expected);
@@ -65,7 +66,7 @@ static void check_engines(starg_context *context, const char *name, const starg_
             visibility_oracle_faces(starg_mesh_vertices(mesh), n, starg_mesh_faces(mesh), m,
                                     points + 3 * i, true, whole + i * m);
     }
-    for (int engine = 0; engine < 3; engine++)
+    for (int engine = 0; engine < 4; engine++)
         for (int what = 0; what < 3; what++) {
             starg_visibility_options options;
             starg_bits *bits = NULL;
@@ -104,9 +105,9 @@ static void test_samples(void **state) {
         starg_sample_options options;
         starg_mesh *mesh = NULL;
         starg_sample_options_default(&options);
-        options.vertex_count = 500;
+        options.vertex_count = 400;
         test_ok(context, starg_sample_create(context, name, &options, &mesh));
-        check_mesh(context, name, mesh, 2);
+        check_mesh(context, name, mesh, 3);
         starg_mesh_free(mesh);
     }
     test_context_free(context);
@@ -191,53 +192,106 @@ static void test_lattice_boxes(void **state) {
     starg_context *context = test_context(2);
     for (size_t i = 0; i < 4; i++) {
         starg_mesh *mesh = make_lattice_box(context, 5, scales[i], i == 0 ? 1e8 : 0);
-        check_mesh(context, "lattice box", mesh, i < 3 ? 4 : 1);
+        check_mesh(context, "lattice box", mesh, i < 3 ? 4 : 3);
         starg_mesh_free(mesh);
     }
     test_context_free(context);
 }
 
-/* The stages for each instruction set that the processor has: the same bits. */
-static void test_grid_forms(void **state) {
-    (void)state;
-    starg_context *context = test_context(1);
+/* A sample, its scene, and what is needed to ask for single points. */
+typedef struct form_case {
+    starg_context *context;
+    starg_mesh *mesh;
+    starg_solid *solid;
+    visibility_scene *scene;
+    double points[3 * 20];
+    size_t count;
+    int8_t *side;
+    uint8_t *plain, *wide;
+} form_case;
+
+static void make_form_case(form_case *c) {
     starg_sample_options sample;
     starg_sample_options_default(&sample);
     sample.vertex_count = 3000;
-    starg_mesh *mesh = NULL;
-    starg_solid *solid = NULL;
-    visibility_scene *scene = NULL;
-    test_ok(context, starg_sample_create(context, starg_sample_at(0)->name, &sample, &mesh));
-    test_ok(context, starg_solid_create(context, mesh, &solid));
-    test_ok(context, scene_create(context, solid, &scene));
-    double points[3 * 20];
-    size_t count = pick_points(solid, 20, 9, points);
-    assert_true(count > 0);
-    int8_t *side = malloc(scene->face_count);
-    uint8_t *plain = malloc(scene->vertex_count), *wide = malloc(scene->vertex_count);
+    *c = (form_case){.context = test_context(1)};
+    test_ok(c->context,
+            starg_sample_create(c->context, starg_sample_at(0)->name, &sample, &c->mesh));
+    test_ok(c->context, starg_solid_create(c->context, c->mesh, &c->solid));
+    test_ok(c->context, scene_create(c->context, c->solid, &c->scene));
+    test_ok(c->context, scene_add_net(c->scene));
+    assert_non_null(c->scene->net);
+    c->count = pick_points(c->solid, 20, 9, c->points);
+    assert_true(c->count > 0);
+    c->side = malloc(c->scene->face_count);
+    c->plain = malloc(c->scene->vertex_count);
+    c->wide = malloc(c->scene->vertex_count);
+    assert_true(c->side && c->plain && c->wide);
+}
+
+static void free_form_case(form_case *c) {
+    free(c->side);
+    free(c->plain);
+    free(c->wide);
+    scene_free(c->scene);
+    starg_solid_free(c->solid);
+    starg_mesh_free(c->mesh);
+    test_context_free(c->context);
+}
+
+/* The stages for each instruction set that the processor has: the same bits. */
+static void test_grid_forms(void **state) {
+    (void)state;
+    form_case c;
     void *scratch = NULL;
-    assert_int_equal(visibility_grid.make_scratch(scene, &scratch), STARG_OK);
+    make_form_case(&c);
+    assert_int_equal(visibility_grid.make_scratch(c.scene, &scratch), STARG_OK);
     grid_scratch *grid = scratch;
-    for (size_t i = 0; i < count; i++) {
-        scene_sides(scene, points + 3 * i, side);
-        for (int form = GRID_PLAIN; form <= GRID_WIDEST; form++) {
-            grid->run = grid_choose_form((grid_form)form);
+    for (size_t i = 0; i < c.count; i++) {
+        scene_sides(c.scene, c.points + 3 * i, c.side);
+        for (int form = FORM_PLAIN; form <= FORM_WIDEST; form++) {
+            grid->run = grid_choose_form((visibility_form)form);
             if (grid->run == NULL)
                 continue;
-            uint8_t *out = form == GRID_PLAIN ? plain : wide;
-            visibility_grid.find(scene, scratch, points + 3 * i, side, out);
-            if (form != GRID_PLAIN)
-                assert_memory_equal(plain, wide, scene->vertex_count);
+            uint8_t *out = form == FORM_PLAIN ? c.plain : c.wide;
+            visibility_grid.find(c.scene, scratch, c.points + 3 * i, c.side, out);
+            if (form != FORM_PLAIN)
+                assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
         }
     }
-    visibility_grid.free_scratch(scene, scratch);
-    free(side);
-    free(plain);
-    free(wide);
-    scene_free(scene);
-    starg_solid_free(solid);
-    starg_mesh_free(mesh);
-    test_context_free(context);
+    visibility_grid.free_scratch(c.scene, scratch);
+    free_form_case(&c);
+}
+
+/* Likewise; and the contours decide for themselves, without the grid, but for special points. */
+static void test_contours_forms(void **state) {
+    (void)state;
+    form_case c;
+    void *scratch = NULL;
+    size_t decided = 0;
+    make_form_case(&c);
+    assert_int_equal(visibility_contours.make_scratch(c.scene, &scratch), STARG_OK);
+    contours_scratch *s = scratch;
+    for (size_t i = 0; i < c.count; i++) {
+        const double *p = c.points + 3 * i;
+        scene_sides(c.scene, p, c.side);
+        visibility_grid.find(c.scene, s->grid, p, c.side, c.plain);
+        bool answers = contours_plain.run(c.scene, s, p, c.side, c.wide);
+        decided += answers;
+        if (answers)
+            assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
+        for (int form = FORM_AVX2; form <= FORM_WIDEST; form++) {
+            const contours_form *chosen = contours_choose_form((visibility_form)form);
+            if (chosen == NULL)
+                continue;
+            assert_int_equal(chosen->run(c.scene, s, p, c.side, c.wide), answers);
+            if (answers)
+                assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
+        }
+    }
+    assert_true(2 * decided >= c.count);
+    visibility_contours.free_scratch(c.scene, scratch);
+    free_form_case(&c);
 }
 
 static void test_arguments(void **state) {
@@ -278,8 +332,8 @@ static void test_arguments(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples), cmocka_unit_test(test_shared),
-        cmocka_unit_test(test_lattice_boxes), cmocka_unit_test(test_grid_forms),
-        cmocka_unit_test(test_arguments)};
+        cmocka_unit_test(test_samples),        cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_lattice_boxes),  cmocka_unit_test(test_grid_forms),
+        cmocka_unit_test(test_contours_forms), cmocka_unit_test(test_arguments)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

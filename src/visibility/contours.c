@@ -1,0 +1,186 @@
+/* Visibility by counting the layers before each vertex, which change at contours only: Appel's
+ * quantitative invisibility [A. Appel, The notion of quantitative invisibility and the machine
+ * rendering of solids, ACM 1967], made exact.
+ *
+ * Let p lie strictly inside a solid with an embedded boundary M. A face is kept if p lies strictly
+ * on its inner side; K is the union of the kept faces; a contour is an edge between a kept face and
+ * one that is not. For x on M let N(x) be the number of points of K before x, on the open segment
+ * from p to x. By the proof in scene.h, p sees the vertex v exactly if N(v) = 0.
+ *
+ * How N changes along an edge of M, from w to v, not on one line with p:
+ * - Between the ends. A point of K before x off the contours stays when x moves a little: there K
+ *   is a surface that the directions from p map one to one (about a vertex because a simple closed
+ *   curve on a sphere winds about a point once at most). Points of K near x lie on the two faces
+ *   of the edge, by embedding, and their planes hold neither p nor points before x if kept.
+ *   So N changes only where a contour passes before x. Where the contour (a, b) crosses the plane
+ *   of p, w, v there, N grows by one towards the side of its kept face, and falls away from it.
+ * - At an end w. Next to w come those points of K that converge to w: on kept faces (w, a, b) off
+ *   the edge, in whose wedge, seen from p, the edge starts, and before it. With all faces at w
+ *   kept, or none, there are no such points; otherwise they are counted.
+ * So N follows from one vertex of each shell along the edges of a spanning tree ("links"). The
+ * first is counted by the tree of boxes.
+ *
+ * With det(x, y, z) for vectors relative to p, the contour (a, b), its kept face on the left:
+ * - it crosses the link from w to v if det(w, v, a) and det(a, b, v) have one sign and det(w, v, b)
+ *   and det(a, b, w) the other (else their planes cross on opposite sides of p, or not between the
+ *   ends). It lies before the link if orient3d(v, a, b, w) has the sign of det(w, v, b). The step
+ *   is the sign of det(a, b, v).
+ * - kept faces count at w if det(w, v, a) < 0, det(w, v, b) > 0 and v lies beyond their plane.
+ * Signs that floating point does not decide are decided exactly. If one of them is 0 where that
+ * matters, p is in a special position (a contour behind or before a vertex, or an edge in a plane
+ * with p), and the grid answers for p; likewise if the boundary is not embedded, or tables would
+ * grow beyond proportion to the mesh.
+ *
+ * Stages for a point p:
+ *   1. find the contours;
+ *   2. project all vertices to the faces of a cube about p; sort the contours' projections into
+ *      rows of cells there by counting;
+ *   3. follow each link: compare it with the contours in the cells that it touches, in single
+ *      precision with an error bound first; count at ends that lie on contours;
+ *   4. sum along the trees.
+ * Cells only choose what is compared, with a margin above the rounding of the projection.
+ *
+ * Cost per point: O(n), plus the pairs of links and contours in common cells; contours are few on
+ * smooth fine meshes, O(sqrt(n)). Memory per thread: 250 bytes a vertex, the grid included. */
+#include "visibility/contours.h"
+
+#include <stdlib.h>
+
+#include "geometry/predicates.h"
+
+static void free_scratch(const visibility_scene *scene, void *scratch) {
+    contours_scratch *s = scratch;
+    if (s == NULL)
+        return;
+    starg_context *context = scene->context;
+    visibility_grid.free_scratch(scene, s->grid);
+    cube_free(context, &s->directions);
+    starg_release(context, s->mixed);
+    starg_release(context, s->contours);
+    starg_release(context, s->contour_edges);
+    starg_release(context, s->rows);
+    starg_release(context, s->cell_start);
+    starg_release(context, s->pieces);
+    starg_release(context, s->sorted.low);
+    starg_release(context, s->sorted.a);
+    starg_release(context, s->layers);
+    starg_release(context, s);
+}
+
+/* The columns lie in two blocks, of reals and of numbers. */
+static bool make_piece_table(starg_context *context, size_t limit, piece_table *table) {
+    float *reals = starg_allocate_zero(context, 8 * limit, sizeof *reals);
+    uint32_t *numbers = starg_allocate_zero(context, 3 * limit, sizeof *numbers);
+    table->low = reals;
+    table->a = numbers;
+    if (reals == NULL || numbers == NULL)
+        return false;
+    table->high = reals + limit;
+    table->au = reals + 2 * limit;
+    table->av = reals + 3 * limit;
+    table->an = reals + 4 * limit;
+    table->bu = reals + 5 * limit;
+    table->bv = reals + 6 * limit;
+    table->bn = reals + 7 * limit;
+    table->b = numbers + limit;
+    table->label = numbers + 2 * limit;
+    return true;
+}
+
+static bool make_tables(const visibility_scene *scene, contours_scratch *s) {
+    starg_context *context = scene->context;
+    size_t n = scene->vertex_count;
+    s->contour_limit = n + 64 < PIECE_NUMBER ? n + 64 : PIECE_NUMBER;
+    s->piece_limit = 4 * n + 1024;
+    s->row_limit = s->contour_limit / ROW_LOAD + CUBE_FACES + 1;
+    s->cell_limit = s->piece_limit + s->row_limit + 1;
+    s->mixed = starg_allocate(context, n, sizeof *s->mixed);
+    s->contours = starg_allocate(context, s->contour_limit, sizeof *s->contours);
+    s->contour_edges = starg_allocate(context, s->contour_limit, sizeof *s->contour_edges);
+    s->rows = starg_allocate(context, s->row_limit, sizeof *s->rows);
+    s->cell_start = starg_allocate(context, s->cell_limit, sizeof *s->cell_start);
+    s->pieces = starg_allocate(context, s->piece_limit, sizeof *s->pieces);
+    s->layers = starg_allocate(context, n, sizeof *s->layers);
+    return cube_make(context, n, &s->directions) && s->mixed && s->contours && s->contour_edges &&
+           s->rows && s->cell_start && s->pieces && s->layers &&
+           make_piece_table(context, s->piece_limit + PIECE_PADDING, &s->sorted);
+}
+
+static starg_status make_scratch(const visibility_scene *scene, void **scratch) {
+    contours_scratch *s = starg_allocate_zero(scene->context, 1, sizeof *s);
+    *scratch = NULL;
+    if (s == NULL)
+        return STARG_ERROR_MEMORY;
+    starg_status status = visibility_grid.make_scratch(scene, &s->grid);
+    if (status == STARG_OK && scene->net != NULL && !make_tables(scene, s))
+        status = STARG_ERROR_MEMORY;
+    if (status != STARG_OK) {
+        free_scratch(scene, s);
+        return status;
+    }
+    s->form = contours_choose_form(FORM_WIDEST);
+    *scratch = s;
+    return STARG_OK;
+}
+
+const contours_form *contours_choose_form(visibility_form wanted) {
+    static const contours_form *const forms[] = {
+        &contours_plain,
+#if defined(__x86_64__)
+        &contours_avx2,
+        &contours_avx512,
+#endif
+    };
+    wanted = form_resolve(wanted);
+    return form_is_supported(wanted) ? forms[wanted] : NULL;
+}
+
+typedef struct layer_query {
+    const visibility_scene *scene;
+    const double *p, *q;
+    const int8_t *side;
+    uint32_t slot;
+    int32_t layers;
+} layer_query;
+
+/* Does the segment to q pass through the inside of a kept face? It may not touch its border. */
+static bool count_layer(void *user, size_t rank) {
+    layer_query *query = user;
+    const double *p = query->p, *q = query->q;
+    if (query->side[rank] <= 0 || scene_has_corner(query->scene, rank, query->slot))
+        return true;
+    const double *a = scene_corner(query->scene, rank, 0);
+    const double *b = scene_corner(query->scene, rank, 1);
+    const double *c = scene_corner(query->scene, rank, 2);
+    if (orient3d(a, b, c, q) >= 0)
+        return true;
+    int ab = orient3d(a, b, q, p), bc = orient3d(b, c, q, p), ca = orient3d(c, a, q, p);
+    if (ab < 0 || bc < 0 || ca < 0)
+        return true;
+    query->layers++;
+    return ab > 0 && bc > 0 && ca > 0;
+}
+
+bool contours_count_layers(const visibility_scene *scene, const double p[3], const int8_t *side,
+                           uint32_t slot, int32_t *layers) {
+    const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
+    layer_query query = {scene, p, q, side, slot, 0};
+    bool clear = bvh_query_segment(scene->solid->tree, p, q, count_layer, &query);
+    *layers = query.layers;
+    return clear;
+}
+
+static void find(const visibility_scene *scene, void *scratch, const double p[3],
+                 const int8_t *side, uint8_t *visible) {
+    contours_scratch *s = scratch;
+    s->decided = scene->net != NULL && s->form->run(scene, s, p, side, visible);
+    if (!s->decided)
+        visibility_grid.find(scene, s->grid, p, side, visible);
+}
+
+static bool sees_plainly(const visibility_scene *scene, void *scratch, size_t rank) {
+    contours_scratch *s = scratch;
+    return s->decided && !s->form->may_cover(scene, s, rank);
+}
+
+const visibility_engine visibility_contours = {make_scratch, free_scratch, find, sees_plainly};

@@ -1,0 +1,102 @@
+/* Inside of the engine by contours (visibility/contours.c): its tables, and the stages that are
+ * compiled once for each instruction set. */
+#ifndef STARG_VISIBILITY_CONTOURS_H
+#define STARG_VISIBILITY_CONTOURS_H
+
+#include "visibility/cube.h"
+#include "visibility/forms.h"
+#include "visibility/net.h"
+#include "visibility/scene.h"
+
+/* A row begins so many contours; tables of pieces are longer by what is compared at once. */
+enum { ROW_LOAD = 48, PIECE_PADDING = 16 };
+
+/* An edge between a kept face, in which it runs from a to b, and one that is not kept. */
+typedef struct contour {
+    double normal[3]; /* a x b, relative to p: positive on the kept face's side */
+    uint32_t a, b;
+    uint32_t tested_by; /* the last link that was compared with it */
+} contour;
+
+/* A row of cells: pieces of contours at nearly the same v, cut evenly by the lower end of u. */
+typedef struct contour_row {
+    float v_low, v_high;
+    float u_low, u_high, scale, last_cell; /* of the lower ends */
+    float widest;                          /* extent in u of a piece */
+    uint32_t first_cell, pieces;
+} contour_row;
+
+/* The part of a contour in a row. The ends are those on the whole cube face, NaN where unknown. */
+typedef struct contour_piece {
+    uint32_t row, label;
+    float low, high;      /* of u in the row */
+    float from[3], to[3]; /* u, v, nearness */
+} contour_piece;
+
+/* A label is the number of the contour and marks. A plain piece is a whole contour on one cube
+ * face, in few rows; when it meets a plain link, both meet first in a row where one of them
+ * starts. */
+#define PIECE_COUNTS 0x80000000u /* is not plain, or starts in this row */
+#define PIECE_PLAIN  0x40000000u
+#define PIECE_NUMBER 0x3fffffffu
+
+/* Pieces as the inner loop reads them; PIECE_PADDING more of any value. */
+typedef struct piece_table {
+    float *low, *high, *au, *av, *an, *bu, *bv, *bn;
+    uint32_t *a, *b, *label; /* a, b: the slots of its ends */
+} piece_table;
+
+struct contours_scratch;
+
+/* All stages for one point. False, and nothing said, where the point lies in a special position
+ * or a table is full. */
+typedef bool contours_run(const visibility_scene *scene, struct contours_scratch *s,
+                          const double p[3], const int8_t *side, uint8_t *visible);
+
+/* After the stages have said what is visible: may anything cover a part of the kept face, which has
+ * its three corners visible? */
+typedef bool contours_face_test(const visibility_scene *scene, struct contours_scratch *s,
+                                size_t rank);
+
+typedef struct contours_form {
+    contours_run *run;
+    contours_face_test *may_cover;
+} contours_form;
+
+typedef struct contours_scratch {
+    const contours_form *form;
+    bool decided; /* the last point was by contours */
+    const double *p;
+    const int8_t *side; /* of that point */
+    void *grid;         /* scratch of the grid, for points that contours do not decide */
+    cube_directions directions;
+    uint8_t *mixed; /* by slot: is there a contour? */
+    contour *contours;
+    uint32_t *contour_edges; /* numbers of the net's edges */
+    size_t contour_count, contour_limit;
+    uint32_t row_of_bin[CUBE_FACES * BINS]; /* by face of the cube, then by bin */
+    contour_row *rows;
+    size_t row_count, row_limit;
+    uint32_t *cell_start; /* cell -> first of its pieces, and the end */
+    size_t cell_limit;
+    contour_piece *pieces; /* as they are found */
+    size_t piece_count, piece_limit;
+    piece_table sorted; /* by cell */
+    int32_t *layers;    /* by slot: kept layers before it, first relative to its parent */
+} contours_scratch;
+
+/* The stages for several instruction sets. */
+extern const contours_form contours_plain;
+#if defined(__x86_64__)
+extern const contours_form contours_avx2, contours_avx512;
+#endif
+
+/* NULL where the processor does not have what the form needs. */
+const contours_form *contours_choose_form(visibility_form wanted);
+
+/* The number of kept layers before the vertex, found by the tree. False where the segment from p
+ * meets an edge of the kept faces. */
+bool contours_count_layers(const visibility_scene *scene, const double p[3], const int8_t *side,
+                           uint32_t slot, int32_t *layers);
+
+#endif

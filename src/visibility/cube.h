@@ -1,0 +1,272 @@
+/* Directions from a point, projected to the six faces of a cube about it. Included by the stages
+ * that are compiled once for each instruction set. */
+#ifndef STARG_VISIBILITY_CUBE_H
+#define STARG_VISIBILITY_CUBE_H
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "visibility/scene.h"
+
+enum { CUBE_FACES = 6, BINS = 1024, RIM = 8 };
+
+/* Far above the rounding of a projected coordinate in single precision (2^-23). */
+static const float CELL_MARGIN = 0x1p-20f;
+
+/* The sides of a widened frustum, as planes through p: axis x SLACK - sign x coordinate k. */
+static const double SLACK = 1 + 0x1p-18;
+
+/* Where directions meet the cube: face 2 k or 2 k + 1 for the largest coordinate k, positive or
+ * negative; u and v in [-1, 1] are the next two coordinates over it. All by slot. */
+typedef struct cube_directions {
+    double *x, *y, *z; /* relative to p */
+    float *u, *v;
+    float *nearness; /* the largest coordinate of all over its own: 1 or more */
+    uint32_t *face;  /* plus RIM where rounding could put it on another face */
+    double extent;   /* the largest coordinate of all */
+    double bound;    /* of the error of determinants; infinite: always exact */
+} cube_directions;
+
+static inline void cube_free(starg_context *context, cube_directions *d) {
+    starg_release(context, d->x);
+    starg_release(context, d->y);
+    starg_release(context, d->z);
+    starg_release(context, d->u);
+    starg_release(context, d->v);
+    starg_release(context, d->nearness);
+    starg_release(context, d->face);
+}
+
+/* False when memory is out; cube_free is due either way. */
+static inline bool cube_make(starg_context *context, size_t count, cube_directions *d) {
+    d->x = starg_allocate(context, count, sizeof *d->x);
+    d->y = starg_allocate(context, count, sizeof *d->y);
+    d->z = starg_allocate(context, count, sizeof *d->z);
+    d->u = starg_allocate(context, count, sizeof *d->u);
+    d->v = starg_allocate(context, count, sizeof *d->v);
+    d->nearness = starg_allocate(context, count, sizeof *d->nearness);
+    d->face = starg_allocate(context, count, sizeof *d->face);
+    return d->x && d->y && d->z && d->u && d->v && d->nearness && d->face;
+}
+
+/* Index among equal parts of which the last has number `last`; what lies outside (and NaN) goes to
+ * the ends. Monotone, which is all that correctness asks of it; without branches. */
+static inline uint32_t part_of(float distance, float scale, float last) {
+    float t = distance * scale;
+    t = t > 0 ? t : 0;
+    return (uint32_t)(int32_t)(t < last ? t : last);
+}
+
+static inline uint32_t bin_of(float v) {
+    return part_of(v + 1, 0.5f * BINS, BINS - 1);
+}
+
+static inline double larger(double a, double b) {
+    return a > b ? a : b; /* unlike fmax, one instruction */
+}
+
+/* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
+ * most 6 mx my mz and an error of at most 8 roundings of it; the sum of four comes to 30. */
+static inline void cube_make_relative(const visibility_scene *scene, const double p[3],
+                                      cube_directions *d) {
+    double mx = 0, my = 0, mz = 0;
+    for (size_t i = 0; i < scene->vertex_count; i++) {
+        d->x[i] = scene->x[i] - p[0];
+        d->y[i] = scene->y[i] - p[1];
+        d->z[i] = scene->z[i] - p[2];
+        mx = larger(mx, fabs(d->x[i]));
+        my = larger(my, fabs(d->y[i]));
+        mz = larger(mz, fabs(d->z[i]));
+    }
+    d->extent = larger(larger(mx, my), mz);
+    d->bound = 6 * 40 * 0x1p-53 * mx * my * mz;
+    if (!(d->bound > 1e-200))
+        d->bound = INFINITY;
+}
+
+/* Projects all vertices; without branches, so that the compiler takes several at a time. */
+static inline void cube_project(size_t count, cube_directions *d) {
+    const float rim = 1 - CELL_MARGIN;
+    for (size_t i = 0; i < count; i++) {
+        double x = d->x[i], y = d->y[i], z = d->z[i];
+        double ax = fabs(x), ay = fabs(y), az = fabs(z);
+        bool by_x = (ax >= ay) & (ax >= az), by_y = ay >= az;
+        double major = by_x ? x : by_y ? y : z;
+        double first = by_x ? y : by_y ? z : x;
+        double second = by_x ? z : by_y ? x : y;
+        double scale = 1 / fabs(major);
+        float u = (float)(first * scale), v = (float)(second * scale);
+        uint32_t face = by_x ? 0 : by_y ? 2 : 4;
+        bool inner = (fabsf(u) < rim) & (fabsf(v) < rim);
+        d->u[i] = u;
+        d->v[i] = v;
+        d->nearness[i] = (float)(d->extent * scale);
+        d->face[i] = face + (major < 0 ? 1 : 0) + (inner ? 0 : RIM);
+    }
+}
+
+/* With the cube face's axis first, then u and v. */
+static inline void cube_turn(const cube_directions *d, uint32_t slot, uint32_t cube_face,
+                             double out[3]) {
+    const double *const axis[3] = {d->x, d->y, d->z};
+    uint32_t k = cube_face / 2;
+    out[0] = cube_face % 2 ? -axis[k][slot] : axis[k][slot];
+    out[1] = axis[(k + 1) % 3][slot];
+    out[2] = axis[(k + 2) % 3][slot];
+}
+
+/* What comes nearer to p than about this times its own size may have any direction, as far as
+ * rounding can tell: clipping it by a frustum could lose it. */
+static const double NEAR = 0x1p-18;
+
+static inline double size_of(const double v[3]) {
+    return larger(larger(fabs(v[0]), fabs(v[1])), fabs(v[2]));
+}
+
+static inline void cube_relative(const cube_directions *d, uint32_t slot, double out[3]) {
+    out[0] = d->x[slot];
+    out[1] = d->y[slot];
+    out[2] = d->z[slot];
+}
+
+/* May the segment from a to b come near p? Its distance is |a x b| / |b - a|, if not more; a short
+ * one cannot, for it keeps to its ends. The lower limit of the length guards the quotient. */
+static inline bool segment_is_near(const cube_directions *d, uint32_t from, uint32_t to) {
+    double a[3], b[3], along[3], area[3];
+    cube_relative(d, from, a);
+    cube_relative(d, to, b);
+    vec3_subtract(b, a, along);
+    vec3_cross(a, b, area);
+    double size = larger(size_of(a), size_of(b)), length = size_of(along);
+    return !(length < 0.25 * size) &&
+           !(size_of(area) > 4 * NEAR * size * larger(length, NEAR * size));
+}
+
+/* The same for a triangle: at most |det(a, b, c)| / |n| away is its plane, of normal n. */
+static inline bool triangle_is_near(const cube_directions *d, const uint32_t corner[3]) {
+    double a[3], b[3], c[3], ab[3], ac[3], normal[3];
+    cube_relative(d, corner[0], a);
+    cube_relative(d, corner[1], b);
+    cube_relative(d, corner[2], c);
+    vec3_subtract(b, a, ab);
+    vec3_subtract(c, a, ac);
+    vec3_cross(ab, ac, normal);
+    double size = larger(larger(size_of(a), size_of(b)), size_of(c));
+    double length = larger(size_of(ab), size_of(ac)), area = size_of(normal);
+    return !(length < 0.25 * size) &&
+           !(fabs(vec3_dot(normal, a)) > 4 * NEAR * size * larger(area, NEAR * size * size));
+}
+
+/* Positive within one of the four sides of the frustum. */
+static inline double beyond_side(const double v[3], int plane) {
+    return SLACK * v[0] - (plane % 2 ? -v[1 + plane / 2] : v[1 + plane / 2]);
+}
+
+/* A convex polygon on one cube face: a face, or the part of one that lies before the cube face. */
+typedef struct cube_polygon {
+    int count;
+    float corner[8][2]; /* u, v */
+    double depth;       /* the largest coordinate along the axis */
+} cube_polygon;
+
+/* Vectors from p with the cube face's axis first, then u and v. */
+typedef struct cone_polygon {
+    int count;
+    double corner[8][3];
+} cone_polygon;
+
+/* Cuts off what lies outside one side. */
+static inline void clip_cone(const cone_polygon *in, int plane, cone_polygon *out) {
+    out->count = 0;
+    for (int i = 0; i < in->count; i++) {
+        const double *a = in->corner[i], *b = in->corner[(i + 1) % in->count];
+        double at_a = beyond_side(a, plane), at_b = beyond_side(b, plane);
+        if (at_a >= 0)
+            memcpy(out->corner[out->count++], a, sizeof out->corner[0]);
+        if ((at_a >= 0) == (at_b >= 0))
+            continue;
+        double t = at_a / (at_a - at_b);
+        for (int j = 0; j < 3; j++)
+            out->corner[out->count][j] = a[j] + t * (b[j] - a[j]);
+        out->count++;
+    }
+}
+
+/* The part of a face in the frustum of a cube face: mostly nothing, which one side tells, or what
+ * a single side cuts off. */
+static inline void clip_to_frustum(cone_polygon *polygon) {
+    cone_polygon clipped;
+    bool cut[4];
+    if (polygon->corner[0][0] <= 0 && polygon->corner[1][0] <= 0 && polygon->corner[2][0] <= 0) {
+        polygon->count = 0;
+        return;
+    }
+    for (int plane = 0; plane < 4; plane++) {
+        int outside = 0;
+        for (int i = 0; i < 3; i++)
+            outside += beyond_side(polygon->corner[i], plane) < 0;
+        if (outside == 3) {
+            polygon->count = 0;
+            return;
+        }
+        cut[plane] = outside > 0;
+    }
+    for (int plane = 0; plane < 4; plane++)
+        if (cut[plane]) {
+            clip_cone(polygon, plane, &clipped);
+            *polygon = clipped;
+        }
+}
+
+/* The same on the cube face, for a face that is not near p. */
+static inline void cube_clip_triangle(const cube_directions *d, const uint32_t corner[3],
+                                      uint32_t cube_face, cube_polygon *polygon) {
+    cone_polygon cone = {.count = 3};
+    for (int i = 0; i < 3; i++)
+        cube_turn(d, corner[i], cube_face, cone.corner[i]);
+    clip_to_frustum(&cone);
+    polygon->count = cone.count;
+    polygon->depth = 0;
+    for (int i = 0; i < cone.count; i++) {
+        polygon->depth = larger(polygon->depth, cone.corner[i][0]);
+        polygon->corner[i][0] = (float)(cone.corner[i][1] / cone.corner[i][0]);
+        polygon->corner[i][1] = (float)(cone.corner[i][2] / cone.corner[i][0]);
+    }
+}
+
+static inline float lesser(float a, float b) {
+    return a < b ? a : b; /* unlike fminf, one instruction */
+}
+
+static inline float greater(float a, float b) {
+    return a > b ? a : b;
+}
+
+static inline void widen(float u, float span[2]) {
+    span[0] = lesser(u, span[0]);
+    span[1] = greater(u, span[1]);
+}
+
+/* Where one edge of a projected triangle lies within a row: its ends there, and where it enters
+ * and leaves. The slack covers the rounding of the slope, which counts where an edge is nearly
+ * level; the ends bound it. */
+static inline void span_edge(const float from[2], const float to[2], float v_low, float v_high,
+                             float span[2]) {
+    float u_low = lesser(from[0], to[0]), u_high = greater(from[0], to[0]);
+    float slope = (to[0] - from[0]) / (to[1] - from[1]);
+    float slack = (fabsf(slope) + 1) * CELL_MARGIN;
+    if (from[1] >= v_low && from[1] <= v_high)
+        widen(from[0], span);
+    for (int side = 0; side < 2; side++) {
+        float v = side ? v_high : v_low;
+        if ((from[1] < v) == (to[1] < v))
+            continue;
+        float u = from[0] + (v - from[1]) * slope;
+        widen(u - slack > u_low ? u - slack : u_low, span);
+        widen(u + slack < u_high ? u + slack : u_high, span);
+    }
+}
+
+#endif

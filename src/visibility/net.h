@@ -1,0 +1,34 @@
+/* How the boundary of a solid hangs together, in slots and ranks of its scene: edges, the faces
+ * about each vertex, and a spanning tree along edges. Immutable once made. */
+#ifndef STARG_VISIBILITY_NET_H
+#define STARG_VISIBILITY_NET_H
+
+#include "visibility/scene.h"
+
+enum { FAN = 8 };
+
+/* An edge runs from a to b in the face `left`, and back in `right`. */
+typedef struct net_edge {
+    uint32_t left, right, a, b;
+} net_edge;
+
+typedef struct visibility_net {
+    starg_context *context;
+    size_t edge_count;
+    net_edge *edges; /* by the lower slot of their ends: neighbours in memory are near in space */
+    /* The neighbours of a slot in counter-clockwise order seen from outside, and in the same places
+     * the ranks of the faces between each and the next one. */
+    uint32_t *fan_start;            /* slot -> its first place; one more than there are slots */
+    uint32_t *neighbour, *fan_face; /* FAN places more */
+    uint32_t *parent;               /* slot -> a neighbour, or itself for the root of a shell */
+    uint32_t *order;                /* slots, shell by shell, each behind its parent */
+    size_t shell_count;
+    uint32_t *shell_start; /* shell -> its first place in order, its root; and the end */
+} visibility_net;
+
+/* Every vertex and edge must be manifold, as those of a solid are. O(n). Errors: MEMORY. */
+starg_status net_create(starg_context *context, const visibility_scene *scene,
+                        visibility_net **out);
+void net_free(visibility_net *net);
+
+#endif
