@@ -67,32 +67,29 @@ static double rate(const setting *s, size_t points, double seconds) {
     return 1e-6 * (double)points * (double)s->vertex_count / seconds;
 }
 
-/* Best of the repeats: what the machine can do when nobody else uses it. In millions a second. */
-static double run_engine(setting *s, starg_visibility_engine engine, size_t points, int repeats) {
+/* In millions of queries a second. */
+static double run_engine(setting *s, starg_visibility_engine engine, size_t points) {
     starg_visibility_options options;
-    double best = INFINITY;
+    starg_bits *bits = NULL;
     starg_visibility_options_default(&options);
     options.engine = engine;
     options.target = STARG_TARGET_VERTICES;
-    for (int i = 0; i < repeats; i++) {
-        starg_bits *bits = NULL;
-        double start = now();
-        stop_unless(s->context,
-                    starg_visibility(s->context, s->solid, s->points, points, &options, &bits));
-        best = fmin(best, now() - start);
-        for (size_t p = 0; s->reference != NULL && p < points; p++)
-            for (size_t v = 0; v < s->vertex_count; v++)
-                if (starg_bits_test(bits, p, v) != starg_bits_test(s->reference, p, v)) {
-                    fprintf(stderr, "engine %d differs at point %zu, vertex %zu\n", (int)engine, p,
-                            v);
-                    exit(1);
-                }
-        if (s->reference == NULL)
-            s->reference = bits;
-        else
-            starg_bits_free(bits);
+    double start = now();
+    stop_unless(s->context,
+                starg_visibility(s->context, s->solid, s->points, points, &options, &bits));
+    double seconds = now() - start;
+    if (s->reference == NULL) {
+        s->reference = bits;
+        return rate(s, points, seconds);
     }
-    return rate(s, points, best);
+    for (size_t p = 0; p < points; p++)
+        for (size_t v = 0; v < s->vertex_count; v++)
+            if (starg_bits_test(bits, p, v) != starg_bits_test(s->reference, p, v)) {
+                fprintf(stderr, "engine %d differs at point %zu, vertex %zu\n", (int)engine, p, v);
+                exit(1);
+            }
+    starg_bits_free(bits);
+    return rate(s, points, seconds);
 }
 
 #ifdef HAVE_EMBREE
@@ -176,43 +173,59 @@ static void trace(RTCScene scene, const setting *s, bool together, struct RTCRay
         rtcOccluded1(scene, &context, &rays[i]);
 }
 
-/* Millions a second in the best mode, and which that is. */
-static double run_embree(const setting *s, size_t points, int repeats, int *best_mode,
-                         size_t *different) {
-    RTCDevice device = rtcNewDevice("threads=1");
-    RTCScene scene = make_scene(device, s);
-    struct RTCRay *rays = aligned_alloc(64, (s->vertex_count * sizeof *rays + 63) / 64 * 64);
-    order *orders = malloc(s->vertex_count * sizeof *orders);
-    double best = INFINITY;
-    if (rays == NULL || orders == NULL)
+typedef struct embree {
+    RTCDevice device;
+    RTCScene scene;
+    struct RTCRay *rays;
+    order *orders;
+    double best;
+    int best_mode;
+    size_t different, points;
+} embree;
+
+static void start_embree(const setting *s, embree *e) {
+    *e = (embree){.points = s->point_count / 4 + 1};
+    e->device = rtcNewDevice("threads=1");
+    e->scene = make_scene(e->device, s);
+    e->rays = aligned_alloc(64, (s->vertex_count * sizeof *e->rays + 63) / 64 * 64);
+    e->orders = malloc(s->vertex_count * sizeof *e->orders);
+    if (e->rays == NULL || e->orders == NULL)
         exit(1);
-    for (int i = 0; i < repeats; i++)
-        for (int mode = 0; mode < 4; mode++) {
-            double seconds = 0;
-            *different = 0;
-            for (size_t p = 0; p < points; p++) {
-                make_rays(s, s->points + 3 * p, mode / 2, orders, rays);
-                double start = now();
-                trace(scene, s, mode % 2, rays);
-                seconds += now() - start;
-                for (size_t k = 0; k < s->vertex_count; k++)
-                    *different +=
-                        (rays[k].tfar > 0) != starg_bits_test(s->reference, p, orders[k].vertex);
-            }
-            if (seconds < best) {
-                best = seconds;
-                *best_mode = mode;
-            }
+}
+
+static void run_embree(const setting *s, embree *e) {
+    for (int mode = 0; mode < 4; mode++) {
+        double seconds = 0;
+        e->different = 0;
+        for (size_t p = 0; p < e->points; p++) {
+            make_rays(s, s->points + 3 * p, mode / 2, e->orders, e->rays);
+            double start = now();
+            trace(e->scene, s, mode % 2, e->rays);
+            seconds += now() - start;
+            for (size_t k = 0; k < s->vertex_count; k++)
+                e->different +=
+                    (e->rays[k].tfar > 0) != starg_bits_test(s->reference, p, e->orders[k].vertex);
         }
-    free(rays);
-    free(orders);
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-    return rate(s, points, best);
+        if (rate(s, e->points, seconds) > e->best) {
+            e->best = rate(s, e->points, seconds);
+            e->best_mode = mode;
+        }
+    }
+}
+
+static void print_embree(const setting *s, embree *e, double contours) {
+    static const char *const modes[] = {"1, mesh", "1M, mesh", "1, cells", "1M, cells"};
+    printf(" %.1f (%s) | %.1f | %zu in %.1f million |", e->best, modes[e->best_mode],
+           contours / e->best, e->different, 1e-6 * (double)e->points * (double)s->vertex_count);
+    free(e->rays);
+    free(e->orders);
+    rtcReleaseScene(e->scene);
+    rtcReleaseDevice(e->device);
 }
 #endif
 
-/* Points are fewer on large meshes, and for slow engines. */
+/* Points are fewer on large meshes, and for slow engines. The best of the repeats counts, which
+ * take turns: what the machine can do when nobody else uses it. */
 static void run_model(starg_context *context, const char *path, size_t points, int repeats) {
     setting s = {.context = context};
     starg_mesh *mesh = NULL;
@@ -222,23 +235,30 @@ static void run_model(starg_context *context, const char *path, size_t points, i
     s.faces = starg_mesh_faces(starg_solid_mesh(s.solid));
     s.vertex_count = starg_mesh_vertex_count(mesh);
     s.face_count = starg_mesh_face_count(mesh);
-    s.point_count = points * 10000 / (s.vertex_count + 10000) * 2 + 1;
+    s.point_count = points * 20000 / (s.vertex_count + 10000);
+    if (s.point_count < 50)
+        s.point_count = 50;
     make_points(&s);
     size_t few = s.point_count / 20 + 1;
-    double contours = run_engine(&s, STARG_VISIBILITY_CONTOURS, s.point_count, repeats);
-    double grid = run_engine(&s, STARG_VISIBILITY_GRID, s.point_count, repeats);
-    double tree = run_engine(&s, STARG_VISIBILITY_BVH, few, 1);
-    double sweep = run_engine(&s, STARG_VISIBILITY_SWEEP, few, 1);
+    double contours = 0, grid = 0;
+#ifdef HAVE_EMBREE
+    embree e;
+    start_embree(&s, &e);
+#endif
+    for (int i = 0; i < repeats; i++) {
+        contours = fmax(contours, run_engine(&s, STARG_VISIBILITY_CONTOURS, s.point_count));
+        grid = fmax(grid, run_engine(&s, STARG_VISIBILITY_GRID, s.point_count));
+#ifdef HAVE_EMBREE
+        run_embree(&s, &e);
+#endif
+    }
+    double tree = run_engine(&s, STARG_VISIBILITY_BVH, few);
+    double sweep = run_engine(&s, STARG_VISIBILITY_SWEEP, few);
     const char *name = strrchr(path, '/');
     printf("| %s | %zu | %.1f | %.1f | %.1f | %.1f |", name ? name + 1 : path, s.vertex_count,
            contours, grid, tree, sweep);
 #ifdef HAVE_EMBREE
-    static const char *const modes[] = {"1, mesh", "1M, mesh", "1, cells", "1M, cells"};
-    int mode = 0;
-    size_t different = 0, enough = s.point_count / 4 + 1;
-    double embree = run_embree(&s, enough, repeats, &mode, &different);
-    printf(" %.1f (%s) | %.1f | %zu in %.1f million |", embree, modes[mode], contours / embree,
-           different, 1e-6 * (double)enough * (double)s.vertex_count);
+    print_embree(&s, &e, contours);
 #endif
     printf("\n");
     fflush(stdout);

@@ -1,11 +1,11 @@
 #!/bin/sh
 # clang-tidy over the library and the command line. Usage: tidy.sh BUILD
-# The grid's stages for instruction sets are one source compiled three times: the plain form stands
+# The visibility stages for instruction sets are one source compiled three times: the plain form stands
 # for all.
 set -eu
 cd "$(dirname "$0")/.."
 log="$1/tidy.log"
-if ! find src cli -name '*.c' ! -name 'grid_avx*.c' -print0 | sort -z |
+if ! find src cli -name '*.c' ! -name '*_avx*.c' -print0 | sort -z |
     xargs -0 -P "$(nproc)" -n 6 clang-tidy -p "$1" --quiet >"$log" 2>&1; then
     grep -E 'warning:|error:' "$log" >&2
     exit 1
