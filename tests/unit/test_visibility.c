@@ -105,7 +105,7 @@ static void test_samples(void **state) {
         starg_sample_options options;
         starg_mesh *mesh = NULL;
         starg_sample_options_default(&options);
-        options.vertex_count = 400;
+        options.vertex_count = 500;
         test_ok(context, starg_sample_create(context, name, &options, &mesh));
         check_mesh(context, name, mesh, 3);
         starg_mesh_free(mesh);
