@@ -10,9 +10,6 @@
 
 static const char STAGE[] = "visibility";
 
-/* Up to so many points the net costs more than it saves: the engine by contours does without. */
-enum { FEW_POINTS = 2 };
-
 typedef struct job {
     const visibility_scene *scene;
     const visibility_engine *engine;
@@ -217,7 +214,7 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     STARG_TRY(check_arguments(context, points, count, options));
     STARG_TRY(check_cone(context, count, options));
     STARG_TRY(scene_create(context, solid, &scene));
-    if (options->engine == STARG_VISIBILITY_CONTOURS && count > FEW_POINTS)
+    if (options->engine == STARG_VISIBILITY_CONTOURS && count > 1) /* one does not pay for it */
         STARG_TRY(scene_add_net(scene));
     size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                               : solid->mesh->face_count;
