@@ -9,7 +9,6 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 if [ -d "$data/tosca_paper" ]; then
-    model=$data/tosca_paper/david0.off
     models=$(ls "$data"/tosca_paper/*.off)
 else
     echo "there is no $data: samples instead"
@@ -18,7 +17,6 @@ else
         "$build/starguard" sample $name --vertices 10000 -o "$work/$name.off" --quiet
         models="$models $work/$name.off"
     done
-    model=$work/human.off
 fi
 
 echo "== queries per second"
@@ -28,7 +26,7 @@ for n in 10000 25000 100000 1000000; do
     sizes="$sizes $work/horse_$n.off"
 done
 # shellcheck disable=SC2086
-"$build/bench/bench_visibility" 400 3 $models $sizes
+"$build/bench/bench_visibility" 300 4 $models $sizes
 
 echo "== guarding"
 for method in greedy ilp; do
