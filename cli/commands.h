@@ -26,6 +26,7 @@ extern const cli_command cli_command_check;
 extern const cli_command cli_command_repair;
 extern const cli_command cli_command_skeleton;
 extern const cli_command cli_command_visible;
+extern const cli_command cli_command_kernel;
 extern const cli_command cli_command_guard;
 extern const cli_command cli_command_verify;
 

@@ -7,6 +7,7 @@
 #include "context.h"
 #include "cover.h"
 #include "guard.h"
+#include "kernel.h"
 #include "mesh.h"
 #include "picture.h"
 #include "repair.h"

@@ -213,6 +213,37 @@ class Visible(support.Case):
             self.assertNotIn((190, 195, 200), colors)
 
 
+class Kernel(support.Case):
+    def test_star(self):
+        self.write("m.off", TETRAHEDRON)
+        report = self.run_json("kernel", "m.off")
+        self.assertEqual(report["format"], "starguard-kernel")
+        self.assertEqual(report["verdict"], "interior")
+        self.assertIs(report["star"], True)
+        radius = 1 / (3 + 3 ** 0.5)  # of the inscribed ball
+        self.assertAlmostEqual(report["radius"], radius)
+        for x in report["guard"]:
+            self.assertAlmostEqual(x, radius)
+        self.assertEqual(report["witness"], [])
+        text = self.run_text("kernel", "m.off")[0]
+        self.assertIn("star-shaped", text)
+        self.assertRegex(text, r"(?m)^guard +0\.211")
+
+    def test_no_star(self):
+        torus = self.sample("torus")
+        report = self.run_json("kernel", torus)
+        self.assertEqual(report["verdict"], "empty")
+        self.assertIs(report["star"], False)
+        self.assertIsNone(report["guard"])
+        self.assertLess(report["radius"], 0)
+        self.assertIn(len(report["witness"]), [1, 2, 3, 4])
+        self.assertIn("not star-shaped", self.run_text("kernel", torus)[0])
+
+    def test_open(self):
+        self.write("m.off", OPEN)
+        self.run_text("kernel", "m.off", status=2)
+
+
 class Guard(support.Case):
     def setUp(self):
         super().setUp()
@@ -367,6 +398,7 @@ class Documentation(support.Case):
             self.run_json("check", "none.off", status=2),
             self.run_json("repair", "open.off", "-o", "m.off"),
             self.run_json("skeleton", room, "-o", "s.cg"),
+            self.run_json("kernel", room),
             self.run_json(*look, "faces"),
             self.run_json(*look, "vertices"),
             self.run_json(*guard),
