@@ -137,8 +137,8 @@ starg_status cli_report_print(cli_session *session) {
 }
 
 static const char *element_name(starg_element element) {
-    static const char *const names[] = {"none", "vertex", "face",  "edge",
-                                        "line", "byte",   "guard", "candidate"};
+    static const char *const names[] = {"none", "vertex", "face",      "edge",       "line",
+                                        "byte", "guard",  "candidate", "tetrahedron"};
     return (size_t)element < sizeof names / sizeof *names ? names[element] : "unknown";
 }
 

@@ -83,7 +83,8 @@ typedef enum starg_element {
     STARG_ELEMENT_LINE = 4, /* of a text file, from 1 */
     STARG_ELEMENT_BYTE = 5, /* of a binary file, from 0 */
     STARG_ELEMENT_GUARD = 6,
-    STARG_ELEMENT_CANDIDATE = 7
+    STARG_ELEMENT_CANDIDATE = 7,
+    STARG_ELEMENT_TETRAHEDRON = 8
 } starg_element;
 
 enum { STARG_ERROR_INDICES = 8 };

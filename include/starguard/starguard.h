@@ -16,6 +16,7 @@
 #include "skeleton.h"
 #include "solid.h"
 #include "status.h"
+#include "tetra.h"
 #include "verify.h"
 #include "version.h"
 #include "visibility.h"

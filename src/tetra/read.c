@@ -1,0 +1,126 @@
+/* Reading a tetrahedral mesh of any format; which one it is, is told by the content. TetGen's pair
+ * of files has none, and is known by its name. */
+#include "core/file.h"
+#include "core/memory.h"
+#include "tetra/io.h"
+
+static const struct format {
+    bool (*matches)(const starg_source *source);
+    starg_status (*read)(tet_builder *builder);
+} formats[] = {
+    {tet_vtk_matches, tet_vtk_read},
+    {tet_gmsh_matches, tet_gmsh_read},
+    {tet_medit_matches, tet_medit_read},
+};
+
+static const struct format *detect(const starg_source *source) {
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (formats[i].matches(source))
+            return &formats[i];
+    return NULL;
+}
+
+static bool is_tetgen(const char *name) {
+    return starg_has_ending(name, ".node") || starg_has_ending(name, ".ele");
+}
+
+bool starg_tetmesh_recognized(const void *bytes, size_t size, const char *name) {
+    const starg_source source = {NULL, name, bytes, size};
+    return is_tetgen(name) || detect(&source) != NULL;
+}
+
+/* Long names are shown by their ends, so that a message has room for what it says. */
+static void show_name(const char *name, char *shown, size_t size) {
+    size_t length = strlen(name);
+    if (length < size)
+        memcpy(shown, name, length + 1);
+    else
+        snprintf(shown, size, "...%s", name + length - (size - 4));
+}
+
+/* Runs one reader on sources whose names are short enough to be shown. */
+static starg_status read_source(const starg_source *source, const starg_source *elements,
+                                starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    tet_builder builder = {.points = {.source = source}};
+    starg_c_locale locale = {0};
+    const struct format *format = NULL;
+    starg_progress_begin(source->context, "read");
+    STARG_TRY(starg_check_cancel(source->context, STARG_MESH_FILE));
+    STARG_TRY(starg_c_locale_enter(source->context, &locale));
+    if (elements != NULL) {
+        STARG_TRY(tet_tetgen_read(&builder, elements));
+    } else {
+        format = detect(source);
+        if (format == NULL) {
+            status = starg_source_fail(source, starg_at_file(),
+                                       "the format is unknown; tetrahedra are read from MEDIT "
+                                       ".mesh, legacy .vtk, Gmsh .msh, and TetGen .node and .ele");
+            goto done;
+        }
+        STARG_TRY(format->read(&builder));
+    }
+    STARG_TRY(tet_builder_finish(&builder, out));
+done:
+    starg_c_locale_leave(&locale);
+    tet_builder_free(&builder);
+    starg_progress_end(source->context);
+    return status;
+}
+
+starg_status starg_tetmesh_read_memory(starg_context *context, const void *bytes, size_t size,
+                                       const char *name, starg_tetmesh **out) {
+    char shown[256];
+    *out = NULL;
+    show_name(name, shown, sizeof shown);
+    const starg_source source = {context, shown, bytes, size};
+    return read_source(&source, NULL, out);
+}
+
+/* The name with another ending, in a block of the context. */
+static starg_status with_ending(starg_context *context, const char *path, const char *ending,
+                                char **out) {
+    starg_status status = STARG_OK;
+    size_t stem = (size_t)(strrchr(path, '.') - path), tail = strlen(ending);
+    STARG_NEW(context, STARG_MESH_FILE, *out, stem + tail + 1);
+    memcpy(*out, path, stem);
+    memcpy(*out + stem, ending, tail + 1);
+done:
+    return status;
+}
+
+static starg_status read_pair(starg_context *context, const char *path, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    char *names[2] = {NULL}, *bytes[2] = {NULL}, shown[2][256];
+    size_t size[2];
+    STARG_TRY(with_ending(context, path, ".node", &names[0]));
+    STARG_TRY(with_ending(context, path, ".ele", &names[1]));
+    for (int i = 0; i < 2; i++) {
+        STARG_TRY(starg_file_read(context, STARG_MESH_FILE, names[i], &bytes[i], &size[i]));
+        show_name(names[i], shown[i], sizeof shown[i]);
+    }
+    const starg_source points = {context, shown[0], bytes[0], size[0]};
+    const starg_source elements = {context, shown[1], bytes[1], size[1]};
+    STARG_TRY(read_source(&points, &elements, out));
+done:
+    for (int i = 0; i < 2; i++) {
+        starg_release(context, names[i]);
+        starg_release(context, bytes[i]);
+    }
+    return status;
+}
+
+starg_status starg_tetmesh_read(starg_context *context, const char *path, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    char *bytes = NULL;
+    size_t size = 0;
+    *out = NULL;
+    if (is_tetgen(path))
+        return read_pair(context, path, out);
+    STARG_TRY(starg_file_read(context, STARG_MESH_FILE, path, &bytes, &size));
+    const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
+    STARG_TRY(starg_tetmesh_read_memory(context, bytes, size, name, out));
+done:
+    starg_release(context, bytes);
+    return status;
+}

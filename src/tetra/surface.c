@@ -1,0 +1,78 @@
+/* The boundary of a tetrahedral mesh: the faces that one tetrahedron alone has. */
+#include "core/memory.h"
+#include "mesh/mesh.h"
+#include "tetra/tetmesh.h"
+
+static const char STAGE[] = "tetrahedra";
+
+/* Faces with the mesh's vertex numbers; marks the vertices in use. */
+static size_t collect_faces(const starg_tetmesh *mesh, uint32_t *faces, uint32_t *numbers) {
+    size_t count = 0;
+    for (size_t f = 0; f < 4 * mesh->count; f++) {
+        if (mesh->neighbours[f] != STARG_TETMESH_NONE)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            uint32_t v = mesh->tetrahedra[(f & ~(size_t)3) + (size_t)TETMESH_FACE[f & 3][k]];
+            faces[3 * count + (size_t)k] = v;
+            numbers[v] = 0;
+        }
+        count++;
+    }
+    return count;
+}
+
+static size_t count_faces(const starg_tetmesh *mesh) {
+    size_t count = 0;
+    for (size_t f = 0; f < 4 * mesh->count; f++)
+        count += mesh->neighbours[f] == STARG_TETMESH_NONE;
+    return count;
+}
+
+/* Numbers the marked vertices in order; `map` gets their old numbers. */
+static size_t number_vertices(const starg_tetmesh *mesh, uint32_t *numbers, uint32_t *map) {
+    size_t count = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        if (numbers[v] == 0) {
+            numbers[v] = (uint32_t)count;
+            map[count++] = (uint32_t)v;
+        }
+    return count;
+}
+
+starg_status starg_tetmesh_surface(starg_context *context, const starg_tetmesh *mesh,
+                                   starg_mesh **out, uint32_t **vertex_map) {
+    starg_status status = STARG_OK;
+    uint32_t *faces = NULL, *numbers = NULL, *map = NULL;
+    double *vertices = NULL;
+    *out = NULL;
+    if (vertex_map != NULL)
+        *vertex_map = NULL;
+    STARG_NEW(context, STAGE, faces, 3 * count_faces(mesh));
+    STARG_NEW(context, STAGE, numbers, mesh->vertex_count);
+    STARG_NEW(context, STAGE, map, mesh->vertex_count);
+    memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
+    size_t face_count = collect_faces(mesh, faces, numbers);
+    size_t vertex_count = number_vertices(mesh, numbers, map);
+    STARG_NEW(context, STAGE, vertices, 3 * vertex_count);
+    for (size_t v = 0; v < vertex_count; v++)
+        memcpy(vertices + 3 * v, mesh->vertices + 3 * (size_t)map[v], 3 * sizeof *vertices);
+    for (size_t i = 0; i < 3 * face_count; i++)
+        faces[i] = numbers[faces[i]];
+    STARG_TRY(starg_mesh_adopt(context, vertices, vertex_count, faces, face_count, out));
+    faces = NULL;
+    vertices = NULL;
+    if (vertex_map != NULL) {
+        *vertex_map = map;
+        map = NULL;
+    }
+done:
+    starg_release(context, faces);
+    starg_release(context, vertices);
+    starg_release(context, numbers);
+    starg_release(context, map);
+    return status;
+}
+
+void starg_tetmesh_map_free(starg_context *context, uint32_t *vertex_map) {
+    starg_release(context, vertex_map);
+}

@@ -1,0 +1,217 @@
+/* Making a tetrahedral mesh: counts, coordinates, indices, orientation, neighbours, overlap. Every
+ * check names the elements that fail it. */
+#include "tetra/tetmesh.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
+
+static const char STAGE[] = "tetrahedra";
+
+const int TETMESH_FACE[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+
+static starg_status check_counts(starg_context *context, size_t vertices, size_t tetrahedra) {
+    if (tetrahedra == 0)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there are no tetrahedra");
+    if (tetrahedra > TETMESH_LIMIT || vertices > STARG_MESH_LIMIT)
+        return starg_fail(
+            context, STARG_ERROR_ARGUMENT, STAGE,
+            "%zu tetrahedra on %zu vertices are more than the %zu and %zu that can be "
+            "numbered",
+            tetrahedra, vertices, TETMESH_LIMIT, STARG_MESH_LIMIT);
+    return STARG_OK;
+}
+
+static starg_status check_coordinates(const starg_tetmesh *mesh) {
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+        if (fabs(mesh->vertices[i]) < STARG_COORDINATE_LIMIT)
+            continue;
+        uint64_t vertex = i / 3;
+        return starg_fail_at(mesh->context, STARG_ERROR_RANGE, STAGE, STARG_ELEMENT_VERTEX, &vertex,
+                             1,
+                             "coordinate %c of vertex %zu is %g; coordinates must be finite and "
+                             "below 1e100 in magnitude",
+                             "xyz"[i % 3], i / 3, mesh->vertices[i]);
+    }
+    return STARG_OK;
+}
+
+static starg_status check_indices(const starg_tetmesh *mesh) {
+    for (size_t i = 0; i < 4 * mesh->count; i++) {
+        if (mesh->tetrahedra[i] < mesh->vertex_count)
+            continue;
+        uint64_t tetrahedron = i / 4;
+        return starg_fail_at(mesh->context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_TETRAHEDRON,
+                             &tetrahedron, 1,
+                             "tetrahedron %zu names vertex %u, but there are only %zu (counted "
+                             "from 0)",
+                             i / 4, mesh->tetrahedra[i], mesh->vertex_count);
+    }
+    return STARG_OK;
+}
+
+/* Turns what is wrong-way; collects what has no volume. orient3d is 1 where the fourth vertex lies
+ * below the first three, which is the negative orientation here. */
+static starg_status orient(starg_tetmesh *mesh) {
+    uint64_t flat[STARG_ERROR_INDICES];
+    size_t flat_count = 0;
+    for (size_t t = 0; t < mesh->count; t++) {
+        int sign = orient3d(tetmesh_corner(mesh, t, 0), tetmesh_corner(mesh, t, 1),
+                            tetmesh_corner(mesh, t, 2), tetmesh_corner(mesh, t, 3));
+        if (sign > 0) {
+            uint32_t *v = mesh->tetrahedra + 4 * t, swap = v[2];
+            v[2] = v[3];
+            v[3] = swap;
+            mesh->turned++;
+        } else if (sign == 0) {
+            if (flat_count < STARG_ERROR_INDICES)
+                flat[flat_count] = t;
+            flat_count++;
+        }
+    }
+    if (flat_count > 0)
+        return starg_fail_at(mesh->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
+                             flat, flat_count,
+                             "%zu of %zu tetrahedra have no volume (first: %llu); remove them or "
+                             "make the mesh again",
+                             flat_count, mesh->count, (unsigned long long)flat[0]);
+    return STARG_OK;
+}
+
+/* Labels that are all the same say nothing. */
+static void drop_uniform_regions(starg_tetmesh *mesh) {
+    for (size_t t = 0; mesh->regions != NULL && t < mesh->count; t++)
+        if (mesh->regions[t] != mesh->regions[0])
+            return;
+    starg_release(mesh->context, mesh->regions);
+    mesh->regions = NULL;
+}
+
+static void tell(const starg_tetmesh *mesh) {
+    if (mesh->turned > 0)
+        starg_log(mesh->context, STARG_LOG_NOTICE,
+                  "%zu of %zu tetrahedra were ordered the wrong way and turned", mesh->turned,
+                  mesh->count);
+    if (mesh->regions != NULL)
+        starg_log(mesh->context, STARG_LOG_NOTICE,
+                  "the tetrahedra belong to several regions, which are taken as one solid");
+}
+
+starg_status tetmesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
+                           uint32_t *tetrahedra, size_t count, int32_t *regions, bool trusted,
+                           starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    starg_tetmesh *mesh = NULL;
+    *out = NULL;
+    STARG_TRY(check_counts(context, vertex_count, count));
+    STARG_NEW_ZERO(context, STAGE, mesh, 1);
+    *mesh = (starg_tetmesh){.context = context,
+                            .vertex_count = vertex_count,
+                            .count = count,
+                            .vertices = vertices,
+                            .tetrahedra = tetrahedra};
+    STARG_TRY(check_coordinates(mesh));
+    STARG_TRY(check_indices(mesh));
+    STARG_TRY(orient(mesh));
+    STARG_TRY(tetmesh_connect(mesh));
+    if (!trusted)
+        STARG_TRY(tetmesh_check_overlap(mesh));
+    mesh->regions = regions;
+    drop_uniform_regions(mesh);
+    tell(mesh);
+    *out = mesh;
+done:
+    if (status != STARG_OK && mesh != NULL) {
+        starg_release(context, mesh->neighbours);
+        starg_release(context, mesh);
+    }
+    return status;
+}
+
+starg_status starg_tetmesh_create(starg_context *context, const double *vertices,
+                                  size_t vertex_count, const uint32_t *tetrahedra, size_t count,
+                                  const int32_t *regions, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    double *own_vertices = NULL;
+    uint32_t *own_tetrahedra = NULL;
+    int32_t *own_regions = NULL;
+    *out = NULL;
+    STARG_TRY(check_counts(context, vertex_count, count));
+    STARG_NEW(context, STAGE, own_vertices, 3 * vertex_count);
+    STARG_NEW(context, STAGE, own_tetrahedra, 4 * count);
+    memcpy(own_tetrahedra, tetrahedra, 4 * count * sizeof *tetrahedra);
+    if (vertex_count > 0)
+        memcpy(own_vertices, vertices, 3 * vertex_count * sizeof *vertices);
+    if (regions != NULL) {
+        STARG_NEW(context, STAGE, own_regions, count);
+        memcpy(own_regions, regions, count * sizeof *regions);
+    }
+    STARG_TRY(tetmesh_adopt(context, own_vertices, vertex_count, own_tetrahedra, count, own_regions,
+                            false, out));
+done:
+    if (status != STARG_OK) {
+        starg_release(context, own_vertices);
+        starg_release(context, own_tetrahedra);
+        starg_release(context, own_regions);
+    }
+    return status;
+}
+
+void starg_tetmesh_free(starg_tetmesh *mesh) {
+    if (mesh == NULL)
+        return;
+    starg_release(mesh->context, mesh->vertices);
+    starg_release(mesh->context, mesh->tetrahedra);
+    starg_release(mesh->context, mesh->neighbours);
+    starg_release(mesh->context, mesh->regions);
+    starg_release(mesh->context, mesh);
+}
+
+size_t starg_tetmesh_vertex_count(const starg_tetmesh *mesh) {
+    return mesh->vertex_count;
+}
+
+size_t starg_tetmesh_count(const starg_tetmesh *mesh) {
+    return mesh->count;
+}
+
+const double *starg_tetmesh_vertices(const starg_tetmesh *mesh) {
+    return mesh->vertices;
+}
+
+const uint32_t *starg_tetmesh_tetrahedra(const starg_tetmesh *mesh) {
+    return mesh->tetrahedra;
+}
+
+const uint32_t *starg_tetmesh_neighbours(const starg_tetmesh *mesh) {
+    return mesh->neighbours;
+}
+
+const int32_t *starg_tetmesh_regions(const starg_tetmesh *mesh) {
+    return mesh->regions;
+}
+
+size_t starg_tetmesh_turned(const starg_tetmesh *mesh) {
+    return mesh->turned;
+}
+
+double starg_tetmesh_volume(const starg_tetmesh *mesh) {
+    double sum = 0, extent = 0;
+    int exponent;
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        extent = fmax(extent, fabs(mesh->vertices[i] - mesh->vertices[i % 3]));
+    frexp(extent, &exponent);
+    for (size_t t = 0; t < mesh->count; t++) {
+        double edge[3][3];
+        for (int k = 0; k < 3; k++) {
+            vec3_subtract(tetmesh_corner(mesh, t, k + 1), tetmesh_corner(mesh, t, 0), edge[k]);
+            for (int i = 0; i < 3; i++)
+                edge[k][i] = ldexp(edge[k][i], -exponent);
+        }
+        sum += vec3_triple(edge[0], edge[1], edge[2]);
+    }
+    return ldexp(sum / 6, 3 * exponent);
+}

@@ -1,0 +1,42 @@
+/* Inside of a tetrahedral mesh. */
+#ifndef STARG_TETRA_TETMESH_H
+#define STARG_TETRA_TETMESH_H
+
+#include "core/context.h"
+#include "starguard/tetra.h"
+
+struct starg_tetmesh {
+    starg_context *context;
+    size_t vertex_count, count, turned;
+    double *vertices;     /* vertex_count x 3 */
+    uint32_t *tetrahedra; /* count x 4 */
+    uint32_t *neighbours; /* count x 4 */
+    int32_t *regions;     /* count, or NULL */
+};
+
+/* Four faces a tetrahedron are numbered in 32 bits, and one number stands for none. */
+#define TETMESH_LIMIT ((size_t)1 << 29)
+
+/* Vertices of the face opposite vertex k of a positive tetrahedron, counter-clockwise seen from
+ * outside it. */
+extern const int TETMESH_FACE[4][3];
+
+static inline const double *tetmesh_corner(const starg_tetmesh *mesh, size_t tetrahedron, int k) {
+    return mesh->vertices + 3 * (size_t)mesh->tetrahedra[4 * tetrahedron + (size_t)k];
+}
+
+/* Takes over blocks of the context (on success only) after the checks of starg_tetmesh_create;
+ * `regions` may be NULL. `trusted`: the maker knows that tetrahedra that share no face do not
+ * overlap, which is the one check that takes more than linear time. */
+starg_status tetmesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
+                           uint32_t *tetrahedra, size_t count, int32_t *regions, bool trusted,
+                           starg_tetmesh **out);
+
+/* Fills the neighbours. Errors: MESH (a face of three tetrahedra, or of two on one side), MEMORY.
+ */
+starg_status tetmesh_connect(starg_tetmesh *mesh);
+
+/* Errors: MESH (two tetrahedra overlap), MEMORY, CANCELLED. */
+starg_status tetmesh_check_overlap(const starg_tetmesh *mesh);
+
+#endif
