@@ -8,7 +8,7 @@ packages=""
 for purpose in "$@"; do
     case $purpose in
     build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev" ;;
-    check) packages="$packages libcmocka-dev libgmp-dev clang clang-format clang-tidy libclang-rt-14-dev python3" ;;
+    check) packages="$packages libcmocka-dev libgmp-dev clang clang-format clang-tidy libclang-rt-14-dev python3 tetgen" ;;
     bench) packages="$packages libembree-dev hyperfine" ;;
     *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;
     esac

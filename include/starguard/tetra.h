@@ -56,6 +56,46 @@ STARG_API starg_status starg_tetmesh_surface(starg_context *context, const starg
                                              starg_mesh **out, uint32_t **vertex_map);
 STARG_API void starg_tetmesh_map_free(starg_context *context, uint32_t *vertex_map);
 
+/* ---- generators ---- */
+
+typedef enum starg_tetra_generator {
+    STARG_TETRA_AUTO = 0, /* TetGen where it can be had, else stuffing, with a notice            */
+    STARG_TETRA_TETGEN = 1,  /* the program tetgen: keeps the surface exactly  */
+    STARG_TETRA_STUFFING = 2 /* isosurface stuffing: any solid, dihedral angles from 10.7 to 164.8
+                                degrees, a surface near that of the solid */
+} starg_tetra_generator;
+
+typedef struct starg_tetra_options {
+    starg_tetra_generator generator;
+    double density; /* tetrahedra per vertex of the surface that are aimed at (default 17.5, the
+                       density of [YL11]); 0: with TetGen as few as it can, else 17.5          */
+    size_t target;  /* tetrahedra that are aimed at; above 0 it stands in for density          */
+    const char *tetgen;  /* the program; NULL: "tetgen" of the search path  */
+    double tetgen_limit; /* seconds that it may take (default 300) */
+} starg_tetra_options;
+
+STARG_API void starg_tetra_options_default(starg_tetra_options *options);
+
+/* How a mesh was made. */
+typedef struct starg_tetra_report {
+    starg_tetra_generator generator; /* TETGEN or STUFFING */
+    bool surface_kept; /* the boundary is the solid's surface, face by face          */
+    double spacing;    /* of the lattice; 0 if there is none                         */
+    /* Greatest distances found from the boundary to the solid's surface, and back: at points of
+     * either that are at most `step` from all others, so that no distance is larger than the one
+     * here plus `step`. All 0 when the surface was kept. */
+    double to_surface, from_surface, step;
+} starg_tetra_report;
+
+/* Fills a solid with tetrahedra. Where the surface is kept, the vertices of the solid that faces
+ * use come first and in their order. `options` and `report` may be NULL. The program runs in a
+ * private temporary folder (below TMPDIR or /tmp), which is removed; that it is missing, fails,
+ * crashes or takes too long is no failure with AUTO. Errors: ARGUMENT, SOLVER (TETGEN alone: why it
+ * was of no use; else a solid so thin that no lattice point is found in it), MEMORY, CANCELLED. */
+STARG_API starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid *solid,
+                                                const starg_tetra_options *options,
+                                                starg_tetra_report *report, starg_tetmesh **out);
+
 /* ---- files ---- */
 
 /* Reads MEDIT .mesh (text), legacy VTK unstructured grids (text and binary, versions 1 to 5), Gmsh

@@ -127,7 +127,7 @@ static double as_real(uint64_t bits, tet_type type) {
 }
 
 starg_status tet_real(tet_numbers *numbers, tet_type type, const char *what, double *value) {
-    uint64_t bits;
+    uint64_t bits = 0;
     if (numbers->encoding == TET_TEXT)
         return starg_scan_real(&numbers->scan, what, value);
     starg_status status = take_bits(numbers, type, what, &bits);
@@ -137,14 +137,14 @@ starg_status tet_real(tet_numbers *numbers, tet_type type, const char *what, dou
 }
 
 starg_status tet_integer(tet_numbers *numbers, tet_type type, const char *what, int64_t *value) {
-    uint64_t bits;
+    uint64_t bits = 0;
     if (numbers->encoding == TET_TEXT)
         return starg_scan_integer(&numbers->scan, what, value);
     starg_status status = take_bits(numbers, type, what, &bits);
     if (status != STARG_OK)
         return status;
     if (type == TET_INT8)
-        *value = (int8_t)(uint8_t)bits;
+        *value = (int64_t)(bits ^ 0x80) - 0x80;
     else
         *value = type == TET_INT32 ? (int64_t)(int32_t)(uint32_t)bits : (int64_t)bits;
     return STARG_OK;

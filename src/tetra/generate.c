@@ -1,0 +1,127 @@
+/* One interface for the generators: which one, how fine, and what is told about it. */
+#include "tetra/generate.h"
+
+#include <math.h>
+
+#include "mesh/mesh.h"
+
+static const char STAGE[] = TETRA_STAGE;
+
+static const double PAPER_DENSITY = 17.5; /* tetrahedra per surface vertex [YL11]          */
+static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, in mean volumes       */
+static const double LATTICE_DENSITY = 12; /* tetrahedra of the lattice per cube            */
+static const double STEPS_PER_CUBE = 4;   /* of the measurement of distances               */
+
+void starg_tetra_options_default(starg_tetra_options *options) {
+    *options = (starg_tetra_options){.density = PAPER_DENSITY, .tetgen_limit = 300};
+}
+
+static starg_status check_options(starg_context *context, const starg_tetra_options *o) {
+    if (o->generator > STARG_TETRA_STUFFING)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no generator %d",
+                          (int)o->generator);
+    if (!(o->density >= 0 && o->density <= 1e6))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a density of %g tetrahedra per vertex; it must lie in [0, 1e6]",
+                          o->density);
+    if (o->target > TETMESH_LIMIT)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu tetrahedra are more than the %zu that can be numbered", o->target,
+                          TETMESH_LIMIT);
+    if (!(o->tetgen_limit > 0))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "TetGen's time limit must be above 0 seconds");
+    return STARG_OK;
+}
+
+/* Tetrahedra to aim at; 0: as few as may be. */
+static double wanted(const starg_solid *solid, const starg_tetra_options *o) {
+    return o->target > 0 ? (double)o->target : o->density * (double)solid->mesh->vertex_count;
+}
+
+static starg_status by_tetgen(starg_context *context, const starg_solid *solid,
+                              const starg_tetra_options *o, starg_tetra_report *report,
+                              starg_tetmesh **out) {
+    double count = wanted(solid, o);
+    double volume = count > 0 ? LARGEST_VOLUME * solid->check->volume / count : 0;
+    *report = (starg_tetra_report){.generator = STARG_TETRA_TETGEN, .surface_kept = true};
+    return tetra_by_tetgen(context, solid, volume, o, out);
+}
+
+static starg_status by_stuffing(starg_context *context, const starg_solid *solid,
+                                const starg_tetra_options *o, starg_tetra_report *report,
+                                starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    double count = wanted(solid, o);
+    if (count == 0)
+        count = PAPER_DENSITY * (double)solid->mesh->vertex_count;
+    *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
+    report->spacing = cbrt(LATTICE_DENSITY * solid->check->volume / count);
+    STARG_TRY(tetra_by_stuffing(context, solid, &report->spacing, out));
+    report->step = report->spacing / STEPS_PER_CUBE;
+    STARG_TRY(tetra_measure(context, solid, *out, report->step, &report->to_surface,
+                            &report->from_surface));
+done:
+    return status;
+}
+
+/* What the program would crash on or change [measured]. */
+static const char *unfit_for_tetgen(const starg_solid *solid) {
+    const starg_finding *found = solid->check->findings;
+    if (found[STARG_FINDING_SELF_INTERSECTION].count > 0 ||
+        found[STARG_FINDING_SELF_CONTACT].count > 0)
+        return "the surface meets itself";
+    if (found[STARG_FINDING_DEGENERATE_FACE].count > 0)
+        return "the surface has faces without area";
+    if (found[STARG_FINDING_DUPLICATE_VERTEX].count > 0)
+        return "the surface has vertices at equal positions";
+    return NULL;
+}
+
+static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
+                               const starg_tetra_options *o, starg_tetra_report *report,
+                               starg_tetmesh **out) {
+    const char *reason = unfit_for_tetgen(solid);
+    if (reason != NULL)
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE,
+                          "%s, which TetGen does not take; use isosurface stuffing", reason);
+    return by_tetgen(context, solid, o, report, out);
+}
+
+static bool is_final(starg_status status) {
+    return status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED;
+}
+
+starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid *solid,
+                                      const starg_tetra_options *options,
+                                      starg_tetra_report *report, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    starg_tetra_options defaults;
+    starg_tetra_report ignored;
+    starg_tetra_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    if (report == NULL)
+        report = &ignored;
+    *out = NULL;
+    *report = (starg_tetra_report){.generator = options->generator};
+    starg_progress_begin(context, STAGE);
+    STARG_TRY(check_options(context, options));
+    if (options->generator != STARG_TETRA_STUFFING) {
+        status = try_tetgen(context, solid, options, report, out);
+        if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
+            goto done;
+        starg_log(context, STARG_LOG_NOTICE,
+                  "%s; isosurface stuffing makes the tetrahedra, whose surface is only near the "
+                  "model's",
+                  starg_context_error(context)->message);
+    }
+    STARG_TRY(by_stuffing(context, solid, options, report, out));
+done:
+    if (status != STARG_OK) {
+        starg_tetmesh_free(*out);
+        *out = NULL;
+    }
+    starg_progress_end(context);
+    return status;
+}

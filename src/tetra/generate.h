@@ -1,0 +1,27 @@
+/* The generators behind starg_tetmesh_from_solid. */
+#ifndef STARG_TETRA_GENERATE_H
+#define STARG_TETRA_GENERATE_H
+
+#include "mesh/solid.h"
+#include "tetra/tetmesh.h"
+
+#define TETRA_STAGE "tetrahedra"
+
+/* Runs the program `tetgen` on the surface; `volume` is the greatest that a tetrahedron may have,
+ * or 0 for as few tetrahedra as it can. The boundary of the result is the surface, face by face.
+ * Errors: SOLVER (whatever came in between), MEMORY, CANCELLED. */
+starg_status tetra_by_tetgen(starg_context *context, const starg_solid *solid, double volume,
+                             const starg_tetra_options *options, starg_tetmesh **out);
+
+/* Isosurface stuffing with cubes of side `spacing`, or smaller ones if no lattice point is inside;
+ * *spacing is what was taken. Errors: SOLVER (none is small enough), MEMORY, CANCELLED. */
+starg_status tetra_by_stuffing(starg_context *context, const starg_solid *solid, double *spacing,
+                               starg_tetmesh **out);
+
+/* Greatest distances between the boundary of a mesh and the surface of a solid, both ways, at
+ * points at most `step` apart. Errors: MEMORY, CANCELLED. */
+starg_status tetra_measure(starg_context *context, const starg_solid *solid,
+                           const starg_tetmesh *mesh, double step, double *to_surface,
+                           double *from_surface);
+
+#endif

@@ -1,0 +1,401 @@
+/* The lattice of isosurface stuffing [LS07]: insides, cuts, and the warp.
+ *
+ * Inside is where the surface winds at least once, as for solids everywhere; the winding number is
+ * exact, and for closed surfaces the generalised one is the same. All points of a column share the
+ * triangles that the vertical line through them meets. A cut is where, on the way from the inside
+ * end of an edge, the winding number falls to zero first; a rounded position on the edge is all
+ * that is needed.
+ *
+ * The warp: a point that has a cut nearer than a fraction of the edge's length moves there, and all
+ * cuts of its edges vanish. What cuts remain are far enough from both ends that no tetrahedron made
+ * of them is flat: the fractions are those of [LS07] that bound the dihedral angles by 10.78 and
+ * 164.74 degrees.
+ *
+ * Invariants: points at the border of the lattice are outside; an edge between an inside and an
+ * outside point has a living cut. Cost: O(points) for the insides, O(surface / spacing^2) beyond.
+ */
+#include "tetra/lattice.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/parallel.h"
+#include "geometry/intersect.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
+#include "tetra/generate.h"
+
+static const char STAGE[] = TETRA_STAGE;
+
+static const double WARP_LONG = 0.24999, WARP_SHORT = 0.41189;
+
+enum { MARGIN = 2, MOST_WINDING = 100 }; /* cubes around the solid */
+
+const int LATTICE_STEP[LATTICE_EDGES][3] = {
+    {2, 0, 0},  {0, 2, 0},  {0, 0, 2},  {1, 1, 1},    {-1, 1, 1},  {1, -1, 1},  {-1, -1, 1},
+    {-2, 0, 0}, {0, -2, 0}, {0, 0, -2}, {-1, -1, -1}, {1, -1, -1}, {-1, 1, -1}, {1, 1, -1}};
+
+static bool is_long(int step) {
+    return step % LATTICE_OWNED < 3;
+}
+
+static lattice_point point_step(const lattice_point *p, int step) {
+    lattice_point q = *p;
+    for (int k = 0; k < 3; k++)
+        q.x[k] += LATTICE_STEP[step][k];
+    return q;
+}
+
+void lattice_position(const lattice *l, const lattice_point *p, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = l->origin[k] + l->half * (double)p->x[k];
+}
+
+/* Corners are numbered along z first, so that a column is a range; so are centres. */
+size_t lattice_number(const lattice *l, const lattice_point *p) {
+    int odd = (int)(p->x[0] & 1);
+    size_t number = 0;
+    for (int k = 0; k < 3; k++) {
+        int64_t size = l->cubes[k] + !odd, at = (p->x[k] - odd) / 2;
+        if (p->x[k] < odd || at >= size)
+            return SIZE_MAX;
+        number = number * (size_t)size + (size_t)at;
+    }
+    return odd ? l->corners + number : number;
+}
+
+/* ---- extent ---- */
+
+static double count_points(const double extent[3], double spacing) {
+    double corners = 1;
+    for (int k = 0; k < 3; k++)
+        corners *= ceil(extent[k] / spacing) + 2 * MARGIN + 1;
+    return 2 * corners;
+}
+
+static void solid_extent(const starg_solid *solid, double lower[3], double extent[3]) {
+    double upper[3];
+    starg_mesh_bounds(solid->mesh, lower, upper);
+    vec3_subtract(upper, lower, extent);
+}
+
+double lattice_spacing(const starg_solid *solid, double spacing) {
+    double lower[3], extent[3];
+    solid_extent(solid, lower, extent);
+    while (count_points(extent, spacing) > (double)LATTICE_LIMIT)
+        spacing *= 1.25;
+    return spacing;
+}
+
+/* ---- insides ---- */
+
+typedef struct column {
+    starg_context *context;
+    const bvh *tree;
+    STARG_ARRAY(uint32_t) triangles;
+    starg_status status;
+} column;
+
+static starg_status make_column(starg_context *context, void *shared, void **scratch) {
+    starg_status status = STARG_OK;
+    const lattice *l = shared;
+    column *c = NULL;
+    STARG_NEW_ZERO(context, STAGE, c, 1);
+    c->context = context;
+    c->tree = l->solid->tree;
+    *scratch = c;
+done:
+    return status;
+}
+
+static void free_column(starg_context *context, void *scratch) {
+    column *c = scratch;
+    STARG_ARRAY_FREE(context, &c->triangles);
+    starg_release(context, c);
+}
+
+/* Runs on any thread: no error detail is recorded here. */
+static bool add_triangle(void *user, uint32_t triangle) {
+    column *c = user;
+    if (c->triangles.count == c->triangles.capacity) {
+        size_t capacity = c->triangles.capacity ? 2 * c->triangles.capacity : 64;
+        void *data = starg_reallocate(c->context, c->triangles.data, c->triangles.count, capacity,
+                                      sizeof *c->triangles.data);
+        if (data == NULL) {
+            c->status = STARG_ERROR_MEMORY;
+            return false;
+        }
+        c->triangles.data = data;
+        c->triangles.capacity = capacity;
+    }
+    c->triangles.data[c->triangles.count++] = triangle;
+    return true;
+}
+
+/* The first point of a column, and how many there are. */
+static size_t column_start(const lattice *l, size_t item, lattice_point *first) {
+    size_t corner_columns = (size_t)(l->cubes[0] + 1) * (size_t)(l->cubes[1] + 1);
+    int64_t odd = item >= corner_columns;
+    int64_t rows = l->cubes[1] + !odd, index = (int64_t)(odd ? item - corner_columns : item);
+    *first = (lattice_point){{2 * (index / rows) + odd, 2 * (index % rows) + odd, odd}};
+    return (size_t)(l->cubes[2] + !odd);
+}
+
+static starg_status do_column(starg_context *context, void *shared, void *scratch, size_t item) {
+    lattice *l = shared;
+    column *c = scratch;
+    lattice_point p;
+    double x[3];
+    (void)context;
+    size_t count = column_start(l, item, &p), number = lattice_number(l, &p);
+    lattice_position(l, &p, x);
+    const bvh_box line = {{x[0], x[1], -INFINITY}, {x[0], x[1], INFINITY}};
+    c->triangles.count = 0;
+    c->status = STARG_OK;
+    if (!bvh_query_box(c->tree, &line, add_triangle, c))
+        return c->status;
+    for (size_t i = 0; i < count && c->triangles.count > 0; i++, p.x[2] += 2) {
+        int winding = 0;
+        lattice_position(l, &p, x);
+        for (size_t t = 0; t < c->triangles.count; t++)
+            winding += bvh_crossing(c->tree, c->triangles.data[t], x);
+        winding = winding > MOST_WINDING ? MOST_WINDING : winding;
+        l->winding[number + i] = (int8_t)(winding < -MOST_WINDING ? -MOST_WINDING : winding);
+    }
+    return STARG_OK;
+}
+
+static starg_status find_insides(lattice *l) {
+    starg_status status = STARG_OK;
+    size_t columns = (size_t)(l->cubes[0] + 1) * (size_t)(l->cubes[1] + 1) +
+                     (size_t)l->cubes[0] * (size_t)l->cubes[1];
+    starg_parallel_loop loop = {.stage = STAGE,
+                                .count = columns,
+                                .shared = l,
+                                .item = do_column,
+                                .make_scratch = make_column,
+                                .free_scratch = free_column};
+    STARG_TRY(starg_parallel_for(l->context, &loop));
+    for (size_t i = 0; i < l->points; i++) {
+        l->side[i] = l->winding[i] > 0 ? LATTICE_INSIDE : LATTICE_OUTSIDE;
+        l->inside += l->winding[i] > 0;
+    }
+done:
+    return status;
+}
+
+starg_status lattice_create(starg_context *context, const starg_solid *solid, double spacing,
+                            lattice *out) {
+    starg_status status = STARG_OK;
+    double lower[3], extent[3];
+    *out = (lattice){.context = context, .solid = solid, .half = 0.5 * spacing};
+    solid_extent(solid, lower, extent);
+    for (int k = 0; k < 3; k++) {
+        out->cubes[k] = (int64_t)ceil(extent[k] / spacing) + 2 * MARGIN;
+        out->origin[k] = lower[k] - 0.5 * ((double)out->cubes[k] * spacing - extent[k]);
+    }
+    out->corners =
+        (size_t)(out->cubes[0] + 1) * (size_t)(out->cubes[1] + 1) * (size_t)(out->cubes[2] + 1);
+    out->points =
+        out->corners + (size_t)out->cubes[0] * (size_t)out->cubes[1] * (size_t)out->cubes[2];
+    STARG_NEW_ZERO(context, STAGE, out->winding, out->points);
+    STARG_NEW(context, STAGE, out->side, out->points);
+    STARG_NEW(context, STAGE, out->node, out->points);
+    memset(out->node, 0xff, out->points * sizeof *out->node);
+    STARG_TRY(find_insides(out));
+done:
+    if (status != STARG_OK)
+        lattice_free(out);
+    return status;
+}
+
+void lattice_free(lattice *l) {
+    starg_release(l->context, l->winding);
+    starg_release(l->context, l->side);
+    starg_release(l->context, l->node);
+    STARG_ARRAY_FREE(l->context, &l->nodes);
+    *l = (lattice){.context = l->context};
+}
+
+/* ---- cuts ---- */
+
+/* Where triangles cross a segment from its inside end. */
+typedef struct crossing {
+    double t;
+    int change; /* of the winding number */
+} crossing;
+
+enum { MOST_CROSSINGS = 64 };
+
+typedef struct segment {
+    const bvh *tree;
+    double p[3], q[3];
+    crossing crossings[MOST_CROSSINGS]; /* by t; of more, those nearest to p */
+    size_t count;
+} segment;
+
+static void insert_crossing(segment *s, crossing c) {
+    size_t i = s->count;
+    if (i == MOST_CROSSINGS && s->crossings[--i].t <= c.t)
+        return;
+    for (; i > 0 && s->crossings[i - 1].t > c.t; i--)
+        s->crossings[i] = s->crossings[i - 1];
+    s->crossings[i] = c;
+    s->count += s->count < MOST_CROSSINGS;
+}
+
+static bool look_at_triangle(void *user, size_t rank) {
+    segment *s = user;
+    const uint32_t *face = s->tree->faces + 3 * (size_t)s->tree->order[rank];
+    const double *a = s->tree->vertices + 3 * (size_t)face[0];
+    const double *b = s->tree->vertices + 3 * (size_t)face[1];
+    const double *c = s->tree->vertices + 3 * (size_t)face[2];
+    double n[3], ap[3], d[3];
+    if (!segment_meets_triangle(s->p, s->q, a, b, c))
+        return true;
+    vec3_triangle_normal(a, b, c, n);
+    vec3_subtract(a, s->p, ap);
+    vec3_subtract(s->q, s->p, d);
+    double slope = vec3_dot(n, d), t = vec3_dot(n, ap) / slope;
+    if (slope != 0 && isfinite(t))
+        insert_crossing(s, (crossing){fmin(1, fmax(0, t)), slope > 0 ? -1 : 1});
+    return true;
+}
+
+/* The first place on the way from the inside point p to q where the surface is left for good;
+ * the middle, should rounding hide it. */
+static double find_cut(const lattice *l, size_t inside, const lattice_point *p,
+                       const lattice_point *q) {
+    segment s = {.tree = l->solid->tree};
+    lattice_position(l, p, s.p);
+    lattice_position(l, q, s.q);
+    bvh_query_segment(s.tree, s.p, s.q, look_at_triangle, &s);
+    int winding = l->winding[inside];
+    for (size_t i = 0; i < s.count; i++) {
+        winding += s.crossings[i].change;
+        if (winding <= 0)
+            return s.crossings[i].t;
+    }
+    return s.count > 0 ? s.crossings[s.count - 1].t : 0.5;
+}
+
+/* The node of a point, made when it is asked for first. */
+static starg_status add_node(lattice *l, const lattice_point *p, size_t number, uint32_t *out) {
+    starg_status status = STARG_OK;
+    if (l->node[number] == UINT32_MAX) {
+        lattice_node fresh = {.point = *p};
+        lattice_position(l, p, fresh.position);
+        for (int i = 0; i < LATTICE_OWNED; i++)
+            fresh.cuts[i].vertex = UINT32_MAX;
+        l->node[number] = (uint32_t)l->nodes.count;
+        STARG_PUSH(l->context, STAGE, &l->nodes, fresh);
+    }
+    *out = l->node[number];
+done:
+    return status;
+}
+
+static starg_status cut_edge(lattice *l, const lattice_point *p, size_t number, int step) {
+    starg_status status = STARG_OK;
+    lattice_point q = point_step(p, step);
+    size_t other = lattice_number(l, &q);
+    uint32_t owner, end;
+    if (other == SIZE_MAX || l->side[other] == l->side[number])
+        return STARG_OK;
+    STARG_TRY(add_node(l, p, number, &owner));
+    STARG_TRY(add_node(l, &q, other, &end));
+    bool inside = l->side[number] == LATTICE_INSIDE;
+    double t = inside ? find_cut(l, number, p, &q) : 1 - find_cut(l, other, &q, p);
+    const double *a = l->nodes.data[owner].position, *b = l->nodes.data[end].position;
+    lattice_cut *cut = &l->nodes.data[owner].cuts[step];
+    cut->alive = true;
+    for (int k = 0; k < 3; k++)
+        cut->position[k] = a[k] + t * (b[k] - a[k]);
+done:
+    return status;
+}
+
+static starg_status cut_column(lattice *l, size_t item) {
+    starg_status status = STARG_OK;
+    lattice_point p;
+    size_t count = column_start(l, item, &p), number = lattice_number(l, &p);
+    for (size_t i = 0; i < count; i++, p.x[2] += 2)
+        for (int step = 0; step < LATTICE_OWNED; step++)
+            STARG_TRY(cut_edge(l, &p, number + i, step));
+    STARG_TRY(starg_check_cancel(l->context, STAGE));
+done:
+    return status;
+}
+
+starg_status lattice_cut_edges(lattice *l) {
+    starg_status status = STARG_OK;
+    size_t columns = (size_t)(l->cubes[0] + 1) * (size_t)(l->cubes[1] + 1) +
+                     (size_t)l->cubes[0] * (size_t)l->cubes[1];
+    for (size_t item = 0; item < columns; item++)
+        STARG_TRY(cut_column(l, item));
+done:
+    return status;
+}
+
+/* ---- warp ---- */
+
+/* The living cut at a step from a node, or NULL. */
+static lattice_cut *cut_at(const lattice *l, const lattice_node *n, int step) {
+    const lattice_node *owner = n;
+    if (step >= LATTICE_OWNED) {
+        lattice_point q = point_step(&n->point, step);
+        size_t number = lattice_number(l, &q);
+        if (number == SIZE_MAX || l->node[number] == UINT32_MAX)
+            return NULL;
+        owner = &l->nodes.data[l->node[number]];
+    }
+    return &l->nodes.data[owner - l->nodes.data].cuts[step % LATTICE_OWNED];
+}
+
+/* The step to the nearest cut that is too near; -1 if none is. Nearness counts in lengths of the
+ * edge's own limit. */
+static int nearest_violation(const lattice *l, const lattice_node *n) {
+    double best = 1;
+    int found = -1;
+    for (int step = 0; step < LATTICE_EDGES; step++) {
+        const lattice_cut *cut = cut_at(l, n, step);
+        if (cut == NULL || !cut->alive)
+            continue;
+        double length = is_long(step) ? 2 * l->half : sqrt(3) * l->half;
+        double limit = (is_long(step) ? WARP_LONG : WARP_SHORT) * length;
+        double share = vec3_distance(cut->position, n->position) / limit;
+        if (share < best) {
+            best = share;
+            found = step;
+        }
+    }
+    return found;
+}
+
+void lattice_warp(lattice *l) {
+    for (size_t i = 0; i < l->nodes.count; i++) {
+        lattice_node *n = &l->nodes.data[i];
+        int step = nearest_violation(l, n);
+        if (step < 0)
+            continue;
+        vec3_copy(cut_at(l, n, step)->position, n->position);
+        l->side[lattice_number(l, &n->point)] = LATTICE_ON;
+        for (int other = 0; other < LATTICE_EDGES; other++) {
+            lattice_cut *cut = cut_at(l, n, other);
+            if (cut != NULL)
+                cut->alive = false;
+        }
+    }
+}
+
+lattice_cut *lattice_cut_between(const lattice *l, const lattice_point *p, const lattice_point *q) {
+    size_t number = lattice_number(l, p);
+    if (l->node[number] == UINT32_MAX)
+        return NULL;
+    for (int step = 0; step < LATTICE_EDGES; step++) {
+        lattice_point r = point_step(p, step);
+        if (r.x[0] == q->x[0] && r.x[1] == q->x[1] && r.x[2] == q->x[2])
+            return cut_at(l, &l->nodes.data[l->node[number]], step);
+    }
+    return NULL;
+}

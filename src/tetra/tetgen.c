@@ -1,0 +1,331 @@
+/* Tetrahedra by the program TetGen [Si 2015], run as a child, whose licence and crashes stay
+ * outside.
+ *
+ * Stages: the vertices that faces use, numbered; the surface as a .smesh in a private folder,
+ * scaled to unit size by a power of two; the run; its .node and .ele; regions that are not in the
+ * solid (the cavities) dropped; the check of all that is asked of it.
+ *
+ * TetGen prints 16 digits, one too few: the vertices that it was given keep their own coordinates.
+ * Nothing that it says is believed: orientation, neighbours and the boundary are checked, exactly,
+ * and whatever is wrong is a refusal. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/process.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
+#include "tetra/generate.h"
+#include "tetra/io.h"
+
+static const char STAGE[] = TETRA_STAGE;
+
+typedef struct run {
+    starg_context *context;
+    const starg_solid *solid;
+    const starg_tetra_options *options;
+    int exponent;      /* of the mesh: coordinates are written times 2^-exponent */
+    uint32_t *numbers; /* of the solid's vertices; UINT32_MAX: not used */
+    size_t used;
+    char *folder;
+    char *surface, *points, *elements; /* paths */
+    tet_builder builder;
+} run;
+
+/* ---- input ---- */
+
+static starg_status number_vertices(run *r) {
+    starg_status status = STARG_OK;
+    const starg_mesh *mesh = r->solid->mesh;
+    STARG_NEW(r->context, STAGE, r->numbers, mesh->vertex_count);
+    memset(r->numbers, 0xff, mesh->vertex_count * sizeof *r->numbers);
+    for (size_t i = 0; i < 3 * mesh->face_count; i++)
+        r->numbers[mesh->faces[i]] = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        if (r->numbers[v] == 0)
+            r->numbers[v] = (uint32_t)r->used++;
+done:
+    return status;
+}
+
+static starg_status join_path(run *r, const char *name, char **out) {
+    starg_status status = STARG_OK;
+    size_t folder = strlen(r->folder), tail = strlen(name);
+    STARG_NEW(r->context, STAGE, *out, folder + tail + 1);
+    memcpy(*out, r->folder, folder);
+    memcpy(*out + folder, name, tail + 1);
+done:
+    return status;
+}
+
+static starg_status make_paths(run *r) {
+    starg_status status = STARG_OK;
+    STARG_TRY(starg_scratch_create(r->context, STAGE, &r->folder));
+    STARG_TRY(join_path(r, "/solid.smesh", &r->surface));
+    STARG_TRY(join_path(r, "/solid.1.node", &r->points));
+    STARG_TRY(join_path(r, "/solid.1.ele", &r->elements));
+done:
+    return status;
+}
+
+static void write_surface(const run *r, FILE *stream) {
+    const starg_mesh *mesh = r->solid->mesh;
+    fprintf(stream, "%zu 3 0 0\n", r->used);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const double *p = mesh->vertices + 3 * v;
+        if (r->numbers[v] != UINT32_MAX)
+            fprintf(stream, "%lu %.17g %.17g %.17g\n", (unsigned long)r->numbers[v],
+                    ldexp(p[0], -r->exponent), ldexp(p[1], -r->exponent),
+                    ldexp(p[2], -r->exponent));
+    }
+    fprintf(stream, "%zu 0\n", mesh->face_count);
+    for (size_t f = 0; f < mesh->face_count; f++)
+        fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->numbers[mesh->faces[3 * f]],
+                (unsigned long)r->numbers[mesh->faces[3 * f + 1]],
+                (unsigned long)r->numbers[mesh->faces[3 * f + 2]]);
+    fputs("0\n0\n", stream); /* no holes, no regions: those are found afterwards */
+}
+
+static starg_status write_input(run *r) {
+    starg_status status = STARG_OK;
+    starg_output output = {0};
+    STARG_TRY(starg_output_open(r->context, STAGE, r->surface, &output));
+    write_surface(r, output.stream);
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_output_discard(&output);
+    return status;
+}
+
+/* p: from a surface, Y: whose faces stay as they are, q: no needles, a: greatest volume, A: regions
+ * are labelled, F: no face files, Q: no talk. */
+static starg_status run_program(run *r, double volume) {
+    char switches[64];
+    const char *program = r->options->tetgen != NULL ? r->options->tetgen : "tetgen";
+    if (volume > 0)
+        snprintf(switches, sizeof switches, "-pYq1.414AFQa%.17g", ldexp(volume, -3 * r->exponent));
+    else
+        snprintf(switches, sizeof switches, "-pYAFQ");
+    const char *const arguments[] = {program, switches, r->surface, NULL};
+    return starg_process_run(r->context, STAGE, arguments, r->options->tetgen_limit);
+}
+
+/* ---- output ---- */
+
+static starg_status refuse(run *r, const char *what) {
+    return starg_fail(r->context, STARG_ERROR_SOLVER, STAGE, "TetGen's result is not used: %s",
+                      what);
+}
+
+static starg_status read_output(run *r, starg_source *points, starg_source *elements) {
+    starg_status status = STARG_OK;
+    char *bytes = NULL;
+    *points = (starg_source){.context = r->context, .name = "solid.1.node"};
+    *elements = (starg_source){.context = r->context, .name = "solid.1.ele"};
+    STARG_TRY(starg_file_read(r->context, STAGE, r->points, &bytes, &points->size));
+    points->bytes = bytes;
+    STARG_TRY(starg_file_read(r->context, STAGE, r->elements, &bytes, &elements->size));
+    elements->bytes = bytes;
+    r->builder.points.source = points;
+    STARG_TRY(tet_tetgen_read(&r->builder, elements));
+done:
+    return status;
+}
+
+/* Back to the model's size; what was given to the program gets its own coordinates again. */
+static starg_status restore_vertices(run *r) {
+    const starg_mesh *mesh = r->solid->mesh;
+    double *out = r->builder.points.vertices.data;
+    size_t count = r->builder.points.vertices.count;
+    if (count < 3 * r->used)
+        return refuse(r, "vertices are missing");
+    for (size_t i = 0; i < count; i++)
+        out[i] = ldexp(out[i], r->exponent);
+    double extent = ldexp(1, r->exponent);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        if (r->numbers[v] == UINT32_MAX)
+            continue;
+        double *place = out + 3 * (size_t)r->numbers[v];
+        const double *own = mesh->vertices + 3 * v;
+        for (int k = 0; k < 3; k++)
+            if (fabs(place[k] - own[k]) > 1e-12 * (extent + fabs(own[k])))
+                return refuse(r, "vertices of the surface have moved");
+        vec3_copy(own, place);
+    }
+    return STARG_OK;
+}
+
+static double corner_volume(const tet_builder *b, size_t t, double center[3]) {
+    double p[4][3], edge[3][3];
+    for (size_t k = 0; k < 4; k++)
+        vec3_copy(b->points.vertices.data + 3 * (size_t)b->tetrahedra.data[4 * t + k], p[k]);
+    for (int k = 0; k < 3; k++) {
+        vec3_subtract(p[k + 1], p[0], edge[k]);
+        center[k] = 0.25 * p[0][k] + 0.25 * p[1][k] + 0.25 * p[2][k] + 0.25 * p[3][k];
+    }
+    return fabs(vec3_triple(edge[0], edge[1], edge[2]));
+}
+
+/* The largest tetrahedron of each region tells whether the region is in the solid. Regions are
+ * numbered from 1; tetrahedra outside are dropped. */
+static starg_status drop_cavities(run *r) {
+    starg_status status = STARG_OK;
+    tet_builder *b = &r->builder;
+    size_t count = tet_builder_count(b), kept = 0;
+    double *largest = NULL;
+    bool *inside = NULL;
+    STARG_NEW_ZERO(r->context, STAGE, largest, count + 1);
+    STARG_NEW_ZERO(r->context, STAGE, inside, count + 1);
+    for (size_t t = 0; t < count; t++) {
+        double center[3];
+        int32_t region = b->regions.data[t];
+        double volume = corner_volume(b, t, center);
+        if (region < 0 || (size_t)region > count) {
+            status = refuse(r, "its regions are not numbered as they should be");
+            goto done;
+        }
+        if (volume > largest[region]) {
+            largest[region] = volume;
+            inside[region] = starg_solid_contains(r->solid, center);
+        }
+    }
+    for (size_t t = 0; t < count; t++)
+        if (inside[b->regions.data[t]])
+            memmove(b->tetrahedra.data + 4 * kept++, b->tetrahedra.data + 4 * t,
+                    4 * sizeof *b->tetrahedra.data);
+    b->tetrahedra.count = 4 * kept;
+    if (kept == 0)
+        status = refuse(r, "it has no tetrahedra in the solid");
+done:
+    starg_release(r->context, largest);
+    starg_release(r->context, inside);
+    return status;
+}
+
+/* ---- is the boundary the surface? ---- */
+
+/* A face that begins with its lowest vertex; its sense is kept. */
+typedef struct turned_face {
+    uint32_t v[3];
+} turned_face;
+
+static turned_face turn_face(uint32_t a, uint32_t b, uint32_t c) {
+    if (a < b && a < c)
+        return (turned_face){{a, b, c}};
+    return b < c ? (turned_face){{b, c, a}} : (turned_face){{c, a, b}};
+}
+
+static int compare_faces(const void *left, const void *right) {
+    const turned_face *a = left, *b = right;
+    for (int k = 0; k < 3; k++)
+        if (a->v[k] != b->v[k])
+            return a->v[k] < b->v[k] ? -1 : 1;
+    return 0;
+}
+
+static starg_status compare_surfaces(run *r, const starg_mesh *boundary, const uint32_t *map) {
+    starg_status status = STARG_OK;
+    const starg_mesh *mesh = r->solid->mesh;
+    turned_face *ours = NULL, *theirs = NULL;
+    size_t count = mesh->face_count;
+    if (boundary->face_count != count)
+        return refuse(r, "its boundary has another number of faces than the surface");
+    STARG_NEW(r->context, STAGE, ours, count);
+    STARG_NEW(r->context, STAGE, theirs, count);
+    for (size_t f = 0; f < count; f++) {
+        const uint32_t *a = mesh->faces + 3 * f, *b = boundary->faces + 3 * f;
+        ours[f] = turn_face(r->numbers[a[0]], r->numbers[a[1]], r->numbers[a[2]]);
+        theirs[f] = turn_face(map[b[0]], map[b[1]], map[b[2]]);
+    }
+    qsort(ours, count, sizeof *ours, compare_faces);
+    qsort(theirs, count, sizeof *theirs, compare_faces);
+    if (memcmp(ours, theirs, count * sizeof *ours) != 0)
+        status = refuse(r, "its boundary is not the surface");
+done:
+    starg_release(r->context, ours);
+    starg_release(r->context, theirs);
+    return status;
+}
+
+static starg_status check_boundary(run *r, const starg_tetmesh *mesh) {
+    starg_status status = STARG_OK;
+    starg_mesh *boundary = NULL;
+    uint32_t *map = NULL;
+    STARG_TRY(starg_tetmesh_surface(r->context, mesh, &boundary, &map));
+    STARG_TRY(compare_surfaces(r, boundary, map));
+done:
+    starg_tetmesh_map_free(r->context, map);
+    starg_mesh_free(boundary);
+    return status;
+}
+
+/* Positive tetrahedra whose boundary is embedded cannot overlap, so that they are trusted to be a
+ * mesh; that they fit together is checked. */
+static starg_status adopt(run *r, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    tet_builder *b = &r->builder;
+    STARG_TRY(tetmesh_adopt(r->context, b->points.vertices.data, b->points.vertices.count / 3,
+                            b->tetrahedra.data, b->tetrahedra.count / 4, NULL, true, out));
+    b->points.vertices.data = NULL;
+    b->tetrahedra.data = NULL;
+    STARG_TRY(check_boundary(r, *out));
+done:
+    return status;
+}
+
+/* Everything but memory and cancellation is the program's fault. */
+static starg_status blame(run *r, starg_status status) {
+    char message[384];
+    if (status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ||
+        status == STARG_ERROR_SOLVER)
+        return status;
+    snprintf(message, sizeof message, "%.380s", starg_context_error(r->context)->message);
+    return refuse(r, message);
+}
+
+static void clean_up(run *r, const starg_source *points, const starg_source *elements) {
+    union { /* blocks that were filled here, and are read-only since */
+        const char *read;
+        char *owned;
+    } blocks[2] = {{.read = points->bytes}, {.read = elements->bytes}};
+    if (r->builder.points.source != NULL)
+        tet_builder_free(&r->builder);
+    starg_scratch_remove(r->context, r->folder);
+    starg_release(r->context, blocks[0].owned);
+    starg_release(r->context, blocks[1].owned);
+    starg_release(r->context, r->surface);
+    starg_release(r->context, r->points);
+    starg_release(r->context, r->elements);
+    starg_release(r->context, r->numbers);
+}
+
+starg_status tetra_by_tetgen(starg_context *context, const starg_solid *solid, double volume,
+                             const starg_tetra_options *options, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    run r = {.context = context,
+             .solid = solid,
+             .options = options,
+             .exponent = starg_mesh_exponent(solid->mesh)};
+    starg_source points = {0}, elements = {0};
+    starg_c_locale locale = {0};
+    *out = NULL;
+    STARG_TRY(starg_c_locale_enter(context, &locale));
+    STARG_TRY(number_vertices(&r));
+    STARG_TRY(make_paths(&r));
+    STARG_TRY(write_input(&r));
+    STARG_TRY(run_program(&r, volume));
+    STARG_TRY(read_output(&r, &points, &elements));
+    STARG_TRY(restore_vertices(&r));
+    STARG_TRY(drop_cavities(&r));
+    STARG_TRY(adopt(&r, out));
+done:
+    if (status != STARG_OK) {
+        starg_tetmesh_free(*out);
+        *out = NULL;
+    }
+    clean_up(&r, &points, &elements);
+    starg_c_locale_leave(&locale);
+    return blame(&r, status);
+}
