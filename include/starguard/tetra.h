@@ -71,7 +71,7 @@ typedef struct starg_tetra_options {
                        density of [YL11]); 0: with TetGen as few as it can, else 17.5          */
     size_t target;  /* tetrahedra that are aimed at; above 0 it stands in for density          */
     const char *tetgen;  /* the program; NULL: "tetgen" of the search path  */
-    double tetgen_limit; /* seconds that it may take (default 300) */
+    double tetgen_limit; /* seconds that it may take (default 30)  */
 } starg_tetra_options;
 
 STARG_API void starg_tetra_options_default(starg_tetra_options *options);

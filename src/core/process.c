@@ -11,6 +11,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -21,9 +24,12 @@
 
 enum { NOT_FOUND = 127, FIRST_NAP = 1000000, LONGEST_NAP = 20000000 }; /* naps in nanoseconds */
 
-/* The child's half; never returns. */
+/* The child's half; never returns. Where the system can, it dies with its parent. */
 static void become(const char *const *arguments) {
     setpgid(0, 0);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
     int nothing = open("/dev/null", O_RDWR);
     for (int stream = 0; stream < 3 && nothing >= 0; stream++)

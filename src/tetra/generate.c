@@ -13,7 +13,7 @@ static const double LATTICE_DENSITY = 12; /* tetrahedra of the lattice per cube 
 static const double STEPS_PER_CUBE = 4;   /* of the measurement of distances               */
 
 void starg_tetra_options_default(starg_tetra_options *options) {
-    *options = (starg_tetra_options){.density = PAPER_DENSITY, .tetgen_limit = 300};
+    *options = (starg_tetra_options){.density = PAPER_DENSITY, .tetgen_limit = 30};
 }
 
 static starg_status check_options(starg_context *context, const starg_tetra_options *o) {

@@ -160,7 +160,7 @@ static starg_status do_column(starg_context *context, void *shared, void *scratc
         for (size_t t = 0; t < c->triangles.count; t++)
             winding += bvh_crossing(c->tree, c->triangles.data[t], x);
         winding = winding > MOST_WINDING ? MOST_WINDING : winding;
-        l->winding[number + i] = (int8_t)(winding < -MOST_WINDING ? -MOST_WINDING : winding);
+        l->winding[number + i] = (int16_t)(winding < -MOST_WINDING ? -MOST_WINDING : winding);
     }
     return STARG_OK;
 }

@@ -41,7 +41,7 @@ typedef struct lattice {
     double origin[3], half; /* position of point 0, half the side of a cube */
     int64_t cubes[3];
     size_t corners, points; /* numbers: corners first, then centres */
-    int8_t *winding;        /* of the surface about each point, within [-100, 100] */
+    int16_t *winding;       /* of the surface about each point, within [-100, 100] */
     int8_t *side;           /* lattice_side of each point */
     uint32_t *node;         /* of each point: index into nodes, or UINT32_MAX */
     STARG_ARRAY(lattice_node) nodes;

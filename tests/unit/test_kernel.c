@@ -225,7 +225,7 @@ static void test_cells(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     size_t stars = 0, empty = 0;
-    for (uint64_t seed = 0; seed < 60; seed++) {
+    for (uint64_t seed = 0; seed < 30; seed++) {
         starg_rng rng = starg_rng_make(seed, 1, 0);
         char cells[] = "########";
         for (size_t i = 1; i < 8; i++)
@@ -237,7 +237,7 @@ static void test_cells(void **state) {
         empty += verdict == STARG_KERNEL_EMPTY;
         shape_free(&s);
     }
-    assert_true(stars >= 5 && empty >= 5);
+    assert_true(stars >= 3 && empty >= 3);
     test_context_free(context);
 }
 
@@ -246,7 +246,7 @@ static void test_blobs(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     size_t stars = 0, empty = 0;
-    for (uint64_t seed = 0; seed < 40; seed++) {
+    for (uint64_t seed = 0; seed < 16; seed++) {
         shape s = shape_blob(1, seed);
         starg_rng rng = starg_rng_make(seed, 2, 0);
         if (seed % 2) /* vertices moved at random: mostly no longer star-shaped */
@@ -259,7 +259,7 @@ static void test_blobs(void **state) {
         empty += verdict == STARG_KERNEL_EMPTY;
         shape_free(&s);
     }
-    assert_true(stars >= 20 && empty >= 3);
+    assert_true(stars >= 8 && empty >= 2);
     test_context_free(context);
 }
 
