@@ -65,7 +65,8 @@ done:
     return status;
 }
 
-/* What the program would crash on or change [measured]. */
+/* What the program crashes on. What it changes in silence (vertices at equal positions) shows when
+ * its boundary is compared. */
 static const char *unfit_for_tetgen(const starg_solid *solid) {
     const starg_finding *found = solid->check->findings;
     if (found[STARG_FINDING_SELF_INTERSECTION].count > 0 ||
@@ -73,8 +74,6 @@ static const char *unfit_for_tetgen(const starg_solid *solid) {
         return "the surface meets itself";
     if (found[STARG_FINDING_DEGENERATE_FACE].count > 0)
         return "the surface has faces without area";
-    if (found[STARG_FINDING_DUPLICATE_VERTEX].count > 0)
-        return "the surface has vertices at equal positions";
     return NULL;
 }
 
@@ -83,8 +82,8 @@ static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
                                starg_tetmesh **out) {
     const char *reason = unfit_for_tetgen(solid);
     if (reason != NULL)
-        return starg_fail(context, STARG_ERROR_SOLVER, STAGE,
-                          "%s, which TetGen does not take; use isosurface stuffing", reason);
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "%s, which TetGen does not take",
+                          reason);
     return by_tetgen(context, solid, o, report, out);
 }
 
@@ -112,8 +111,8 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
             goto done;
         starg_log(context, STARG_LOG_NOTICE,
-                  "%s; isosurface stuffing makes the tetrahedra, whose surface is only near the "
-                  "model's",
+                  "%s; isosurface stuffing makes the tetrahedra instead, and their surface is only "
+                  "near the model's",
                   starg_context_error(context)->message);
     }
     STARG_TRY(by_stuffing(context, solid, options, report, out));
