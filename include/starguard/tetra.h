@@ -96,6 +96,15 @@ STARG_API starg_status starg_tetmesh_from_solid(starg_context *context, const st
                                                 const starg_tetra_options *options,
                                                 starg_tetra_report *report, starg_tetmesh **out);
 
+/* Fills what a mesh with holes winds around by more than a half (the generalised winding number;
+ * holes are closed by surfaces of their own accord). Always by stuffing: generator and tetgen of
+ * the options do not count. The distance `to_surface` tells how large the holes were. Errors:
+ * ARGUMENT, MESH (no faces, or all in one plane), SOLVER, MEMORY, CANCELLED. */
+STARG_API starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_mesh *mesh,
+                                                    const starg_tetra_options *options,
+                                                    starg_tetra_report *report,
+                                                    starg_tetmesh **out);
+
 /* ---- files ---- */
 
 /* Reads MEDIT .mesh (text), legacy VTK unstructured grids (text and binary, versions 1 to 5), Gmsh

@@ -35,31 +35,31 @@ static starg_status check_options(starg_context *context, const starg_tetra_opti
 }
 
 /* Tetrahedra to aim at; 0: as few as may be. */
-static double wanted(const starg_solid *solid, const starg_tetra_options *o) {
-    return o->target > 0 ? (double)o->target : o->density * (double)solid->mesh->vertex_count;
+static double wanted(const starg_mesh *mesh, const starg_tetra_options *o) {
+    return o->target > 0 ? (double)o->target : o->density * (double)mesh->vertex_count;
 }
 
 static starg_status by_tetgen(starg_context *context, const starg_solid *solid,
                               const starg_tetra_options *o, starg_tetra_report *report,
                               starg_tetmesh **out) {
-    double count = wanted(solid, o);
+    double count = wanted(solid->mesh, o);
     double volume = count > 0 ? LARGEST_VOLUME * solid->check->volume / count : 0;
     *report = (starg_tetra_report){.generator = STARG_TETRA_TETGEN, .surface_kept = true};
     return tetra_by_tetgen(context, solid, volume, o, out);
 }
 
-static starg_status by_stuffing(starg_context *context, const starg_solid *solid,
+static starg_status by_stuffing(starg_context *context, const tetra_shape *shape,
                                 const starg_tetra_options *o, starg_tetra_report *report,
                                 starg_tetmesh **out) {
     starg_status status = STARG_OK;
-    double count = wanted(solid, o);
+    double count = wanted(shape->mesh, o);
     if (count == 0)
-        count = PAPER_DENSITY * (double)solid->mesh->vertex_count;
+        count = PAPER_DENSITY * (double)shape->mesh->vertex_count;
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
-    report->spacing = cbrt(LATTICE_DENSITY * solid->check->volume / count);
-    STARG_TRY(tetra_by_stuffing(context, solid, &report->spacing, out));
+    report->spacing = cbrt(LATTICE_DENSITY * fabs(shape->volume) / count);
+    STARG_TRY(tetra_by_stuffing(context, shape, &report->spacing, out));
     report->step = report->spacing / STEPS_PER_CUBE;
-    STARG_TRY(tetra_measure(context, solid, *out, report->step, &report->to_surface,
+    STARG_TRY(tetra_measure(context, shape, *out, report->step, &report->to_surface,
                             &report->from_surface));
 done:
     return status;
@@ -115,12 +115,62 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
                   "near the model's",
                   starg_context_error(context)->message);
     }
-    STARG_TRY(by_stuffing(context, solid, options, report, out));
+    const tetra_shape shape = {
+        .mesh = solid->mesh, .tree = solid->tree, .volume = solid->check->volume};
+    STARG_TRY(by_stuffing(context, &shape, options, report, out));
 done:
     if (status != STARG_OK) {
         starg_tetmesh_free(*out);
         *out = NULL;
     }
+    starg_progress_end(context);
+    return status;
+}
+
+/* ---- open meshes ---- */
+
+/* Signed volume, which holes make a guess; kept within sense, so that the spacing is. */
+static double guess_volume(const starg_mesh *mesh) {
+    double lower[3], upper[3], volume = starg_mesh_volume(mesh);
+    starg_mesh_bounds(mesh, lower, upper);
+    double box = (upper[0] - lower[0]) * (upper[1] - lower[1]) * (upper[2] - lower[2]);
+    return copysign(fmin(box, fmax(fabs(volume), 0.01 * box)), volume);
+}
+
+starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_mesh *mesh,
+                                          const starg_tetra_options *options,
+                                          starg_tetra_report *report, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    starg_tetra_options defaults;
+    starg_tetra_report ignored;
+    starg_tetra_options_default(&defaults);
+    bvh *tree = NULL;
+    winding_field field = {0};
+    *out = NULL;
+    if (options == NULL)
+        options = &defaults;
+    if (report == NULL)
+        report = &ignored;
+    *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
+    starg_progress_begin(context, STAGE);
+    STARG_TRY(check_options(context, options));
+    tetra_shape shape = {.mesh = mesh, .field = &field, .volume = guess_volume(mesh)};
+    if (mesh->face_count == 0 || shape.volume == 0) {
+        status = starg_fail(context, STARG_ERROR_MESH, STAGE,
+                            "the mesh has no faces, or lies in a plane: nothing is inside");
+        goto done;
+    }
+    STARG_TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &tree));
+    STARG_TRY(winding_create(context, tree, &field));
+    shape.tree = tree;
+    STARG_TRY(by_stuffing(context, &shape, options, report, out));
+done:
+    if (status != STARG_OK) {
+        starg_tetmesh_free(*out);
+        *out = NULL;
+    }
+    winding_free(context, &field);
+    bvh_free(tree);
     starg_progress_end(context);
     return status;
 }

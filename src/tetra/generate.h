@@ -2,10 +2,19 @@
 #ifndef STARG_TETRA_GENERATE_H
 #define STARG_TETRA_GENERATE_H
 
+#include "geometry/winding.h"
 #include "mesh/solid.h"
 #include "tetra/tetmesh.h"
 
 #define TETRA_STAGE "tetrahedra"
+
+/* What the generators of our own fill. */
+typedef struct tetra_shape {
+    const starg_mesh *mesh;
+    const bvh *tree;            /* of its faces */
+    const winding_field *field; /* NULL: the mesh is closed, and its winding number an integer */
+    double volume;              /* about; negative when the faces of an open mesh face inward */
+} tetra_shape;
 
 /* Runs the program `tetgen` on the surface; `volume` is the greatest that a tetrahedron may have,
  * or 0 for as few tetrahedra as it can. The boundary of the result is the surface, face by face.
@@ -15,12 +24,12 @@ starg_status tetra_by_tetgen(starg_context *context, const starg_solid *solid, d
 
 /* Isosurface stuffing with cubes of side `spacing`, or smaller ones if no lattice point is inside;
  * *spacing is what was taken. Errors: SOLVER (none is small enough), MEMORY, CANCELLED. */
-starg_status tetra_by_stuffing(starg_context *context, const starg_solid *solid, double *spacing,
+starg_status tetra_by_stuffing(starg_context *context, const tetra_shape *shape, double *spacing,
                                starg_tetmesh **out);
 
-/* Greatest distances between the boundary of a mesh and the surface of a solid, both ways, at
+/* Greatest distances between the boundary of a mesh and the surface of a shape, both ways, at
  * points at most `step` apart. Errors: MEMORY, CANCELLED. */
-starg_status tetra_measure(starg_context *context, const starg_solid *solid,
+starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
                            const starg_tetmesh *mesh, double step, double *to_surface,
                            double *from_surface);
 

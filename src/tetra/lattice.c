@@ -1,10 +1,10 @@
 /* The lattice of isosurface stuffing [LS07]: insides, cuts, and the warp.
  *
  * Inside is where the surface winds at least once, as for solids everywhere; the winding number is
- * exact, and for closed surfaces the generalised one is the same. All points of a column share the
- * triangles that the vertical line through them meets. A cut is where, on the way from the inside
- * end of an edge, the winding number falls to zero first; a rounded position on the edge is all
- * that is needed.
+ * exact, and all points of a column share the triangles that the vertical line through them meets.
+ * For open surfaces it is where the generalised winding number is above a half. A cut is where, on
+ * the way from the inside end of an edge, the winding number falls to zero first; a rounded
+ * position on the edge is all that is needed.
  *
  * The warp: a point that has a cut nearer than a fraction of the edge's length moves there, and all
  * cuts of its edges vanish. What cuts remain are far enough from both ends that no tetrahedron made
@@ -73,15 +73,15 @@ static double count_points(const double extent[3], double spacing) {
     return 2 * corners;
 }
 
-static void solid_extent(const starg_solid *solid, double lower[3], double extent[3]) {
+static void shape_extent(const tetra_shape *shape, double lower[3], double extent[3]) {
     double upper[3];
-    starg_mesh_bounds(solid->mesh, lower, upper);
+    starg_mesh_bounds(shape->mesh, lower, upper);
     vec3_subtract(upper, lower, extent);
 }
 
-double lattice_spacing(const starg_solid *solid, double spacing) {
+double lattice_spacing(const tetra_shape *shape, double spacing) {
     double lower[3], extent[3];
-    solid_extent(solid, lower, extent);
+    shape_extent(shape, lower, extent);
     while (count_points(extent, spacing) > (double)LATTICE_LIMIT)
         spacing *= 1.25;
     return spacing;
@@ -102,7 +102,7 @@ static starg_status make_column(starg_context *context, void *shared, void **scr
     column *c = NULL;
     STARG_NEW_ZERO(context, STAGE, c, 1);
     c->context = context;
-    c->tree = l->solid->tree;
+    c->tree = l->shape->tree;
     *scratch = c;
 done:
     return status;
@@ -141,6 +141,24 @@ static size_t column_start(const lattice *l, size_t item, lattice_point *first) 
     return (size_t)(l->cubes[2] + !odd);
 }
 
+/* Of an open mesh: what it winds around by more than a half. */
+static bool winds_around(const lattice *l, const double x[3]) {
+    double sense = l->shape->volume < 0 ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (x[k] < l->lower[k] || x[k] > l->upper[k])
+            return false;
+    return sense * winding_number(l->shape->field, x) > 0.5;
+}
+
+static starg_status do_open_column(lattice *l, lattice_point p, size_t number, size_t count) {
+    for (size_t i = 0; i < count; i++, p.x[2] += 2) {
+        double x[3];
+        lattice_position(l, &p, x);
+        l->winding[number + i] = winds_around(l, x);
+    }
+    return STARG_OK;
+}
+
 static starg_status do_column(starg_context *context, void *shared, void *scratch, size_t item) {
     lattice *l = shared;
     column *c = scratch;
@@ -148,6 +166,8 @@ static starg_status do_column(starg_context *context, void *shared, void *scratc
     double x[3];
     (void)context;
     size_t count = column_start(l, item, &p), number = lattice_number(l, &p);
+    if (l->shape->field != NULL)
+        return do_open_column(l, p, number, count);
     lattice_position(l, &p, x);
     const bvh_box line = {{x[0], x[1], -INFINITY}, {x[0], x[1], INFINITY}};
     c->triangles.count = 0;
@@ -184,12 +204,13 @@ done:
     return status;
 }
 
-starg_status lattice_create(starg_context *context, const starg_solid *solid, double spacing,
+starg_status lattice_create(starg_context *context, const tetra_shape *shape, double spacing,
                             lattice *out) {
     starg_status status = STARG_OK;
     double lower[3], extent[3];
-    *out = (lattice){.context = context, .solid = solid, .half = 0.5 * spacing};
-    solid_extent(solid, lower, extent);
+    *out = (lattice){.context = context, .shape = shape, .half = 0.5 * spacing};
+    shape_extent(shape, lower, extent);
+    starg_mesh_bounds(shape->mesh, out->lower, out->upper);
     for (int k = 0; k < 3; k++) {
         out->cubes[k] = (int64_t)ceil(extent[k] / spacing) + 2 * MARGIN;
         out->origin[k] = lower[k] - 0.5 * ((double)out->cubes[k] * spacing - extent[k]);
@@ -225,7 +246,7 @@ typedef struct crossing {
     int change; /* of the winding number */
 } crossing;
 
-enum { MOST_CROSSINGS = 64 };
+enum { MOST_CROSSINGS = 64, HALVINGS = 24 };
 
 typedef struct segment {
     const bvh *tree;
@@ -262,11 +283,26 @@ static bool look_at_triangle(void *user, size_t rank) {
     return true;
 }
 
+/* Where an edge leaves an open mesh through a hole: found by halving. */
+static double find_gap(const lattice *l, const segment *s) {
+    double inside = 0, outside = 1;
+    for (int round = 0; round < HALVINGS; round++) {
+        double d[3], x[3], t = 0.5 * (inside + outside);
+        vec3_subtract(s->q, s->p, d);
+        vec3_along(s->p, t, d, x);
+        if (winds_around(l, x))
+            inside = t;
+        else
+            outside = t;
+    }
+    return 0.5 * (inside + outside);
+}
+
 /* The first place on the way from the inside point p to q where the surface is left for good;
  * the middle, should rounding hide it. */
 static double find_cut(const lattice *l, size_t inside, const lattice_point *p,
                        const lattice_point *q) {
-    segment s = {.tree = l->solid->tree};
+    segment s = {.tree = l->shape->tree};
     lattice_position(l, p, s.p);
     lattice_position(l, q, s.q);
     bvh_query_segment(s.tree, s.p, s.q, look_at_triangle, &s);
@@ -276,6 +312,8 @@ static double find_cut(const lattice *l, size_t inside, const lattice_point *p,
         if (winding <= 0)
             return s.crossings[i].t;
     }
+    if (s.count == 0 && l->shape->field != NULL)
+        return find_gap(l, &s);
     return s.count > 0 ? s.crossings[s.count - 1].t : 0.5;
 }
 

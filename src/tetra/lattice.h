@@ -4,7 +4,7 @@
 #define STARG_TETRA_LATTICE_H
 
 #include "core/memory.h"
-#include "mesh/solid.h"
+#include "tetra/generate.h"
 
 /* Points have integer coordinates in units of half a cube, all even (corners of cubes) or all odd
  * (centres). An edge joins a point to the next of its kind along an axis (long), or to one of the
@@ -37,8 +37,9 @@ typedef struct lattice_node {
 
 typedef struct lattice {
     starg_context *context;
-    const starg_solid *solid;
-    double origin[3], half; /* position of point 0, half the side of a cube */
+    const tetra_shape *shape;
+    double lower[3], upper[3]; /* box of the mesh: beyond it all is outside */
+    double origin[3], half;    /* position of point 0, half the side of a cube */
     int64_t cubes[3];
     size_t corners, points; /* numbers: corners first, then centres */
     int16_t *winding;       /* of the surface about each point, within [-100, 100] */
@@ -52,10 +53,10 @@ typedef struct lattice {
 #define LATTICE_LIMIT ((size_t)1 << 26)
 
 /* Side of the cubes, or a larger one, for which the lattice has no more points than it may. */
-double lattice_spacing(const starg_solid *solid, double spacing);
+double lattice_spacing(const tetra_shape *shape, double spacing);
 
 /* Finds what is inside. Errors: MEMORY, CANCELLED. */
-starg_status lattice_create(starg_context *context, const starg_solid *solid, double spacing,
+starg_status lattice_create(starg_context *context, const tetra_shape *shape, double spacing,
                             lattice *out);
 void lattice_free(lattice *l);
 

@@ -76,7 +76,7 @@ static starg_status survey_mesh(starg_context *context, const starg_mesh *from, 
     return status;
 }
 
-starg_status tetra_measure(starg_context *context, const starg_solid *solid,
+starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
                            const starg_tetmesh *mesh, double step, double *to_surface,
                            double *from_surface) {
     starg_status status = STARG_OK;
@@ -85,8 +85,8 @@ starg_status tetra_measure(starg_context *context, const starg_solid *solid,
     STARG_TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
     STARG_TRY(
         bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
-    STARG_TRY(survey_mesh(context, boundary, solid->tree, step, to_surface));
-    STARG_TRY(survey_mesh(context, solid->mesh, tree, step, from_surface));
+    STARG_TRY(survey_mesh(context, boundary, shape->tree, step, to_surface));
+    STARG_TRY(survey_mesh(context, shape->mesh, tree, step, from_surface));
 done:
     bvh_free(tree);
     starg_mesh_free(boundary);

@@ -262,11 +262,11 @@ done:
 }
 
 /* Halves the spacing until a point stays inside after the warp. */
-static starg_status make_lattice(stuffer *s, const starg_solid *solid, double *spacing) {
+static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *spacing) {
     starg_status status = STARG_OK;
     for (int attempt = 0; attempt < FINEST; attempt++) {
-        double taken = lattice_spacing(solid, *spacing);
-        STARG_TRY(lattice_create(s->context, solid, taken, &s->lattice));
+        double taken = lattice_spacing(shape, *spacing);
+        STARG_TRY(lattice_create(s->context, shape, taken, &s->lattice));
         if (s->lattice.inside > 0) {
             STARG_TRY(lattice_cut_edges(&s->lattice));
             lattice_warp(&s->lattice);
@@ -288,12 +288,12 @@ done:
     return status;
 }
 
-starg_status tetra_by_stuffing(starg_context *context, const starg_solid *solid, double *spacing,
+starg_status tetra_by_stuffing(starg_context *context, const tetra_shape *shape, double *spacing,
                                starg_tetmesh **out) {
     starg_status status = STARG_OK;
     stuffer s = {.context = context, .lattice = {.context = context}};
     *out = NULL;
-    STARG_TRY(make_lattice(&s, solid, spacing));
+    STARG_TRY(make_lattice(&s, shape, spacing));
     STARG_NEW(context, STAGE, s.vertex, s.lattice.points);
     memset(s.vertex, 0xff, s.lattice.points * sizeof *s.vertex);
     STARG_TRY(stuff_all(&s));

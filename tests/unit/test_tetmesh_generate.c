@@ -222,6 +222,59 @@ static void test_thin(void **state) {
     test_context_free(context);
 }
 
+/* Faces missing, either side out: what is left still winds around nearly the same points. */
+static void test_open(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_tetra_options options;
+    starg_tetra_options_default(&options);
+    options.density = 30;
+    for (int turned = 0; turned < 2; turned++) {
+        shape s = {0}, ball = shape_blob(3, 1);
+        const double here[3] = {0, 0, 0};
+        for (size_t v = 0; v < ball.vertex_count; v++) { /* the unit ball */
+            double *p = ball.vertices + 3 * v, length = 0;
+            for (int k = 0; k < 3; k++)
+                length += p[k] * p[k];
+            for (int k = 0; k < 3; k++)
+                p[k] /= sqrt(length);
+        }
+        shape_append(&s, &ball, here, turned);
+        starg_mesh *mesh = NULL;
+        starg_tetmesh *tetrahedra = NULL;
+        starg_tetra_report report;
+        test_ok(context, starg_mesh_create(context, s.vertices, s.vertex_count, s.faces,
+                                           s.face_count - 6, &mesh));
+        test_ok(context,
+                starg_tetmesh_from_open_mesh(context, mesh, &options, &report, &tetrahedra));
+        check_mesh(context, tetrahedra);
+        assert_true(fabs(starg_tetmesh_volume(tetrahedra) - 4.1) < 0.15);
+        assert_true(report.to_surface < 0.3);
+        starg_tetmesh_free(tetrahedra);
+        starg_mesh_free(mesh);
+        shape_free(&ball);
+        shape_free(&s);
+    }
+    test_context_free(context);
+}
+
+static void test_nothing_inside(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    const double points[] = {0, 0, 1, 1, 0, 1, 0, 1, 1};
+    const uint32_t face[] = {0, 1, 2};
+    for (size_t faces = 0; faces < 2; faces++) {
+        starg_mesh *mesh = NULL;
+        starg_tetmesh *tetrahedra = NULL;
+        test_ok(context, starg_mesh_create(context, points, 3, face, faces, &mesh));
+        assert_int_equal(starg_tetmesh_from_open_mesh(context, mesh, NULL, NULL, &tetrahedra),
+                         STARG_ERROR_MESH);
+        assert_null(tetrahedra);
+        starg_mesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
 static void test_threads(void **state) {
     (void)state;
     starg_context *context[2] = {test_context(1), test_context(3)};
@@ -575,12 +628,18 @@ static void test_shared(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stuffing),        cmocka_unit_test(test_stuffing_spikes),
-        cmocka_unit_test(test_scales),          cmocka_unit_test(test_thin),
-        cmocka_unit_test(test_threads),         cmocka_unit_test(test_tetgen),
-        cmocka_unit_test(test_broken_programs), cmocka_unit_test(test_self_intersecting),
-        cmocka_unit_test(test_arguments),       cmocka_unit_test(test_memory),
-        cmocka_unit_test(test_shared)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_stuffing),
+                                       cmocka_unit_test(test_stuffing_spikes),
+                                       cmocka_unit_test(test_scales),
+                                       cmocka_unit_test(test_thin),
+                                       cmocka_unit_test(test_open),
+                                       cmocka_unit_test(test_nothing_inside),
+                                       cmocka_unit_test(test_threads),
+                                       cmocka_unit_test(test_tetgen),
+                                       cmocka_unit_test(test_broken_programs),
+                                       cmocka_unit_test(test_self_intersecting),
+                                       cmocka_unit_test(test_arguments),
+                                       cmocka_unit_test(test_memory),
+                                       cmocka_unit_test(test_shared)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
