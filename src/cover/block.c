@@ -20,7 +20,7 @@
 
 /* Programs of many entries take long for each node, and even for their relaxation: a run that may
  * use few nodes leaves them to the Lagrangian bound and the local search. */
-enum { RELAXATION_ENTRIES = 300000, NODE_ENTRIES = 10000 };
+enum { RELAXATION_ENTRIES = 2000000, NODE_ENTRIES = 3000 };
 
 typedef struct block_solve {
     cover_run *run;

@@ -7,6 +7,7 @@
  *   - about where it stands, by a step that shrinks from generation to generation;
  *   - towards the best point of another niche nearby, into the space that both could share;
  *   - in front of its own face, where it is seen from.
+ * The first round begins with places all over the solid, that niches do not only find what is near.
  * All proposals of a generation are looked at together, and a point that is better for any niche
  * replaces that niche's point. At the end the niches' points that are worth more than 1 are the
  * new candidates.
@@ -36,6 +37,8 @@ enum {
     NEIGHBOURS = 8
 };
 
+#define ANY_NICHE UINT32_MAX
+
 static const double LEAST_PRICE = 1e-3, WORTH = 1 + 1e-6, FIRST_STEP = 0.6, STEP_FACTOR = 0.6;
 
 typedef struct niche {
@@ -54,7 +57,7 @@ typedef struct niche {
 /* A point that one niche proposes. */
 typedef struct proposal {
     double p[3], direction[3];
-    uint32_t by;          /* the niche */
+    uint32_t by;          /* the niche, or ANY_NICHE */
     uint32_t lines;       /* sight lines that it took to find out: */
     uint64_t seen[WORDS]; /* the niches that it sees; none if it does not see its own */
 } proposal;
@@ -235,7 +238,7 @@ static starg_status look_from(starg_context *context, void *shared, void *scratc
     (void)context;
     (void)scratch;
     if (!candidates_allowed(pool->solid, q->p, pool->options->clearance) ||
-        !sees_niche(w, q, q->by))
+        (q->by != ANY_NICHE && !sees_niche(w, q, q->by)))
         return STARG_OK;
     for (size_t i = 0; i < w->count; i++)
         if (i == q->by || sees_niche(w, q, i))
@@ -247,9 +250,22 @@ static void spend(pricing *all, size_t lines) {
     all->lines_left -= lines < all->lines_left ? lines : all->lines_left;
 }
 
-/* One generation: every niche proposes, all proposals are looked at, the niches take the best. */
-static starg_status move_niches(work *w, uint64_t generation, double step) {
+/* Looks from the first `count` proposals; the niches take what is better. */
+static starg_status try_proposals(work *w, size_t count) {
     starg_status status = STARG_OK;
+    starg_parallel_loop loop = {.stage = STAGE, .count = count, .shared = w, .item = look_from};
+    STARG_TRY(starg_parallel_for(w->all->pool->context, &loop));
+    for (size_t k = 0; k < count; k++) {
+        const proposal *q = &w->proposals[k];
+        offer(w, q->p, q->direction, q->seen, true);
+        spend(w->all, q->lines);
+    }
+done:
+    return status;
+}
+
+/* One generation: every niche proposes. */
+static starg_status move_niches(work *w, uint64_t generation, double step) {
     starg_context *context = w->all->pool->context;
     for (size_t i = 0; i < w->count; i++) {
         starg_rng rng = starg_rng_make(context->seed, w->all->round * GENERATIONS + generation,
@@ -261,13 +277,21 @@ static starg_status move_niches(work *w, uint64_t generation, double step) {
             turn(&w->niches[i], step, &rng, q->direction);
         }
     }
-    starg_parallel_loop loop = {
-        .stage = STAGE, .count = PROPOSALS * w->count, .shared = w, .item = look_from};
-    STARG_TRY(starg_parallel_for(context, &loop));
-    for (size_t k = 0; k < PROPOSALS * w->count; k++) {
-        offer(w, w->proposals[k].p, w->proposals[k].direction, w->proposals[k].seen, true);
-        spend(w->all, w->proposals[k].lines);
+    return try_proposals(w, PROPOSALS * w->count);
+}
+
+/* Places that nobody proposes: they belong to no niche, and to all. */
+static starg_status survey_places(work *w) {
+    starg_status status = STARG_OK;
+    const candidate_points *places = w->all->places;
+    size_t room = PROPOSALS * w->count, count = 0;
+    for (size_t i = 0; i < candidates_count(places) && count < room; i++) {
+        const double *p = places->data.data + 3 * i;
+        proposal *q = &w->proposals[count++];
+        *q = (proposal){.by = ANY_NICHE};
+        vec3_copy(p, q->p);
     }
+    STARG_TRY(try_proposals(w, count));
 done:
     return status;
 }
@@ -291,6 +315,8 @@ starg_status price_candidates(pricing *all, candidate_points *found) {
     STARG_TRY(place_niches(&w));
     STARG_NEW(context, STAGE, w.proposals, PROPOSALS * w.count);
     offer_pool(&w);
+    if (!cone && all->round == 0)
+        STARG_TRY(survey_places(&w));
     double step = FIRST_STEP;
     for (uint64_t g = 0; g < GENERATIONS && all->lines_left > 0; g++, step *= STEP_FACTOR) {
         find_neighbours(&w);

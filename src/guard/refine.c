@@ -68,15 +68,32 @@ done:
     return status;
 }
 
+/* The medial axis, unless guards stand there already. */
+static starg_status find_places(guard_job *job, candidate_points *places) {
+    starg_status status = STARG_OK;
+    if (job->options->candidates == STARG_CANDIDATES_MEDIAL)
+        return STARG_OK;
+    STARG_TRY(starg_candidate_points(job->context, job->solid, STARG_CANDIDATES_MEDIAL,
+                                     job->options->candidate_count, job->options->clearance,
+                                     &places->data.data, &places->data.count));
+    places->data.count *= 3;
+done:
+    return status;
+}
+
 starg_status refine_guards(guard_job *job) {
     starg_status status = STARG_OK;
     starg_cover *cover = NULL;
-    pricing prices = {.pool = &job->pool, .lines_left = job->options->refine_lines};
+    candidate_points places = {0};
+    pricing prices = {
+        .pool = &job->pool, .places = &places, .lines_left = job->options->refine_lines};
     const choice last = {.method = STARG_COVER_ILP, .max_nodes = job->options->max_nodes};
+    STARG_TRY(find_places(job, &places));
     STARG_TRY(add_rounds(job, &prices));
     job->lines_tested = job->options->refine_lines - prices.lines_left;
     STARG_TRY(choose_again(job, &last, &cover));
 done:
+    candidates_free(job->context, &places);
     starg_cover_free(cover);
     return status;
 }
