@@ -9,8 +9,10 @@
  *   - in front of its own face, where it is seen from.
  * The first round begins with places all over the solid, that niches do not only find what is near.
  * All proposals of a generation are looked at together, and a point that is better for any niche
- * replaces that niche's point. At the end the niches' points that are worth more than 1 are the
- * new candidates.
+ * replaces that niche's point; one that is as good does too, so that niches wander over plateaus.
+ * At the end the niches' new points that are worth 1 or more are the new candidates: with less than
+ * 1 a point cannot pay, with just 1 it may, together with others, because the prices of a program
+ * with many optima are only some of those that would do.
  *
  * A proposal is looked at by the niches only, by the tree, and not at all if its own niche does not
  * see it: that takes hardly longer on a large model than on a small one.
@@ -39,7 +41,8 @@ enum {
 
 #define ANY_NICHE UINT32_MAX
 
-static const double LEAST_PRICE = 1e-3, WORTH = 1 + 1e-6, FIRST_STEP = 0.6, STEP_FACTOR = 0.6;
+static const double LEAST_PRICE = 1e-3, WORTH = 1 - 1e-6, FIRST_STEP = 0.6, TIE = 1e-6,
+                    STEP_FACTOR = 0.6;
 
 typedef struct niche {
     uint32_t column;
@@ -136,7 +139,8 @@ static void offer(work *w, const double p[3], const double *direction, const uin
             value += w->niches[i].price;
     for (size_t i = 0; i < w->count; i++) {
         niche *n = &w->niches[i];
-        if (value <= n->value || !starg_bit_test(seen, i))
+        double least = is_new ? n->value - TIE : n->value + TIE;
+        if (value < least || !starg_bit_test(seen, i))
             continue;
         n->value = value;
         n->is_new = is_new;

@@ -12,7 +12,7 @@
 #include "guard/job.h"
 #include "guard/pricing.h"
 
-enum { ROUNDS = 12, PATIENCE = 3 };
+enum { ROUNDS = 12, PATIENCE = 4 };
 
 static int finest_level(const guard_job *job) {
     return job->records.count > 0 ? (int)job->records.count - 1 : 0;
