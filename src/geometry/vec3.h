@@ -3,6 +3,7 @@
 #define STARG_GEOMETRY_VEC3_H
 
 #include <math.h>
+#include <stdbool.h>
 
 static inline void vec3_copy(const double a[3], double out[3]) {
     out[0] = a[0];
@@ -45,6 +46,10 @@ static inline double vec3_triple(const double a[3], const double b[3], const dou
 
 static inline double vec3_length(const double a[3]) {
     return sqrt(vec3_dot(a, a));
+}
+
+static inline bool vec3_equal(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
 static inline double vec3_distance_squared(const double a[3], const double b[3]) {

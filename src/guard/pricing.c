@@ -302,9 +302,8 @@ done:
 
 static bool stands_before(const work *w, size_t index) {
     for (size_t i = 0; i < index; i++)
-        if (memcmp(w->niches[i].best, w->niches[index].best, sizeof w->niches[i].best) == 0 &&
-            memcmp(w->niches[i].direction, w->niches[index].direction,
-                   sizeof w->niches[i].direction) == 0)
+        if (vec3_equal(w->niches[i].best, w->niches[index].best) &&
+            vec3_equal(w->niches[i].direction, w->niches[index].direction))
             return true;
     return false;
 }

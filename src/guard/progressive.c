@@ -15,6 +15,7 @@
  * Invariant: the guards of every level see all of it that a candidate sees (or as much as asked).
  * Cost: visibility of all candidates on all levels, which is below twice that of the model where
  * each level is twice the one before; an ILP per level on what is left of it. */
+#include "geometry/vec3.h"
 #include "guard/job.h"
 #include "starguard/simplify.h"
 
@@ -168,8 +169,7 @@ static starg_status take_smaller(guard_job *job, const starg_cover *cover) {
     starg_guard_level *record = &job->records.data[last];
     for (size_t i = 0; i < record->kept; i++)
         for (size_t k = 0; k < job->chosen.count; k++)
-            if (memcmp(pool_point(&job->pool, job->chosen.data[k]), record->positions + 3 * i,
-                       3 * sizeof *record->positions) == 0)
+            if (vec3_equal(pool_point(&job->pool, job->chosen.data[k]), record->positions + 3 * i))
                 STARG_PUSH(job->context, STAGE, &work.kept, job->chosen.data[k]);
     STARG_TRY(job_take_cover(job, cover, last));
     starg_release(job->context, record->positions);
@@ -195,17 +195,22 @@ done:
     return status;
 }
 
+/* Without the time to make levels there is the model alone: NULL. */
+static starg_status make_levels(guard_job *job, starg_levels **levels) {
+    starg_progress_begin(job->context, STAGE);
+    starg_status status = starg_mesh_levels(job->context, job->solid->mesh, job->options->coarsest,
+                                            job->options->step, NULL, levels);
+    starg_progress_end(job->context);
+    if (status != STARG_ERROR_TIME)
+        return status;
+    job->time_limited = true;
+    return STARG_OK;
+}
+
 starg_status progressive_guards(guard_job *job) {
     starg_status status = STARG_OK;
     starg_levels *levels = NULL;
-    starg_progress_begin(job->context, STAGE);
-    status = starg_mesh_levels(job->context, job->solid->mesh, job->options->coarsest,
-                               job->options->step, NULL, &levels);
-    job->time_limited = job->time_limited || status == STARG_ERROR_TIME;
-    if (status != STARG_ERROR_TIME)
-        STARG_TRY(status);
-    status = STARG_OK;
-    starg_progress_end(job->context);
+    STARG_TRY(make_levels(job, &levels));
     int last = levels == NULL ? 0 : (int)levels->count - 1;
     for (int level = 0; level < last && !job->time_limited; level++)
         STARG_TRY(guard_coarse_level(job, level, levels->levels[level].mesh));

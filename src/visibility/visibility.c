@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/predicates.h"
+#include "geometry/vec3.h"
 #include "visibility/scene.h"
 
 static const char STAGE[] = "visibility";
@@ -133,7 +134,7 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     const uint8_t *visible = w->visible;
     if (starg_solid_contains(all->scene->solid, p)) {
         /* points that look several ways stand one after the other */
-        if (w->last == NULL || memcmp(w->last, p, 3 * sizeof *p) != 0)
+        if (w->last == NULL || !vec3_equal(w->last, p))
             look_all_around(all, w, p);
         w->last = p;
         if (all->options->cone < 360) {
