@@ -110,8 +110,7 @@ done:
 
 static starg_status complete_pool(guard_job *job) {
     starg_status status = STARG_OK;
-    if (job->options->candidates != STARG_CANDIDATES_GIVEN)
-        STARG_TRY(pool_complete(&job->pool));
+    STARG_TRY(pool_complete(&job->pool));
     job->time_limited = job->pool.time_limited;
     if (pool_count(&job->pool) > 0)
         goto done;

@@ -116,7 +116,7 @@ starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, g
     starg_status status = STARG_OK;
     starg_context *context = finest->context;
     uint8_t *finished = NULL;
-    size_t count = pool_count(finest);
+    size_t count = finest->first_count;
     STARG_TRY(pool_create(context, level, finest->options, out));
     STARG_NEW_ZERO(context, STAGE, finished, count);
     for (size_t i = 0; i < count; i++)
@@ -159,7 +159,8 @@ starg_status pool_complete(guard_pool *pool) {
     uint8_t *unseen = NULL;
     candidate_points found = {0};
     completion all = {pool->solid, &pool->options->visibility, pool->options->clearance, NULL};
-    bool pending = true;
+    bool pending = pool->options->candidates != STARG_CANDIDATES_GIVEN;
+    pool->first_count = pool_count(pool);
     STARG_NEW_ZERO(pool->context, STAGE, all.tried, pool->solid->mesh->face_count);
     STARG_NEW(pool->context, STAGE, unseen, pool->solid->mesh->face_count);
     while (pending && !pool->time_limited) {

@@ -10,6 +10,7 @@ typedef struct guard_pool {
     const starg_solid *solid;
     const starg_guard_options *options; /* visibility, clearance, where guards may stand */
     candidate_points points;
+    size_t first_count;  /* candidates before completion, from pool_complete on */
     starg_bits *rows;    /* by candidate; columns are faces or vertices; NULL before the first */
     size_t columns;      /* of the rows */
     uint64_t *coverable; /* bits of the columns that some row holds */
@@ -39,12 +40,13 @@ static inline const double *pool_direction(const guard_pool *pool, size_t candid
  * Errors: MEMORY, CANCELLED. */
 starg_status pool_add(guard_pool *pool, const candidate_points *points);
 
-/* The same candidates, with the same indices, and what they see of another solid: one level of
- * detail. Rows that the time limit leaves unfinished are empty. Errors: MEMORY, CANCELLED. */
+/* The candidates from before completion, with the same indices, and what they see of another solid:
+ * one level of detail. Rows that the time limit leaves unfinished are empty. Errors: MEMORY,
+ * CANCELLED. */
 starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out);
 
 /* Adds candidates for faces that none sees yet, until every face that can be seen is seen by one
- * (guard/complete.c). Errors: MEMORY, CANCELLED. */
+ * (guard/complete.c); given candidates are left as they are. Errors: MEMORY, CANCELLED. */
 starg_status pool_complete(guard_pool *pool);
 
 /* Joins the rows of a matrix: a bit set per column that one of them holds; starg_release frees it.

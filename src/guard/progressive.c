@@ -1,7 +1,8 @@
 /* Progressive guarding: from a coarse level of detail to the model itself [YL11, section 3.3].
  *
  * Stages, for each level from the coarsest on:
- *   1. what the candidates, which are those of the model, see of the level;
+ *   1. what the candidates, which are those of the model without those added for single faces of
+ *      it, see of the level;
  *   2. guards of the coarser level are kept if they are significant: if they see at least the
  *      fraction `significance` of the level's area; what they see needs no further guard;
  *   3. an ILP, with the reductions and blocks of cover/, chooses guards for the rest;
@@ -12,7 +13,8 @@
  * A bound for the model is another matter: bound_guards solves the whole problem without branching.
  * Where that comes upon fewer guards than the levels did, they are taken instead.
  *
- * Invariant: the guards of every level see all of it that a candidate sees (or as much as asked).
+ * Invariant: the guards of every level see all of it that one of these candidates sees (or as much
+ * as asked).
  * Cost: visibility of all candidates on all levels, which is below twice that of the model where
  * each level is twice the one before; an ILP per level on what is left of it. */
 #include "geometry/vec3.h"
@@ -212,7 +214,7 @@ starg_status progressive_guards(guard_job *job) {
     starg_levels *levels = NULL;
     STARG_TRY(make_levels(job, &levels));
     int last = levels == NULL ? 0 : (int)levels->count - 1;
-    for (int level = 0; level < last && !job->time_limited; level++)
+    for (int level = 0; level < last && !job->time_limited && job->pool.first_count > 0; level++)
         STARG_TRY(guard_coarse_level(job, level, levels->levels[level].mesh));
     STARG_TRY(guard_level(job, last, &job->pool));
 done:
