@@ -130,7 +130,9 @@ static const cli_option options[] = {
      .value = "N",
      .least = 1,
      .most = UINT32_MAX,
-     .help = "pilp: vertices that each finer level has more. Default 10,000."},
+     .help =
+         "pilp: vertices that each finer level has more. Default 10,000, or a quarter of what the "
+         "model has more than the coarsest level."},
     {.name = "significance",
      .kind = CLI_REAL,
      .offset = offsetof(values, significance),
@@ -162,7 +164,7 @@ static void set_defaults(void *data) {
     v->redundancy = library.redundancy;
     v->max_nodes = UINT64_MAX;
     v->coarsest = library.coarsest;
-    v->step = library.step;
+    v->step = UINT64_MAX;
     v->significance = library.significance;
     v->cone = library.visibility.cone;
     v->refine_lines = library.refine_lines;
@@ -216,7 +218,8 @@ static starg_guard_options make_options(const values *v) {
     if (v->max_nodes != UINT64_MAX)
         wanted.max_nodes = v->max_nodes;
     wanted.coarsest = v->coarsest;
-    wanted.step = v->step;
+    if (v->step != UINT64_MAX)
+        wanted.step = v->step;
     wanted.significance = v->significance;
     wanted.refine = !v->no_refine;
     wanted.refine_lines = v->refine_lines;

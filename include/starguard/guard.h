@@ -24,6 +24,10 @@ typedef enum starg_guard_method {
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
+/* Vertices that each finer level has more: 10,000, or a quarter of what the model has more than the
+ * coarsest level, where that is more: each level costs a row of bits for every candidate. */
+#define STARG_DEFAULT_STEP SIZE_MAX
+
 /* Where guards may stand. */
 typedef enum starg_candidates {
     STARG_CANDIDATES_MEDIAL = 0,   /* centres of maximal balls                       */
@@ -49,7 +53,8 @@ typedef struct starg_guard_options {
 
     /* STARG_GUARD_PILP: the paper's constants */
     size_t coarsest;     /* vertices of the coarsest level                              */
-    size_t step;         /* vertices that each finer level has more, at least 1         */
+    size_t step;         /* vertices that each finer level has more, at least 1, or
+                            STARG_DEFAULT_STEP                                          */
     double significance; /* a guard that sees less than this fraction of a level's area is
                             chosen anew there, 0 to 1                                   */
 
@@ -59,8 +64,8 @@ typedef struct starg_guard_options {
     uint64_t refine_lines; /* sight lines that may be tested for that                   */
 } starg_guard_options;
 
-/* PILP (5,000, 10,000, 0.1) with refinement (10 million lines), 1,000 skeletal candidates, grid,
- * faces by vertices, all of it once, no clearance, STARG_DEFAULT_NODES. */
+/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (10 million lines), 1,000 skeletal
+ * candidates, grid, faces by vertices, all of it once, no clearance, STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
 
 /* The guards of one level of detail, which see all of it that some candidate sees (or as much as

@@ -24,11 +24,19 @@ void starg_guard_options_default(starg_guard_options *options) {
                                      .redundancy = 1,
                                      .max_nodes = STARG_DEFAULT_NODES,
                                      .coarsest = 5000,
-                                     .step = 10000,
+                                     .step = STARG_DEFAULT_STEP,
                                      .significance = 0.1,
                                      .refine = true,
                                      .refine_lines = 10000000};
     starg_visibility_options_default(&options->visibility);
+}
+
+static void set_defaults(starg_guard_options *o, size_t vertices) {
+    size_t more = vertices > o->coarsest ? (vertices - o->coarsest) / 4 : 0;
+    if (o->max_nodes == STARG_DEFAULT_NODES)
+        o->max_nodes = o->method == STARG_GUARD_PILP ? 30 : 100000;
+    if (o->step == STARG_DEFAULT_STEP)
+        o->step = more > 10000 ? more : 10000;
 }
 
 static starg_status check_enums(starg_context *context, const starg_guard_options *o) {
@@ -253,8 +261,7 @@ starg_status starg_guard(starg_context *context, const starg_solid *solid,
     starg_guard_options used = options ? *options : defaults;
     guard_job job = {.context = context, .solid = solid, .options = &used};
     *out = NULL;
-    if (used.max_nodes == STARG_DEFAULT_NODES)
-        used.max_nodes = used.method == STARG_GUARD_PILP ? 30 : 100000;
+    set_defaults(&used, solid->mesh->vertex_count);
     STARG_TRY(check_options(context, job.options));
     STARG_TRY(pool_create(context, solid, job.options, &job.pool));
     STARG_TRY(
