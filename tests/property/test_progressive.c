@@ -181,6 +181,44 @@ static void test_threads(void **state) {
         test_context_free(contexts[t]);
 }
 
+static void expect_refuted(starg_context *context, const starg_mesh *mesh,
+                           const starg_guards *guards, const char *claim) {
+    starg_verdict *verdict = NULL;
+    bool found = false;
+    test_ok(context, starg_verify_guards(context, mesh, guards, &verdict));
+    for (size_t i = 0; i < verdict->count; i++)
+        found = found || (!verdict->claims[i].holds && strstr(verdict->claims[i].text, claim));
+    if (!found)
+        fail_msg("no claim about \"%s\" fails", claim);
+    assert_false(verdict->passed);
+    starg_verdict_free(context, verdict);
+}
+
+/* The verifier notices a wrong curve, a wrong direction and levels that cannot be. */
+static void refute_falsifications(starg_context *context, const starg_mesh *mesh,
+                                  starg_guards *guards) {
+    size_t last = guards->level_count - 1;
+    guards->curve_area[0] *= 1 - 1e-6;
+    expect_refuted(context, mesh, guards, "the curve");
+    guards->curve_area[0] /= 1 - 1e-6;
+    guards->curve_faces[0] += 1e-6;
+    expect_refuted(context, mesh, guards, "the curve");
+    guards->curve_faces[0] -= 1e-6;
+    size_t kept = guards->level_list[last].kept;
+    guards->level_list[last].kept = guards->level_list[last].count + 1;
+    expect_refuted(context, mesh, guards, "levels grow");
+    guards->level_list[last].kept = kept;
+    int level = guards->levels[0];
+    guards->levels[0] = (int)guards->level_count;
+    expect_refuted(context, mesh, guards, "levels grow");
+    guards->levels[0] = level;
+    for (size_t k = 0; k < 3; k++)
+        guards->directions[k] = -guards->directions[k];
+    expect_refuted(context, mesh, guards, "each guard sees");
+    for (size_t k = 0; k < 3; k++)
+        guards->directions[k] = -guards->directions[k];
+}
+
 /* Written and read back, nothing is lost. */
 static void test_round_trip(void **state) {
     (void)state;
@@ -211,6 +249,8 @@ static void test_round_trip(void **state) {
                             24 * guards->level_list[i].count);
     }
     assert_true(back->options.visibility.cone == 170);
+    verify(context, "human", mesh, back);
+    refute_falsifications(context, mesh, back);
     verify(context, "human", mesh, back);
     remove("test_progressive.json");
     starg_guards_free(context, guards);
