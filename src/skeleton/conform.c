@@ -39,6 +39,8 @@ typedef struct mesh_edge {
     uint32_t halfedge; /* where it was */
 } mesh_edge;
 
+typedef STARG_ARRAY(mesh_edge) lost_list;
+
 /* Cosine of the bend that still counts as flat: eight degrees. */
 static const double FLAT = 0.99;
 /* And of the angle below which two faces lie on one another: eleven degrees. */
@@ -49,13 +51,13 @@ typedef struct conformer {
     delaunay_builder *builder;
     STARG_ARRAY(double) points; /* x, y, z, one after the other */
     STARG_ARRAY(uint32_t) faces;
-    STARG_ARRAY(uint32_t) twins;   /* of each halfedge, named by its first corner */
-    STARG_ARRAY(uint32_t) leaving; /* of each point: a halfedge that leaves it */
-    STARG_ARRAY(uint8_t) depth;    /* of each point: how often what it lies on had been cut */
-    STARG_ARRAY(bool) dirty;       /* of each point: to be looked at */
-    STARG_ARRAY(uint32_t) ring;    /* halfedges that leave the point looked at, in turn */
-    STARG_ARRAY(mesh_edge) lost_edges;
-    STARG_ARRAY(uint32_t) lost_faces; /* by one of their halfedges */
+    STARG_ARRAY(uint32_t) twins;      /* of each halfedge, named by its first corner */
+    STARG_ARRAY(uint32_t) leaving;    /* of each point: a halfedge that leaves it */
+    STARG_ARRAY(uint8_t) depth;       /* of each point: how often what it lies on had been cut */
+    STARG_ARRAY(bool) dirty;          /* of each point: to be looked at */
+    STARG_ARRAY(uint32_t) ring;       /* halfedges that leave the point looked at, in turn */
+    lost_list lost_edges, last_edges; /* now, and in the search before */
+    lost_list lost_faces, last_faces; /* each by its halfedge from its lowest corner */
     uint32_t *place; /* of each point: its number in the ring looked at, from 1, or 0 */
     size_t place_capacity;
     conform_manner manner;
@@ -297,26 +299,55 @@ static starg_status look_at(conformer *c, uint32_t v) {
         if (!(found[i] & 1) && v < head(c, h))
             STARG_PUSH(c->context, STAGE, &c->lost_edges, ((mesh_edge){v, head(c, h), h}));
         if (!(found[i] & 2) && v < head(c, h) && v < apex(c, h))
-            STARG_PUSH(c->context, STAGE, &c->lost_faces, h);
+            STARG_PUSH(c->context, STAGE, &c->lost_faces, ((mesh_edge){v, head(c, h), h}));
     }
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n; i++)
         c->place[head(c, c->ring.data[i])] = 0;
-        c->dirty.data[v] |= found[i] != 3; /* to be looked at until it is there */
-    }
 done:
     starg_release(c->context, found);
     return status;
 }
 
+/* Takes over what was lost at v in the search before and, as nothing has changed there, still is.
+ * The lists are in the order of points; *next is where those of v start. */
+static starg_status keep_lost(conformer *c, const lost_list *last, uint32_t v, size_t *next,
+                              lost_list *lost) {
+    starg_status status = STARG_OK;
+    for (; *next < last->count && last->data[*next].u == v; ++*next)
+        STARG_PUSH(c->context, STAGE, lost, last->data[*next]);
+done:
+    return status;
+}
+
+static void skip_lost(const lost_list *last, uint32_t v, size_t *next) {
+    while (*next < last->count && last->data[*next].u == v)
+        ++*next;
+}
+
+static void swap_lists(lost_list *a, lost_list *b) {
+    lost_list swap = *a;
+    *a = *b;
+    *b = swap;
+    a->count = 0;
+}
+
 static starg_status find_lost(conformer *c) {
     starg_status status = STARG_OK;
-    c->lost_edges.count = c->lost_faces.count = 0;
+    size_t next_edge = 0, next_face = 0;
+    swap_lists(&c->lost_edges, &c->last_edges);
+    swap_lists(&c->lost_faces, &c->last_faces);
     for (uint32_t v = 0; v < point_count(c); v++) {
         bool changed = delaunay_take_change(c->builder, v);
-        if (c->leaving.data[v] == TOPOLOGY_NONE || !(changed || c->dirty.data[v]))
+        if (!changed && !c->dirty.data[v]) {
+            STARG_TRY(keep_lost(c, &c->last_edges, v, &next_edge, &c->lost_edges));
+            STARG_TRY(keep_lost(c, &c->last_faces, v, &next_face, &c->lost_faces));
             continue;
+        }
+        skip_lost(&c->last_edges, v, &next_edge);
+        skip_lost(&c->last_faces, v, &next_face);
         c->dirty.data[v] = false;
-        STARG_TRY(look_at(c, v));
+        if (c->leaving.data[v] != TOPOLOGY_NONE)
+            STARG_TRY(look_at(c, v));
     }
 done:
     return status;
@@ -433,7 +464,7 @@ static starg_status flip_lost(conformer *c, size_t *flips) {
     starg_status status = STARG_OK;
     *flips = 0;
     for (size_t i = 0; c->manner != CONFORM_BISECT && i < c->lost_faces.count; i++)
-        unfold(c, c->lost_faces.data[i] / 3, flips);
+        unfold(c, c->lost_faces.data[i].halfedge / 3, flips);
     if (*flips > 0)
         return STARG_OK;
     for (size_t i = 0; i < c->lost_edges.count; i++) {
@@ -509,7 +540,7 @@ done:
 static starg_status pierce_lost_faces(conformer *c, const bool *cut) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < c->lost_faces.count; i++) {
-        uint32_t h = c->lost_faces.data[i];
+        uint32_t h = c->lost_faces.data[i].halfedge;
         double p[3];
         bool found;
         if (cut[h / 3])
@@ -563,7 +594,7 @@ static starg_status bisect_lost_faces(conformer *c) {
     starg_status status = STARG_OK;
     size_t first = point_count(c);
     for (size_t i = 0; i < c->lost_faces.count; i++) {
-        uint32_t h = c->lost_faces.data[i];
+        uint32_t h = c->lost_faces.data[i].halfedge;
         if (tail(c, h) >= first || head(c, h) >= first || apex(c, h) >= first)
             continue; /* cut in this round */
         h = terminal_edge(c, h);
@@ -636,6 +667,8 @@ done:
     STARG_ARRAY_FREE(context, &c.ring);
     STARG_ARRAY_FREE(context, &c.lost_edges);
     STARG_ARRAY_FREE(context, &c.lost_faces);
+    STARG_ARRAY_FREE(context, &c.last_edges);
+    STARG_ARRAY_FREE(context, &c.last_faces);
     starg_release(context, c.place);
     return status;
 }

@@ -10,10 +10,10 @@ typedef struct conform_report {
     size_t lost;                 /* faces that are no faces of tetrahedra in the end  */
 } conform_report;
 
-/* How points are added; no way does best on all meshes. */
+/* How points are added; no way does best on all meshes. The first is the one to try first. */
 typedef enum conform_manner {
-    CONFORM_PIERCE = 0,        /* in the middle of lost edges, and where faces are pierced   */
-    CONFORM_BISECT = 1,        /* longest-edge bisection of lost faces, no folds flipped     */
+    CONFORM_BISECT = 0,        /* longest-edge bisection of lost faces, no folds flipped     */
+    CONFORM_PIERCE = 1,        /* in the middle of lost edges, and where faces are pierced   */
     CONFORM_BISECT_UNFOLD = 2, /* the same, with folds                                       */
     CONFORM_MANNERS = 3
 } conform_manner;

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "core/rng.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/topology.h"
@@ -19,55 +18,58 @@ static const char STAGE[] = "skeleton labels";
 enum { UNKNOWN = 0, INSIDE = 1, OUTSIDE = -1, BLOCK = 256 };
 static const uint32_t NOTHING = UINT32_MAX;
 
+/* A face of the samples by its other two corners. */
+typedef struct face_key {
+    uint32_t middle, highest, face;
+} face_key;
+
 typedef struct labelling {
     starg_context *context;
     const starg_solid *solid;
     const surface_samples *samples;
     const delaunay *tetrahedra;
     inside_labels *labels;
-    uint32_t *slots; /* hash table of faces by their corners */
-    size_t mask;
+    uint32_t *first_face; /* faces whose lowest corner is v: keys[first_face[v] ..] */
+    face_key *keys;
     int8_t *side;
     uint8_t *walls; /* bit k: the face opposite corner k is a face of the samples */
 } labelling;
 
 static void sort_corners(uint32_t v[3]) {
-    for (int pass = 0; pass < 2; pass++)
-        for (int k = 0; k < 2 - pass; k++)
-            if (v[k] > v[k + 1]) {
-                uint32_t swap = v[k];
-                v[k] = v[k + 1];
-                v[k + 1] = swap;
-            }
+    uint32_t low = v[0] < v[1] ? v[0] : v[1], high = v[0] < v[1] ? v[1] : v[0];
+    v[1] = v[2] < low ? low : v[2] > high ? high : v[2];
+    v[0] = v[2] < low ? v[2] : low;
+    v[2] = v[2] > high ? v[2] : high;
 }
 
-/* The slot of the face with these corners, or the free one where it would be. */
-static size_t find_slot(const labelling *l, const uint32_t sorted[3]) {
-    uint64_t key = starg_hash64((uint64_t)sorted[0] << 32 | sorted[1]) + sorted[2];
-    size_t slot = starg_hash64(key) & l->mask;
-    for (; l->slots[slot] != NOTHING; slot = (slot + 1) & l->mask) {
-        uint32_t v[3];
-        memcpy(v, l->samples->faces + 3 * (size_t)l->slots[slot], sizeof v);
-        sort_corners(v);
-        if (v[0] == sorted[0] && v[1] == sorted[1] && v[2] == sorted[2])
-            break;
-    }
-    return slot;
+/* The last of the faces with these corners, or NOTHING. */
+static uint32_t find_face(const labelling *l, const uint32_t sorted[3]) {
+    for (uint32_t i = l->first_face[sorted[0] + 1]; i-- > l->first_face[sorted[0]];)
+        if (l->keys[i].middle == sorted[1] && l->keys[i].highest == sorted[2])
+            return l->keys[i].face;
+    return NOTHING;
 }
 
+/* Lists the faces at their lowest corners, by counting. */
 static starg_status enter_faces(labelling *l) {
     starg_status status = STARG_OK;
-    size_t capacity = 16;
-    while (capacity < 2 * l->samples->face_count)
-        capacity *= 2;
-    l->mask = capacity - 1;
-    STARG_NEW(l->context, STAGE, l->slots, capacity);
-    memset(l->slots, 0xff, capacity * sizeof *l->slots);
-    for (size_t f = 0; f < l->samples->face_count; f++) {
+    const surface_samples *samples = l->samples;
+    STARG_NEW_ZERO(l->context, STAGE, l->first_face, samples->point_count + 2);
+    STARG_NEW(l->context, STAGE, l->keys, samples->face_count);
+    uint32_t *end = l->first_face + 1; /* of each list as it fills */
+    for (size_t f = 0; f < samples->face_count; f++) {
         uint32_t v[3];
-        memcpy(v, l->samples->faces + 3 * f, sizeof v);
+        memcpy(v, samples->faces + 3 * f, sizeof v);
         sort_corners(v);
-        l->slots[find_slot(l, v)] = (uint32_t)f;
+        end[v[0] + 1]++;
+    }
+    for (size_t v = 0; v < samples->point_count; v++)
+        end[v + 1] += end[v];
+    for (size_t f = 0; f < samples->face_count; f++) {
+        uint32_t v[3];
+        memcpy(v, samples->faces + 3 * f, sizeof v);
+        sort_corners(v);
+        l->keys[end[v[0]]++] = (face_key){v[1], v[2], (uint32_t)f};
     }
 done:
     return status;
@@ -85,7 +87,7 @@ static void match_face(labelling *l, size_t t, int k) {
         if (j != k)
             v[n++] = corners[j];
     sort_corners(v);
-    uint32_t face = l->slots[find_slot(l, v)];
+    uint32_t face = find_face(l, v);
     if (face == NOTHING)
         return;
     const uint32_t *f = l->samples->faces + 3 * (size_t)face;
@@ -134,16 +136,24 @@ static double width_of(const labelling *l, uint32_t t, uint32_t side) {
     return isfinite(width) ? width : 0;
 }
 
+/* Walls without a gap leave no choice, and so the order does not matter: the sides of an embedded
+ * surface do not meet. */
+static bool is_tight(const labelling *l) {
+    return l->labels->lost_count == 0 && l->solid->check->embedded;
+}
+
 static starg_status find_passages(const labelling *l, passage **passages, size_t *count) {
     starg_status status = STARG_OK;
+    bool ordered = !is_tight(l);
     STARG_NEW(l->context, STAGE, *passages, 2 * l->tetrahedra->count);
     for (uint32_t t = 0; t < l->tetrahedra->count; t++)
         for (uint32_t k = 0; k < 4; k++) {
             uint32_t other = l->tetrahedra->neighbours[t][k];
             if (!(l->walls[t] >> k & 1) && other != DELAUNAY_NONE && t < other)
-                (*passages)[(*count)++] = (passage){width_of(l, t, k), t, k};
+                (*passages)[(*count)++] = (passage){ordered ? width_of(l, t, k) : 0, t, k};
         }
-    qsort(*passages, *count, sizeof **passages, compare_passages);
+    if (ordered)
+        qsort(*passages, *count, sizeof **passages, compare_passages);
 done:
     return status;
 }
@@ -195,7 +205,8 @@ starg_status labels_create(starg_context *context, const starg_solid *solid,
     for (size_t t = 0; t < tetrahedra->count; t++)
         labels->inside[t] = l.side[t] == INSIDE;
 done:
-    starg_release(context, l.slots);
+    starg_release(context, l.first_face);
+    starg_release(context, l.keys);
     starg_release(context, l.side);
     starg_release(context, l.walls);
     if (status != STARG_OK)

@@ -47,12 +47,21 @@ static double distance(const pruner *p, uint32_t a, uint32_t b) {
  * large ball's centre has a large ball too, even where its own centre is a poor one. */
 static void level(const pruner *p, double *values) {
     enum { PASSES = 32 };
-    for (int pass = 0; pass < PASSES; pass++)
+    bool changed = true;
+    for (int pass = 0; pass < PASSES && changed; pass++) {
+        changed = false;
         for (uint32_t v = 0; v < p->graph->node_count; v++)
             for (uint32_t j = p->graph->first[v]; j < p->graph->first[v + 1]; j++) {
                 uint32_t w = p->graph->next[j];
-                values[v] = fmax(values[v], values[w] - distance(p, v, w));
+                if (!(values[w] > values[v])) /* most, and no way need be measured */
+                    continue;
+                double value = values[w] - distance(p, v, w);
+                if (value > values[v]) {
+                    values[v] = value;
+                    changed = true;
+                }
             }
+    }
 }
 
 /* On a tube the medial geodesic function is half the girth, on a plate the width: a share of it
