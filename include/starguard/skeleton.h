@@ -36,7 +36,8 @@ typedef struct starg_skeleton {
     size_t joints, ends;    /* nodes of three or more edges; of one                         */
     size_t cuts;            /* walls cut open: one for each cavity, and tiny voids          */
     size_t mends;           /* parts and loops cut that thin places gave and the solid has not */
-    bool homotopic;         /* no cavities, and parts and loops are those of the solid      */
+    bool homotopic;         /* parts and loops are those of the solid, which is a handlebody, with
+                               nothing cut or mended                                        */
 } starg_skeleton;
 
 /* Finds the skeleton; docs/skeleton.md tells how. A solid with cavities has no curve of its own

@@ -186,7 +186,9 @@ static starg_status describe(starg_context *context, const starg_solid *solid, c
                              skeleton->edge_count, &skeleton->components, &skeleton->loops));
     skeleton->cuts = a->eroded.cut_count;
     skeleton->mends = a->mends;
-    skeleton->homotopic = solid->check->cavities == 0 &&
+    /* What collapses to a graph is a handlebody; what was cut or mended need not be one. */
+    skeleton->homotopic = solid->check->cavities == 0 && skeleton->cuts == 0 &&
+                          skeleton->mends == 0 &&
                           is_as_expected(solid->check, skeleton->components, skeleton->loops);
 done:
     starg_release(context, degrees);
@@ -200,20 +202,23 @@ static void tell(starg_context *context, const starg_solid *solid, const starg_s
                   "%zu parts and loops were taken from the skeleton that the solid has not; its "
                   "surface is too thin in places, or crosses itself",
                   skeleton->mends);
-    if (skeleton->homotopic)
-        return;
-    if (is_as_expected(check, skeleton->components, skeleton->loops))
-        starg_log(
-            context, STARG_LOG_WARNING,
-            "the solid has %zu cavities, which no curve can surround; the skeleton is that of "
-            "the solid with walls cut open",
-            check->cavities);
-    else
+    if (!is_as_expected(check, skeleton->components, skeleton->loops))
         starg_log(context, STARG_LOG_WARNING,
                   "the skeleton has %zu parts and %zu loops where the solid has %zu and %lld; its "
                   "surface is too coarse, too thin or crosses itself",
                   skeleton->components, skeleton->loops, check->components - check->cavities,
                   (long long)check->genus);
+    else if (check->cavities > 0)
+        starg_log(
+            context, STARG_LOG_WARNING,
+            "the solid has %zu cavities, which no curve can surround; the skeleton is that of "
+            "the solid with walls cut open",
+            check->cavities);
+    else if (skeleton->cuts > 0)
+        starg_log(context, STARG_LOG_WARNING,
+                  "%zu walls were cut open that do not shrink to a curve: tiny voids, or tunnels "
+                  "with a knot",
+                  skeleton->cuts);
 }
 
 void starg_skeleton_options_default(starg_skeleton_options *options) {

@@ -77,6 +77,8 @@ static void check_mesh(starg_context *context, const starg_mesh *mesh, const cha
                  s->edge_count + found - s->node_count, parts, genus);
     assert_int_equal(s->components, parts);
     assert_int_equal(s->loops, genus);
+    assert_int_equal(s->cuts, 0);
+    assert_int_equal(s->mends, 0);
     assert_true(s->homotopic);
     for (size_t v = 0; v < s->node_count; v++) {
         assert_true(starg_solid_contains(solid, s->positions + 3 * v));
@@ -100,6 +102,29 @@ static void test_shared_models(void **state) {
         starg_mesh_free(mesh);
         test_context_free(context);
     }
+}
+
+/* Ears so thin that samples cannot follow both of their sides: counts are put right, and that is
+ * told, as what was cut may have been another loop. */
+static void test_mended_model(void **state) {
+    (void)state;
+    const char *folder = test_shared_data();
+    if (folder == NULL)
+        skip();
+    starg_context *context = test_context(0);
+    starg_mesh *mesh = read_model(context, folder, "retrieval_tosca/cat_04.off");
+    starg_solid *solid = NULL;
+    starg_skeleton *s = NULL;
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    test_ok(context, starg_skeleton_create(context, solid, NULL, &s));
+    assert_int_equal(s->components, 1);
+    assert_int_equal(s->loops, 0);
+    assert_true(s->mends > 0);
+    assert_false(s->homotopic);
+    starg_skeleton_free(context, s);
+    starg_solid_free(solid);
+    starg_mesh_free(mesh);
+    test_context_free(context);
 }
 
 /* Rounded coordinates change every decision of the Delaunay tetrahedra, but no count. */
@@ -133,6 +158,7 @@ static void test_rigid_motion(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_shared_models),
+                                       cmocka_unit_test(test_mended_model),
                                        cmocka_unit_test(test_rigid_motion)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
