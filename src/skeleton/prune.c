@@ -3,11 +3,14 @@
  * the one below it. Among the branches that meet in a node the one with the longest way up goes on,
  * the others end there, so that the trees fall into paths from a joint to a tip.
  *
- * A path is kept when the path it springs from is, and when one of its balls reaches beyond `reach`
- * times the solid's half width at the joint, from the joint's centre: a measure that does not
- * depend on the size of the model; and what is no longer than some steps of the samples is their
- * noise. Twigs of twigs thus never count, and a ball keeps a point only. Kept paths end at the
- * first ball that reaches nearly as far as any on them.
+ * A path is kept when it leaves its joint as a limb. Noise of the samples and ridges give paths as
+ * long as short limbs are, so that length alone does not tell; the medial geodesic function does,
+ * which is half the girth on a limb, twice the height on a ridge, and less than the ball is wide
+ * where a ball touches nearly one place. All measures are ratios, and do not depend on the size of
+ * the model; only what is no longer than some steps of the samples is their noise in any case.
+ *
+ * The joint is the nearest kept node below, so that limbs count that meet in a large ball. A ball
+ * keeps a point only. Kept paths end at the first ball that reaches nearly as far as any on them.
  *
  * Cost: linear. */
 #include "skeleton/prune.h"
@@ -19,7 +22,9 @@
 static const char STAGE[] = "pruning";
 
 static const double WIDTH_SHARE = 0.3;
-enum { SPACINGS = 4 }; /* what samples cannot tell from their own unevenness */
+static const double SLENDER = 0.9;
+static const double SEPARATION = 2.5; /* in radii; it is pi on a tube */
+enum { SPACINGS = 4 };                /* what samples cannot tell from their own unevenness */
 
 typedef struct pruner {
     starg_context *context;
@@ -27,6 +32,7 @@ typedef struct pruner {
     const curve_graph *graph;
     const bool *node_left;
     double reach, spacing;
+    double *girths;   /* half the girth: the largest medial geodesic function at a node */
     double *widths;   /* of the solid at nodes: see measure_widths */
     double *radii;    /* of balls about the centres that lie in those of neighbours, or their own */
     bool *root;       /* not to be peeled */
@@ -69,12 +75,14 @@ static void level(const pruner *p, double *values) {
 static void measure_widths(pruner *p, const double *values) {
     const medial_complex *c = p->complex;
     memcpy(p->radii, c->radii, p->graph->node_count * sizeof *p->radii);
-    memcpy(p->widths, c->radii, p->graph->node_count * sizeof *p->widths);
+    memset(p->girths, 0, p->graph->node_count * sizeof *p->girths);
     for (size_t l = 0; l < c->link_count; l++)
         for (int k = 0; k < 6; k++) {
-            double *width = &p->widths[c->links[l][k / 3]];
-            *width = fmax(*width, WIDTH_SHARE * values[c->link_edges[l][k % 3]]);
+            double *girth = &p->girths[c->links[l][k / 3]];
+            *girth = fmax(*girth, values[c->link_edges[l][k % 3]]);
         }
+    for (size_t v = 0; v < p->graph->node_count; v++)
+        p->widths[v] = fmax(c->radii[v], WIDTH_SHARE * p->girths[v]);
     level(p, p->radii);
     level(p, p->widths);
 }
@@ -152,12 +160,27 @@ static void find_ways_up(pruner *p) {
     }
 }
 
-/* Does the path that starts with `first` reach beyond the ball of its joint? */
-static bool is_feature(const pruner *p, uint32_t joint, uint32_t first) {
-    double limit = fmax(p->reach * p->widths[joint], p->radii[joint] + SPACINGS * p->spacing);
+/* How far from a joint the balls of the path that starts with `first` reach, as the crow flies. */
+static double reach_of(const pruner *p, uint32_t joint, uint32_t first) {
+    double farthest = 0;
     for (uint32_t v = first; v != EDGE_NONE; v = p->up[v])
-        if (distance(p, joint, v) + p->radii[v] > limit)
+        farthest = fmax(farthest, distance(p, joint, v) + p->radii[v]);
+    return farthest;
+}
+
+/* Does the path that starts with `first` leave the ball of its joint as a limb? From some node
+ * beyond that ball it goes on far enough for the solid's width at the joint and for its own girth
+ * (a ridge is half as high as it is round, however high), and that node's ball touches two sides
+ * that lie apart, where those of noise touch nearly one place. */
+static bool is_feature(const pruner *p, uint32_t joint, uint32_t first) {
+    double least = fmax((p->reach - 1) * p->widths[joint], SPACINGS * p->spacing);
+    double farthest = reach_of(p, joint, first);
+    for (uint32_t v = first; v != EDGE_NONE; v = p->up[v]) {
+        double away = distance(p, joint, v);
+        if (away >= p->radii[joint] && fmin(farthest - away, p->height[v]) > least &&
+            p->height[v] > SLENDER * p->girths[v] && p->girths[v] > SEPARATION * p->radii[v])
             return true;
+    }
     return false;
 }
 
@@ -179,25 +202,36 @@ static void keep_path(pruner *p, uint32_t joint, uint32_t first) {
     }
 }
 
-/* From the roots up. A node starts a path unless the node below goes on with it. */
+/* Keeps the way from v down to what is kept. */
+static void keep_way_down(pruner *p, uint32_t v) {
+    for (; !p->pruned->kept[v]; v = p->below[v])
+        p->pruned->kept[v] = true;
+}
+
+/* From the roots up. A node starts a path unless the node below goes on with it. Paths may part on
+ * one that is none itself (as where many limbs meet); the kept node below is the joint then. */
 static void choose_paths(pruner *p) {
-    for (uint32_t v = 0; v < p->graph->node_count; v++)
+    uint32_t *owner = p->pruned->owner;
+    for (uint32_t v = 0; v < p->graph->node_count; v++) {
         p->pruned->kept[v] = p->below[v] == EDGE_NONE && p->node_left[v];
+        owner[v] = v;
+    }
     for (size_t i = p->peeled; i-- > 0;) {
         uint32_t v = p->order[i], w = p->below[v];
         bool starts = p->below[w] == EDGE_NONE || p->up[w] != v;
-        if (starts && p->pruned->kept[w] && is_feature(p, w, v))
-            keep_path(p, w, v);
+        if (starts && p->pruned->kept[owner[w]] && is_feature(p, owner[w], v)) {
+            keep_way_down(p, w);
+            keep_path(p, owner[w], v);
+        }
+        owner[v] = p->pruned->kept[v] ? v : owner[w];
     }
 }
 
+/* Again, as ways down have been kept later than what stands on them. */
 static void find_owners(pruner *p) {
-    for (uint32_t v = 0; v < p->graph->node_count; v++)
-        p->pruned->owner[v] = v;
     for (size_t i = p->peeled; i-- > 0;) {
         uint32_t v = p->order[i];
-        if (!p->pruned->kept[v])
-            p->pruned->owner[v] = p->pruned->owner[p->below[v]];
+        p->pruned->owner[v] = p->pruned->kept[v] ? v : p->pruned->owner[p->below[v]];
     }
 }
 
@@ -217,6 +251,7 @@ starg_status prune_graph(starg_context *context, const medial_complex *complex,
     STARG_NEW(context, STAGE, pruned->kept, count);
     STARG_NEW(context, STAGE, pruned->owner, count);
     STARG_NEW(context, STAGE, p.radii, count);
+    STARG_NEW(context, STAGE, p.girths, count);
     STARG_NEW(context, STAGE, p.widths, count);
     STARG_NEW_ZERO(context, STAGE, p.root, count);
     STARG_NEW(context, STAGE, p.degree, count);
@@ -232,6 +267,7 @@ starg_status prune_graph(starg_context *context, const medial_complex *complex,
     find_owners(&p);
 done:
     starg_release(context, p.radii);
+    starg_release(context, p.girths);
     starg_release(context, p.widths);
     starg_release(context, p.root);
     starg_release(context, p.degree);
