@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "shapes.h"
+#include "starguard/sample.h"
 #include "starguard/skeleton.h"
 
 static starg_solid *solid_of(starg_context *context, const shape *s) {
@@ -296,13 +297,38 @@ static void test_bad_options(void **state) {
     test_context_free(context);
 }
 
+/* One end for each limb at the default: spikes; arms, legs and head; legs, head and tail. */
+static void test_limbs(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        size_t ends;
+    } known[] = {{"star", 20}, {"human", 5}, {"horse", 6}, {"octopus", 9}, {"sphere", 0}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        starg_context *context = test_context(2);
+        starg_mesh *mesh = NULL;
+        starg_solid *solid = NULL;
+        starg_skeleton *skeleton = NULL;
+        test_ok(context, starg_sample_create(context, known[i].name, NULL, &mesh));
+        test_ok(context, starg_solid_create(context, mesh, &solid));
+        test_ok(context, starg_skeleton_create(context, solid, NULL, &skeleton));
+        check_promises(solid, skeleton);
+        if (skeleton->ends != known[i].ends)
+            fail_msg("%s: %zu ends, not %zu", known[i].name, skeleton->ends, known[i].ends);
+        starg_skeleton_free(context, skeleton);
+        starg_solid_free(solid);
+        starg_mesh_free(mesh);
+        test_context_free(context);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_trees),           cmocka_unit_test(test_loops),
-        cmocka_unit_test(test_components),      cmocka_unit_test(test_cavity),
-        cmocka_unit_test(test_scales),          cmocka_unit_test(test_thin_plate),
-        cmocka_unit_test(test_ball_is_a_point), cmocka_unit_test(test_bar),
-        cmocka_unit_test(test_threads),         cmocka_unit_test(test_files),
-        cmocka_unit_test(test_bad_options)};
+        cmocka_unit_test(test_trees),      cmocka_unit_test(test_loops),
+        cmocka_unit_test(test_components), cmocka_unit_test(test_cavity),
+        cmocka_unit_test(test_limbs),      cmocka_unit_test(test_scales),
+        cmocka_unit_test(test_thin_plate), cmocka_unit_test(test_ball_is_a_point),
+        cmocka_unit_test(test_bar),        cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_files),      cmocka_unit_test(test_bad_options)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
