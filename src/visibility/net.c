@@ -1,5 +1,7 @@
 #include "visibility/net.h"
 
+#include <math.h>
+
 #include "core/memory.h"
 #include "mesh/topology.h"
 
@@ -81,10 +83,30 @@ static void grow_trees(const visibility_scene *scene, visibility_net *net) {
     net->shell_start[net->shell_count] = listed;
 }
 
+/* The nearest of the neighbours that come before it becomes a slot's parent: short links meet few
+ * contours. `place` is where each slot stands in the order. */
+static void shorten_links(const visibility_scene *scene, visibility_net *net, uint32_t *place) {
+    for (uint32_t i = 0; i < scene->vertex_count; i++)
+        place[net->order[i]] = i;
+    for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
+        double shortest = INFINITY;
+        for (uint32_t i = net->fan_start[slot]; i < net->fan_start[slot + 1]; i++) {
+            uint32_t other = net->neighbour[i];
+            double x = scene->x[other] - scene->x[slot], y = scene->y[other] - scene->y[slot];
+            double z = scene->z[other] - scene->z[slot], square = x * x + y * y + z * z;
+            if (place[other] < place[slot] && square < shortest) {
+                shortest = square;
+                net->parent[slot] = other;
+            }
+        }
+    }
+}
+
 starg_status net_create(starg_context *context, const visibility_scene *scene,
                         visibility_net **out) {
     starg_status status = STARG_OK;
     visibility_net *net = NULL;
+    uint32_t *place = NULL;
     size_t n = scene->vertex_count, corners = 3 * scene->face_count;
     *out = NULL;
     STARG_NEW_ZERO(context, STAGE, net, 1);
@@ -96,12 +118,15 @@ starg_status net_create(starg_context *context, const visibility_scene *scene,
     STARG_NEW(context, STAGE, net->parent, n);
     STARG_NEW(context, STAGE, net->order, n);
     STARG_NEW(context, STAGE, net->shell_start, n + 1);
+    STARG_NEW(context, STAGE, place, n);
     fill_fans(scene, net);
     order_fans(scene, net);
     list_edges(scene, net);
     grow_trees(scene, net);
+    shorten_links(scene, net, place);
     *out = net;
 done:
+    starg_release(context, place);
     if (status != STARG_OK)
         net_free(net);
     return status;
