@@ -17,8 +17,10 @@
  * - At an end w. Next to w come those points of K that converge to w: on kept faces (w, a, b) off
  *   the edge, in whose wedge, seen from p, the edge starts, and before it. With all faces at w
  *   kept, or none, there are no such points; otherwise they are counted.
- * So N follows from one vertex of each shell along the edges of a spanning tree ("links"). The
- * first is counted by the tree of boxes.
+ * So N follows from one vertex of each shell along edges ("links") that form a tree. The first is
+ * counted by the tree of boxes. Vertices without kept faces are hidden; only those links are
+ * followed that lead to the others, and of the trees one that has short links and few that start
+ * on contours, where points of K would have to be counted (visibility/contours_forest.h).
  *
  * With det(x, y, z) for vectors relative to p, the contour (a, b), its kept face on the left:
  * - it crosses the link from w to v if det(w, v, a) and det(a, b, v) have one sign and det(w, v, b)
@@ -33,11 +35,12 @@
  *
  * Stages for a point p:
  *   1. find the contours;
- *   2. project all vertices to the faces of a cube about p; sort the contours' projections into
+ *   2. choose the links;
+ *   3. project all vertices to the faces of a cube about p; sort the contours' projections into
  *      rows of cells there by counting;
- *   3. follow each link: compare it with the contours in the cells that it touches, in single
+ *   4. follow each link: compare it with the contours in the cells that it touches, in single
  *      precision with an error bound first; count at ends that lie on contours;
- *   4. sum along the trees.
+ *   5. sum along the trees.
  * Cells only choose what is compared, with a margin above the rounding of the projection.
  *
  * Cost per point: O(n), plus the pairs of links and contours in common cells; contours are few on
@@ -55,7 +58,10 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_context *context = scene->context;
     visibility_grid.free_scratch(scene, s->grid);
     cube_free(context, &s->directions);
-    starg_release(context, s->mixed);
+    starg_release(context, s->grade);
+    starg_release(context, s->followed);
+    starg_release(context, s->parent);
+    starg_release(context, s->links);
     starg_release(context, s->contours);
     starg_release(context, s->contour_edges);
     starg_release(context, s->rows);
@@ -94,16 +100,19 @@ static bool make_tables(const visibility_scene *scene, contours_scratch *s) {
     s->piece_limit = 4 * n + 1024;
     s->row_limit = s->contour_limit / ROW_LOAD + CUBE_FACES + 1;
     s->cell_limit = s->piece_limit + s->row_limit + 1;
-    s->mixed = starg_allocate(context, n, sizeof *s->mixed);
+    s->grade = starg_allocate(context, n, sizeof *s->grade);
+    s->followed = starg_allocate(context, n, sizeof *s->followed);
+    s->parent = starg_allocate(context, n, sizeof *s->parent);
+    s->links = starg_allocate(context, n + 1, sizeof *s->links);
     s->contours = starg_allocate(context, s->contour_limit, sizeof *s->contours);
     s->contour_edges = starg_allocate(context, s->contour_limit, sizeof *s->contour_edges);
     s->rows = starg_allocate(context, s->row_limit, sizeof *s->rows);
     s->cell_start = starg_allocate(context, s->cell_limit, sizeof *s->cell_start);
     s->pieces = starg_allocate(context, s->piece_limit, sizeof *s->pieces);
     s->layers = starg_allocate(context, n, sizeof *s->layers);
-    return cube_make(context, n, &s->directions) && s->mixed && s->contours && s->contour_edges &&
-           s->rows && s->cell_start && s->pieces && s->layers &&
-           make_piece_table(context, s->piece_limit + PIECE_PADDING, &s->sorted);
+    return cube_make(context, n, &s->directions) && s->grade && s->followed && s->parent &&
+           s->links && s->contours && s->contour_edges && s->rows && s->cell_start && s->pieces &&
+           s->layers && make_piece_table(context, s->piece_limit + PIECE_PADDING, &s->sorted);
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {

@@ -8,6 +8,13 @@
 #include "visibility/net.h"
 #include "visibility/scene.h"
 
+/* How good it is for a link to start at a vertex. */
+typedef enum slot_grade {
+    SLOT_KEPT,  /* all faces about it are kept */
+    SLOT_MIXED, /* it is on a contour: what lies there must be counted */
+    SLOT_LEFT   /* no face is kept; it is hidden, and its own link goes for nothing */
+} slot_grade;
+
 /* A row begins so many contours; tables of pieces are longer by what is compared at once. */
 enum { ROW_LOAD = 48, PIECE_PADDING = 16 };
 
@@ -70,7 +77,11 @@ typedef struct contours_scratch {
     const int8_t *side; /* of that point */
     void *grid;         /* scratch of the grid, for points that contours do not decide */
     cube_directions directions;
-    uint8_t *mixed; /* by slot: is there a contour? */
+    uint8_t *grade;    /* by slot: a slot_grade */
+    uint8_t *followed; /* by slot: is its link followed? */
+    uint32_t *parent;  /* by slot: where its link comes from */
+    uint32_t *links;   /* the slots whose links are followed; one more than there are slots */
+    size_t link_count;
     contour *contours;
     uint32_t *contour_edges; /* numbers of the net's edges */
     size_t contour_count, contour_limit;

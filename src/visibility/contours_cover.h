@@ -143,7 +143,8 @@ static bool may_cover(const visibility_scene *scene, contours_scratch *s, size_t
     const uint32_t *corner = scene->corners + 3 * rank;
     if (finds_contour_before(scene, s, rank))
         return true;
-    if (!(s->mixed[corner[0]] & s->mixed[corner[1]] & s->mixed[corner[2]]))
+    if (!(s->grade[corner[0]] == SLOT_MIXED && s->grade[corner[1]] == SLOT_MIXED &&
+          s->grade[corner[2]] == SLOT_MIXED))
         return false;
     link l = {.scene = scene, .s = s, .p = s->p, .side = s->side};
     cross(&s->directions, corner[0], corner[1], l.normal);

@@ -1,4 +1,4 @@
-/* Stage 3 of the engine by contours (visibility/contours.c): how the number of kept layers changes
+/* Stage 4 of the engine by contours (visibility/contours.c): how the number of kept layers changes
  * along each link. Included by the stages. */
 
 /* An edge of the boundary from one vertex to another, and the plane through it and p. */
@@ -277,7 +277,8 @@ typedef struct encounter {
 } encounter;
 
 typedef struct link_block {
-    uint32_t begin, count; /* slots where the links end */
+    const uint32_t *to; /* the slots where the links end */
+    uint32_t count;
     uint32_t visit_count, encounter_count, end_count;
     link_boxes boxes;
     row_visit visits[TALL * BLOCK + 1];
@@ -287,17 +288,16 @@ typedef struct link_block {
 
 static link make_link(const visibility_scene *scene, contours_scratch *s, const double p[3],
                       const int8_t *side, uint32_t to) {
-    return (link){
-        .scene = scene, .s = s, .p = p, .side = side, .from = scene->net->parent[to], .to = to};
+    return (link){.scene = scene, .s = s, .p = p, .side = side, .from = s->parent[to], .to = to};
 }
 
 /* Without branches, so that the compiler takes several at a time. */
-static void measure_links(const contours_scratch *s, const uint32_t *parent, link_block *block) {
+static void measure_links(const contours_scratch *s, link_block *block) {
     const cube_directions *d = &s->directions;
     const uint32_t *rows = s->row_of_bin;
     link_boxes *out = &block->boxes;
     for (uint32_t k = 0; k < block->count; k++) {
-        uint32_t to = block->begin + k, from = parent[to], face = d->face[to] % RIM;
+        uint32_t to = block->to[k], from = s->parent[to], face = d->face[to] % RIM;
         float u = d->u[from], v = d->v[from];
         out->u_low[k] = lesser(u, d->u[to]) - CELL_MARGIN;
         out->u_high[k] = greater(u, d->u[to]) + CELL_MARGIN;
@@ -366,8 +366,7 @@ static bool meet_pieces(const visibility_scene *scene, contours_scratch *s, cons
         for (uint32_t i = v->begin; i < v->end; i += WIDE) {
             uint32_t among = overlapping(&s->sorted, &box, i, v->end);
             among &= v->others | wide_marked(s->sorted.label + i, PIECE_COUNTS);
-            block->encounters[block->encounter_count] =
-                (encounter){block->begin + v->link, i, among};
+            block->encounters[block->encounter_count] = (encounter){block->to[v->link], i, among};
             block->encounter_count += among != 0;
             if (block->encounter_count == BLOCK && !settle_encounters(scene, s, p, side, block))
                 return false;
@@ -380,7 +379,7 @@ static bool settle_ends(const visibility_scene *scene, contours_scratch *s, cons
                         const int8_t *side, link_block *block) {
     for (uint32_t k = 0; k < block->end_count; k++) {
         uint32_t w = block->ends[k][0], v = block->ends[k][1];
-        bool back = scene->net->parent[w] == v;
+        bool back = s->parent[w] == v;
         link l = make_link(scene, s, p, side, back ? w : v);
         cross(&s->directions, w, v, l.normal);
         int32_t layers = count_at_end(&l, w, v, l.normal);
@@ -404,38 +403,37 @@ static bool follow_other(const visibility_scene *scene, const double p[3], const
 static void list_ends(const contours_scratch *s, uint32_t from, uint32_t to, link_block *block) {
     block->ends[block->end_count][0] = from;
     block->ends[block->end_count][1] = to;
-    block->end_count += s->mixed[from] & (from != to);
+    block->end_count += (s->grade[from] == SLOT_MIXED) & (from != to);
     block->ends[block->end_count][0] = to;
     block->ends[block->end_count][1] = from;
-    block->end_count += s->mixed[to] & (from != to);
+    block->end_count += (s->grade[to] == SLOT_MIXED) & (from != to);
 }
 
 static bool follow_block(const visibility_scene *scene, const double p[3], const int8_t *side,
-                         contours_scratch *s, uint32_t begin, uint32_t end) {
+                         contours_scratch *s, const uint32_t *to, size_t count) {
     link_block block;
-    block.begin = begin;
-    block.count = end - begin;
+    block.to = to;
+    block.count = (uint32_t)count;
     block.visit_count = block.encounter_count = block.end_count = 0;
-    measure_links(s, scene->net->parent, &block);
+    measure_links(s, &block);
     for (uint32_t k = 0; k < block.count; k++) {
-        s->layers[begin + k] = 0;
         if (block.boxes.plain[k] && block.boxes.last_row[k] - block.boxes.row[k] < TALL)
             visit_rows(&block, k);
-        else if (!follow_other(scene, p, side, s, begin + k))
+        else if (!follow_other(scene, p, side, s, to[k]))
             return false;
-        list_ends(s, scene->net->parent[begin + k], begin + k, &block);
+        list_ends(s, s->parent[to[k]], to[k], &block);
     }
     look_up_cells(s, &block);
     return meet_pieces(scene, s, p, side, &block) && settle_ends(scene, s, p, side, &block);
 }
 
-/* Stage 3: how the number of layers changes along each link of the trees. */
+/* Stage 4: how the number of layers changes along each link of the trees. */
 static bool follow_links(const visibility_scene *scene, const double p[3], const int8_t *side,
                          contours_scratch *s) {
-    uint32_t count = (uint32_t)scene->vertex_count;
-    for (uint32_t begin = 0; begin < count; begin += BLOCK) {
-        uint32_t end = count - begin < BLOCK ? count : begin + BLOCK;
-        if (!follow_block(scene, p, side, s, begin, end))
+    memset(s->layers, 0, scene->vertex_count * sizeof *s->layers);
+    for (size_t begin = 0; begin < s->link_count; begin += BLOCK) {
+        size_t left = s->link_count - begin;
+        if (!follow_block(scene, p, side, s, s->links + begin, left < BLOCK ? left : BLOCK))
             return false;
     }
     return true;

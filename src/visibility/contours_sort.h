@@ -1,4 +1,4 @@
-/* Stage 2 of the engine by contours (visibility/contours.c): what contours cover on the faces of
+/* Stage 3 of the engine by contours (visibility/contours.c): what contours cover on the faces of
  * the cube, in rows of cells. Included by the stages. */
 
 /* From so many rows on a segment is followed from row to row. */
@@ -187,7 +187,7 @@ static void place_piece(contours_scratch *s, const contour_piece *piece) {
     t->label[at] = piece->label;
 }
 
-/* Stage 2: sorts the contours into cells, by counting; cell_start[c] is first the end of cell c,
+/* Stage 3: sorts the contours into cells, by counting; cell_start[c] is first the end of cell c,
  * and its start when all are placed. */
 static bool sort_contours(contours_scratch *s) {
     cut_rows(s);

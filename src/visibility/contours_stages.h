@@ -18,12 +18,13 @@ static bool find_contours(const visibility_scene *scene, const int8_t *side, con
         if (count == s->contour_limit)
             return false;
     }
-    memset(s->mixed, 0, scene->vertex_count);
+    for (size_t slot = 0; slot < scene->vertex_count; slot++)
+        s->grade[slot] = side[net->first_face[slot]] > 0 ? SLOT_KEPT : SLOT_LEFT;
     for (size_t i = 0; i < count; i++) {
         const net_edge *edge = &net->edges[s->contour_edges[i]];
         bool turn = side[edge->left] <= 0;
         uint32_t a = turn ? edge->b : edge->a, b = turn ? edge->a : edge->b;
-        s->mixed[a] = s->mixed[b] = 1;
+        s->grade[a] = s->grade[b] = SLOT_MIXED;
         s->contours[i].a = a;
         s->contours[i].b = b;
         s->contours[i].tested_by = SCENE_NONE;
@@ -50,29 +51,44 @@ static void measure_contours(contours_scratch *s) {
 #include "visibility/contours_sort.h"
 
 /* These need what comes before. */
+#include "visibility/contours_forest.h"
+
 #include "visibility/contours_links.h"
 
 #include "visibility/contours_cover.h"
 
-/* Stage 4: sums the steps from each root on, and sets them right by one vertex of the shell. */
+/* What the sum is where no layer comes before: by the first vertex that the tree can tell of. */
+static bool find_base(const visibility_scene *scene, const double p[3], const int8_t *side,
+                      const contours_scratch *s, const uint32_t *order, size_t count,
+                      int32_t *none) {
+    enum { ATTEMPTS = 8 };
+    int32_t layers;
+    for (size_t i = 0, attempt = 0; i < count && attempt < ATTEMPTS; i++) {
+        if (!s->followed[order[i]])
+            continue;
+        if (contours_count_layers(scene, p, side, order[i], &layers)) {
+            *none = s->layers[order[i]] - layers;
+            return true;
+        }
+        attempt++;
+    }
+    return false;
+}
+
+/* Stage 5: sums the steps from each root on, and sets them right by one vertex of the shell. */
 static bool sum_layers(const visibility_scene *scene, const double p[3], const int8_t *side,
                        contours_scratch *s, uint8_t *visible) {
     const visibility_net *net = scene->net;
-    enum { ATTEMPTS = 8 };
     for (size_t shell = 0; shell < net->shell_count; shell++) {
         const uint32_t *order = net->order + net->shell_start[shell];
-        size_t count = net->shell_start[shell + 1] - net->shell_start[shell], i = 0;
-        int32_t layers;
+        size_t count = net->shell_start[shell + 1] - net->shell_start[shell];
+        int32_t none = 0;
         for (size_t k = 1; k < count; k++)
-            s->layers[order[k]] += s->layers[net->parent[order[k]]];
-        while (i < count && i < ATTEMPTS &&
-               !contours_count_layers(scene, p, side, order[i], &layers))
-            i++;
-        if (i == count || i == ATTEMPTS)
+            s->layers[order[k]] += s->layers[s->parent[order[k]]];
+        if (s->followed[order[0]] && !find_base(scene, p, side, s, order, count, &none))
             return false;
-        int32_t none = s->layers[order[i]] - layers;
         for (size_t k = 0; k < count; k++)
-            visible[order[k]] = s->layers[order[k]] == none;
+            visible[order[k]] = (s->layers[order[k]] == none) & (s->grade[order[k]] != SLOT_LEFT);
     }
     return true;
 }
@@ -88,6 +104,7 @@ static bool run(const visibility_scene *scene, contours_scratch *s, const double
         return false; /* too small for the error bounds */
     cube_project(scene->vertex_count, &s->directions);
     measure_contours(s);
+    choose_links(scene, s);
     return sort_contours(s) && follow_links(scene, p, side, s) &&
            sum_layers(scene, p, side, s, visible);
 }

@@ -1,7 +1,5 @@
 #include "visibility/net.h"
 
-#include <math.h>
-
 #include "core/memory.h"
 #include "mesh/topology.h"
 
@@ -58,24 +56,24 @@ static void list_edges(const visibility_scene *scene, visibility_net *net) {
     }
 }
 
-/* Breadth first, so that paths are short. */
-static void grow_trees(const visibility_scene *scene, visibility_net *net) {
+/* Breadth first, so that paths are short. `place` is where each slot stands in the order. */
+static void order_slots(const visibility_scene *scene, visibility_net *net, uint32_t *place) {
     uint32_t listed = 0, next = 0;
     for (uint32_t slot = 0; slot < scene->vertex_count; slot++)
-        net->parent[slot] = SCENE_NONE;
+        place[slot] = SCENE_NONE;
     for (uint32_t root = 0; root < scene->vertex_count; root++) {
-        if (net->parent[root] != SCENE_NONE)
+        if (place[root] != SCENE_NONE)
             continue;
         net->shell_start[net->shell_count++] = listed;
-        net->parent[root] = root;
+        place[root] = listed;
         net->order[listed++] = root;
         for (; next < listed; next++) {
             uint32_t slot = net->order[next];
             for (uint32_t i = net->fan_start[slot]; i < net->fan_start[slot + 1]; i++) {
                 uint32_t neighbour = net->neighbour[i];
-                if (net->parent[neighbour] != SCENE_NONE)
+                if (place[neighbour] != SCENE_NONE)
                     continue;
-                net->parent[neighbour] = slot;
+                place[neighbour] = listed;
                 net->order[listed++] = neighbour;
             }
         }
@@ -83,22 +81,45 @@ static void grow_trees(const visibility_scene *scene, visibility_net *net) {
     net->shell_start[net->shell_count] = listed;
 }
 
-/* The nearest of the neighbours that come before it becomes a slot's parent: short links meet few
- * contours. `place` is where each slot stands in the order. */
-static void shorten_links(const visibility_scene *scene, visibility_net *net, uint32_t *place) {
-    for (uint32_t i = 0; i < scene->vertex_count; i++)
-        place[net->order[i]] = i;
-    for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
-        double shortest = INFINITY;
-        for (uint32_t i = net->fan_start[slot]; i < net->fan_start[slot + 1]; i++) {
-            uint32_t other = net->neighbour[i];
-            double x = scene->x[other] - scene->x[slot], y = scene->y[other] - scene->y[slot];
-            double z = scene->z[other] - scene->z[slot], square = x * x + y * y + z * z;
-            if (place[other] < place[slot] && square < shortest) {
-                shortest = square;
-                net->parent[slot] = other;
+static double square_distance(const visibility_scene *scene, uint32_t a, uint32_t b) {
+    double x = scene->x[b] - scene->x[a], y = scene->y[b] - scene->y[a];
+    double z = scene->z[b] - scene->z[a];
+    return x * x + y * y + z * z;
+}
+
+/* The nearest of the neighbours that come before the slot. */
+static void choose_parents_of(const visibility_scene *scene, visibility_net *net,
+                              const uint32_t *place, uint32_t slot) {
+    uint32_t *parents = net->parents + CHOICES * (size_t)slot;
+    double distances[CHOICES];
+    int count = 0;
+    for (uint32_t i = net->fan_start[slot]; i < net->fan_start[slot + 1]; i++) {
+        uint32_t other = net->neighbour[i];
+        if (place[other] > place[slot])
+            continue;
+        double distance = square_distance(scene, slot, other);
+        int k = count < CHOICES ? count++ : CHOICES;
+        for (; k > 0 && distance < distances[k - 1]; k--)
+            if (k < CHOICES) {
+                distances[k] = distances[k - 1];
+                parents[k] = parents[k - 1];
             }
+        if (k < CHOICES) {
+            distances[k] = distance;
+            parents[k] = other;
         }
+    }
+    if (count == 0)
+        parents[count++] = slot;
+    for (; count < CHOICES; count++)
+        parents[count] = parents[count - 1];
+}
+
+static void choose_parents(const visibility_scene *scene, visibility_net *net,
+                           const uint32_t *place) {
+    for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
+        net->first_face[slot] = net->fan_face[net->fan_start[slot]];
+        choose_parents_of(scene, net, place, slot);
     }
 }
 
@@ -115,15 +136,16 @@ starg_status net_create(starg_context *context, const visibility_scene *scene,
     STARG_NEW_ZERO(context, STAGE, net->fan_start, n + 1);
     STARG_NEW_ZERO(context, STAGE, net->neighbour, corners + FAN);
     STARG_NEW_ZERO(context, STAGE, net->fan_face, corners + FAN);
-    STARG_NEW(context, STAGE, net->parent, n);
+    STARG_NEW(context, STAGE, net->parents, CHOICES * n);
+    STARG_NEW(context, STAGE, net->first_face, n);
     STARG_NEW(context, STAGE, net->order, n);
     STARG_NEW(context, STAGE, net->shell_start, n + 1);
     STARG_NEW(context, STAGE, place, n);
     fill_fans(scene, net);
     order_fans(scene, net);
     list_edges(scene, net);
-    grow_trees(scene, net);
-    shorten_links(scene, net, place);
+    order_slots(scene, net, place);
+    choose_parents(scene, net, place);
     *out = net;
 done:
     starg_release(context, place);
@@ -140,7 +162,8 @@ void net_free(visibility_net *net) {
     starg_release(context, net->fan_start);
     starg_release(context, net->neighbour);
     starg_release(context, net->fan_face);
-    starg_release(context, net->parent);
+    starg_release(context, net->parents);
+    starg_release(context, net->first_face);
     starg_release(context, net->order);
     starg_release(context, net->shell_start);
     starg_release(context, net);

@@ -1,11 +1,11 @@
 /* How the boundary of a solid hangs together, in slots and ranks of its scene: edges, the faces
- * about each vertex, and a spanning tree along edges. Immutable once made. */
+ * about each vertex, and what trees along edges can be made of. Immutable once made. */
 #ifndef STARG_VISIBILITY_NET_H
 #define STARG_VISIBILITY_NET_H
 
 #include "visibility/scene.h"
 
-enum { FAN = 8 };
+enum { FAN = 8, CHOICES = 3 };
 
 /* An edge runs from a to b in the face `left`, and back in `right`. */
 typedef struct net_edge {
@@ -20,8 +20,10 @@ typedef struct visibility_net {
      * the ranks of the faces between each and the next one. */
     uint32_t *fan_start;            /* slot -> its first place; one more than there are slots */
     uint32_t *neighbour, *fan_face; /* FAN places more */
-    uint32_t *parent;               /* slot -> a neighbour, or itself for the root of a shell */
-    uint32_t *order;                /* slots, shell by shell, each behind its parent */
+    uint32_t *parents; /* slot x CHOICES -> neighbours that come before it in the order, the nearest
+                          first and the last repeated; or itself for the root of a shell */
+    uint32_t *first_face; /* slot -> one of its faces */
+    uint32_t *order;      /* slots, shell by shell */
     size_t shell_count;
     uint32_t *shell_start; /* shell -> its first place in order, its root; and the end */
 } visibility_net;
