@@ -67,43 +67,68 @@ static inline double larger(double a, double b) {
     return a > b ? a : b; /* unlike fmax, one instruction */
 }
 
+/* Returns the largest magnitude among the differences. Eight maxima at a time, which the compiler
+ * may keep side by side. */
+static inline double subtract_all(const double *restrict from, double by, size_t count,
+                                  double *restrict out) {
+    enum { SIDE_BY_SIDE = 8 };
+    double largest[SIDE_BY_SIDE] = {0};
+    size_t i = 0;
+    for (; i + SIDE_BY_SIDE <= count; i += SIDE_BY_SIDE)
+        for (size_t k = 0; k < SIDE_BY_SIDE; k++) {
+            double difference = from[i + k] - by;
+            out[i + k] = difference;
+            largest[k] = larger(fabs(difference), largest[k]);
+        }
+    for (; i < count; i++) {
+        out[i] = from[i] - by;
+        largest[0] = larger(fabs(out[i]), largest[0]);
+    }
+    for (size_t k = 1; k < SIDE_BY_SIDE; k++)
+        largest[0] = larger(largest[k], largest[0]);
+    return largest[0];
+}
+
 /* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
  * most 6 mx my mz and an error of at most 8 roundings of it; the sum of four comes to 30. */
 static inline void cube_make_relative(const visibility_scene *scene, const double p[3],
                                       cube_directions *d) {
-    double mx = 0, my = 0, mz = 0;
-    for (size_t i = 0; i < scene->vertex_count; i++) {
-        d->x[i] = scene->x[i] - p[0];
-        d->y[i] = scene->y[i] - p[1];
-        d->z[i] = scene->z[i] - p[2];
-        mx = larger(mx, fabs(d->x[i]));
-        my = larger(my, fabs(d->y[i]));
-        mz = larger(mz, fabs(d->z[i]));
-    }
+    double mx = subtract_all(scene->x, p[0], scene->vertex_count, d->x);
+    double my = subtract_all(scene->y, p[1], scene->vertex_count, d->y);
+    double mz = subtract_all(scene->z, p[2], scene->vertex_count, d->z);
     d->extent = larger(larger(mx, my), mz);
     d->bound = 6 * 40 * 0x1p-53 * mx * my * mz;
     if (!(d->bound > 1e-200))
         d->bound = INFINITY;
 }
 
-/* Projects all vertices; without branches, so that the compiler takes several at a time. */
+/* Projects all vertices; without branches and with columns that are known to be apart, so that the
+ * compiler takes several at a time. Where the major coordinate is so small that its inverse is
+ * infinite, u is no number or infinite, and the rim is told. */
 static inline void cube_project(size_t count, cube_directions *d) {
     const float rim = 1 - CELL_MARGIN;
+    const double *restrict all_x = d->x, *restrict all_y = d->y, *restrict all_z = d->z;
+    float *restrict all_u = d->u, *restrict all_v = d->v, *restrict nearness = d->nearness;
+    uint32_t *restrict faces = d->face;
+    double extent = d->extent;
     for (size_t i = 0; i < count; i++) {
-        double x = d->x[i], y = d->y[i], z = d->z[i];
+        double x = all_x[i], y = all_y[i], z = all_z[i];
         double ax = fabs(x), ay = fabs(y), az = fabs(z);
-        bool by_x = (ax >= ay) & (ax >= az), by_y = ay >= az;
-        double major = by_x ? x : by_y ? y : z;
-        double first = by_x ? y : by_y ? z : x;
-        double second = by_x ? z : by_y ? x : y;
+        double most = larger(ay, az);
+        double major = ay >= az ? y : z, first = ay >= az ? z : x, second = ay >= az ? x : y;
+        major = ax >= most ? x : major;
+        first = ax >= most ? y : first;
+        second = ax >= most ? z : second;
         double scale = 1 / fabs(major);
         float u = (float)(first * scale), v = (float)(second * scale);
-        uint32_t face = by_x ? 0 : by_y ? 2 : 4;
-        bool inner = (fabsf(u) < rim) & (fabsf(v) < rim);
-        d->u[i] = u;
-        d->v[i] = v;
-        d->nearness[i] = (float)(d->extent * scale);
-        d->face[i] = face + (major < 0 ? 1 : 0) + (inner ? 0 : RIM);
+        float outer = fabsf(u) < fabsf(v) ? fabsf(v) : fabsf(u);
+        uint32_t face = ay >= az ? 2 : 4, margin = outer < rim ? 0 : RIM;
+        face = ax >= most ? 0 : face;
+        face += major < 0 ? 1 : 0;
+        all_u[i] = u;
+        all_v[i] = v;
+        nearness[i] = (float)(extent * scale);
+        faces[i] = face + margin;
     }
 }
 
