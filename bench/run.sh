@@ -29,15 +29,27 @@ done
 "$build/bench/bench_visibility" 300 4 $models $sizes
 
 echo "== guarding"
-for method in greedy ilp; do
+for method in greedy ilp "pilp --no-refine" pilp; do
     for m in $models; do
+        # shellcheck disable=SC2086 # the method may bring an option
         /usr/bin/time -f '%e s elapsed, %U s user, %M KB' \
             "$build/starguard" guard "$m" -o "$work/g.json" --method $method --quiet 2>"$work/time"
-        printf '%-8s %-30s %s: ' $method "$(basename "$m")" "$(tail -n 1 "$work/time")"
+        printf '%-16s %-30s %s: ' "$method" "$(basename "$m")" "$(tail -n 1 "$work/time")"
         python3 -c "import json,sys; g=json.load(open(sys.argv[1])); print(len(g['guards']), 'guards, bound', g['lower_bound'])" "$work/g.json"
         "$build/starguard" verify "$m" "$work/g.json" --quiet
     done
 done
+
+if [ -d "$data" ]; then
+    for part in table1 "table1 --coverage 0.99" table2 figure1 figure2 growth; do
+        echo "== the paper's $part"
+        # shellcheck disable=SC2086 # the part may bring an option
+        set -- $part
+        command=$1
+        shift
+        python3 "$here/paper.py" "$command" "$build/starguard" "$data" "$@"
+    done
+fi
 
 if [ -d "$data" ]; then
     echo "== every file"

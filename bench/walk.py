@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Guards every surface file of a folder, verifies each result, and prints a line a file.
 
-usage: walk.py STARGUARD FOLDER [--method ilp|greedy] [--time-limit S] [--only SUBFOLDER]
+usage: walk.py STARGUARD FOLDER [--method pilp|ilp|greedy] [--time-limit S] [--only SUBFOLDER]
 
 The exit status is 1 when a file outside nasty/ was not guarded and verified, or a file in nasty/
 ended in anything but a verified result or a clear message with status 2 within 30 seconds.
@@ -30,7 +30,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("starguard")
     parser.add_argument("folder")
-    parser.add_argument("--method", default="ilp")
+    parser.add_argument("--method", default="pilp")
     parser.add_argument("--time-limit", default="60")
     parser.add_argument("--only", default="")
     options = parser.parse_args()
