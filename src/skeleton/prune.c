@@ -24,7 +24,7 @@ static const char STAGE[] = "pruning";
 static const double WIDTH_SHARE = 0.3;
 static const double SLENDER = 0.9;
 static const double SEPARATION = 2.5; /* in radii; it is pi on a tube */
-enum { SPACINGS = 4 };                /* what samples cannot tell from their own unevenness */
+enum { SPACINGS = 3 };                /* what samples cannot tell from their own unevenness */
 
 typedef struct pruner {
     starg_context *context;
