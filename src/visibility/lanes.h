@@ -5,6 +5,7 @@
 #define STARG_VISIBILITY_LANES_H
 
 #include <stdint.h>
+#include <string.h>
 
 enum { WIDE = 16 };
 
@@ -40,6 +41,18 @@ static inline uint64_t lanes_above(lanes a, double limit) {
 /* |a| > limit */
 static inline uint64_t lanes_beyond_either(lanes a, double limit) {
     return lanes_above(_mm512_abs_pd(a), limit);
+}
+
+static inline lanes lanes_add(lanes a, lanes b) {
+    return _mm512_add_pd(a, b);
+}
+
+/* Writes 1 above the limit, -1 below its opposite, else 0. */
+static inline void lanes_store_signs(lanes a, double limit, int8_t *out) {
+    __mmask8 above = _mm512_cmp_pd_mask(a, _mm512_set1_pd(limit), _CMP_GT_OQ);
+    __mmask8 below = _mm512_cmp_pd_mask(a, _mm512_set1_pd(-limit), _CMP_LT_OQ);
+    __m512i signs = _mm512_mask_set1_epi64(_mm512_maskz_set1_epi64(above, 1), below, -1);
+    _mm_storel_epi64((__m128i *)(void *)out, _mm512_cvtepi64_epi8(signs));
 }
 
 typedef __m512 wide;
@@ -129,6 +142,20 @@ static inline uint64_t lanes_beyond_either(lanes a, double limit) {
     __m256d sign = _mm256_set1_pd(-0.0);
     return lanes_above((lanes){_mm256_andnot_pd(sign, a.low), _mm256_andnot_pd(sign, a.high)},
                        limit);
+}
+
+static inline lanes lanes_add(lanes a, lanes b) {
+    return (lanes){_mm256_add_pd(a.low, b.low), _mm256_add_pd(a.high, b.high)};
+}
+
+static inline void lanes_store_signs(lanes a, double limit, int8_t *out) {
+    const uint64_t ones = UINT64_C(0x0101010101010101);
+    __m256d sign = _mm256_set1_pd(-0.0);
+    lanes opposite = {_mm256_xor_pd(sign, a.low), _mm256_xor_pd(sign, a.high)};
+    uint64_t above = _pdep_u64(lanes_above(a, limit), ones);
+    uint64_t below = _pdep_u64(lanes_above(opposite, limit), ones);
+    above += 255 * below;
+    memcpy(out, &above, sizeof above);
 }
 
 typedef struct wide {
@@ -237,6 +264,17 @@ static inline uint64_t lanes_beyond_either(lanes a, double limit) {
     for (int k = 0; k < 8; k++)
         a.lane[k] = fabs(a.lane[k]);
     return lanes_above(a, limit);
+}
+
+static inline lanes lanes_add(lanes a, lanes b) {
+    for (int k = 0; k < 8; k++)
+        a.lane[k] += b.lane[k];
+    return a;
+}
+
+static inline void lanes_store_signs(lanes a, double limit, int8_t *out) {
+    for (int k = 0; k < 8; k++)
+        out[k] = (int8_t)((a.lane[k] > limit) - (a.lane[k] < -limit));
 }
 
 typedef struct wide {

@@ -7,6 +7,7 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "visibility/net.h"
+#include "visibility/sides.h"
 
 /* Vertices get their slots in the order in which the faces, taken leaf by leaf, name them. */
 static void order_vertices(visibility_scene *scene) {
@@ -57,6 +58,17 @@ static void compute_planes(visibility_scene *scene) {
         scene->side_bound = INFINITY; /* too small for the analysis: always decide exactly */
 }
 
+static sides_run *choose_sides(void) {
+    static sides_run *const forms[] = {
+        sides_run_plain,
+#if defined(__x86_64__)
+        sides_run_avx2,
+        sides_run_avx512,
+#endif
+    };
+    return forms[form_resolve(FORM_WIDEST)];
+}
+
 starg_status scene_create(starg_context *context, const starg_solid *solid,
                           visibility_scene **out) {
     starg_status status = STARG_OK;
@@ -66,6 +78,7 @@ starg_status scene_create(starg_context *context, const starg_solid *solid,
     scene->context = context;
     scene->solid = solid;
     scene->mesh = solid->mesh;
+    scene->find_sides = choose_sides();
     scene->cull = solid->check->embedded;
     scene->face_count = solid->mesh->face_count;
     scene->face_of = solid->tree->order;
@@ -112,13 +125,7 @@ starg_status scene_add_net(visibility_scene *scene) {
 }
 
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side) {
-    double x = p[0] - scene->centre[0], y = p[1] - scene->centre[1], z = p[2] - scene->centre[2];
-    double bound = scene->side_bound;
-    for (size_t rank = 0; rank < scene->face_count; rank++) {
-        double s =
-            scene->offset[rank] - (scene->nx[rank] * x + scene->ny[rank] * y + scene->nz[rank] * z);
-        side[rank] = (int8_t)((s > bound) - (s < -bound));
-    }
+    scene->find_sides(scene, p, side);
     for (size_t rank = 0; rank < scene->face_count; rank++)
         if (side[rank] == 0)
             side[rank] =

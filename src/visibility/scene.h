@@ -11,6 +11,11 @@
 
 #define SCENE_NONE UINT32_MAX
 
+struct visibility_scene;
+
+/* side[rank] = 1 or -1 as scene_sides says where rounding leaves no doubt, else 0. */
+typedef void sides_run(const struct visibility_scene *scene, const double p[3], int8_t *side);
+
 typedef struct visibility_scene {
     starg_context *context;
     const starg_solid *solid;
@@ -39,6 +44,7 @@ typedef struct visibility_scene {
     double centre[3];
     double extent;     /* longest side of the bounding box */
     double side_bound; /* larger than the rounding error of that expression for p in the box */
+    sides_run *find_sides;
 
     struct visibility_net *net; /* made for the engine by contours where `cull` holds, else NULL */
 } visibility_scene;

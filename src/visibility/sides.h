@@ -1,0 +1,13 @@
+/* The bulk of scene_sides, compiled once for each instruction set. */
+#ifndef STARG_VISIBILITY_SIDES_H
+#define STARG_VISIBILITY_SIDES_H
+
+#include "visibility/forms.h"
+#include "visibility/scene.h"
+
+sides_run sides_run_plain;
+#if defined(__x86_64__)
+sides_run sides_run_avx2, sides_run_avx512;
+#endif
+
+#endif

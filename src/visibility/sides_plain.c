@@ -1,0 +1,4 @@
+/* The sides of faces for any processor. */
+#define SIDES_RUN sides_run_plain
+#define LANES_PLAIN
+#include "visibility/sides_stages.h"
