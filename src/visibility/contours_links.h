@@ -116,9 +116,10 @@ static int32_t count_at_end(link *l, uint32_t w, uint32_t v, const double normal
     const uint32_t *neighbour = net->neighbour + net->fan_start[w];
     const uint32_t *face = net->fan_face + net->fan_start[w];
     uint32_t count = net->fan_start[w + 1] - net->fan_start[w];
-    uint32_t left = 0, right = 0, own = 0, kept = 0, all = (UINT32_C(1) << count) - 1;
+    uint32_t left = 0, right = 0, own = 0, kept = 0;
     if (count > FAN)
         return count_one_by_one(l, w, v, normal);
+    uint32_t all = (UINT32_C(1) << count) - 1;
     for (uint32_t i = 0; i < FAN; i++) {
         double at = dot(d, normal, neighbour[i]);
         left |= (uint32_t)(at > d->bound) << i;
