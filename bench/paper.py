@@ -296,7 +296,7 @@ def main():
     parser.add_argument("--svg", help="figure2: where to draw the bars")
     parser.add_argument("--pictures", default="pictures", help="figure3: folder for pictures")
     parser.add_argument("--noise", type=float, default=0.5, help="figure1: per cent of the diagonal")
-    parser.add_argument("--near", type=float, default=0.02,
+    parser.add_argument("--near", type=float, default=0.01,
                         help="figure1: how far, in diagonals, a guard may be to be the same")
     options = parser.parse_args()
     COMMANDS[options.command](options)
