@@ -1,0 +1,102 @@
+/* Star decomposition: cuts a solid into few pieces, each wholly visible from its guard. */
+#ifndef STARGUARD_DECOMPOSE_H
+#define STARGUARD_DECOMPOSE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "context.h"
+#include "mesh.h"
+#include "solid.h"
+#include "tetra.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum starg_decompose_mode {
+    STARG_DECOMPOSE_STRICT = 0, /* every piece is proven to be star-shaped          */
+    STARG_DECOMPOSE_PAPER = 1   /* section 4 of [YL11]: pieces are nearly star-shaped */
+} starg_decompose_mode;
+
+/* One piece. Its guard is strictly inside its kernel whenever `star` is true: strictly on the inner
+ * side of each face of the piece's boundary, which winds around the guard once (both exact). */
+typedef struct starg_piece {
+    double guard[3];
+    double radius; /* distance of the guard to the nearest plane of a boundary face; rounded */
+    size_t tetrahedra;
+    double volume;
+    bool star;
+} starg_piece;
+
+/* Two pieces that share faces. */
+typedef struct starg_piece_contact {
+    uint32_t first, second; /* first < second */
+    double area;
+} starg_piece_contact;
+
+/* A solid in pieces. Every tetrahedron belongs to one piece, none is empty. */
+typedef struct starg_decomposition {
+    starg_decompose_mode mode;
+    starg_tetmesh *mesh;
+    int32_t *labels; /* one per tetrahedron: its piece */
+    size_t piece_count;
+    starg_piece *pieces;
+    size_t contact_count;
+    starg_piece_contact *contacts; /* ascending; the guarding graph's edges */
+    size_t strictly_star;          /* pieces that are star-shaped, proven */
+    double visible_vertices; /* fraction of the vertices of tetrahedra that the guard of each piece
+                                that they belong to sees (counted once per piece) */
+    bool time_limited;       /* the time limit cut the search short: another run may differ */
+} starg_decomposition;
+
+typedef struct starg_decompose_options {
+    starg_decompose_mode mode;
+    starg_tetra_options tetra; /* how tetrahedra are made */
+    size_t max_pieces;    /* stop when there are no more than that; 0: as few as can be found */
+    const double *guards; /* PAPER: guards x 3 to grow from; NULL: guards of starg_guard.
+                             STRICT: points that are tried as guards first */
+    size_t guard_count;
+    uint64_t effort; /* STRICT: trials after which the search ends; 0: the default */
+} starg_decompose_options;
+
+/* STRICT, tetrahedra as they come, as few pieces as can be found. */
+STARG_API void starg_decompose_options_default(starg_decompose_options *options);
+
+/* Cuts a solid; its tetrahedra are made as the options say. The search stops at the time limit of
+ * the context with the best that it has. `options` may be NULL.
+ * Errors: ARGUMENT, SOLVER (no tetrahedra could be made), MEMORY, CANCELLED, TIME (with nothing
+ * valid yet). */
+STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,
+                                       const starg_decompose_options *options,
+                                       starg_decomposition **out);
+
+/* Cuts what a tetrahedral mesh fills. STRICT gives tetrahedra of its own in return, whose boundary
+ * is that of the mesh, possibly subdivided; PAPER labels those of the mesh (a copy). */
+STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
+                                               const starg_decompose_options *options,
+                                               starg_decomposition **out);
+STARG_API void starg_decomposition_free(starg_context *context, starg_decomposition *decomposition);
+
+/* The closed outward surface of each piece, one after the other in one mesh: `first_face` receives
+ * piece_count + 1 face numbers (free with starg_tetmesh_map_free). Errors: MEMORY. */
+STARG_API starg_status starg_decomposition_surfaces(starg_context *context,
+                                                    const starg_decomposition *decomposition,
+                                                    starg_mesh **out, uint32_t **first_face);
+
+/* Writes PIECES.vtk (docs/formats.md). "-" is standard output. Errors: WRITE, MEMORY, CANCELLED. */
+STARG_API starg_status starg_decomposition_write(starg_context *context,
+                                                 const starg_decomposition *decomposition,
+                                                 const char *path, bool binary);
+
+/* Writes PIECES.json; `model_file` is stored as the model's path, NULL leaves it empty. */
+STARG_API starg_status starg_decomposition_write_report(starg_context *context,
+                                                        const starg_decomposition *decomposition,
+                                                        const char *model_file, const char *path);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
