@@ -12,12 +12,10 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    {.name = "marks",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, marks),
-     .value = "FILE.ply",
-     .help = "Write the model with the faces of each finding in a colour of its own. This file is "
-             "written for unusable models as well (those need it most)."},
+    CLI_TEXT_OPTION(
+        "marks", marks, "FILE.ply",
+        "Write the model with the faces of each finding in a colour of its own. This file is "
+        "written for unusable models as well (those need it most)."),
 };
 
 /* Elements one by one ("3, 8, 9") or in pairs ("3-7, 8-9"). */
@@ -192,23 +190,23 @@ static void judge(cli_session *session, const starg_check *check) {
     session->outcome = CLI_EXIT_INPUT;
 }
 
+static starg_status prepare(cli_session *session, void *data) {
+    const values *v = data;
+    return cli_announce_with_ending(session, "--marks", v->marks, ".ply");
+}
+
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
     starg_check *check = NULL;
-    CLI_TRY(cli_announce_with_ending(session, "--marks", v->marks, ".ply"));
-    CLI_TRY(cli_model_read(session, &mesh));
-    CLI_TRY(starg_mesh_check(session->context, mesh, &check));
-    cli_report_head(session, "starguard-check", session->operands[0], mesh);
+    CLI_TRY(starg_mesh_check(session->context, session->mesh, &check));
     report_check(session, check);
     print_check(session, check);
     if (v->marks != NULL)
-        CLI_TRY(write_marks(session, mesh, check, v->marks));
+        CLI_TRY(write_marks(session, session->mesh, check, v->marks));
     judge(session, check);
 done:
     starg_check_free(session->context, check);
-    starg_mesh_free(mesh);
     return status;
 }
 
@@ -228,10 +226,9 @@ const cli_command cli_command_check = {
                 "starguard check model.obj --marks findings.ply\n"
                 "# for a script\n"
                 "starguard check model.obj --json | jq .findings",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .least_operands = 1,
-    .most_operands = 1,
-    .values_size = sizeof(values),
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(1, 1),
+    .input = CLI_INPUT_MESH,
+    .prepare = prepare,
     .run = run,
 };

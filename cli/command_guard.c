@@ -30,127 +30,72 @@ typedef struct values {
     double coverage, clearance, significance, cone;
     bool no_refine;
     cli_view view;
+    starg_guard_options wanted; /* all of the above for the library */
+    double *points;             /* --candidates FILE               */
 } values;
 
 static const cli_option options[] = {
-    {.name = "output",
-     .letter = 'o',
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, output),
-     .value = "GUARDS.json",
-     .help = "Where to write the guards (docs/formats.md); '-' writes to standard output."},
-    {.name = "method",
-     .kind = CLI_CHOICE,
-     .offset = offsetof(values, method),
-     .value = "pilp|ilp|greedy",
-     .choices = method_words,
-     .help = "pilp (default) goes from coarse to fine levels of detail and then refines; ilp finds "
-             "the fewest of the candidates and proves it, or gives its best and a bound; greedy "
-             "is fastest, with more guards and a weaker bound."},
-    {.name = "candidates",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, candidates),
-     .value = "skeleton|medial|interior|FILE",
-     .help = "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
-             "lattice inside, or at the points of a file: three numbers a line, or another "
-             "GUARDS.json."},
-    {.name = "count",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, count),
-     .value = "N",
-     .least = 1,
-     .most = 10000000,
-     .help = "About how many candidates to make; more are added for faces that none of them sees. "
-             "Default 1,000."},
-    CLI_VIEW_OPTIONS(values, "visibility"),
-    {.name = "cone",
-     .kind = CLI_REAL,
-     .offset = offsetof(values, cone),
-     .value = "DEGREES",
-     .high = 360,
-     .above = true,
-     .help = "Guards look in one direction, with this full opening angle, like cameras. Default "
-             "360: all around."},
-    {.name = "coverage",
-     .kind = CLI_REAL,
-     .offset = offsetof(values, coverage),
-     .value = "F",
-     .high = 1,
-     .above = true,
-     .help = "Fraction of the coverable area that must be seen (of the vertices with --target "
-             "vertices), above 0 and at most 1. Default 1."},
-    {.name = "max-guards",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, max_guards),
-     .value = "K",
-     .most = UINT32_MAX,
-     .help = "No more than K guards, which see as much area as possible. Default 0: as many as it "
-             "takes."},
-    {.name = "redundancy",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, redundancy),
-     .value = "K",
-     .least = 1,
-     .most = 1000,
-     .help = "Every face is to be seen by K guards, as far as there are so many candidates that "
-             "see it. Default 1."},
-    {.name = "clearance",
-     .kind = CLI_REAL,
-     .offset = offsetof(values, clearance),
-     .value = "D",
-     .high = 1e100,
-     .help = "Guards stand at least D from the walls, in units of the model. Default 0."},
-    {.name = "max-nodes",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, max_nodes),
-     .value = "N",
-     .most = UINT32_MAX,
-     .help = "Branch-and-bound nodes for each independent part before the best so far is taken. "
-             "Default 100,000 for ilp, 30 for each level of pilp."},
-    {.name = "no-refine",
-     .kind = CLI_FLAG,
-     .offset = offsetof(values, no_refine),
-     .help = "pilp: leave the guards as the levels give them; do not look for better places."},
-    {.name = "refine-lines",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, refine_lines),
-     .value = "N",
-     .most = UINT32_MAX,
-     .help = "pilp: sight lines that refinement may test. Default 10 million."},
-    {.name = "coarsest",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, coarsest),
-     .value = "N",
-     .least = 4,
-     .most = UINT32_MAX,
-     .help = "pilp: vertices of the coarsest level. Default 5,000."},
-    {.name = "step",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, step),
-     .value = "N",
-     .least = 1,
-     .most = UINT32_MAX,
-     .help =
-         "pilp: vertices that each finer level has more. Default 10,000, or a quarter of what the "
-         "model has more than the coarsest level."},
-    {.name = "significance",
-     .kind = CLI_REAL,
-     .offset = offsetof(values, significance),
-     .value = "F",
-     .high = 1,
-     .help = "pilp: guards that see less than this fraction of a level's area are chosen anew "
-             "there. Default 0.1."},
-    {.name = "picture",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, picture),
-     .value = "FILE.png",
-     .help = "Draw the model half transparent with its guards; uncovered faces are dark red."},
-    {.name = "marks",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, marks),
-     .value = "FILE.ply",
-     .help = "Write the model with each face in the colour of the first guard that sees it; "
-             "uncovered faces are dark red."},
+    CLI_OUTPUT_OPTION(
+        "GUARDS.json",
+        "Where to write the guards (docs/formats.md); '-' writes to standard output."),
+    CLI_CHOICE_OPTION(
+        "method", method, method_words, "pilp|ilp|greedy",
+        "pilp (default) goes from coarse to fine levels of detail and then refines; ilp finds "
+        "the fewest of the candidates and proves it, or gives its best and a bound; greedy "
+        "is fastest, with more guards and a weaker bound."),
+    CLI_TEXT_OPTION(
+        "candidates", candidates, "skeleton|medial|interior|FILE",
+        "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
+        "lattice inside, or at the points of a file: three numbers a line, or another "
+        "GUARDS.json."),
+    CLI_COUNT_OPTION(
+        "count", count, "N", 1, 10000000,
+        "About how many candidates to make; more are added for faces that none of them sees. "
+        "Default 1,000."),
+    CLI_VIEW_OPTIONS("visibility"),
+    CLI_POSITIVE_OPTION(
+        "cone", cone, "DEGREES", 360,
+        "Guards look in one direction, with this full opening angle, like cameras. Default "
+        "360: all around."),
+    CLI_POSITIVE_OPTION(
+        "coverage", coverage, "F", 1,
+        "Fraction of the coverable area that must be seen (of the vertices with --target "
+        "vertices), above 0 and at most 1. Default 1."),
+    CLI_COUNT_OPTION(
+        "max-guards", max_guards, "K", 0, UINT32_MAX,
+        "No more than K guards, which see as much area as possible. Default 0: as many as it "
+        "takes."),
+    CLI_COUNT_OPTION(
+        "redundancy", redundancy, "K", 1, 1000,
+        "Every face is to be seen by K guards, as far as there are so many candidates that "
+        "see it. Default 1."),
+    CLI_REAL_OPTION("clearance", clearance, "D", 0, 1e100,
+                    "Guards stand at least D from the walls, in units of the model. Default 0."),
+    CLI_COUNT_OPTION(
+        "max-nodes", max_nodes, "N", 0, UINT32_MAX,
+        "Branch-and-bound nodes for each independent part before the best so far is taken. "
+        "Default 100,000 for ilp, 30 for each level of pilp."),
+    CLI_FLAG_OPTION(
+        "no-refine", no_refine,
+        "pilp: leave the guards as the levels give them; do not look for better places."),
+    CLI_COUNT_OPTION("refine-lines", refine_lines, "N", 0, UINT32_MAX,
+                     "pilp: sight lines that refinement may test. Default 10 million."),
+    CLI_COUNT_OPTION("coarsest", coarsest, "N", 4, UINT32_MAX,
+                     "pilp: vertices of the coarsest level. Default 5,000."),
+    CLI_COUNT_OPTION(
+        "step", step, "N", 1, UINT32_MAX,
+        "pilp: vertices that each finer level has more. Default 10,000, or a quarter of what the "
+        "model has more than the coarsest level."),
+    CLI_REAL_OPTION(
+        "significance", significance, "F", 0, 1,
+        "pilp: guards that see less than this fraction of a level's area are chosen anew "
+        "there. Default 0.1."),
+    CLI_TEXT_OPTION(
+        "picture", picture, "FILE.png",
+        "Draw the model half transparent with its guards; uncovered faces are dark red."),
+    CLI_TEXT_OPTION("marks", marks, "FILE.ply",
+                    "Write the model with each face in the colour of the first guard that sees it; "
+                    "uncovered faces are dark red."),
 };
 
 static void set_defaults(void *data) {
@@ -383,13 +328,14 @@ done:
     return status;
 }
 
-static starg_status announce_files(cli_session *session, const values *v) {
+static starg_status prepare(cli_session *session, void *data) {
+    values *v = data;
     starg_status status = STARG_OK;
-    if (v->output == NULL)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o GUARDS.json");
-    CLI_TRY(cli_announce(session, v->output));
+    CLI_TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
     CLI_TRY(cli_announce_with_ending(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    v->wanted = make_options(v);
+    CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
 done:
     return status;
 }
@@ -397,25 +343,20 @@ done:
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    starg_guard_options wanted = make_options(v);
-    starg_solid *solid = NULL;
     starg_guards *guards = NULL;
-    double *points = NULL;
-    CLI_TRY(announce_files(session, v));
-    CLI_TRY(take_candidates(session, v->candidates, &wanted, &points));
-    CLI_TRY(cli_solid_read(session, &solid));
-    CLI_TRY(starg_guard(session->context, solid, &wanted, &guards));
-    CLI_TRY(write_files(session, v, solid, guards));
+    CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
+    CLI_TRY(write_files(session, v, session->solid, guards));
     say_guards(session, guards);
-    if (session->report != NULL) {
-        cli_report_head(session, "starguard-guard", session->operands[0], starg_solid_mesh(solid));
+    if (session->report != NULL)
         report_guards(session, guards, v->output);
-    }
 done:
     starg_guards_free(session->context, guards);
-    starg_points_free(session->context, points);
-    starg_solid_free(solid);
     return status;
+}
+
+static void release(cli_session *session, void *data) {
+    const values *v = data;
+    starg_points_free(session->context, v->points);
 }
 
 const cli_command cli_command_guard = {
@@ -436,11 +377,11 @@ const cli_command cli_command_guard = {
                 "    --picture guards.png\n"
                 "# the best places for five cameras that see 20 units far\n"
                 "starguard guard hall.stl -o cameras.json --max-guards 5 --range 20",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .least_operands = 1,
-    .most_operands = 1,
-    .values_size = sizeof(values),
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(1, 1),
     .defaults = set_defaults,
+    .input = CLI_INPUT_SOLID,
+    .prepare = prepare,
     .run = run,
+    .release = release,
 };

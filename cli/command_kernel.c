@@ -36,9 +36,7 @@ static void tell(cli_session *session, const starg_kernel_result *result) {
     }
 }
 
-static void report(cli_session *session, const starg_mesh *mesh,
-                   const starg_kernel_result *result) {
-    cli_report_head(session, "starguard-kernel", session->operands[0], mesh);
+static void report(cli_session *session, const starg_kernel_result *result) {
     bool decided = result->verdict != STARG_KERNEL_UNDECIDED;
     bool star = result->verdict == STARG_KERNEL_INTERIOR;
     cli_put(session, session->report, "verdict", json_string(verdict_words[result->verdict]));
@@ -52,15 +50,12 @@ static void report(cli_session *session, const starg_mesh *mesh,
 static starg_status run(cli_session *session, void *data) {
     (void)data;
     starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
     starg_kernel_result result;
-    CLI_TRY(cli_solid_read(session, &solid));
-    CLI_TRY(starg_kernel(session->context, starg_solid_mesh(solid), NULL, &result));
+    CLI_TRY(starg_kernel(session->context, starg_solid_mesh(session->solid), NULL, &result));
     tell(session, &result);
     if (session->report != NULL)
-        report(session, starg_solid_mesh(solid), &result);
+        report(session, &result);
 done:
-    starg_solid_free(solid);
     return status;
 }
 
@@ -77,8 +72,7 @@ const cli_command cli_command_kernel = {
                 "starguard kernel model.off\n"
                 "# the guard, for a script\n"
                 "starguard kernel model.off --json | jq .guard",
-    .least_operands = 1,
-    .most_operands = 1,
-    .values_size = 1,
+    CLI_OPERANDS(1, 1),
+    .input = CLI_INPUT_SOLID,
     .run = run,
 };

@@ -8,35 +8,22 @@ typedef struct values {
     const char *output;
     double merge_distance;
     uint64_t max_hole_edges, rounds;
+    starg_mesh_format format; /* by the name of the output */
 } values;
 
 static const cli_option options[] = {
-    {.name = "output",
-     .letter = 'o',
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, output),
-     .value = "FILE",
-     .help = "Where to write the mended mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
-             "output."},
-    {.name = "merge-distance",
-     .kind = CLI_REAL,
-     .offset = offsetof(values, merge_distance),
-     .value = "D",
-     .high = 1,
-     .help = "Vertices this close become one; a fraction of the model's diagonal. Default 0: only "
-             "equal positions."},
-    {.name = "max-hole-edges",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, max_hole_edges),
-     .value = "N",
-     .most = UINT32_MAX,
-     .help = "Leave holes of more edges open. Default 0: fill all."},
-    {.name = "rounds",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, rounds),
-     .value = "N",
-     .most = 10000,
-     .help = "Attempts to resolve self-intersections. Default 10."},
+    CLI_OUTPUT_OPTION(
+        "FILE",
+        "Where to write the mended mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
+        "output."),
+    CLI_REAL_OPTION(
+        "merge-distance", merge_distance, "D", 0, 1,
+        "Vertices this close become one; a fraction of the model's diagonal. Default 0: only "
+        "equal positions."),
+    CLI_COUNT_OPTION("max-hole-edges", max_hole_edges, "N", 0, UINT32_MAX,
+                     "Leave holes of more edges open. Default 0: fill all."),
+    CLI_COUNT_OPTION("rounds", rounds, "N", 0, 10000,
+                     "Attempts to resolve self-intersections. Default 10."),
 };
 
 static void set_defaults(void *data) {
@@ -80,23 +67,26 @@ static void tell(cli_session *session, const starg_repair_report *r) {
         json_decref(report);
 }
 
+static starg_status prepare(cli_session *session, void *data) {
+    values *v = data;
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_announce_needed(session, v->output, "FILE"));
+    CLI_TRY(cli_mesh_format(session, v->output, &v->format));
+done:
+    return status;
+}
+
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
+    const starg_mesh *mesh = session->mesh;
     starg_status status = STARG_OK;
-    starg_mesh_format format;
-    starg_mesh *mesh = NULL, *mended = NULL;
+    starg_mesh *mended = NULL;
     starg_repair_report report;
     const starg_repair_options wanted = {.merge_distance = v->merge_distance,
                                          .max_hole_edges = v->max_hole_edges,
                                          .max_rounds = v->rounds};
-    if (v->output == NULL)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o FILE");
-    CLI_TRY(cli_mesh_format(session, v->output, &format));
-    CLI_TRY(cli_announce(session, v->output));
-    CLI_TRY(cli_model_read(session, &mesh));
     CLI_TRY(starg_mesh_repair(session->context, mesh, &wanted, &mended, &report));
-    CLI_TRY(cli_mesh_write(session, mended, format, NULL, v->output));
-    cli_report_head(session, "starguard-repair", session->operands[0], mesh);
+    CLI_TRY(cli_mesh_write(session, mended, v->format, NULL, v->output));
     cli_say(session, "%zu vertices, %zu faces in; %zu vertices, %zu faces out\n",
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh),
             starg_mesh_vertex_count(mended), starg_mesh_face_count(mended));
@@ -108,7 +98,6 @@ static starg_status run(cli_session *session, void *data) {
                           (json_int_t)starg_mesh_face_count(mended)));
 done:
     starg_mesh_free(mended);
-    starg_mesh_free(mesh);
     return status;
 }
 
@@ -125,11 +114,10 @@ const cli_command cli_command_repair = {
                 "starguard check solid.off\n"
                 "# close gaps of up to a thousandth of the diagonal, leave big holes open\n"
                 "starguard repair scan.ply -o solid.ply --merge-distance 0.001 --max-hole-edges 50",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .least_operands = 1,
-    .most_operands = 1,
-    .values_size = sizeof(values),
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(1, 1),
     .defaults = set_defaults,
+    .input = CLI_INPUT_MESH,
+    .prepare = prepare,
     .run = run,
 };

@@ -12,30 +12,14 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    {.name = "output",
-     .letter = 'o',
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, output),
-     .value = "FILE",
-     .help = "Where to write the mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
-             "output."},
-    {.name = "pose",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, pose),
-     .value = "K",
-     .most = 1000,
-     .help = "Which pose, from 0 (default). All poses of a sample have the same faces."},
-    {.name = "vertices",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, vertices),
-     .value = "N",
-     .least = 500,
-     .most = 1000000,
-     .help = "About how many vertices, 500 to 1,000,000. Default 5,000."},
-    {.name = "list",
-     .kind = CLI_FLAG,
-     .offset = offsetof(values, list),
-     .help = "List the samples and their numbers of poses."},
+    CLI_OUTPUT_OPTION(
+        "FILE", "Where to write the mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
+                "output."),
+    CLI_COUNT_OPTION("pose", pose, "K", 0, 1000,
+                     "Which pose, from 0 (default). All poses of a sample have the same faces."),
+    CLI_COUNT_OPTION("vertices", vertices, "N", 500, 1000000,
+                     "About how many vertices, 500 to 1,000,000. Default 5,000."),
+    CLI_FLAG_OPTION("list", list, "List the samples and their numbers of poses."),
 };
 
 static void set_defaults(void *data) {
@@ -117,10 +101,8 @@ const cli_command cli_command_sample = {
                 "starguard sample horse --pose 2 --vertices 20000 -o horse.off\n"
                 "# straight into another command\n"
                 "starguard sample gallery -o - | starguard check -",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .most_operands = 1,
-    .values_size = sizeof(values),
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(0, 1),
     .defaults = set_defaults,
     .run = run,
 };

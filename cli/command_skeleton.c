@@ -13,37 +13,24 @@ typedef struct values {
     const char *output, *picture;
     uint64_t nodes;
     double prune;
+    starg_skeleton_format format; /* by the name of the output */
 } values;
 
 static const cli_option options[] = {
-    {.name = "output",
-     .letter = 'o',
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, output),
-     .value = "FILE.obj|.cg|.vtk",
-     .help = "Where to write the skeleton, by the name's ending: OBJ lines, a curve graph, or VTK "
-             "with radii (docs/formats.md); '-' writes VTK to standard output."},
-    {.name = "nodes",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, nodes),
-     .value = "N",
-     .least = 1,
-     .most = 10000000,
-     .help = "About how many nodes; joints, ends and what loops need are kept in any case. Default "
-             "1,000."},
-    {.name = "prune",
-     .kind = CLI_REAL,
-     .offset = offsetof(values, prune),
-     .value = "X",
-     .low = 1,
-     .high = 1e6,
-     .help = "A branch must reach X times as far from its joint as the solid is wide there (half "
-             "its width). 1 keeps the most branches. Default 1.5."},
-    {.name = "picture",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, picture),
-     .value = "FILE.png",
-     .help = "Draw the model half transparent with its skeleton."},
+    CLI_OUTPUT_OPTION(
+        "FILE.obj|.cg|.vtk",
+        "Where to write the skeleton, by the name's ending: OBJ lines, a curve graph, or VTK "
+        "with radii (docs/formats.md); '-' writes VTK to standard output."),
+    CLI_COUNT_OPTION(
+        "nodes", nodes, "N", 1, 10000000,
+        "About how many nodes; joints, ends and what loops need are kept in any case. Default "
+        "1,000."),
+    CLI_REAL_OPTION(
+        "prune", prune, "X", 1, 1e6,
+        "A branch must reach X times as far from its joint as the solid is wide there (half "
+        "its width). 1 keeps the most branches. Default 1.5."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png",
+                    "Draw the model half transparent with its skeleton."),
 };
 
 static void set_defaults(void *data) {
@@ -74,13 +61,11 @@ static starg_status choose_format(cli_session *session, const char *name,
                     "'%s' does not tell a format; end the name with .obj, .cg or .vtk", name);
 }
 
-static starg_status announce_files(cli_session *session, const values *v,
-                                   starg_skeleton_format *format) {
+static starg_status prepare(cli_session *session, void *data) {
+    values *v = data;
     starg_status status = STARG_OK;
-    if (v->output == NULL)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o FILE.obj, .cg or .vtk");
-    CLI_TRY(choose_format(session, v->output, format));
-    CLI_TRY(cli_announce(session, v->output));
+    CLI_TRY(cli_announce_needed(session, v->output, "FILE.obj, .cg or .vtk"));
+    CLI_TRY(choose_format(session, v->output, &v->format));
     CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
 done:
     return status;
@@ -142,26 +127,18 @@ static void report_skeleton(cli_session *session, const starg_skeleton *s, const
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    starg_skeleton_format format = STARG_SKELETON_VTK;
-    starg_solid *solid = NULL;
     starg_skeleton *skeleton = NULL;
     const starg_skeleton_options wanted = {.node_count = (size_t)v->nodes, .prune = v->prune};
-    CLI_TRY(announce_files(session, v, &format));
-    CLI_TRY(cli_solid_read(session, &solid));
-    CLI_TRY(starg_skeleton_create(session->context, solid, &wanted, &skeleton));
+    CLI_TRY(starg_skeleton_create(session->context, session->solid, &wanted, &skeleton));
     if (v->picture != NULL)
-        CLI_TRY(write_picture(session, solid, skeleton, v->picture));
+        CLI_TRY(write_picture(session, session->solid, skeleton, v->picture));
     CLI_TRY(starg_skeleton_write(session->context, skeleton,
-                                 cli_outputs_place(&session->outputs, v->output), format));
+                                 cli_outputs_place(&session->outputs, v->output), v->format));
     say_skeleton(session, skeleton);
-    if (session->report != NULL) {
-        cli_report_head(session, "starguard-skeleton", session->operands[0],
-                        starg_solid_mesh(solid));
+    if (session->report != NULL)
         report_skeleton(session, skeleton, v->output);
-    }
 done:
     starg_skeleton_free(session->context, skeleton);
-    starg_solid_free(solid);
     return status;
 }
 
@@ -180,11 +157,10 @@ const cli_command cli_command_skeleton = {
         "starguard skeleton horse.off -o horse.vtk --nodes 100 --prune 3 --picture horse.png\n"
         "# parts, loops, joints and ends as JSON\n"
         "starguard skeleton horse.off -o horse.cg --json",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .least_operands = 1,
-    .most_operands = 1,
-    .values_size = sizeof(values),
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(1, 1),
     .defaults = set_defaults,
+    .input = CLI_INPUT_SOLID,
+    .prepare = prepare,
     .run = run,
 };

@@ -55,8 +55,7 @@ static starg_status read_results(cli_session *session, starg_guards **results) {
     return status;
 }
 
-static void report(cli_session *session, const starg_mesh *mesh, json_t *results) {
-    cli_report_head(session, "starguard-verify", session->operands[0], mesh);
+static void report(cli_session *session, json_t *results) {
     cli_put(session, session->report, "passed", json_boolean(session->outcome == CLI_EXIT_DONE));
     cli_put(session, session->report, "results", json_incref(results));
 }
@@ -64,25 +63,22 @@ static void report(cli_session *session, const starg_mesh *mesh, json_t *results
 static starg_status run(cli_session *session, void *data) {
     (void)data;
     starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
     json_t *list = json_array();
     starg_guards **results = calloc(session->operand_count, sizeof(starg_guards *));
     if (results == NULL || list == NULL) {
         status = cli_fail_memory(session);
         goto done;
     }
-    CLI_TRY(cli_model_read(session, &mesh));
     CLI_TRY(read_results(session, results));
     for (size_t i = 1; i < session->operand_count; i++)
-        CLI_TRY(verify_one(session, mesh, session->operands[i], results[i], list));
+        CLI_TRY(verify_one(session, session->mesh, session->operands[i], results[i], list));
     if (session->report != NULL)
-        report(session, mesh, list);
+        report(session, list);
 done:
     for (size_t i = 1; results != NULL && i < session->operand_count; i++)
         starg_guards_free(session->context, results[i]);
     free(results);
     json_decref(list);
-    starg_mesh_free(mesh);
     return status;
 }
 
@@ -99,8 +95,7 @@ const cli_command cli_command_verify = {
                 "starguard verify model.off guards.json\n"
                 "# several at once, for a script\n"
                 "starguard verify model.off ilp.json greedy.json --quiet && echo all good",
-    .least_operands = 2,
-    .most_operands = SIZE_MAX,
-    .values_size = 1,
+    CLI_OPERANDS(2, SIZE_MAX),
+    .input = CLI_INPUT_MESH,
     .run = run,
 };

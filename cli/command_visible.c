@@ -14,20 +14,15 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    {.name = "from",
-     .kind = CLI_POINTS,
-     .offset = offsetof(values, from),
-     .value = "X,Y,Z",
-     .help = "A point to look from, in coordinates of the model. May be given many times."},
-    {.name = "output",
-     .letter = 'o',
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, output),
-     .value = "FILE.ply",
-     .help = "Write the model with each face in the colour of the first point that sees it; faces "
-             "that none sees are grey. With --target vertices a face counts whose vertices one "
-             "point sees."},
-    CLI_VIEW_OPTIONS(values, "engine"),
+    CLI_POINTS_OPTION(
+        "from", from, "X,Y,Z",
+        "A point to look from, in coordinates of the model. May be given many times."),
+    CLI_OUTPUT_OPTION(
+        "FILE.ply",
+        "Write the model with each face in the colour of the first point that sees it; faces "
+        "that none sees are grey. With --target vertices a face counts whose vertices one "
+        "point sees."),
+    CLI_VIEW_OPTIONS("engine"),
 };
 
 static void set_defaults(void *data) {
@@ -81,7 +76,6 @@ static void tell_point(cli_session *session, const look *l, size_t row) {
 static starg_status tell(cli_session *session, look *l) {
     const cli_view *view = &l->wanted->view;
     l->points = json_array();
-    cli_report_head(session, "starguard-visible", session->operands[0], starg_solid_mesh(l->solid));
     for (size_t row = 0; row < starg_bits_rows(l->seen); row++)
         tell_point(session, l, row);
     if (session->report == NULL) {
@@ -122,17 +116,20 @@ static starg_status write_seen(cli_session *session, const look *l) {
     return status;
 }
 
+static starg_status prepare(cli_session *session, void *data) {
+    const values *v = data;
+    if (v->from.count == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name a point to look from: --from X,Y,Z");
+    return cli_announce_with_ending(session, "-o", v->output, ".ply");
+}
+
 static starg_status run(cli_session *session, void *data) {
     const values *v = data;
+    const starg_solid *solid = session->solid;
     starg_status status = STARG_OK;
-    starg_solid *solid = NULL;
     starg_bits *seen = NULL;
     double *fractions = NULL;
     const starg_visibility_options view = cli_view_options(&v->view);
-    if (v->from.count == 0)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name a point to look from: --from X,Y,Z");
-    CLI_TRY(cli_announce_with_ending(session, "-o", v->output, ".ply"));
-    CLI_TRY(cli_solid_read(session, &solid));
     CLI_TRY(starg_visibility(session->context, solid, v->from.values, v->from.count, &view, &seen));
     fractions = cli_area_fractions(starg_solid_mesh(solid));
     if (fractions == NULL) {
@@ -146,7 +143,6 @@ static starg_status run(cli_session *session, void *data) {
 done:
     free(fractions);
     starg_bits_free(seen);
-    starg_solid_free(solid);
     return status;
 }
 
@@ -165,11 +161,10 @@ const cli_command cli_command_visible = {
                 "starguard visible room.off --from 1,1.7,2 --from 6,1.7,2 -o seen.ply\n"
                 "# indices of the faces that are seen wholly, within 5 units\n"
                 "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
-    .least_operands = 1,
-    .most_operands = 1,
-    .values_size = sizeof(values),
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(1, 1),
     .defaults = set_defaults,
+    .input = CLI_INPUT_SOLID,
+    .prepare = prepare,
     .run = run,
 };

@@ -7,6 +7,13 @@
 #include "options.h"
 #include "session.h"
 
+/* What the first operand names; read before the command runs. */
+typedef enum cli_input {
+    CLI_INPUT_NONE,
+    CLI_INPUT_MESH, /* session->mesh                 */
+    CLI_INPUT_SOLID /* session->solid, a usable mesh */
+} cli_input;
+
 struct cli_command {
     const char *name;
     const char *usage;       /* what follows the name: "MODEL -o FILE [options]" */
@@ -16,10 +23,19 @@ struct cli_command {
     const cli_option *options;
     size_t option_count;
     size_t least_operands, most_operands;
-    size_t values_size;             /* of the struct that the options fill */
-    void (*defaults)(void *values); /* the struct comes zeroed; may be NULL */
-    starg_status (*run)(cli_session *session, void *values);
+    size_t values_size; /* of the struct that the options fill */
+    cli_input input;
+    /* In this order; all but `run` may be NULL. */
+    void (*defaults)(void *values);                              /* the struct comes zeroed     */
+    starg_status (*prepare)(cli_session *session, void *values); /* options, names of outputs   */
+    starg_status (*run)(cli_session *session, void *values);     /* the work, with its input    */
+    void (*release)(cli_session *session, void *values);         /* what `prepare` has taken    */
 };
+
+/* Parts of the table's rows. */
+#define CLI_OPERANDS(LEAST, MOST) .least_operands = LEAST, .most_operands = MOST
+#define CLI_OPTIONS(TABLE)                                                                         \
+    .options = TABLE, .option_count = sizeof TABLE / sizeof *TABLE, .values_size = sizeof(values)
 
 extern const cli_command cli_command_sample;
 extern const cli_command cli_command_check;

@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "help.h"
+#include "model.h"
 #include "report.h"
 #include "starguard/version.h"
 #include "suggest.h"
@@ -112,12 +113,27 @@ static int print_about(const cli_session *session) {
     return finish_text();
 }
 
+/* The frame of every command: slips show before the model is read, and that before the work. */
+static starg_status perform(cli_session *session, void *values) {
+    const cli_command *command = session->command;
+    starg_status status = STARG_OK;
+    CLI_TRY(check_operands(session));
+    if (command->prepare != NULL)
+        CLI_TRY(command->prepare(session, values));
+    CLI_TRY(cli_input_read(session));
+    CLI_TRY(command->run(session, values));
+done:
+    if (command->release != NULL)
+        command->release(session, values);
+    return status;
+}
+
 static int run(const cli_command *command, int argc, char **argv) {
     starg_status status = STARG_OK;
     int result = CLI_EXIT_DONE;
     cli_session session;
     cli_session_init(&session, command);
-    cli_group own = {command->options, command->option_count, calloc(1, command->values_size)};
+    cli_group own = {command->options, command->option_count, calloc(1, command->values_size + 1)};
     if (own.values == NULL) {
         status = cli_fail_memory(&session);
         goto done;
@@ -130,8 +146,7 @@ static int run(const cli_command *command, int argc, char **argv) {
         goto free_values;
     }
     CLI_TRY(cli_session_start(&session));
-    CLI_TRY(check_operands(&session));
-    CLI_TRY(command->run(&session, own.values));
+    CLI_TRY(perform(&session, own.values));
 done:
     result = cli_session_finish(&session, status);
 free_values:

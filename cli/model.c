@@ -5,22 +5,27 @@
 #include <string.h>
 #include <strings.h>
 
+#include "commands.h"
 #include "report.h"
 #include "starguard/picture.h"
 
 static const uint8_t NEUTRAL[3] = {190, 195, 200};
 
-starg_status cli_model_read(cli_session *session, starg_mesh **out) {
-    return starg_mesh_read(session->context, session->operands[0], out);
-}
-
-starg_status cli_solid_read(cli_session *session, starg_solid **out) {
-    starg_mesh *mesh = NULL;
-    *out = NULL;
-    starg_status status = cli_model_read(session, &mesh);
-    if (status == STARG_OK)
-        status = starg_solid_create(session->context, mesh, out);
-    starg_mesh_free(mesh);
+starg_status cli_input_read(cli_session *session) {
+    const cli_command *command = session->command;
+    starg_status status = STARG_OK;
+    char format[64];
+    if (command->input == CLI_INPUT_NONE)
+        return STARG_OK;
+    CLI_TRY(starg_mesh_read(session->context, session->operands[0], &session->mesh));
+    snprintf(format, sizeof format, "starguard-%s", command->name);
+    cli_report_head(session, format, session->operands[0], session->mesh);
+    if (command->input == CLI_INPUT_SOLID) {
+        status = starg_solid_create(session->context, session->mesh, &session->solid);
+        starg_mesh_free(session->mesh);
+        session->mesh = NULL;
+    }
+done:
     return status;
 }
 

@@ -7,11 +7,8 @@
 #include "starguard/mesh.h"
 #include "starguard/solid.h"
 
-/* Reads the model that the first operand names. */
-starg_status cli_model_read(cli_session *session, starg_mesh **out);
-
-/* Reads it as a solid. */
-starg_status cli_solid_read(cli_session *session, starg_solid **out);
+/* Reads what the first operand names into the session, and begins the report with it. */
+starg_status cli_input_read(cli_session *session);
 
 /* The format for an output mesh by its name's ending; OFF for "-". Errors: ARGUMENT. */
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);

@@ -34,6 +34,27 @@ typedef struct cli_option {
     bool above; /* low itself is out                                 */
 } cli_option;
 
+/* Entries of the table of a command, whose struct is called `values`. */
+#define CLI_OPTION(NAME, KIND, MEMBER, VALUE, HELP)                                                \
+    .name = NAME, .kind = KIND, .offset = offsetof(values, MEMBER), .value = VALUE, .help = HELP
+#define CLI_FLAG_OPTION(NAME, MEMBER, HELP)                                                        \
+    { CLI_OPTION(NAME, CLI_FLAG, MEMBER, NULL, HELP) }
+#define CLI_TEXT_OPTION(NAME, MEMBER, VALUE, HELP)                                                 \
+    { CLI_OPTION(NAME, CLI_TEXT, MEMBER, VALUE, HELP) }
+#define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
+    { CLI_OPTION(NAME, CLI_POINTS, MEMBER, VALUE, HELP) }
+#define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, VALUE, HELP)                                        \
+    { CLI_OPTION(NAME, CLI_CHOICE, MEMBER, VALUE, HELP), .choices = WORDS }
+#define CLI_COUNT_OPTION(NAME, MEMBER, VALUE, LEAST, MOST, HELP)                                   \
+    { CLI_OPTION(NAME, CLI_COUNT, MEMBER, VALUE, HELP), .least = LEAST, .most = MOST }
+#define CLI_REAL_OPTION(NAME, MEMBER, VALUE, LOW, HIGH, HELP)                                      \
+    { CLI_OPTION(NAME, CLI_REAL, MEMBER, VALUE, HELP), .low = LOW, .high = HIGH }
+#define CLI_POSITIVE_OPTION(NAME, MEMBER, VALUE, HIGH, HELP)                                       \
+    { CLI_OPTION(NAME, CLI_REAL, MEMBER, VALUE, HELP), .high = HIGH, .above = true }
+/* -o, for a member `output`. */
+#define CLI_OUTPUT_OPTION(VALUE, HELP)                                                             \
+    { CLI_OPTION("output", CLI_TEXT, output, VALUE, HELP), .letter = 'o' }
+
 /* Points from the command line, count x 3. */
 typedef struct cli_points {
     double *values;

@@ -139,6 +139,12 @@ starg_status cli_announce(cli_session *session, const char *name) {
     return STARG_OK;
 }
 
+starg_status cli_announce_needed(cli_session *session, const char *name, const char *form) {
+    if (name == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o %s", form);
+    return cli_announce(session, name);
+}
+
 /* ---- text ---- */
 
 void cli_say(cli_session *session, const char *format, ...) {
@@ -259,6 +265,8 @@ int cli_session_finish(cli_session *session, starg_status status) {
     }
     cli_outputs_discard(&session->outputs);
     cli_report_free(session);
+    starg_solid_free(session->solid);
+    starg_mesh_free(session->mesh);
     signal_context = NULL;
     starg_context_free(session->context);
     return result;

@@ -12,6 +12,8 @@
 #include "outputs.h"
 #include "progress.h"
 #include "starguard/context.h"
+#include "starguard/mesh.h"
+#include "starguard/solid.h"
 
 typedef struct cli_command cli_command;
 
@@ -39,6 +41,8 @@ typedef struct cli_session {
     cli_common common;
     char **operands;
     size_t operand_count;
+    starg_mesh *mesh; /* the first operand, as the command wants it */
+    starg_solid *solid;
 
     starg_context *context;
     cli_progress progress;
@@ -79,6 +83,9 @@ starg_status cli_fail_memory(cli_session *session);
 
 /* Announces an output file; NULL is fine. "-" takes standard output. */
 starg_status cli_announce(cli_session *session, const char *name);
+
+/* The same for the output that a command cannot do without; `form` is what its name looks like. */
+starg_status cli_announce_needed(cli_session *session, const char *name, const char *form);
 
 /* Text for people: standard output, or standard error when a result goes there; nothing with
  * --quiet or --json. */
