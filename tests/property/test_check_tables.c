@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "models.h"
 #include "starguard/check.h"
-#include "support.h"
 
 typedef struct table_row {
-    char folder[64], file[128];
+    const char *file;
     long components, genus, crossings; /* -1 where the table has none */
     bool closed, oriented;
 } table_row;
@@ -41,34 +41,19 @@ static const exception *exception_for(const table_row *row) {
     return &none;
 }
 
-static bool is_surface(const char *name) {
-    const char *dot = strrchr(name, '.');
-    static const char *const endings[] = {".off", ".obj", ".ply", ".stl", ".STL"};
-    for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof *endings; i++)
-        if (strcmp(dot, endings[i]) == 0)
-            return true;
-    return false;
-}
-
 static long number(const char *cell) {
     return cell[0] == '-' ? -1 : strtol(cell, NULL, 10);
 }
 
-/* Parses a line of the README; headings set the folder. True for a surface that can be checked. */
-static bool parse_line(const char *line, table_row *row) {
-    char cell[7][32];
-    if (sscanf(line, "## %63s", row->folder) == 1)
-        return false;
-    if (sscanf(line, "| %127s | %31s | %31s | %31s | %31s | %31s | %31s | %31s |", row->file,
-               cell[0], cell[1], cell[2], cell[3], cell[4], cell[5], cell[6]) != 8 ||
-        !is_surface(row->file))
-        return false;
-    row->closed = strcmp(cell[2], "yes") == 0;
-    row->oriented = strcmp(cell[3], "yes") == 0;
-    row->components = number(cell[4]);
-    row->genus = number(cell[5]);
-    row->crossings = number(cell[6]);
-    return cell[2][0] != '-';
+/* True for a surface that can be checked. */
+static bool parse_row(const test_row *from, table_row *row) {
+    row->file = from->file;
+    row->closed = strcmp(from->cells[2], "yes") == 0;
+    row->oriented = strcmp(from->cells[3], "yes") == 0;
+    row->components = number(from->cells[4]);
+    row->genus = number(from->cells[5]);
+    row->crossings = number(from->cells[6]);
+    return from->cells[6][0] != '\0' && from->cells[2][0] != '-';
 }
 
 static size_t compare(const table_row *row, const starg_check *check) {
@@ -98,20 +83,17 @@ static void every_table(void **state) {
     const char *data = test_shared_data();
     if (data == NULL)
         skip();
-    char path[4400], line[8192];
-    snprintf(path, sizeof path, "%s/README.md", data);
-    FILE *readme = fopen(path, "r");
-    assert_non_null(readme);
+    FILE *readme = test_tables(data);
     starg_context *context = test_context(1);
-    table_row row = {0};
+    test_row from = {0};
     size_t checked = 0, wrong = 0;
-    while (fgets(line, sizeof line, readme) != NULL) {
-        if (!parse_line(line, &row))
+    while (test_next_row(readme, data, &from)) {
+        table_row row;
+        if (!parse_row(&from, &row))
             continue;
         starg_mesh *mesh = NULL;
         starg_check *check = NULL;
-        snprintf(path, sizeof path, "%s/%s/%s", data, row.folder, row.file);
-        test_ok(context, starg_mesh_read(context, path, &mesh));
+        test_ok(context, starg_mesh_read(context, from.path, &mesh));
         test_ok(context, starg_mesh_check(context, mesh, &check));
         wrong += compare(&row, check);
         checked++;

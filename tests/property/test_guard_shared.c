@@ -6,21 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "models.h"
 #include "starguard/guard.h"
-#include "starguard/verify.h"
 
 enum { MOST_VERTICES = 1200 };
-
-static void verify(starg_context *context, const char *name, const starg_mesh *mesh,
-                   const starg_guards *guards) {
-    starg_verdict *verdict = NULL;
-    test_ok(context, starg_verify_guards(context, mesh, guards, &verdict));
-    for (size_t i = 0; i < verdict->count; i++)
-        if (!verdict->claims[i].holds)
-            print_error("%s: %s\n", name, verdict->claims[i].text);
-    assert_true(verdict->passed);
-    starg_verdict_free(context, verdict);
-}
 
 static void check_model(starg_context *context, const char *name, const starg_mesh *mesh) {
     starg_solid *solid = NULL;
@@ -31,7 +20,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
     options.candidate_count = 200;
     options.method = STARG_GUARD_ILP;
     test_ok(context, starg_guard(context, solid, &options, &best));
-    verify(context, name, mesh, best);
+    test_verified(context, name, mesh, best);
     assert_true(best->lower_bound <= best->count);
     /* an embedded boundary can be seen wherever it has area */
     if (starg_solid_check(solid)->embedded)

@@ -5,41 +5,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "support.h"
+#include "models.h"
 
 /* One row of a table: the file and its counts, or -1 where the table has none. */
 typedef struct table_row {
-    char folder[64], file[128];
+    const char *file;
     long vertices, faces;
     bool rejected;
 } table_row;
 
-static bool has_ending(const char *name, const char *ending) {
-    size_t length = strlen(name), tail = strlen(ending);
-    return length >= tail && strcmp(name + length - tail, ending) == 0;
+static long count_in(const char *cell) {
+    return cell[0] == '-' ? -1 : strtol(cell, NULL, 10);
 }
 
-static bool is_surface(const char *name) {
-    static const char *const endings[] = {".off", ".obj", ".ply", ".stl", ".STL"};
-    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++)
-        if (has_ending(name, endings[i]))
-            return true;
-    return false;
-}
-
-/* Parses a line of the README; headings set the folder. True for a row about a surface file. */
-static bool parse_line(const char *line, table_row *row) {
-    char vertices[32], faces[32];
-    if (sscanf(line, "## %63s", row->folder) == 1)
-        return false;
-    if (sscanf(line, "| %127s | %31s | %31s |", row->file, vertices, faces) != 3 ||
-        !is_surface(row->file))
-        return false;
-    row->vertices = vertices[0] == '-' ? -1 : strtol(vertices, NULL, 10);
-    row->faces = faces[0] == '-' ? -1 : strtol(faces, NULL, 10);
-    row->rejected = strncmp(row->file, "corrupted_", 10) == 0 ||
-                    strncmp(row->file, "truncated", 9) == 0 || strncmp(row->file, "empty", 5) == 0;
-    return true;
+static table_row parse_row(const test_row *from) {
+    const char *file = from->file;
+    return (table_row){.file = file,
+                       .vertices = count_in(from->cells[0]),
+                       .faces = count_in(from->cells[1]),
+                       .rejected = strncmp(file, "corrupted_", 10) == 0 ||
+                                   strncmp(file, "truncated", 9) == 0 ||
+                                   strncmp(file, "empty", 5) == 0};
 }
 
 /* The table's maker could not read these; they are fine. */
@@ -77,23 +63,18 @@ static void every_surface_file(void **state) {
     const char *data = test_shared_data();
     if (data == NULL)
         skip();
-    char path[4400], line[8192];
-    snprintf(path, sizeof path, "%s/README.md", data);
-    FILE *readme = fopen(path, "r");
-    assert_non_null(readme);
+    FILE *readme = test_tables(data);
     starg_context *context = test_context(1);
-    table_row row = {0};
+    test_row from = {0};
     size_t read = 0, rejected = 0;
-    while (fgets(line, sizeof line, readme) != NULL) {
-        if (!parse_line(line, &row))
-            continue;
+    while (test_next_row(readme, data, &from)) {
+        table_row row = parse_row(&from);
         amend(&row);
-        snprintf(path, sizeof path, "%s/%s/%s", data, row.folder, row.file);
         if (row.rejected) {
-            expect_rejection(context, path, &row);
+            expect_rejection(context, from.path, &row);
             rejected++;
         } else {
-            expect_counts(context, path, &row);
+            expect_counts(context, from.path, &row);
             read++;
         }
     }

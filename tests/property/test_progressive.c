@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "models.h"
 #include "starguard/guard.h"
 #include "starguard/sample.h"
 #include "starguard/simplify.h"
@@ -19,17 +20,6 @@ static starg_guard_options level_options(void) {
     options.step = 400;
     options.refine = false;
     return options;
-}
-
-static void verify(starg_context *context, const char *name, const starg_mesh *mesh,
-                   const starg_guards *guards) {
-    starg_verdict *verdict = NULL;
-    test_ok(context, starg_verify_guards(context, mesh, guards, &verdict));
-    for (size_t i = 0; i < verdict->count; i++)
-        if (!verdict->claims[i].holds)
-            print_error("%s: %s\n", name, verdict->claims[i].text);
-    assert_true(verdict->passed);
-    starg_verdict_free(context, verdict);
 }
 
 /* The faces of a level that the points see; by the tree, which guarding does not use here. */
@@ -79,7 +69,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
     size_t count = 0;
     test_ok(context, starg_solid_create(context, mesh, &solid));
     test_ok(context, starg_guard(context, solid, &options, &guards));
-    verify(context, name, mesh, guards);
+    test_verified(context, name, mesh, guards);
     test_ok(context, starg_candidate_points(context, solid, options.candidates,
                                             options.candidate_count, 0, &candidates, &count));
     test_ok(context, starg_mesh_levels(context, starg_solid_mesh(solid), options.coarsest,
@@ -94,7 +84,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
     options.refine = true;
     options.refine_lines = 300000;
     test_ok(context, starg_guard(context, solid, &options, &refined));
-    verify(context, name, mesh, refined);
+    test_verified(context, name, mesh, refined);
     assert_true(refined->count <= guards->count);
     assert_true(refined->candidate_count >= guards->candidate_count);
 
@@ -249,9 +239,9 @@ static void test_round_trip(void **state) {
                             24 * guards->level_list[i].count);
     }
     assert_true(back->options.visibility.cone == 170);
-    verify(context, "human", mesh, back);
+    test_verified(context, "human", mesh, back);
     refute_falsifications(context, mesh, back);
-    verify(context, "human", mesh, back);
+    test_verified(context, "human", mesh, back);
     remove("test_progressive.json");
     starg_guards_free(context, guards);
     starg_guards_free(context, back);

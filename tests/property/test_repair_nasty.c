@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "models.h"
 #include "starguard/check.h"
 #include "starguard/repair.h"
-#include "starguard/solid.h"
 #include "support.h"
 
 /* Larger ones are left to whoever asks for them by STARGUARD_ALL_TABLES=1. */
@@ -53,13 +53,6 @@ static const expectation *expectation_for(const char *file) {
     return &any;
 }
 
-static bool same_mesh(const starg_mesh *a, const starg_mesh *b) {
-    size_t vertices = starg_mesh_vertex_count(a), faces = starg_mesh_face_count(a);
-    return vertices == starg_mesh_vertex_count(b) && faces == starg_mesh_face_count(b) &&
-           memcmp(starg_mesh_vertices(a), starg_mesh_vertices(b), 24 * vertices) == 0 &&
-           memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 12 * faces) == 0;
-}
-
 static void expect_solid(starg_context *context, const char *file, const starg_mesh *input,
                          const starg_mesh *mesh, const starg_repair_report *report) {
     const expectation *e = expectation_for(file);
@@ -67,7 +60,7 @@ static void expect_solid(starg_context *context, const char *file, const starg_m
     test_ok(context, starg_solid_create(context, mesh, &solid));
     const starg_check *check = starg_solid_check(solid);
     const starg_finding *crossing = &check->findings[STARG_FINDING_SELF_INTERSECTION];
-    if (e->fails || (e->unchanged && !same_mesh(input, mesh)))
+    if (e->fails || (e->unchanged && !test_same_mesh(input, mesh)))
         fail_msg("%s: came back %s", file, e->fails ? "as a solid" : "changed");
     if (crossing->count != report->intersections_after ||
         (e->crossings >= 0 && crossing->count > (size_t)e->crossings))

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "core/rng.h"
-#include "shapes.h"
+#include "models.h"
 #include "starguard/visibility.h"
 #include "visibility_oracle.h"
 
@@ -92,10 +92,8 @@ static void check_solid(starg_context *context, const char *name, const starg_so
 /* Takes over the shape. */
 static void check_shape(const char *name, shape s, uint64_t seed) {
     starg_context *context = test_context(2);
-    starg_mesh *mesh = NULL;
     starg_solid *solid = NULL;
-    test_ok(context,
-            starg_mesh_create(context, s.vertices, s.vertex_count, s.faces, s.face_count, &mesh));
+    starg_mesh *mesh = test_mesh_of(context, &s);
     test_ok(context, starg_solid_create(context, mesh, &solid));
     check_solid(context, name, solid, seed);
     starg_solid_free(solid);
@@ -126,10 +124,8 @@ static void test_random_cells(void **state) {
         for (size_t k = 0; k < sizeof cells - 1; k++)
             cells[k] = starg_rng_below(&rng, 8) < 7 ? '#' : '.';
         shape s = shape_cells(cells, 4, 4, 3);
-        starg_mesh *mesh = NULL;
         starg_solid *solid = NULL;
-        test_ok(context, starg_mesh_create(context, s.vertices, s.vertex_count, s.faces,
-                                           s.face_count, &mesh));
+        starg_mesh *mesh = test_mesh_of(context, &s);
         if (starg_solid_create(context, mesh, &solid) == STARG_OK) {
             check_solid(context, "random cells", solid, i);
             solids++;

@@ -13,6 +13,31 @@ starg_context *test_context(int threads) {
     return context;
 }
 
+static void *allocate_scarce(void *user, size_t size) {
+    size_t *left = user;
+    return *left == 0 ? NULL : (--*left, malloc(size));
+}
+
+static void release_scarce(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+starg_context *test_scarce_context(int threads, size_t *left) {
+    starg_context_options options;
+    starg_context_options_default(&options);
+    options.threads = threads;
+    options.allocator = (starg_allocator){allocate_scarce, release_scarce, left};
+    starg_context *context = NULL;
+    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+    return context;
+}
+
+bool test_refuse(void *user, const char *stage, double fraction) {
+    (void)user, (void)stage, (void)fraction;
+    return false;
+}
+
 void test_context_free(starg_context *context) {
     assert_int_equal(starg_context_live_blocks(context), 0);
     starg_context_free(context);

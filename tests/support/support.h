@@ -4,6 +4,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 /* cmocka wants these before it */
@@ -14,6 +15,12 @@
 
 /* A context with the given number of threads; the test fails if it cannot be made. */
 starg_context *test_context(int threads);
+
+/* The same with memory that gives out after *left more blocks. */
+starg_context *test_scarce_context(int threads, size_t *left);
+
+/* A starg_progress_fn that wants everything cancelled. */
+bool test_refuse(void *user, const char *stage, double fraction);
 
 /* Frees a context and fails the test if any block of it is still in use. */
 void test_context_free(starg_context *context);

@@ -486,16 +486,11 @@ static void test_random_blobs(void **state) {
 
 /* ---- memory and cancelling ---- */
 
-static bool refuse(void *user, const char *stage, double fraction) {
-    (void)user, (void)stage, (void)fraction;
-    return false;
-}
-
 static void test_cancel(void **state) {
     (void)state;
     starg_context_options options;
     starg_context_options_default(&options);
-    options.progress = refuse;
+    options.progress = test_refuse;
     starg_context *context;
     starg_mesh *mesh;
     starg_check *check;
@@ -508,35 +503,17 @@ static void test_cancel(void **state) {
     test_context_free(context);
 }
 
-typedef struct rationed {
-    size_t left;
-} rationed;
-
-static void *allocate_rationed(void *user, size_t size) {
-    rationed *r = user;
-    return r->left == 0 ? NULL : (r->left--, malloc(size));
-}
-
-static void release_rationed(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void test_every_allocation_fails_once(void **state) {
     (void)state;
-    rationed ration = {SIZE_MAX};
-    starg_context_options options;
-    starg_context_options_default(&options);
-    options.allocator = (starg_allocator){allocate_rationed, release_rationed, &ration};
-    starg_context *context;
+    size_t left = SIZE_MAX;
+    starg_context *context = test_scarce_context(0, &left);
     starg_mesh *mesh;
     starg_check *check = NULL;
-    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
     test_ok(context, starg_mesh_create(context, TETRAHEDRON, 4, TETRAHEDRON_FACES, 4, &mesh));
     size_t failures = 0;
     starg_status status;
     do {
-        ration.left = failures;
+        left = failures;
         status = starg_mesh_check(context, mesh, &check);
         if (status != STARG_OK) {
             assert_int_equal(status, STARG_ERROR_MEMORY);
@@ -546,7 +523,7 @@ static void test_every_allocation_fails_once(void **state) {
         }
     } while (status != STARG_OK);
     assert_true(failures > 5);
-    ration.left = SIZE_MAX;
+    left = SIZE_MAX;
     starg_check_free(context, check);
     starg_mesh_free(mesh);
     test_context_free(context);

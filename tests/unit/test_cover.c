@@ -374,37 +374,18 @@ static void prints_nothing(void **state) {
     test_context_free(context);
 }
 
-typedef struct failing_allocator {
-    size_t left;
-    bool armed;
-} failing_allocator;
-
-static void *allocate_until(void *user, size_t size) {
-    failing_allocator *failing = user;
-    if (failing->armed && failing->left-- == 0) {
-        failing->left = 0;
-        return NULL;
-    }
-    return malloc(size);
-}
-
-static void release_block(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 /* Lets every allocation of a solve fail in turn; returns how many there were. */
-static size_t fail_each(starg_context *context, failing_allocator *failing,
-                        const starg_cover_problem *problem, starg_cover_method method) {
+static size_t fail_each(starg_context *context, size_t *left, const starg_cover_problem *problem,
+                        starg_cover_method method) {
     starg_cover_options options;
     starg_cover_options_default(&options);
     options.method = method;
     size_t before = starg_context_live_blocks(context);
     for (size_t n = 0;; n++) {
         starg_cover *cover;
-        *failing = (failing_allocator){.left = n, .armed = true};
+        *left = n;
         starg_status status = starg_cover_solve(context, problem, &options, &cover);
-        failing->armed = false;
+        *left = SIZE_MAX;
         if (status == STARG_OK) {
             starg_cover_free(cover);
             assert_int_equal(starg_context_live_blocks(context), before);
@@ -418,20 +399,16 @@ static size_t fail_each(starg_context *context, failing_allocator *failing,
 
 static void memory_runs_out(void **state) {
     (void)state;
-    failing_allocator failing = {0};
-    starg_context_options options;
-    starg_context_options_default(&options);
-    options.allocator = (starg_allocator){allocate_until, release_block, &failing};
-    starg_context *context;
-    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+    size_t left = SIZE_MAX;
+    starg_context *context = test_scarce_context(0, &left);
     starg_bits *bits = make_lines(context, 2);
     starg_cover_problem problem = problem_of(bits);
     for (int mode = 0; mode < 4; mode++) {
         problem.redundancy = mode == 1 ? 2 : 1;
         problem.target = mode == 2 ? 10 : UINT64_MAX;
         problem.max_rows = mode == 3 ? 3 : 0;
-        assert_true(fail_each(context, &failing, &problem, STARG_COVER_ILP) > 40);
-        assert_true(fail_each(context, &failing, &problem, STARG_COVER_GREEDY) > 20);
+        assert_true(fail_each(context, &left, &problem, STARG_COVER_ILP) > 40);
+        assert_true(fail_each(context, &left, &problem, STARG_COVER_GREEDY) > 20);
     }
     starg_bits_free(bits);
     test_context_free(context);

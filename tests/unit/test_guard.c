@@ -7,35 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "models.h"
 #include "starguard/guard.h"
 #include "starguard/sample.h"
-#include "starguard/verify.h"
-
-static starg_solid *make_solid(starg_context *context, const char *name, size_t vertices) {
-    starg_sample_options options;
-    starg_mesh *mesh = NULL;
-    starg_solid *solid = NULL;
-    starg_sample_options_default(&options);
-    options.vertex_count = vertices;
-    test_ok(context, starg_sample_create(context, name, &options, &mesh));
-    test_ok(context, starg_solid_create(context, mesh, &solid));
-    starg_mesh_free(mesh);
-    return solid;
-}
-
-static starg_guards *guard(starg_context *context, const starg_solid *solid,
-                           const starg_guard_options *options) {
-    starg_guards *guards = NULL;
-    starg_verdict *verdict = NULL;
-    test_ok(context, starg_guard(context, solid, options, &guards));
-    test_ok(context, starg_verify_guards(context, starg_solid_mesh(solid), guards, &verdict));
-    for (size_t i = 0; i < verdict->count; i++)
-        if (!verdict->claims[i].holds)
-            print_error("%s\n", verdict->claims[i].text);
-    assert_true(verdict->passed);
-    starg_verdict_free(context, verdict);
-    return guards;
-}
 
 static starg_guard_options small_options(void) {
     starg_guard_options options;
@@ -50,10 +24,10 @@ static void test_every_sample(void **state) {
     starg_context *context = test_context(2);
     for (size_t i = 0; i < starg_sample_count(); i++) {
         starg_guard_options options = small_options();
-        starg_solid *solid = make_solid(context, starg_sample_at(i)->name, 600);
-        starg_guards *best = guard(context, solid, &options);
+        starg_solid *solid = test_sample(context, starg_sample_at(i)->name, 600);
+        starg_guards *best = test_guard(context, solid, &options);
         options.method = STARG_GUARD_GREEDY;
-        starg_guards *greedy = guard(context, solid, &options);
+        starg_guards *greedy = test_guard(context, solid, &options);
         /* samples are embedded and have no thin crevices: every face can be seen */
         assert_int_equal(best->uncovered_count, 0);
         assert_true(best->optimal);
@@ -70,11 +44,11 @@ static void test_every_sample(void **state) {
 static void test_sphere_takes_one(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_solid *solid = make_solid(context, "sphere", 500);
+    starg_solid *solid = test_sample(context, "sphere", 500);
     starg_guard_options options = small_options();
     for (int source = 0; source < 2; source++) {
         options.candidates = (starg_candidates)source;
-        starg_guards *guards = guard(context, solid, &options);
+        starg_guards *guards = test_guard(context, solid, &options);
         assert_int_equal(guards->count, 1);
         starg_guards_free(context, guards);
     }
@@ -85,54 +59,54 @@ static void test_sphere_takes_one(void **state) {
 static void test_options(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_solid *solid = make_solid(context, "gallery", 900);
+    starg_solid *solid = test_sample(context, "gallery", 900);
     double diagonal = starg_solid_check(solid)->diagonal;
     starg_guard_options options = small_options();
-    starg_guards *all = guard(context, solid, &options);
+    starg_guards *all = test_guard(context, solid, &options);
 
     options.coverage = 0.9;
-    starg_guards *most = guard(context, solid, &options);
+    starg_guards *most = test_guard(context, solid, &options);
     assert_true(most->count <= all->count);
     assert_true(most->coverage_area >= 0.9 * (1 - 1e-9));
 
     options = small_options();
     options.max_guards = 1;
-    starg_guards *one = guard(context, solid, &options);
+    starg_guards *one = test_guard(context, solid, &options);
     assert_int_equal(one->count, 1);
     assert_true(one->coverage_area <= one->area_bound * (1 + 1e-9));
 
     options = small_options();
     options.redundancy = 2;
-    starg_guards *twice = guard(context, solid, &options);
+    starg_guards *twice = test_guard(context, solid, &options);
     assert_true(twice->count > all->count);
 
     options = small_options();
     options.visibility.range = 0.35 * diagonal;
-    starg_guards *near = guard(context, solid, &options);
+    starg_guards *near = test_guard(context, solid, &options);
     assert_true(near->count >= all->count);
 
     options = small_options();
     options.clearance = 0.02 * diagonal;
-    starg_guards *clear = guard(context, solid, &options);
+    starg_guards *clear = test_guard(context, solid, &options);
     for (size_t i = 0; i < clear->count; i++)
         assert_true(starg_solid_distance(solid, clear->positions + 3 * i) >= options.clearance);
 
     options = small_options();
     options.visibility.target = STARG_TARGET_VERTICES;
-    starg_guards *vertices = guard(context, solid, &options);
+    starg_guards *vertices = test_guard(context, solid, &options);
     assert_true(vertices->coverage_vertices == 1);
     assert_true(vertices->count <= all->count + 1);
 
     options = small_options();
     options.visibility.face_rule = STARG_FACES_WHOLE;
-    starg_guards *whole = guard(context, solid, &options);
+    starg_guards *whole = test_guard(context, solid, &options);
     assert_int_equal(whole->uncovered_count, 0);
 
     options = small_options();
     options.candidates = STARG_CANDIDATES_GIVEN;
     options.points = all->positions;
     options.point_count = all->count;
-    starg_guards *given = guard(context, solid, &options);
+    starg_guards *given = test_guard(context, solid, &options);
     assert_int_equal(given->count, all->count);
     assert_int_equal(given->candidate_count, all->count);
 
@@ -165,9 +139,9 @@ static void test_file(void **state) {
     starg_guards *guards = NULL;
     for (int i = 0; i < 2; i++) {
         starg_context *context = test_context(i == 0 ? 1 : 5);
-        starg_solid *solid = make_solid(context, "star", 700);
+        starg_solid *solid = test_sample(context, "star", 700);
         starg_guard_options options = small_options();
-        guards = guard(context, solid, &options);
+        guards = test_guard(context, solid, &options);
         snprintf(path[i], sizeof path[i], "guards-%ld-%d.json", (long)getpid(), i);
         test_ok(context, starg_guards_write(context, guards, "a \"name\".off", path[i]));
         text[i] = read_text(path[i], &size[i]);
@@ -260,7 +234,7 @@ static void test_bad_files(void **state) {
 static void test_bad_options(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_solid *solid = make_solid(context, "torus", 500);
+    starg_solid *solid = test_sample(context, "torus", 500);
     starg_guards *guards = NULL;
     starg_guard_options bad[6];
     for (int i = 0; i < 6; i++)

@@ -14,7 +14,7 @@
 #include "core/rng.h"
 #include "exact_oracle.h"
 #include "geometry/half_spaces.h"
-#include "shapes.h"
+#include "models.h"
 #include "starguard/kernel.h"
 
 /* ---- the oracle ---- */
@@ -157,10 +157,8 @@ static bool oracle_kernel(const shape *s) {
 /* ---- one shape ---- */
 
 static starg_kernel_result kernel_of(starg_context *context, const shape *s) {
-    starg_mesh *mesh = NULL;
     starg_kernel_result result;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
+    starg_mesh *mesh = test_mesh_of(context, s);
     test_ok(context, starg_kernel(context, mesh, NULL, &result));
     starg_mesh_free(mesh);
     return result;
@@ -372,13 +370,11 @@ static void test_errors(void **state) {
     s.faces[0] ^= s.faces[1]; /* one face turned: every edge has two faces, three do not match */
     s.faces[1] ^= s.faces[0];
     s.faces[0] ^= s.faces[1];
-    test_ok(context,
-            starg_mesh_create(context, s.vertices, s.vertex_count, s.faces, s.face_count, &open));
+    open = test_mesh_of(context, &s);
     assert_int_equal(starg_kernel(context, open, NULL, &result), STARG_ERROR_MESH);
     starg_mesh_free(open);
     starg_context_cancel(context);
-    test_ok(context,
-            starg_mesh_create(context, s.vertices, s.vertex_count, s.faces, s.face_count, &open));
+    open = test_mesh_of(context, &s);
     assert_int_equal(starg_kernel(context, open, &options, &result), STARG_ERROR_CANCELLED);
     starg_mesh_free(open);
     shape_free(&s);

@@ -667,18 +667,11 @@ static void long_names_leave_room_for_the_message(void **state) {
     test_context_free(context);
 }
 
-static bool refuse(void *user, const char *stage, double fraction) {
-    (void)user;
-    (void)stage;
-    (void)fraction;
-    return false;
-}
-
 static void reading_can_be_cancelled(void **state) {
     (void)state;
     starg_context_options options;
     starg_context_options_default(&options);
-    options.progress = refuse;
+    options.progress = test_refuse;
     starg_context *context = NULL;
     starg_mesh *mesh = NULL;
     assert_int_equal(starg_context_create(&options, &context), STARG_OK);
@@ -688,19 +681,7 @@ static void reading_can_be_cancelled(void **state) {
     test_context_free(context);
 }
 
-/* Memory that gives out at the n-th block, for every n until the reading succeeds. */
-static size_t blocks_left;
-
-static void *scarce(void *user, size_t size) {
-    (void)user;
-    return blocks_left == 0 ? NULL : (blocks_left--, malloc(size));
-}
-
-static void give_back(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
+/* Memory gives out at the n-th block, for every n until the reading succeeds. */
 static void memory_may_give_out_anywhere(void **state) {
     (void)state;
     static const char *const texts[] = {
@@ -709,18 +690,14 @@ static void memory_may_give_out_anywhere(void **state) {
         PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n" OFF_VERTICES OFF_FACES,
         "solid\n" STL_FACETS "endsolid\n",
     };
-    starg_context_options options;
-    starg_context_options_default(&options);
-    options.allocator = (starg_allocator){scarce, give_back, NULL};
     for (size_t i = 0; i < COUNT(texts); i++) {
         starg_status status = STARG_ERROR_MEMORY;
         size_t n = 0;
         for (; status == STARG_ERROR_MEMORY; n++) {
-            starg_context *context = NULL;
+            size_t left = 1;
+            starg_context *context = test_scarce_context(0, &left);
             starg_mesh *mesh = NULL;
-            blocks_left = 1;
-            assert_int_equal(starg_context_create(&options, &context), STARG_OK);
-            blocks_left = n;
+            left = n;
             status = read_text(context, texts[i], "nameless", &mesh);
             assert_true((mesh == NULL) == (status != STARG_OK));
             starg_mesh_free(mesh);

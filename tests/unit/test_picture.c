@@ -486,39 +486,17 @@ static void unwritable_places_leave_nothing(void **state) {
     test_context_free(context);
 }
 
-typedef struct scarce_memory {
-    size_t left;
-} scarce_memory;
-
-static void *scarce_allocate(void *user, size_t size) {
-    scarce_memory *memory = user;
-    if (memory->left == 0)
-        return NULL;
-    memory->left--;
-    return malloc(size);
-}
-
-static void scarce_release(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void memory_failures_leak_nothing(void **state) {
     (void)state;
     starg_status status = STARG_ERROR_MEMORY;
     size_t failures = 0;
     const char *path = picture_path("scarce.png");
     for (size_t allowed = 4; status != STARG_OK; allowed++) {
-        scarce_memory memory = {.left = 1000};
-        starg_context_options setup;
-        starg_context_options_default(&setup);
-        setup.threads = 1;
-        setup.allocator = (starg_allocator){scarce_allocate, scarce_release, &memory};
-        starg_context *context = NULL;
-        assert_int_equal(starg_context_create(&setup, &context), STARG_OK);
+        size_t left = 1000;
+        starg_context *context = test_scarce_context(1, &left);
         starg_mesh *mesh = make_cube(context, 1, 0);
         starg_picture_options options = small_options();
-        memory.left = allowed;
+        left = allowed;
         status = starg_picture_write(context, mesh, &options, path);
         assert_true(status == STARG_OK || status == STARG_ERROR_MEMORY);
         assert_true((access(path, F_OK) == 0) == (status == STARG_OK));

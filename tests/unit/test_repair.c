@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "core/rng.h"
-#include "shapes.h"
+#include "models.h"
 #include "starguard/check.h"
-#include "starguard/solid.h"
 #include "support.h"
 
 /* ---- helpers ---- */
@@ -54,8 +53,7 @@ static void turn_face(shape *s, size_t face) {
  * shells turned, and a report that adds up. */
 static repaired repair_with(shape *s, const starg_repair_options *options) {
     repaired r = {.context = test_context(1)};
-    test_ok(r.context, starg_mesh_create(r.context, s->vertices, s->vertex_count, s->faces,
-                                         s->face_count, &r.input));
+    r.input = test_mesh_of(r.context, s);
     test_ok(r.context, starg_mesh_repair(r.context, r.input, options, &r.mesh, &r.report));
     test_ok(r.context, starg_mesh_check(r.context, r.mesh, &r.check));
     assert_true(r.check->usable);
@@ -87,20 +85,12 @@ static void expect_volume(const repaired *r, double volume) {
         fail_msg("volume %.17g, %.17g expected", r->check->volume, volume);
 }
 
-static bool same_mesh(const starg_mesh *a, const starg_mesh *b) {
-    size_t vertices = starg_mesh_vertex_count(a), faces = starg_mesh_face_count(a);
-    return vertices == starg_mesh_vertex_count(b) && faces == starg_mesh_face_count(b) &&
-           memcmp(starg_mesh_vertices(a), starg_mesh_vertices(b), 24 * vertices) == 0 &&
-           memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 12 * faces) == 0;
-}
-
 static void expect_failure(shape *s, const starg_repair_options *options, starg_status expected,
                            const char *phrase) {
     starg_context *context = test_context(1);
     starg_mesh *mesh, *out;
     starg_repair_report report;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
+    mesh = test_mesh_of(context, s);
     assert_int_equal(starg_mesh_repair(context, mesh, options, &out, &report), expected);
     assert_null(out);
     if (strstr(starg_context_error(context)->message, phrase) == NULL)
@@ -119,7 +109,7 @@ static void test_sound_meshes_come_back(void **state) {
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
         repaired r = repair(&shapes[i]);
         const starg_repair_report none = {0};
-        assert_true(same_mesh(r.input, r.mesh));
+        assert_true(test_same_mesh(r.input, r.mesh));
         assert_memory_equal(&r.report, &none, sizeof none);
         repaired_free(&r);
     }
@@ -474,7 +464,7 @@ static void test_leaves_overlapping_components(void **state) {
     repaired r = repair(&s);
     assert_true(r.report.intersections_after > 0);
     assert_int_equal(r.report.intersections_after, r.report.intersections_before);
-    assert_true(same_mesh(r.input, r.mesh));
+    assert_true(test_same_mesh(r.input, r.mesh));
     repaired_free(&r);
 }
 
@@ -536,8 +526,7 @@ static void test_cancel(void **state) {
     starg_repair_report report;
     shape s = shape_cube(1);
     remove_face(&s, 0);
-    test_ok(context,
-            starg_mesh_create(context, s.vertices, s.vertex_count, s.faces, s.face_count, &mesh));
+    mesh = test_mesh_of(context, &s);
     starg_context_cancel(context);
     assert_int_equal(starg_mesh_repair(context, mesh, NULL, &out, &report), STARG_ERROR_CANCELLED);
     assert_null(out);
@@ -593,8 +582,7 @@ static void test_random_damage(void **state) {
         starg_mesh *mesh, *first, *second;
         starg_check *check;
         starg_repair_report report, again;
-        test_ok(context, starg_mesh_create(context, s.vertices, s.vertex_count, s.faces,
-                                           s.face_count, &mesh));
+        mesh = test_mesh_of(context, &s);
         starg_status status = starg_mesh_repair(context, mesh, NULL, &first, &report);
         assert_true(status == STARG_OK || status == STARG_ERROR_MESH);
         if (status == STARG_OK) {
@@ -602,7 +590,7 @@ static void test_random_damage(void **state) {
             assert_true(check->usable);
             assert_int_equal(check->findings[STARG_FINDING_INWARD_COMPONENT].count, 0);
             test_ok(context, starg_mesh_repair(context, mesh, NULL, &second, &again));
-            assert_true(same_mesh(first, second));
+            assert_true(test_same_mesh(first, second));
             assert_memory_equal(&report, &again, sizeof report);
             starg_check_free(context, check);
             starg_mesh_free(first);
@@ -618,40 +606,21 @@ static void test_random_damage(void **state) {
 
 /* ---- memory ---- */
 
-typedef struct rationed {
-    size_t left;
-} rationed;
-
-static void *allocate_rationed(void *user, size_t size) {
-    rationed *r = user;
-    return r->left == 0 ? NULL : (r->left--, malloc(size));
-}
-
-static void release_rationed(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void test_every_allocation_fails_once(void **state) {
     (void)state;
-    rationed ration = {SIZE_MAX};
-    starg_context_options options;
-    starg_context_options_default(&options);
-    options.allocator = (starg_allocator){allocate_rationed, release_rationed, &ration};
-    starg_context *context;
+    size_t left = SIZE_MAX;
+    starg_context *context = test_scarce_context(0, &left);
     starg_mesh *mesh, *out;
     starg_repair_report report;
-    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
     shape s = shape_cells("#..#", 2, 2, 1), cube = shape_cube(1);
     s.vertices[0] += 3; /* crossing faces */
     shape_append(&s, &cube, (const double[3]){9, 0, 0}, 1);
     remove_face(&s, s.face_count - 1);
     remove_face(&s, s.face_count - 3);
-    test_ok(context,
-            starg_mesh_create(context, s.vertices, s.vertex_count, s.faces, s.face_count, &mesh));
+    mesh = test_mesh_of(context, &s);
     size_t before = starg_context_live_blocks(context), failures = 0;
     for (;; failures++) {
-        ration.left = failures;
+        left = failures;
         starg_status status = starg_mesh_repair(context, mesh, NULL, &out, &report);
         if (status == STARG_OK)
             break;
@@ -660,7 +629,7 @@ static void test_every_allocation_fails_once(void **state) {
         assert_int_equal(starg_context_live_blocks(context), before);
     }
     assert_true(failures > 100);
-    ration.left = SIZE_MAX;
+    left = SIZE_MAX;
     starg_mesh_free(out);
     starg_mesh_free(mesh);
     shape_free(&s);

@@ -419,23 +419,6 @@ static void cancellation_stops_it(void **state) {
 
 /* ---- memory that runs out ------------------------------------------------------------------- */
 
-typedef struct scarce_memory {
-    size_t left; /* allocations that still succeed */
-} scarce_memory;
-
-static void *scarce_allocate(void *user, size_t size) {
-    scarce_memory *memory = user;
-    if (memory->left == 0)
-        return NULL;
-    memory->left--;
-    return malloc(size);
-}
-
-static void scarce_release(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void memory_failures_leak_nothing(void **state) {
     (void)state;
     static const char *const names[] = {"octopus", "gallery", "knot", "shell", "star"};
@@ -443,13 +426,8 @@ static void memory_failures_leak_nothing(void **state) {
         starg_status status = STARG_ERROR_MEMORY;
         size_t failures = 0;
         for (size_t allowed = 1; status != STARG_OK; allowed += 1 + allowed / 8) {
-            scarce_memory memory = {.left = allowed};
-            starg_context_options options;
-            starg_context_options_default(&options);
-            options.threads = 1;
-            options.allocator = (starg_allocator){scarce_allocate, scarce_release, &memory};
-            starg_context *context = NULL;
-            assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+            size_t left = allowed;
+            starg_context *context = test_scarce_context(1, &left);
             starg_sample_options size = {.pose = 0, .vertex_count = 500};
             starg_mesh *mesh = NULL;
             status = starg_sample_create(context, names[i], &size, &mesh);

@@ -6,21 +6,8 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
+#include "models.h"
 #include "starguard/guard.h"
-#include "starguard/sample.h"
-#include "starguard/verify.h"
-
-static starg_solid *make_solid(starg_context *context, const char *name, size_t vertices) {
-    starg_sample_options options;
-    starg_mesh *mesh = NULL;
-    starg_solid *solid = NULL;
-    starg_sample_options_default(&options);
-    options.vertex_count = vertices;
-    test_ok(context, starg_sample_create(context, name, &options, &mesh));
-    test_ok(context, starg_solid_create(context, mesh, &solid));
-    starg_mesh_free(mesh);
-    return solid;
-}
 
 enum { POINTS = 12 };
 
@@ -83,7 +70,7 @@ static void check_rows(starg_context *context, const starg_solid *solid,
 static void test_rows(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_solid *solid = make_solid(context, "gallery", 500);
+    starg_solid *solid = test_sample(context, "gallery", 500);
     double points[3 * POINTS], directions[3 * POINTS];
     pick_views(solid, points, directions);
     const double cones[] = {40, 90, 180, 250};
@@ -105,7 +92,7 @@ static void test_rows(void **state) {
 static void test_bad_cones(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_solid *solid = make_solid(context, "sphere", 500);
+    starg_solid *solid = test_sample(context, "sphere", 500);
     const double point[3] = {0, 0, 0}, zero[3] = {0, 0, 0}, endless[3] = {INFINITY, 0, 0};
     const double forward[3] = {1, 0, 0};
     const struct {
@@ -131,25 +118,11 @@ static void test_bad_cones(void **state) {
     test_context_free(context);
 }
 
-static starg_guards *guard(starg_context *context, const starg_solid *solid,
-                           const starg_guard_options *options) {
-    starg_guards *guards = NULL;
-    starg_verdict *verdict = NULL;
-    test_ok(context, starg_guard(context, solid, options, &guards));
-    test_ok(context, starg_verify_guards(context, starg_solid_mesh(solid), guards, &verdict));
-    for (size_t i = 0; i < verdict->count; i++)
-        if (!verdict->claims[i].holds)
-            print_error("%s\n", verdict->claims[i].text);
-    assert_true(verdict->passed);
-    starg_verdict_free(context, verdict);
-    return guards;
-}
-
 /* The narrower the view, the more guards; all of them look somewhere. */
 static void test_guards_with_cones(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_solid *solid = make_solid(context, "sphere", 500);
+    starg_solid *solid = test_sample(context, "sphere", 500);
     const double cones[] = {360, 180, 100};
     const int methods[] = {STARG_GUARD_PILP, STARG_GUARD_ILP, STARG_GUARD_GREEDY};
     for (size_t m = 0; m < 3; m++) {
@@ -162,7 +135,7 @@ static void test_guards_with_cones(void **state) {
             options.max_nodes = 20;
             options.refine_lines = 100000;
             options.visibility.cone = cones[c];
-            starg_guards *guards = guard(context, solid, &options);
+            starg_guards *guards = test_guard(context, solid, &options);
             assert_int_equal(guards->uncovered_count, 0);
             assert_true(guards->count > before);
             assert_int_equal(guards->directions != NULL, cones[c] < 360);

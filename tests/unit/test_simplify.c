@@ -12,27 +12,10 @@
 #include "core/rng.h"
 #include "mesh/collapse.h"
 #include "mesh/heap.h"
-#include "shapes.h"
+#include "models.h"
 #include "starguard/check.h"
 #include "starguard/sample.h"
 #include "starguard/simplify.h"
-#include "starguard/solid.h"
-
-static starg_mesh *sample(starg_context *context, const char *name, size_t vertex_count) {
-    starg_sample_options options;
-    starg_sample_options_default(&options);
-    options.vertex_count = vertex_count;
-    starg_mesh *mesh;
-    test_ok(context, starg_sample_create(context, name, &options, &mesh));
-    return mesh;
-}
-
-static starg_mesh *mesh_of(starg_context *context, const shape *s) {
-    starg_mesh *mesh;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
-    return mesh;
-}
 
 static starg_check *check_of(starg_context *context, const starg_mesh *mesh) {
     starg_check *check;
@@ -119,7 +102,7 @@ static void test_samples_stay_solids(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     for (size_t i = 0; i < starg_sample_count(); i++) {
-        starg_mesh *mesh = sample(context, starg_sample_at(i)->name, 2000);
+        starg_mesh *mesh = test_sample_mesh(context, starg_sample_at(i)->name, 2000);
         check_mesh(context, mesh, 400, 0.06);
         starg_mesh_free(mesh);
     }
@@ -132,7 +115,7 @@ static void test_lattices_stay_solids(void **state) {
     shape shapes[] = {shape_tetrahedron(), shape_cube(1),  shape_cube(6),
                       shape_room(),        shape_cavity(), shape_columns()};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        starg_mesh *mesh = mesh_of(context, &shapes[i]);
+        starg_mesh *mesh = test_mesh_of(context, &shapes[i]);
         size_t count = starg_mesh_vertex_count(mesh);
         check_mesh(context, mesh, count > 5 ? count - count / 4 : 4, 0.5);
         starg_mesh_free(mesh);
@@ -145,7 +128,7 @@ static void test_flat_walls_cost_nothing(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     shape cube = shape_cube(6);
-    starg_mesh *mesh = mesh_of(context, &cube), *coarse = simplify(context, mesh, 30);
+    starg_mesh *mesh = test_mesh_of(context, &cube), *coarse = simplify(context, mesh, 30);
     assert_int_equal(starg_mesh_vertex_count(coarse), 30);
     assert_true(fabs(starg_mesh_volume(coarse) - 216) < 0.1);
     starg_mesh_free(coarse);
@@ -159,7 +142,7 @@ static void test_everything_shrinks_to_a_tetrahedron(void **state) {
     starg_context *context = test_context(1);
     shape blob = shape_blob(3, 7), cube = shape_cube(4);
     shape_append(&blob, &cube, (const double[3]){9, 0, 0}, 0);
-    starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 0);
+    starg_mesh *mesh = test_mesh_of(context, &blob), *coarse = simplify(context, mesh, 0);
     assert_int_equal(starg_mesh_vertex_count(coarse), 8); /* two components */
     assert_int_equal(starg_mesh_face_count(coarse), 8);
     assert_same_topology(context, mesh, coarse, true);
@@ -189,7 +172,7 @@ static void test_shells_do_not_change_sides(void **state) {
             shape_append(&all, &grain, offset, inside);
             shape_free(&grain);
         }
-        starg_mesh *mesh = mesh_of(context, &all), *coarse = simplify(context, mesh, 0);
+        starg_mesh *mesh = test_mesh_of(context, &all), *coarse = simplify(context, mesh, 0);
         assert_same_topology(context, mesh, coarse, true);
         starg_mesh_free(coarse);
         starg_mesh_free(mesh);
@@ -260,7 +243,7 @@ static void test_shape_is_kept(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     shape s = lens();
-    starg_mesh *mesh = mesh_of(context, &s);
+    starg_mesh *mesh = test_mesh_of(context, &s);
     mesh_surface *surface;
     mesh_nearby *nearby;
     collapse_star star;
@@ -307,7 +290,7 @@ static starg_mesh *collapsed(starg_context *context, const mesh_surface *surface
         }
         s.face_count += corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
     }
-    starg_mesh *mesh = mesh_of(context, &s);
+    starg_mesh *mesh = test_mesh_of(context, &s);
     shape_free(&s);
     return mesh;
 }
@@ -315,7 +298,7 @@ static starg_mesh *collapsed(starg_context *context, const mesh_surface *surface
 /* Any edge of a shape, to any place: what the rule says and what the check of the whole says. */
 static void compare_embedding(starg_context *context, shape *s, uint64_t seed, size_t trials,
                               size_t *kept, size_t *broken) {
-    starg_mesh *mesh = mesh_of(context, s);
+    starg_mesh *mesh = test_mesh_of(context, s);
     mesh_surface *surface;
     mesh_nearby *nearby;
     test_ok(context, surface_create(context, mesh, &surface));
@@ -392,7 +375,8 @@ static void test_the_surface_stays_near(void **state) {
     static const char *const names[] = {"horse", "torus", "gallery", "knot"};
     starg_context *context = test_context(1);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        starg_mesh *mesh = sample(context, names[i], 5000), *coarse = simplify(context, mesh, 1000);
+        starg_mesh *mesh = test_sample_mesh(context, names[i], 5000),
+                   *coarse = simplify(context, mesh, 1000);
         starg_solid *before, *after;
         test_ok(context, starg_solid_create(context, mesh, &before));
         test_ok(context, starg_solid_create(context, coarse, &after));
@@ -412,7 +396,7 @@ static void test_the_surface_stays_near(void **state) {
 static void test_large_targets_change_nothing(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *mesh = sample(context, "star", 500);
+    starg_mesh *mesh = test_sample_mesh(context, "star", 500);
     size_t count = starg_mesh_vertex_count(mesh);
     for (int i = 0; i < 2; i++) {
         starg_mesh *same = simplify(context, mesh, i ? count : SIZE_MAX);
@@ -429,7 +413,8 @@ static void test_large_targets_change_nothing(void **state) {
 static void test_same_bytes_for_any_thread_count(void **state) {
     (void)state;
     starg_context *one = test_context(1), *four = test_context(4);
-    starg_mesh *a = sample(one, "horse", 3000), *b = sample(four, "horse", 3000);
+    starg_mesh *a = test_sample_mesh(one, "horse", 3000),
+               *b = test_sample_mesh(four, "horse", 3000);
     starg_mesh *x = simplify(one, a, 300), *y = simplify(four, b, 300), *z = simplify(one, b, 300);
     assert_same_mesh(x, y);
     assert_same_mesh(x, z);
@@ -448,12 +433,12 @@ static void test_size_does_not_matter(void **state) {
     static const int exponents[] = {-900, -300, 300};
     starg_context *context = test_context(1);
     shape blob = shape_blob(3, 3);
-    starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 60);
+    starg_mesh *mesh = test_mesh_of(context, &blob), *coarse = simplify(context, mesh, 60);
     size_t count = starg_mesh_vertex_count(coarse);
     for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++) {
         shape other = shape_blob(3, 3);
         shape_place(&other, ldexp(1, exponents[i]), 0);
-        starg_mesh *scaled = mesh_of(context, &other), *result = simplify(context, scaled, 60);
+        starg_mesh *scaled = test_mesh_of(context, &other), *result = simplify(context, scaled, 60);
         assert_int_equal(starg_mesh_vertex_count(result), count);
         assert_memory_equal(starg_mesh_faces(coarse), starg_mesh_faces(result),
                             3 * starg_mesh_face_count(coarse) * sizeof(uint32_t));
@@ -478,7 +463,7 @@ static void test_extreme_places(void **state) {
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         shape blob = shape_blob(2, 5);
         shape_place(&blob, places[i][0], places[i][1]);
-        starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 40);
+        starg_mesh *mesh = test_mesh_of(context, &blob), *coarse = simplify(context, mesh, 40);
         starg_check *check = check_of(context, coarse);
         assert_true(check->closed && check->manifold && check->oriented);
         assert_int_equal(check->genus, 0);
@@ -495,7 +480,8 @@ static void test_crossing_input_keeps_its_topology(void **state) {
     starg_context *context = test_context(1);
     shape blob = shape_blob(3, 1), other = shape_blob(3, 2);
     shape_append(&blob, &other, (const double[3]){0.7, 0, 0}, 0);
-    starg_mesh *mesh = mesh_of(context, &blob), *coarse = simplify(context, mesh, 0), *free_run;
+    starg_mesh *mesh = test_mesh_of(context, &blob), *coarse = simplify(context, mesh, 0),
+               *free_run;
     assert_same_topology(context, mesh, coarse, false);
     starg_simplify_options options = {.allow_intersections = true};
     test_ok(context, starg_mesh_simplify(context, mesh, 0, &options, NULL, &free_run));
@@ -514,7 +500,7 @@ static void test_crossing_input_keeps_its_topology(void **state) {
 static void test_levels(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *mesh = sample(context, "horse", 3600);
+    starg_mesh *mesh = test_sample_mesh(context, "horse", 3600);
     static const size_t expected[] = {500, 1500, 2500};
     starg_levels *levels;
     test_ok(context, starg_mesh_levels(context, mesh, 500, 1000, NULL, &levels));
@@ -538,7 +524,7 @@ static void test_levels(void **state) {
 static void test_levels_that_are_left_out(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *mesh = sample(context, "torus", 1000);
+    starg_mesh *mesh = test_sample_mesh(context, "torus", 1000);
     size_t count = starg_mesh_vertex_count(mesh);
     const struct {
         size_t coarsest, step, levels;
@@ -563,7 +549,7 @@ static void test_levels_that_are_left_out(void **state) {
 /* ---- bad input ------------------------------------------------------------------------------ */
 
 static void assert_refused(starg_context *context, const shape *s, const char *word) {
-    starg_mesh *mesh = mesh_of(context, s), *coarse = mesh;
+    starg_mesh *mesh = test_mesh_of(context, s), *coarse = mesh;
     starg_levels *levels = (starg_levels *)context;
     assert_int_equal(starg_mesh_simplify(context, mesh, 4, NULL, NULL, &coarse), STARG_ERROR_MESH);
     assert_null(coarse);
@@ -628,7 +614,7 @@ static void test_vertices_of_no_face_go(void **state) {
 static void test_it_can_be_stopped(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *mesh = sample(context, "torus", 1000), *coarse = mesh;
+    starg_mesh *mesh = test_sample_mesh(context, "torus", 1000), *coarse = mesh;
     starg_levels *levels = (starg_levels *)context;
     starg_context_cancel(context);
     assert_int_equal(starg_mesh_simplify(context, mesh, 4, NULL, NULL, &coarse),
@@ -648,26 +634,12 @@ static void test_it_can_be_stopped(void **state) {
 
 /* ---- memory that runs out ------------------------------------------------------------------- */
 
-static void *allocate_rationed(void *user, size_t size) {
-    size_t *left = user;
-    return *left == 0 ? NULL : ((*left)--, malloc(size));
-}
-
-static void release_rationed(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void test_every_allocation_fails_once(void **state) {
     (void)state;
     size_t left = SIZE_MAX;
-    starg_context_options options;
-    starg_context_options_default(&options);
-    options.allocator = (starg_allocator){allocate_rationed, release_rationed, &left};
-    starg_context *context;
-    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+    starg_context *context = test_scarce_context(0, &left);
     shape blob = shape_blob(2, 1);
-    starg_mesh *mesh = mesh_of(context, &blob), *coarse;
+    starg_mesh *mesh = test_mesh_of(context, &blob), *coarse;
     starg_levels *levels;
     size_t before = starg_context_live_blocks(context), failures = 0;
     for (;; failures++) {

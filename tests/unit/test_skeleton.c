@@ -7,19 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "shapes.h"
+#include "models.h"
 #include "starguard/sample.h"
 #include "starguard/skeleton.h"
-
-static starg_solid *solid_of(starg_context *context, const shape *s) {
-    starg_mesh *mesh = NULL;
-    starg_solid *solid = NULL;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
-    test_ok(context, starg_solid_create(context, mesh, &solid));
-    starg_mesh_free(mesh);
-    return solid;
-}
 
 /* Everything that the header promises of any skeleton, checked from its arrays alone. */
 static void check_promises(const starg_solid *solid, const starg_skeleton *s) {
@@ -67,7 +57,7 @@ static void check_promises(const starg_solid *solid, const starg_skeleton *s) {
 
 static void expect(const shape *s, size_t components, size_t loops, bool homotopic) {
     starg_context *context = test_context(2);
-    starg_solid *solid = solid_of(context, s);
+    starg_solid *solid = test_solid_of(context, s);
     starg_skeleton *skeleton = NULL;
     const starg_skeleton_options options = {.node_count = 100, .prune = 1.5};
     test_ok(context, starg_skeleton_create(context, solid, &options, &skeleton));
@@ -149,7 +139,7 @@ static void test_ball_is_a_point(void **state) {
         for (int k = 0; k < 3; k++)
             p[k] /= r;
     }
-    starg_solid *solid = solid_of(context, &ball);
+    starg_solid *solid = test_solid_of(context, &ball);
     starg_skeleton *skeleton = NULL;
     test_ok(context, starg_skeleton_create(context, solid, NULL, &skeleton));
     check_promises(solid, skeleton);
@@ -168,7 +158,7 @@ static starg_skeleton *bar(starg_context *context, starg_solid **solid, size_t n
     shape cells = shape_cells("############", 12, 1, 1);
     starg_skeleton *skeleton = NULL;
     const starg_skeleton_options options = {.node_count = nodes, .prune = 2.5};
-    *solid = solid_of(context, &cells);
+    *solid = test_solid_of(context, &cells);
     test_ok(context, starg_skeleton_create(context, *solid, &options, &skeleton));
     check_promises(*solid, skeleton);
     shape_free(&cells);
@@ -281,7 +271,7 @@ static void test_bad_options(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     shape cube = shape_cube(1);
-    starg_solid *solid = solid_of(context, &cube);
+    starg_solid *solid = test_solid_of(context, &cube);
     const starg_skeleton_options bad[] = {{.node_count = 0, .prune = 2},
                                           {.node_count = 100000000, .prune = 2},
                                           {.node_count = 10, .prune = 0.5},

@@ -1,5 +1,6 @@
 /* The solid: what is refused and with which message, shells turned, order kept, containment and
  * distance. */
+
 #include "starguard/solid.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "shapes.h"
+#include "models.h"
 #include "support.h"
 
 /* ---- helpers ---- */
@@ -35,23 +36,11 @@ static starg_context *listening_context(messages *m) {
     return context;
 }
 
-static starg_solid *make_solid(starg_context *context, shape *s) {
-    starg_mesh *mesh;
-    starg_solid *solid;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
-    test_ok(context, starg_solid_create(context, mesh, &solid));
-    starg_mesh_free(mesh);
-    return solid;
-}
-
 static void expect_refusal(shape *s, const char *phrase, starg_element element, size_t indices,
                            uint64_t first) {
     starg_context *context = test_context(1);
-    starg_mesh *mesh;
     starg_solid *solid;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
+    starg_mesh *mesh = test_mesh_of(context, s);
     assert_int_equal(starg_solid_create(context, mesh, &solid), STARG_ERROR_MESH);
     assert_null(solid);
     const starg_error *error = starg_context_error(context);
@@ -113,7 +102,7 @@ static void test_keeps_order(void **state) {
     messages m = {0};
     starg_context *context = listening_context(&m);
     shape s = shape_columns();
-    starg_solid *solid = make_solid(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     const starg_mesh *mesh = starg_solid_mesh(solid);
     assert_int_equal(starg_mesh_face_count(mesh), s.face_count);
     assert_memory_equal(starg_mesh_faces(mesh), s.faces, 3 * s.face_count * sizeof(uint32_t));
@@ -132,7 +121,7 @@ static void test_turns_shells_with_a_notice(void **state) {
     shape s = shape_cube(1), inner = shape_cube(1);
     shape_place(&s, 4, 0);
     shape_append(&s, &inner, (const double[3]){1, 1, 1}, 0); /* a cavity given outward */
-    starg_solid *solid = make_solid(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     assert_int_equal(m.notices, 1);
     assert_int_equal(m.warnings, 0);
     assert_non_null(strstr(m.last, "1 of 2 shells"));
@@ -153,7 +142,7 @@ static void test_warns_of_intersections(void **state) {
     starg_context *context = listening_context(&m);
     shape s = shape_cube(2), other = shape_cube(2);
     shape_append(&s, &other, (const double[3]){0.75, 0.5, 0.25}, 0);
-    starg_solid *solid = make_solid(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     assert_int_equal(m.notices, 0);
     assert_int_equal(m.warnings, 1);
     assert_non_null(strstr(m.last, "intersect"));
@@ -174,7 +163,7 @@ static void test_contains_against_oracle(void **state) {
     starg_context *context = test_context(1);
     shape shapes[] = {shape_room(), shape_cavity(), shape_columns(), shape_blob(2, 3)};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        starg_solid *solid = make_solid(context, &shapes[i]);
+        starg_solid *solid = test_solid_of(context, &shapes[i]);
         for (uint64_t round = 0; round < 100; round++) {
             starg_rng rng = starg_rng_make(9, i, round);
             double p[3];
@@ -197,7 +186,7 @@ static void test_distance(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     shape s = shape_cube(1);
-    starg_solid *solid = make_solid(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     assert_true(fabs(starg_solid_distance(solid, (const double[3]){0.5, 0.5, 0.25}) - 0.25) <
                 1e-15);
     assert_true(fabs(starg_solid_distance(solid, (const double[3]){2, 2, 2}) - sqrt(3)) < 1e-15);

@@ -12,20 +12,10 @@
 #include <unistd.h>
 
 #include "core/context.h"
-#include "shapes.h"
+#include "models.h"
 #include "starguard/tetra.h"
 
 static const double DEGREES = 57.29577951308232;
-
-static starg_solid *solid_of(starg_context *context, const shape *s) {
-    starg_mesh *mesh = NULL;
-    starg_solid *solid = NULL;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
-    test_ok(context, starg_solid_create(context, mesh, &solid));
-    starg_mesh_free(mesh);
-    return solid;
-}
 
 /* ---- checkers ---- */
 
@@ -122,7 +112,7 @@ static void check_distance(const starg_mesh *from, const starg_mesh *to, double 
 
 static void check_stuffing(starg_context *context, const shape *s, double density,
                            double volume_error) {
-    starg_solid *solid = solid_of(context, s);
+    starg_solid *solid = test_solid_of(context, s);
     starg_tetra_options options;
     starg_tetra_report report;
     starg_tetmesh *mesh = NULL;
@@ -181,7 +171,7 @@ static void test_scales(void **state) {
         shape s = shape_room();
         double scale = (const double[]){0x1p250, 0x1p-250, 1}[i];
         shape_place(&s, scale, i == 2 ? 1e6 : 0);
-        starg_solid *solid = solid_of(context, &s);
+        starg_solid *solid = test_solid_of(context, &s);
         starg_tetra_options options;
         starg_tetra_options_default(&options);
         for (int generator = STARG_TETRA_AUTO; generator <= STARG_TETRA_STUFFING; generator += 2) {
@@ -206,7 +196,7 @@ static void test_thin(void **state) {
     shape s = shape_cube(1);
     for (size_t i = 2; i < 3 * s.vertex_count; i += 3)
         s.vertices[i] *= 0.04;
-    starg_solid *solid = solid_of(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     starg_tetra_options options;
     starg_tetra_report report;
     starg_tetmesh *mesh = NULL;
@@ -285,7 +275,7 @@ static void test_threads(void **state) {
     starg_tetra_options_default(&options);
     options.generator = STARG_TETRA_STUFFING;
     for (int i = 0; i < 2; i++) {
-        starg_solid *solid = solid_of(context[i], &s);
+        starg_solid *solid = test_solid_of(context[i], &s);
         test_ok(context[i],
                 starg_tetmesh_from_solid(context[i], solid, &options, &report[i], &mesh[i]));
         starg_solid_free(solid);
@@ -347,7 +337,7 @@ static void test_tetgen(void **state) {
     shape shapes[] = {shape_cube(2), shape_room(), shape_cavity(), shape_columns(),
                       shape_blob(2, 3)};
     for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
-        starg_solid *solid = solid_of(context, &shapes[i]);
+        starg_solid *solid = test_solid_of(context, &shapes[i]);
         size_t counts[2];
         for (int dense = 0; dense < 2; dense++) {
             starg_tetra_options options;
@@ -429,7 +419,7 @@ static void test_broken_programs(void **state) {
     assert_int_equal(mkdir(scratch, 0700), 0);
     assert_int_equal(setenv("TMPDIR", scratch, 1), 0);
     shape s = shape_cube(1);
-    starg_solid *solid = solid_of(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     starg_tetra_options options;
     starg_tetra_options_default(&options);
     options.tetgen = program;
@@ -480,7 +470,7 @@ static void test_self_intersecting(void **state) {
     shape s = shape_cube(1), other = shape_cube(1);
     const double offset[3] = {0.5, 0.5, 0.5};
     shape_append(&s, &other, offset, 0);
-    starg_solid *solid = solid_of(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     starg_tetra_options options;
     starg_tetra_report report;
     starg_tetmesh *mesh = NULL;
@@ -505,7 +495,7 @@ static void test_arguments(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     shape s = shape_cube(1);
-    starg_solid *solid = solid_of(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     starg_tetmesh *mesh = NULL;
     for (int i = 0; i < 4; i++) {
         starg_tetra_options options;
@@ -539,31 +529,13 @@ static void test_arguments(void **state) {
 
 /* ---- memory ---- */
 
-static void *allocate_rationed(void *user, size_t size) {
-    size_t *left = user;
-    if (*left == 0)
-        return NULL;
-    --*left;
-    return malloc(size);
-}
-
-static void release_rationed(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 /* Every allocation fails once. */
 static void test_memory(void **state) {
     (void)state;
     size_t left = SIZE_MAX;
-    starg_context_options context_options;
-    starg_context_options_default(&context_options);
-    context_options.allocator = (starg_allocator){allocate_rationed, release_rationed, &left};
-    context_options.threads = 1;
-    starg_context *context = NULL;
-    assert_int_equal(starg_context_create(&context_options, &context), STARG_OK);
+    starg_context *context = test_scarce_context(1, &left);
     shape s = shape_cube(1);
-    starg_solid *solid = solid_of(context, &s);
+    starg_solid *solid = test_solid_of(context, &s);
     size_t before = starg_context_live_blocks(context);
     starg_tetra_options options;
     starg_tetra_options_default(&options);

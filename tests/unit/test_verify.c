@@ -9,7 +9,7 @@
 
 #include "adversarial.h"
 #include "exact_oracle.h"
-#include "shapes.h"
+#include "models.h"
 #include "starguard/verify.h"
 #include "support.h"
 #include "verify/exact_sum.h"
@@ -207,9 +207,7 @@ static void free_model(model *m) {
 }
 
 static starg_mesh *make_mesh(starg_context *context, const shape *s) {
-    starg_mesh *mesh;
-    test_ok(context, starg_mesh_create(context, s->vertices, s->vertex_count, s->faces,
-                                       s->face_count, &mesh));
+    starg_mesh *mesh = test_mesh_of(context, s);
     return mesh;
 }
 
@@ -845,40 +843,20 @@ static void test_threads_do_not_show(void **state) {
     free_model(&m);
 }
 
-/* Memory that runs out after a number of blocks. */
-typedef struct purse {
-    long left;
-} purse;
-
-static void *spend(void *user, size_t size) {
-    purse *own = user;
-    return own->left-- > 0 ? malloc(size) : NULL;
-}
-
-static void give_back(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static void test_out_of_memory(void **state) {
     (void)state;
     model m = make_model(6);
     result r;
     make_result(&r, &m, 3, &PLAIN);
-    purse own = {1000000};
-    starg_context_options options;
-    starg_context_options_default(&options);
-    options.threads = 1;
-    options.allocator = (starg_allocator){spend, give_back, &own};
-    starg_context *context;
-    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+    size_t left = SIZE_MAX;
+    starg_context *context = test_scarce_context(1, &left);
     starg_mesh *mesh = make_mesh(context, &m.given);
     size_t before = starg_context_live_blocks(context);
     starg_status status = STARG_ERROR_MEMORY;
-    long blocks = 0;
+    size_t blocks = 0;
     for (; status != STARG_OK; blocks++) {
         starg_verdict *verdict;
-        own.left = blocks;
+        left = blocks;
         status = starg_verify_guards(context, mesh, &r.guards, &verdict);
         assert_true(status == STARG_OK || status == STARG_ERROR_MEMORY);
         assert_int_equal(verdict != NULL, status == STARG_OK);
