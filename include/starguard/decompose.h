@@ -24,7 +24,8 @@ typedef enum starg_decompose_mode {
  * side of each face of the piece's boundary, which winds around the guard once (both exact). */
 typedef struct starg_piece {
     double guard[3];
-    double radius; /* distance of the guard to the nearest plane of a boundary face; rounded */
+    double radius; /* distance of the guard to the nearest plane of a boundary face, negative where
+                      it is behind that plane; rounded */
     size_t tetrahedra;
     double volume;
     bool star;
@@ -39,6 +40,10 @@ typedef struct starg_piece_contact {
 /* A solid in pieces. Every tetrahedron belongs to one piece, none is empty. */
 typedef struct starg_decomposition {
     starg_decompose_mode mode;
+    /* Size of the model that was cut: a surface (no tetrahedra) or a tetrahedral mesh (no faces).
+     */
+    size_t model_vertices, model_faces, model_tetrahedra;
+    starg_tetra_report tetra; /* how the model was filled; given tetrahedra keep the surface */
     starg_tetmesh *mesh;
     int32_t *labels; /* one per tetrahedron: its piece */
     size_t piece_count;
@@ -54,9 +59,12 @@ typedef struct starg_decomposition {
 typedef struct starg_decompose_options {
     starg_decompose_mode mode;
     starg_tetra_options tetra; /* how tetrahedra are made */
-    size_t max_pieces;    /* stop when there are no more than that; 0: as few as can be found */
-    const double *guards; /* PAPER: guards x 3 to grow from; NULL: guards of starg_guard.
-                             STRICT: points that are tried as guards first */
+    /* STRICT: the search ends when there are no more than that. PAPER: no more than that, at the
+     * cost of vertices that their guards do not see (but one for each part of the model).
+     * 0: as few as can be found. */
+    size_t max_pieces;
+    const double *guards; /* guard_count x 3, or NULL. PAPER: to grow from; NULL: those of
+                             starg_guard. STRICT: points that are tried as guards first */
     size_t guard_count;
     uint64_t effort; /* STRICT: trials after which the search ends; 0: the default */
 } starg_decompose_options;
@@ -79,8 +87,10 @@ STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const sta
                                                starg_decomposition **out);
 STARG_API void starg_decomposition_free(starg_context *context, starg_decomposition *decomposition);
 
-/* The closed outward surface of each piece, one after the other in one mesh: `first_face` receives
- * piece_count + 1 face numbers (free with starg_tetmesh_map_free). Errors: MEMORY. */
+/* The closed outward surface of each piece, one after the other in one mesh, each with vertices of
+ * its own, which follow one another likewise: `first_face` receives piece_count + 1 face numbers
+ * (free with starg_tetmesh_map_free). Errors: ARGUMENT (more faces than can be numbered), MEMORY.
+ */
 STARG_API starg_status starg_decomposition_surfaces(starg_context *context,
                                                     const starg_decomposition *decomposition,
                                                     starg_mesh **out, uint32_t **first_face);

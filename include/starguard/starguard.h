@@ -6,6 +6,7 @@
 #include "check.h"
 #include "context.h"
 #include "cover.h"
+#include "decompose.h"
 #include "guard.h"
 #include "kernel.h"
 #include "mesh.h"

@@ -1,16 +1,16 @@
 /* GUARDS.json: the result of guarding as text (docs/formats.md). One line a key, one line a guard;
  * reals with 17 significant digits, so that reading gives back the same doubles. */
-#include <jansson.h>
 #include <math.h>
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json.h"
 #include "core/memory.h"
 #include "starguard/guard.h"
 
 static const char STAGE[] = "guards file";
 static const char FORMAT[] = "starguard-guards";
-enum { VERSION = 1, DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
+enum { VERSION = 1 };
 
 static const char *const METHODS[] = {"ilp", "greedy", "pilp"};
 static const char *const CANDIDATES[] = {"medial", "interior", "given", "skeleton"};
@@ -126,50 +126,26 @@ static json_t *guard_json(const starg_guards *g, size_t i) {
     return NULL;
 }
 
-/* Writes a value that is consumed; false when it could not be made (memory is out). */
-static bool put(FILE *stream, const char *before, json_t *value, const char *after) {
-    if (value == NULL)
-        return false;
-    fputs(before, stream);
-    bool written = json_dumpf(value, stream, DUMP) == 0;
-    fputs(after, stream);
-    json_decref(value);
-    return written || ferror(stream);
-}
-
 static bool put_all(FILE *stream, const starg_guards *g, const char *model_file) {
     json_t *model = json_pack("{s:s?, s:I, s:I}", "file", model_file, "vertices",
                               (json_int_t)g->vertex_count, "faces", (json_int_t)g->face_count);
-    bool done = put(stream, "{\n\"format\": ", json_string(FORMAT), ",\n") &&
-                put(stream, "\"version\": ", json_integer(VERSION), ",\n") &&
-                put(stream, "\"model\": ", model, ",\n") &&
-                put(stream, "\"options\": ", options_json(&g->options), ",\n\"guards\": [\n");
+    bool done =
+        starg_json_put(stream, "{\n\"format\": ", json_string(FORMAT), ",\n") &&
+        starg_json_put(stream, "\"version\": ", json_integer(VERSION), ",\n") &&
+        starg_json_put(stream, "\"model\": ", model, ",\n") &&
+        starg_json_put(stream, "\"options\": ", options_json(&g->options), ",\n\"guards\": [\n");
     for (size_t i = 0; i < g->count && done; i++)
-        done = put(stream, "", guard_json(g, i), i + 1 < g->count ? ",\n" : "\n");
+        done = starg_json_put(stream, "", guard_json(g, i), i + 1 < g->count ? ",\n" : "\n");
     fputs("],\n", stream);
     if (g->level_count > 0)
-        done = done && put(stream, "\"levels\": ", levels_json(g), ",\n");
-    return done && put(stream, "\"coverage\": ", coverage_json(g), ",\n") &&
-           put(stream, "\"candidates\": ", json_integer((json_int_t)g->candidate_count), ",\n") &&
-           put(stream, "\"lower_bound\": ", json_integer((json_int_t)g->lower_bound), ",\n") &&
-           put(stream, "\"optimal\": ", json_boolean(g->optimal), ",\n") &&
-           put(stream, "\"time_limited\": ", json_boolean(g->time_limited), "\n}\n");
-}
-
-/* A path that is no UTF-8 cannot stand in JSON: its bytes outside ASCII are replaced. */
-static starg_status printable_path(starg_context *context, const char *path, char **copy) {
-    starg_status status = STARG_OK;
-    size_t length = strlen(path);
-    STARG_NEW(context, STAGE, *copy, length + 1);
-    memcpy(*copy, path, length + 1);
-    json_t *probe = json_string(path);
-    if (probe == NULL)
-        for (size_t i = 0; i < length; i++)
-            if ((unsigned char)path[i] >= 0x80)
-                (*copy)[i] = '?';
-    json_decref(probe);
-done:
-    return status;
+        done = done && starg_json_put(stream, "\"levels\": ", levels_json(g), ",\n");
+    return done && starg_json_put(stream, "\"coverage\": ", coverage_json(g), ",\n") &&
+           starg_json_put(stream, "\"candidates\": ", json_integer((json_int_t)g->candidate_count),
+                          ",\n") &&
+           starg_json_put(stream, "\"lower_bound\": ", json_integer((json_int_t)g->lower_bound),
+                          ",\n") &&
+           starg_json_put(stream, "\"optimal\": ", json_boolean(g->optimal), ",\n") &&
+           starg_json_put(stream, "\"time_limited\": ", json_boolean(g->time_limited), "\n}\n");
 }
 
 starg_status starg_guards_write(starg_context *context, const starg_guards *guards,
@@ -177,8 +153,7 @@ starg_status starg_guards_write(starg_context *context, const starg_guards *guar
     starg_status status = STARG_OK;
     starg_output output = {0};
     char *shown = NULL;
-    if (model_file != NULL)
-        STARG_TRY(printable_path(context, model_file, &shown));
+    STARG_TRY(starg_json_path(context, STAGE, model_file, &shown));
     STARG_TRY(starg_output_open(context, STAGE, path, &output));
     if (!put_all(output.stream, guards, shown)) {
         starg_output_discard(&output);

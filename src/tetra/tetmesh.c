@@ -160,6 +160,28 @@ done:
     return status;
 }
 
+starg_status tetmesh_copy(starg_context *context, const starg_tetmesh *mesh, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    starg_tetmesh *copy = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, copy, 1);
+    copy->context = context;
+    copy->vertex_count = mesh->vertex_count;
+    copy->count = mesh->count;
+    copy->turned = mesh->turned;
+    STARG_NEW(context, STAGE, copy->vertices, 3 * mesh->vertex_count);
+    STARG_NEW(context, STAGE, copy->tetrahedra, 4 * mesh->count);
+    STARG_NEW(context, STAGE, copy->neighbours, 4 * mesh->count);
+    memcpy(copy->vertices, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
+    memcpy(copy->tetrahedra, mesh->tetrahedra, 4 * mesh->count * sizeof *mesh->tetrahedra);
+    memcpy(copy->neighbours, mesh->neighbours, 4 * mesh->count * sizeof *mesh->neighbours);
+    *out = copy;
+done:
+    if (status != STARG_OK)
+        starg_tetmesh_free(copy);
+    return status;
+}
+
 void starg_tetmesh_free(starg_tetmesh *mesh) {
     if (mesh == NULL)
         return;
@@ -198,20 +220,30 @@ size_t starg_tetmesh_turned(const starg_tetmesh *mesh) {
     return mesh->turned;
 }
 
-double starg_tetmesh_volume(const starg_tetmesh *mesh) {
-    double sum = 0, extent = 0;
+int tetmesh_exponent(const starg_tetmesh *mesh) {
+    double extent = 0;
     int exponent;
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
         extent = fmax(extent, fabs(mesh->vertices[i] - mesh->vertices[i % 3]));
     frexp(extent, &exponent);
-    for (size_t t = 0; t < mesh->count; t++) {
-        double edge[3][3];
-        for (int k = 0; k < 3; k++) {
-            vec3_subtract(tetmesh_corner(mesh, t, k + 1), tetmesh_corner(mesh, t, 0), edge[k]);
-            for (int i = 0; i < 3; i++)
-                edge[k][i] = ldexp(edge[k][i], -exponent);
-        }
-        sum += vec3_triple(edge[0], edge[1], edge[2]);
+    return exponent + 1; /* between any two vertices it may be twice that from the first */
+}
+
+double tetmesh_scaled_volume(const starg_tetmesh *mesh, size_t tetrahedron, int exponent) {
+    double edge[3][3];
+    for (int k = 0; k < 3; k++) {
+        vec3_subtract(tetmesh_corner(mesh, tetrahedron, k + 1),
+                      tetmesh_corner(mesh, tetrahedron, 0), edge[k]);
+        for (int i = 0; i < 3; i++)
+            edge[k][i] = ldexp(edge[k][i], -exponent);
     }
+    return vec3_triple(edge[0], edge[1], edge[2]);
+}
+
+double starg_tetmesh_volume(const starg_tetmesh *mesh) {
+    double sum = 0;
+    int exponent = tetmesh_exponent(mesh);
+    for (size_t t = 0; t < mesh->count; t++)
+        sum += tetmesh_scaled_volume(mesh, t, exponent);
     return ldexp(sum / 6, 3 * exponent);
 }

@@ -32,6 +32,16 @@ starg_status tetmesh_adopt(starg_context *context, double *vertices, size_t vert
                            uint32_t *tetrahedra, size_t count, int32_t *regions, bool trusted,
                            starg_tetmesh **out);
 
+/* A copy with vertices, tetrahedra and neighbours of its own, without regions. Errors: MEMORY. */
+starg_status tetmesh_copy(starg_context *context, const starg_tetmesh *mesh, starg_tetmesh **out);
+
+/* The power of two of the mesh's extent: differences of coordinates times 2^-exponent are at most 1
+ * in magnitude, so that their products neither over- nor underflow as a whole. */
+int tetmesh_exponent(const starg_tetmesh *mesh);
+
+/* Six times the volume of a tetrahedron, in units of 2^exponent cubed. */
+double tetmesh_scaled_volume(const starg_tetmesh *mesh, size_t tetrahedron, int exponent);
+
 /* Fills the neighbours. Errors: MESH (a face of three tetrahedra, or of two on one side), MEMORY.
  */
 starg_status tetmesh_connect(starg_tetmesh *mesh);

@@ -1,0 +1,34 @@
+#include "core/json.h"
+
+#include "core/memory.h"
+
+enum { DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
+
+bool starg_json_put(FILE *stream, const char *before, json_t *value, const char *after) {
+    if (value == NULL)
+        return false;
+    fputs(before, stream);
+    bool written = json_dumpf(value, stream, DUMP) == 0;
+    fputs(after, stream);
+    json_decref(value);
+    return written || ferror(stream);
+}
+
+starg_status starg_json_path(starg_context *context, const char *stage, const char *path,
+                             char **copy) {
+    starg_status status = STARG_OK;
+    *copy = NULL;
+    if (path == NULL)
+        return STARG_OK;
+    size_t length = strlen(path);
+    STARG_NEW(context, stage, *copy, length + 1);
+    memcpy(*copy, path, length + 1);
+    json_t *probe = json_string(path);
+    if (probe == NULL)
+        for (size_t i = 0; i < length; i++)
+            if ((unsigned char)path[i] >= 0x80)
+                (*copy)[i] = '?';
+    json_decref(probe);
+done:
+    return status;
+}

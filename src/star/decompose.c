@@ -1,0 +1,77 @@
+/* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
+#include <math.h>
+
+#include "mesh/mesh.h"
+#include "mesh/solid.h"
+#include "star/decomposition.h"
+#include "star/strict.h"
+#include "tetra/tetmesh.h"
+
+static const char STAGE[] = "pieces";
+
+void starg_decompose_options_default(starg_decompose_options *options) {
+    *options = (starg_decompose_options){.mode = STARG_DECOMPOSE_STRICT};
+    starg_tetra_options_default(&options->tetra);
+}
+
+static starg_status check_options(starg_context *context, const starg_decompose_options *o) {
+    if (o->mode != STARG_DECOMPOSE_STRICT && o->mode != STARG_DECOMPOSE_PAPER)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no mode %d",
+                          (int)o->mode);
+    for (size_t i = 0; o->guards != NULL && i < 3 * o->guard_count; i++)
+        if (!(fabs(o->guards[i]) < STARG_COORDINATE_LIMIT)) {
+            uint64_t guard = i / 3;
+            return starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_GUARD, &guard,
+                                 1,
+                                 "guard %zu has the coordinate %g; it must be finite and below "
+                                 "1e100 in magnitude",
+                                 i / 3, o->guards[i]);
+        }
+    return STARG_OK;
+}
+
+static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
+                             const starg_decompose_options *options, starg_decomposition **out) {
+    if (options->mode == STARG_DECOMPOSE_PAPER)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no paper mode yet");
+    return strict_decompose(context, mesh, options, out);
+}
+
+starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
+                                     const starg_decompose_options *options,
+                                     starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    starg_decompose_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    STARG_TRY(run_mode(context, mesh, options, out));
+    (*out)->model_vertices = mesh->vertex_count;
+    (*out)->model_tetrahedra = mesh->count;
+done:
+    return status;
+}
+
+starg_status starg_decompose(starg_context *context, const starg_solid *solid,
+                             const starg_decompose_options *options, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    starg_decompose_options_default(&defaults);
+    starg_tetra_report report;
+    starg_tetmesh *mesh = NULL;
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    STARG_TRY(starg_tetmesh_from_solid(context, solid, &options->tetra, &report, &mesh));
+    STARG_TRY(run_mode(context, mesh, options, out));
+    (*out)->model_vertices = solid->mesh->vertex_count;
+    (*out)->model_faces = solid->mesh->face_count;
+    (*out)->model_tetrahedra = 0;
+    (*out)->tetra = report;
+done:
+    starg_tetmesh_free(mesh);
+    return status;
+}

@@ -1,0 +1,20 @@
+/* The result of a star decomposition, whichever mode has found it. */
+#ifndef STARG_STAR_DECOMPOSITION_H
+#define STARG_STAR_DECOMPOSITION_H
+
+#include "core/context.h"
+#include "starguard/decompose.h"
+
+/* Makes a result of labels: `guards` is count x 3, `labels` (a block of the context) has one of 0
+ * to count - 1 for each tetrahedron, each of them at least once. Counts and measures the pieces,
+ * proves which are star-shaped, finds their contacts and what guards see. The mesh counts as the
+ * model and its surface as kept until the caller knows better. Mesh and labels are taken over, also
+ * on failure. Errors: MEMORY, CANCELLED. */
+starg_status decomposition_finish(starg_context *context, starg_decompose_mode mode,
+                                  starg_tetmesh *mesh, int32_t *labels, const double *guards,
+                                  size_t count, starg_decomposition **out);
+
+/* Fills visible_vertices; the pieces are known. Errors: MEMORY, CANCELLED. */
+starg_status decomposition_find_sight(starg_context *context, starg_decomposition *d);
+
+#endif
