@@ -3,9 +3,11 @@
 #include <string.h>
 
 const cli_command *const cli_commands[] = {
-    &cli_command_sample,   &cli_command_check,   &cli_command_repair,
-    &cli_command_skeleton, &cli_command_visible, &cli_command_kernel,
-    &cli_command_guard,    &cli_command_verify,  NULL,
+    &cli_command_sample,  &cli_command_check,
+    &cli_command_repair,  &cli_command_skeleton,
+    &cli_command_visible, &cli_command_kernel,
+    &cli_command_guard,   &cli_command_decompose,
+    &cli_command_verify,  NULL,
 };
 
 const cli_command *cli_command_find(const char *name) {

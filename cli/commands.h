@@ -44,6 +44,7 @@ extern const cli_command cli_command_skeleton;
 extern const cli_command cli_command_visible;
 extern const cli_command cli_command_kernel;
 extern const cli_command cli_command_guard;
+extern const cli_command cli_command_decompose;
 extern const cli_command cli_command_verify;
 
 /* All commands in the order of the help; ends with NULL. */

@@ -66,15 +66,30 @@ static bool is_taken(const cli_outputs *outputs, const cli_output *output) {
     return false;
 }
 
+/* Room for one more; its name is copied. */
+static cli_output *append(cli_outputs *outputs, const char *name) {
+    if (outputs->count == outputs->capacity) {
+        size_t capacity = outputs->capacity > 0 ? 2 * outputs->capacity : 4;
+        cli_output *items = realloc(outputs->items, capacity * sizeof *items);
+        if (items == NULL)
+            return NULL;
+        outputs->items = items;
+        outputs->capacity = capacity;
+    }
+    cli_output *output = &outputs->items[outputs->count];
+    *output = (cli_output){.name = strdup(name)};
+    return output->name != NULL ? output : NULL;
+}
+
 bool cli_outputs_add(cli_outputs *outputs, const char *name) {
     static const char temporary[] = "/tmp/"; /* a device has no folder of its own */
     if (strcmp(name, "-") == 0)
         return true;
-    if (outputs->count == CLI_OUTPUTS)
-        return fail(outputs, name, "there are too many output files");
-    cli_output *output = &outputs->items[outputs->count];
-    *output = (cli_output){.name = name};
+    cli_output *output = append(outputs, name);
+    if (output == NULL)
+        return fail(outputs, name, "out of memory");
     if (!inspect(outputs, output)) {
+        free(output->name);
         free(output->target);
         return false;
     }
@@ -92,6 +107,19 @@ bool cli_outputs_add(cli_outputs *outputs, const char *name) {
     if (!is_writable(base, size))
         return fail(outputs, name, strerror(errno));
     return true;
+}
+
+bool cli_outputs_add_folder(cli_outputs *outputs, const char *name) {
+    struct stat info;
+    bool made = mkdir(name, 0777) == 0;
+    if (!made && errno != EEXIST)
+        return fail(outputs, name, strerror(errno));
+    if (stat(name, &info) != 0 || !S_ISDIR(info.st_mode))
+        return fail(outputs, name, "it is not a directory");
+    if (access(name, W_OK | X_OK) != 0)
+        return fail(outputs, name, strerror(errno));
+    outputs->folder = made ? strdup(name) : NULL;
+    return !made || outputs->folder != NULL || fail(outputs, name, "out of memory");
 }
 
 const char *cli_outputs_place(const cli_outputs *outputs, const char *name) {
@@ -150,6 +178,8 @@ bool cli_outputs_commit(cli_outputs *outputs) {
         if (!moved)
             return fail(outputs, output->name, strerror(errno));
     }
+    free(outputs->folder);
+    outputs->folder = NULL;
     return true;
 }
 
@@ -159,6 +189,11 @@ void cli_outputs_discard(cli_outputs *outputs) {
             unlink(outputs->items[i].staged);
         free(outputs->items[i].staged);
         free(outputs->items[i].target);
+        free(outputs->items[i].name);
     }
-    outputs->count = 0;
+    if (outputs->folder != NULL)
+        rmdir(outputs->folder);
+    free(outputs->folder);
+    free(outputs->items);
+    *outputs = (cli_outputs){0};
 }

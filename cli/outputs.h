@@ -6,23 +6,28 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum { CLI_OUTPUTS = 4, CLI_OUTPUT_MESSAGE = 512 };
+enum { CLI_OUTPUT_MESSAGE = 512 };
 
 typedef struct cli_output {
-    const char *name; /* as the user gave it                                       */
-    char *target;     /* the same with symbolic links followed                     */
-    char *staged;     /* where it is written first                                 */
-    bool device;      /* the target is a device or a pipe: copied, not renamed     */
+    char *name;   /* as the user gave it                                       */
+    char *target; /* the same with symbolic links followed                     */
+    char *staged; /* where it is written first                                 */
+    bool device;  /* the target is a device or a pipe: copied, not renamed     */
 } cli_output;
 
 typedef struct cli_outputs {
-    cli_output items[CLI_OUTPUTS];
-    size_t count;
+    cli_output *items;
+    size_t count, capacity;
+    char *folder; /* made for outputs, and empty so far; NULL if there is none */
     char message[CLI_OUTPUT_MESSAGE]; /* why the last call failed */
 } cli_outputs;
 
 /* Announces an output before the work begins: can it be written at all? Not for "-". */
 bool cli_outputs_add(cli_outputs *outputs, const char *name);
+
+/* A folder for outputs: it is made if it is not there, and taken away again when the run fails. At
+ * most one in a run. */
+bool cli_outputs_add_folder(cli_outputs *outputs, const char *name);
 
 /* Where to write what was announced as `name`; "-" and unknown names are returned as they are. */
 const char *cli_outputs_place(const cli_outputs *outputs, const char *name);

@@ -68,6 +68,16 @@ json_t *cli_json_point(const double point[3]) {
     return json_pack("[fff]", point[0], point[1], point[2]);
 }
 
+/* `elements` of them, called `what`. */
+static void put_model(cli_session *session, const char *file, size_t vertices, const char *what,
+                      size_t elements) {
+    json_t *model = json_object();
+    cli_put(session, model, "file", cli_json_text(file));
+    cli_put(session, model, "vertices", json_integer((json_int_t)vertices));
+    cli_put(session, model, what, json_integer((json_int_t)elements));
+    cli_put(session, session->report, "model", model);
+}
+
 void cli_report_head(cli_session *session, const char *format, const char *file,
                      const starg_mesh *mesh) {
     json_t *report = session->report;
@@ -75,13 +85,16 @@ void cli_report_head(cli_session *session, const char *format, const char *file,
         return;
     cli_put(session, report, "format", json_string(format));
     cli_put(session, report, "version", json_integer(1));
-    if (mesh == NULL)
-        return;
-    json_t *model = json_object();
-    cli_put(session, model, "file", cli_json_text(file));
-    cli_put(session, model, "vertices", json_integer((json_int_t)starg_mesh_vertex_count(mesh)));
-    cli_put(session, model, "faces", json_integer((json_int_t)starg_mesh_face_count(mesh)));
-    cli_put(session, report, "model", model);
+    if (mesh != NULL)
+        put_model(session, file, starg_mesh_vertex_count(mesh), "faces",
+                  starg_mesh_face_count(mesh));
+}
+
+void cli_report_head_tetrahedra(cli_session *session, const char *format, const char *file,
+                                size_t vertices, size_t tetrahedra) {
+    cli_report_head(session, format, file, NULL);
+    if (session->report != NULL)
+        put_model(session, file, vertices, "tetrahedra", tetrahedra);
 }
 
 void cli_report_log(cli_session *session, starg_log_level level, const char *message) {

@@ -22,6 +22,10 @@ json_t *cli_json_point(const double point[3]);
 void cli_report_head(cli_session *session, const char *format, const char *file,
                      const starg_mesh *mesh);
 
+/* The same for a model of tetrahedra. */
+void cli_report_head_tetrahedra(cli_session *session, const char *format, const char *file,
+                                size_t vertices, size_t tetrahedra);
+
 /* Collects a line of the library for "log". */
 void cli_report_log(cli_session *session, starg_log_level level, const char *message);
 

@@ -145,7 +145,22 @@ starg_status cli_announce_needed(cli_session *session, const char *name, const c
     return cli_announce(session, name);
 }
 
+starg_status cli_announce_folder(cli_session *session, const char *name) {
+    if (name == NULL || cli_outputs_add_folder(&session->outputs, name))
+        return STARG_OK;
+    return cli_fail(session, STARG_ERROR_WRITE, "%s", session->outputs.message);
+}
+
 /* ---- text ---- */
+
+void cli_notice(cli_session *session, const char *format, ...) {
+    char text[sizeof session->message];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    on_log(session, STARG_LOG_NOTICE, text);
+}
 
 void cli_say(cli_session *session, const char *format, ...) {
     if (session->common.quiet || session->common.json)

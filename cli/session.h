@@ -87,6 +87,13 @@ starg_status cli_announce(cli_session *session, const char *name);
 /* The same for the output that a command cannot do without; `form` is what its name looks like. */
 starg_status cli_announce_needed(cli_session *session, const char *name, const char *form);
 
+/* Announces a folder for outputs, which are then announced as files in it; NULL is fine. */
+starg_status cli_announce_folder(cli_session *session, const char *name);
+
+/* A notice of the command line's own, told and logged like those of the library. */
+void cli_notice(cli_session *session, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
 /* Text for people: standard output, or standard error when a result goes there; nothing with
  * --quiet or --json. */
 void cli_say(cli_session *session, const char *format, ...) __attribute__((format(printf, 2, 3)));

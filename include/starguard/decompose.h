@@ -95,6 +95,12 @@ STARG_API starg_status starg_decomposition_surfaces(starg_context *context,
                                                     const starg_decomposition *decomposition,
                                                     starg_mesh **out, uint32_t **first_face);
 
+/* Writes the surfaces of all pieces as OBJ, a group for each: "g piece_0000" and so on. Errors:
+ * ARGUMENT, WRITE, MEMORY, CANCELLED. */
+STARG_API starg_status starg_decomposition_write_groups(starg_context *context,
+                                                        const starg_decomposition *decomposition,
+                                                        const char *path);
+
 /* Writes PIECES.vtk (docs/formats.md). "-" is standard output. Errors: WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_decomposition_write(starg_context *context,
                                                  const starg_decomposition *decomposition,

@@ -1,7 +1,9 @@
-/* The closed surfaces of all pieces in one mesh: the faces of each with vertices of its own, which
- * are numbered in the order in which its faces name them. Cost: O(n). */
+/* The closed surfaces of all pieces in one mesh or one file: the faces of each with vertices of its
+ * own, which are numbered in the order in which its faces name them. Cost: O(n). */
+#include "core/file.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
+#include "mesh/io.h"
 #include "mesh/mesh.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"
@@ -73,5 +75,44 @@ done:
     starg_release(context, corners);
     starg_release(context, vertices);
     starg_release(context, first);
+    return status;
+}
+
+/* ---- file ---- */
+
+static void write_groups(FILE *stream, const starg_mesh *mesh, const uint32_t *first,
+                         size_t piece_count) {
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const double *p = mesh->vertices + 3 * v;
+        fprintf(stream, "v %.17g %.17g %.17g\n", p[0], p[1], p[2]);
+    }
+    for (size_t p = 0; p < piece_count; p++) {
+        fprintf(stream, "g piece_%04zu\n", p);
+        for (size_t f = first[p]; f < first[p + 1]; f++) {
+            const uint32_t *c = mesh->faces + 3 * f;
+            fprintf(stream, "f %lu %lu %lu\n", c[0] + 1UL, c[1] + 1UL, c[2] + 1UL);
+        }
+    }
+}
+
+starg_status starg_decomposition_write_groups(starg_context *context,
+                                              const starg_decomposition *decomposition,
+                                              const char *path) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    uint32_t *first = NULL;
+    starg_output output = {0};
+    starg_c_locale locale = {0};
+    STARG_TRY(starg_decomposition_surfaces(context, decomposition, &mesh, &first));
+    STARG_TRY(starg_c_locale_enter(context, &locale));
+    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    write_groups(output.stream, mesh, first, decomposition->piece_count);
+    STARG_TRY(starg_check_cancel(context, STAGE));
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_output_discard(&output);
+    starg_c_locale_leave(&locale);
+    starg_tetmesh_map_free(context, first);
+    starg_mesh_free(mesh);
     return status;
 }

@@ -1,0 +1,549 @@
+/* starguard decompose: cuts a solid into star-shaped pieces. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/decompose.h"
+#include "starguard/guard.h"
+#include "starguard/picture.h"
+
+static const char *const mode_words[] = {"strict", "paper", NULL};
+
+static const double TIME_LIMIT = 60; /* seconds, unless another one is asked for */
+static const double APART = 0.18;    /* pictures: how far pieces are moved from the middle of all */
+
+enum { HEAD = 1 << 16 }; /* bytes of a file that tell what it holds */
+
+typedef struct values {
+    const char *output, *report, *guards, *tets, *surfaces, *picture;
+    int mode;
+    double density;
+    uint64_t max_pieces, effort;
+    bool binary;
+} values;
+
+static const cli_option options[] = {
+    {.name = "output",
+     .letter = 'o',
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, output),
+     .value = "PIECES.vtk",
+     .help = "Where to write the tetrahedra, each with the number of its piece: a VTK unstructured "
+             "grid (ParaView opens it); '-' writes to standard output."},
+    {.name = "report",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, report),
+     .value = "PIECES.json",
+     .help = "Where to write the guard, size and proof of each piece, and which pieces touch over "
+             "what area (docs/formats.md)."},
+    {.name = "mode",
+     .kind = CLI_CHOICE,
+     .offset = offsetof(values, mode),
+     .value = "strict|paper",
+     .choices = mode_words,
+     .help = "strict (default): every piece is proven to be star-shaped. paper: growth from "
+             "guards as Yu and Li published it; nearly all vertices are seen by their guards, and "
+             "which pieces are star-shaped is told."},
+    {.name = "guards",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, guards),
+     .value = "GUARDS.json",
+     .help = "Guards to begin with: a result of 'starguard guard', or text of three numbers a "
+             "line. Default for --mode paper: those that 'starguard guard' places."},
+    {.name = "tets",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, tets),
+     .value = "FILE",
+     .help = "Read the solid as tetrahedra from this file, in place of MODEL: MEDIT .mesh, .vtk, "
+             "Gmsh .msh, or TetGen .node with its .ele beside it."},
+    {.name = "density",
+     .kind = CLI_REAL,
+     .offset = offsetof(values, density),
+     .value = "T",
+     .high = 1e6,
+     .help = "Tetrahedra to aim at for each vertex of the surface; 0: as few as can be. Default "
+             "17.5, as in the paper."},
+    {.name = "max-pieces",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, max_pieces),
+     .value = "N",
+     .most = UINT32_MAX,
+     .help = "strict: stop searching once there are no more than N pieces. paper: no more than N "
+             "pieces, at the cost of what their guards see. Default 0: as few as can be found."},
+    {.name = "effort",
+     .kind = CLI_COUNT,
+     .offset = offsetof(values, effort),
+     .value = "N",
+     .most = UINT64_MAX,
+     .help = "strict: trials after which the search ends, whatever the time. Default 0: the "
+             "library's choice."},
+    {.name = "surfaces",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, surfaces),
+     .value = "DIR",
+     .help = "Write the closed surface of each piece into this folder, which is made if need be: "
+             "piece_0000.ply and so on, coloured, and all of them as groups of pieces.obj."},
+    {.name = "picture",
+     .kind = CLI_TEXT,
+     .offset = offsetof(values, picture),
+     .value = "FILE.png",
+     .help = "Draw the pieces in colours, a little apart."},
+    {.name = "binary",
+     .kind = CLI_FLAG,
+     .offset = offsetof(values, binary),
+     .help = "Write PIECES.vtk in binary: smaller, faster to read, the same numbers."},
+};
+
+static void set_defaults(void *data) {
+    values *v = data;
+    starg_decompose_options library;
+    starg_decompose_options_default(&library);
+    v->density = library.tetra.density;
+}
+
+/* ---- the model ---- */
+
+/* What is to be cut: one of the two. */
+typedef struct subject {
+    const char *file;
+    starg_mesh *surface; /* as read */
+    starg_tetmesh *tets;
+} subject;
+
+static void subject_free(subject *s) {
+    starg_mesh_free(s->surface);
+    starg_tetmesh_free(s->tets);
+}
+
+/* All of standard input, or the head of a file; NULL with 0 bytes when it cannot be read. */
+static char *read_bytes(const char *name, size_t *size) {
+    bool whole = strcmp(name, "-") == 0;
+    FILE *file = whole ? stdin : fopen(name, "rb");
+    size_t capacity = HEAD, count = 0, got = 1;
+    char *bytes = file != NULL ? malloc(capacity) : NULL;
+    while (bytes != NULL && got > 0 && (whole || count < HEAD)) {
+        if (count == capacity) {
+            char *more = realloc(bytes, 2 * capacity);
+            if (more == NULL)
+                break;
+            bytes = more;
+            capacity *= 2;
+        }
+        got = fread(bytes + count, 1, capacity - count, file);
+        count += got;
+    }
+    if (file != NULL && !whole)
+        fclose(file);
+    *size = bytes != NULL ? count : 0;
+    return bytes;
+}
+
+/* The content tells a surface from tetrahedra. What cannot be opened is left to the reader of
+ * surfaces, which says why. */
+static starg_status read_model(cli_session *session, subject *s) {
+    starg_status status = STARG_OK;
+    bool whole = strcmp(s->file, "-") == 0;
+    size_t size;
+    char *bytes = read_bytes(s->file, &size);
+    bool tets = bytes != NULL && starg_tetmesh_recognized(bytes, size, s->file);
+    if (whole && bytes == NULL)
+        status = cli_fail_memory(session);
+    else if (tets)
+        status = whole ? starg_tetmesh_read_memory(session->context, bytes, size, "standard input",
+                                                   &s->tets)
+                       : starg_tetmesh_read(session->context, s->file, &s->tets);
+    else
+        status = whole ? starg_mesh_read_memory(session->context, bytes, size, "standard input",
+                                                &s->surface)
+                       : starg_mesh_read(session->context, s->file, &s->surface);
+    free(bytes);
+    return status;
+}
+
+static starg_status read_subject(cli_session *session, const values *v, subject *s) {
+    if ((session->operand_count == 0) == (v->tets == NULL))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "name what to cut: either MODEL, a surface or tetrahedra, or --tets FILE");
+    s->file = v->tets != NULL ? v->tets : session->operands[0];
+    if (v->tets != NULL)
+        return starg_tetmesh_read(session->context, s->file, &s->tets);
+    return read_model(session, s);
+}
+
+/* ---- cutting ---- */
+
+/* A surface with holes is filled with what it winds around. */
+static starg_status cut_open_surface(cli_session *session, const subject *s,
+                                     const starg_decompose_options *wanted,
+                                     starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_tetmesh *mesh = NULL;
+    starg_tetra_report how;
+    cli_notice(session,
+               "%s; isosurface stuffing fills what the surface winds around, and closes holes of "
+               "its own accord",
+               starg_context_error(session->context)->message);
+    CLI_TRY(
+        starg_tetmesh_from_open_mesh(session->context, s->surface, &wanted->tetra, &how, &mesh));
+    CLI_TRY(starg_decompose_tetmesh(session->context, mesh, wanted, out));
+    (*out)->model_vertices = starg_mesh_vertex_count(s->surface);
+    (*out)->model_faces = starg_mesh_face_count(s->surface);
+    (*out)->model_tetrahedra = 0;
+    (*out)->tetra = how;
+done:
+    starg_tetmesh_free(mesh);
+    return status;
+}
+
+static starg_status cut(cli_session *session, const subject *s,
+                        const starg_decompose_options *wanted, starg_decomposition **out) {
+    starg_solid *solid = NULL;
+    if (s->tets != NULL)
+        return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
+    starg_status status = starg_solid_create(session->context, s->surface, &solid);
+    if (status == STARG_ERROR_MESH)
+        return cut_open_surface(session, s, wanted, out);
+    if (status == STARG_OK)
+        status = starg_decompose(session->context, solid, wanted, out);
+    starg_solid_free(solid);
+    return status;
+}
+
+/* ---- what was found ---- */
+
+static size_t count_single(const starg_decomposition *d) {
+    size_t count = 0;
+    for (size_t p = 0; p < d->piece_count; p++)
+        count += d->pieces[p].tetrahedra == 1;
+    return count;
+}
+
+static void say_pieces(cli_session *session, const starg_decomposition *d) {
+    cli_say(session, "pieces        %zu\n", d->piece_count);
+    cli_say(session, "star-shaped   %zu (proven)\n", d->strictly_star);
+    /* rounded down, so that only what is whole is called 100 % */
+    cli_say(session, "visible       %g %% of the vertices, from their guards\n",
+            floor(1e4 * d->visible_vertices) / 100);
+    cli_say(session, "tetrahedra    %zu\n", starg_tetmesh_count(d->mesh));
+    if (d->tetra.surface_kept)
+        cli_say(session, "surface       kept\n");
+    else
+        cli_say(session, "surface       within %.3g of the model's, which is within %.3g of it\n",
+                d->tetra.to_surface + d->tetra.step, d->tetra.from_surface + d->tetra.step);
+    if (d->time_limited)
+        cli_say(session, "time limit    reached; this is the best that was found\n");
+}
+
+static json_t *pieces_json(cli_session *session, const starg_decomposition *d) {
+    json_t *list = json_array();
+    for (size_t p = 0; p < d->piece_count; p++) {
+        const starg_piece *piece = &d->pieces[p];
+        json_t *item = json_object();
+        cli_put(session, item, "guard", cli_json_point(piece->guard));
+        cli_put(session, item, "tetrahedra", json_integer((json_int_t)piece->tetrahedra));
+        cli_put(session, item, "volume", cli_json_real(piece->volume));
+        cli_put(session, item, "star", json_boolean(piece->star));
+        cli_put(session, item, "radius", cli_json_real(piece->radius));
+        cli_append(session, list, item);
+    }
+    return list;
+}
+
+static json_t *distance_json(cli_session *session, const starg_tetra_report *t) {
+    json_t *distance = json_object();
+    cli_put(session, distance, "to_surface", cli_json_real(t->to_surface));
+    cli_put(session, distance, "from_surface", cli_json_real(t->from_surface));
+    cli_put(session, distance, "step", cli_json_real(t->step));
+    return distance;
+}
+
+static void report_pieces(cli_session *session, const starg_decomposition *d, const values *v) {
+    json_t *report = session->report;
+    cli_put(session, report, "output", cli_json_text(v->output));
+    cli_put(session, report, "mode", json_string(mode_words[d->mode]));
+    cli_put(session, report, "surface",
+            json_string(d->tetra.surface_kept ? "kept" : "approximated"));
+    if (!d->tetra.surface_kept)
+        cli_put(session, report, "distance", distance_json(session, &d->tetra));
+    cli_put(session, report, "tetrahedra", json_integer((json_int_t)starg_tetmesh_count(d->mesh)));
+    cli_put(session, report, "volume", cli_json_real(starg_tetmesh_volume(d->mesh)));
+    cli_put(session, report, "pieces", pieces_json(session, d));
+    cli_put(session, report, "strictly_star", json_integer((json_int_t)d->strictly_star));
+    cli_put(session, report, "single_tetrahedra", json_integer((json_int_t)count_single(d)));
+    cli_put(session, report, "visible_vertices", cli_json_real(d->visible_vertices));
+    cli_put(session, report, "contacts", json_integer((json_int_t)d->contact_count));
+    cli_put(session, report, "time_limited", json_boolean(d->time_limited));
+}
+
+static void report(cli_session *session, const subject *s, const starg_decomposition *d,
+                   const values *v) {
+    static const char format[] = "starguard-decompose";
+    if (s->surface != NULL)
+        cli_report_head(session, format, s->file, s->surface);
+    else
+        cli_report_head_tetrahedra(session, format, s->file, d->model_vertices,
+                                   d->model_tetrahedra);
+    report_pieces(session, d, v);
+}
+
+/* ---- surfaces ---- */
+
+/* The surfaces of all pieces, and where each begins. */
+typedef struct shells {
+    starg_mesh *mesh;
+    uint32_t *first;
+} shells;
+
+static void shells_free(cli_session *session, shells *s) {
+    starg_mesh_free(s->mesh);
+    starg_tetmesh_map_free(session->context, s->first);
+}
+
+/* The surface of one piece as a mesh of its own: its vertices are a range, which begins where that
+ * of the piece before has ended. */
+static starg_status extract(cli_session *session, const shells *s, size_t piece,
+                            uint32_t *next_vertex, starg_mesh **out) {
+    size_t count = s->first[piece + 1] - s->first[piece];
+    const uint32_t *faces = starg_mesh_faces(s->mesh) + 3 * (size_t)s->first[piece];
+    uint32_t base = *next_vertex, *own = malloc((3 * count + 1) * sizeof *own);
+    if (own == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < 3 * count; i++) {
+        own[i] = faces[i] - base;
+        if (faces[i] >= *next_vertex)
+            *next_vertex = faces[i] + 1;
+    }
+    starg_status status =
+        starg_mesh_create(session->context, starg_mesh_vertices(s->mesh) + 3 * (size_t)base,
+                          *next_vertex - base, own, count, out);
+    free(own);
+    return status;
+}
+
+static starg_status write_coloured(cli_session *session, const starg_mesh *mesh, size_t piece,
+                                   const char *name) {
+    size_t count = starg_mesh_face_count(mesh);
+    uint8_t *colors = malloc(3 * count + 1);
+    if (colors == NULL)
+        return cli_fail_memory(session);
+    for (size_t f = 0; f < count; f++)
+        starg_distinct_color(piece, colors + 3 * f);
+    starg_status status = cli_mesh_write(session, mesh, STARG_MESH_PLY_BINARY, colors, name);
+    free(colors);
+    return status;
+}
+
+static starg_status write_piece(cli_session *session, const shells *s, size_t piece,
+                                uint32_t *next_vertex, const char *name) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    CLI_TRY(extract(session, s, piece, next_vertex, &mesh));
+    CLI_TRY(cli_announce(session, name));
+    CLI_TRY(write_coloured(session, mesh, piece, name));
+done:
+    starg_mesh_free(mesh);
+    return status;
+}
+
+static starg_status write_surfaces(cli_session *session, const starg_decomposition *d,
+                                   const shells *s, const char *folder) {
+    starg_status status = STARG_OK;
+    uint32_t next_vertex = 0;
+    size_t size = strlen(folder) + 64;
+    char *name = malloc(size);
+    if (name == NULL)
+        return cli_fail_memory(session);
+    for (size_t p = 0; p < d->piece_count; p++) {
+        snprintf(name, size, "%s/piece_%04zu.ply", folder, p);
+        CLI_TRY(write_piece(session, s, p, &next_vertex, name));
+    }
+    snprintf(name, size, "%s/pieces.obj", folder);
+    CLI_TRY(cli_announce(session, name));
+    CLI_TRY(starg_decomposition_write_groups(session->context, d,
+                                             cli_outputs_place(&session->outputs, name)));
+done:
+    free(name);
+    return status;
+}
+
+/* ---- picture ---- */
+
+static void middle_of(const double *vertices, size_t count, double out[3]) {
+    double lower[3], upper[3];
+    for (int k = 0; k < 3; k++)
+        lower[k] = upper[k] = vertices[k];
+    for (size_t i = 0; i < 3 * count; i++) {
+        lower[i % 3] = fmin(lower[i % 3], vertices[i]);
+        upper[i % 3] = fmax(upper[i % 3], vertices[i]);
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = 0.5 * lower[k] + 0.5 * upper[k];
+}
+
+/* Moves the vertices of each piece away from the middle of all, and colours its faces. */
+static void spread(const shells *s, size_t piece_count, double *vertices, uint8_t *colors) {
+    double middle[3];
+    size_t next = 0;
+    middle_of(vertices, starg_mesh_vertex_count(s->mesh), middle);
+    for (size_t p = 0; p < piece_count; p++) {
+        size_t base = next;
+        double own[3];
+        for (size_t i = 3 * (size_t)s->first[p]; i < 3 * (size_t)s->first[p + 1]; i++)
+            if (starg_mesh_faces(s->mesh)[i] >= next)
+                next = starg_mesh_faces(s->mesh)[i] + (size_t)1;
+        for (size_t f = s->first[p]; f < s->first[p + 1]; f++)
+            starg_distinct_color(p, colors + 3 * f);
+        middle_of(vertices + 3 * base, next - base, own);
+        for (size_t i = 3 * base; i < 3 * next; i++)
+            vertices[i] += APART * (own[i % 3] - middle[i % 3]);
+    }
+}
+
+static starg_status write_picture(cli_session *session, const shells *s, size_t piece_count,
+                                  const char *name) {
+    starg_status status = STARG_OK;
+    starg_mesh *apart = NULL;
+    starg_picture_options picture;
+    starg_picture_options_default(&picture);
+    size_t vertex_count = starg_mesh_vertex_count(s->mesh);
+    size_t face_count = starg_mesh_face_count(s->mesh);
+    double *vertices = malloc((3 * vertex_count + 1) * sizeof *vertices);
+    uint8_t *colors = malloc(3 * face_count + 1);
+    if (vertices == NULL || colors == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    memcpy(vertices, starg_mesh_vertices(s->mesh), 3 * vertex_count * sizeof *vertices);
+    spread(s, piece_count, vertices, colors);
+    CLI_TRY(starg_mesh_create(session->context, vertices, vertex_count, starg_mesh_faces(s->mesh),
+                              face_count, &apart));
+    picture.face_colors = colors;
+    picture.opacity = 1;
+    CLI_TRY(starg_picture_write(session->context, apart, &picture,
+                                cli_outputs_place(&session->outputs, name)));
+done:
+    starg_mesh_free(apart);
+    free(vertices);
+    free(colors);
+    return status;
+}
+
+/* ---- files ---- */
+
+static starg_status announce_files(cli_session *session, const values *v) {
+    starg_status status = STARG_OK;
+    if (v->output == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o PIECES.vtk");
+    CLI_TRY(cli_announce(session, v->output));
+    CLI_TRY(cli_announce(session, v->report));
+    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_folder(session, v->surfaces));
+done:
+    return status;
+}
+
+/* Standard output comes last: what has gone there cannot be taken back. */
+static starg_status write_results(cli_session *session, const values *v, const char *file,
+                                  const starg_decomposition *d) {
+    starg_status status = STARG_OK;
+    bool first_report = v->report != NULL && strcmp(v->report, "-") != 0;
+    if (first_report)
+        CLI_TRY(starg_decomposition_write_report(session->context, d, file,
+                                                 cli_outputs_place(&session->outputs, v->report)));
+    CLI_TRY(starg_decomposition_write(session->context, d,
+                                      cli_outputs_place(&session->outputs, v->output), v->binary));
+    if (v->report != NULL && !first_report)
+        CLI_TRY(starg_decomposition_write_report(session->context, d, file, v->report));
+done:
+    return status;
+}
+
+static starg_status write_files(cli_session *session, const values *v, const char *file,
+                                const starg_decomposition *d) {
+    starg_status status = STARG_OK;
+    shells s = {0};
+    if (v->surfaces != NULL || v->picture != NULL)
+        CLI_TRY(starg_decomposition_surfaces(session->context, d, &s.mesh, &s.first));
+    if (v->surfaces != NULL)
+        CLI_TRY(write_surfaces(session, d, &s, v->surfaces));
+    if (v->picture != NULL)
+        CLI_TRY(write_picture(session, &s, d->piece_count, v->picture));
+    CLI_TRY(write_results(session, v, file, d));
+done:
+    shells_free(session, &s);
+    return status;
+}
+
+/* ---- run ---- */
+
+static starg_status make_options(cli_session *session, const values *v, double **points,
+                                 starg_decompose_options *wanted) {
+    starg_status status = STARG_OK;
+    starg_decompose_options_default(wanted);
+    wanted->mode = (starg_decompose_mode)v->mode;
+    wanted->max_pieces = v->max_pieces;
+    wanted->effort = v->effort;
+    wanted->tetra.density = v->density;
+    if (v->guards != NULL)
+        CLI_TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));
+    wanted->guards = *points;
+done:
+    return status;
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    starg_decompose_options wanted;
+    subject what = {0};
+    starg_decomposition *pieces = NULL;
+    double *points = NULL;
+    CLI_TRY(announce_files(session, v));
+    CLI_TRY(make_options(session, v, &points, &wanted));
+    CLI_TRY(read_subject(session, v, &what));
+    if (session->common.time_limit == 0)
+        starg_context_set_time_limit(session->context, TIME_LIMIT);
+    CLI_TRY(cut(session, &what, &wanted, &pieces));
+    CLI_TRY(write_files(session, v, what.file, pieces));
+    say_pieces(session, pieces);
+    if (session->report != NULL)
+        report(session, &what, pieces, v);
+done:
+    starg_decomposition_free(session->context, pieces);
+    starg_points_free(session->context, points);
+    subject_free(&what);
+    return status;
+}
+
+const cli_command cli_command_decompose = {
+    .name = "decompose",
+    .usage = "MODEL -o PIECES.vtk [options]",
+    .summary = "cut a solid into few pieces, each seen as a whole from its guard",
+    .description =
+        "Fills the solid with tetrahedra and parts them into star-shaped pieces: each has a guard "
+        "that sees all of it. With --mode strict every piece is proven so by exact arithmetic: its "
+        "guard is strictly on the inner side of each of its faces. MODEL is a surface, or "
+        "tetrahedra of your own; the content tells which.\n"
+        "The surface is kept, face by face, where the program tetgen can be had. Surfaces that "
+        "pass through themselves or have holes are filled by isosurface stuffing instead, with a "
+        "notice, and how far its surface is from the model's is told.\n"
+        "The search ends when it finds nothing better, at the latest after 60 seconds unless "
+        "--time-limit says otherwise, with the best that it has.",
+    .examples = "# pieces with their proofs, and what they look like\n"
+                "starguard decompose model.off -o pieces.vtk --report pieces.json \\\n"
+                "    --picture pieces.png\n"
+                "# as in the paper, from guards that were placed before\n"
+                "starguard guard model.off -o guards.json\n"
+                "starguard decompose model.off -o pieces.vtk --mode paper --guards guards.json\n"
+                "# tetrahedra of your own; the surface of each piece as a file\n"
+                "starguard decompose --tets solid.msh -o pieces.vtk --surfaces pieces",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .most_operands = 1,
+    .values_size = sizeof(values),
+    .defaults = set_defaults,
+    .run = run,
+};
