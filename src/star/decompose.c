@@ -4,6 +4,7 @@
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
+#include "star/paper/paper.h"
 #include "star/strict.h"
 #include "tetra/tetmesh.h"
 
@@ -33,7 +34,7 @@ static starg_status check_options(starg_context *context, const starg_decompose_
 static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
                              const starg_decompose_options *options, starg_decomposition **out) {
     if (options->mode == STARG_DECOMPOSE_PAPER)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no paper mode yet");
+        return paper_decompose(context, mesh, options, out);
     return strict_decompose(context, mesh, options, out);
 }
 

@@ -1,0 +1,203 @@
+/* Star decomposition by growth from guards [YL11, section 4].
+ *
+ * Problem: give each tetrahedron to one of few guards, so that nearly all vertices of a piece are
+ * seen from its guard.
+ *
+ * Stages: guards (given, or those of section 3); what they see of the vertices of tetrahedra, and
+ * how tetrahedra depend on each other (view.c, dependency.c, cost.c); growth, strict and then
+ * relaxed (growth.c); guards for what is left (rest.c); smoothing of the borders between pieces
+ * (smooth.c). Then it is told how many pieces are star-shaped in fact, which the paper does not
+ * say.
+ *
+ * Invariants: every tetrahedron has a colour in the end, every colour a tetrahedron; guards are
+ * strictly inside the solid. The same for any number of threads. Cost: O(K n log n) for K guards.
+ */
+#include "star/paper/paper.h"
+
+#include <math.h>
+
+#include "geometry/vec3.h"
+#include "star/decomposition.h"
+#include "star/paper/growth.h"
+#include "star/paper/rest.h"
+#include "star/paper/smooth.h"
+#include "star/paper/view.h"
+#include "starguard/guard.h"
+
+/* ---- state ---- */
+
+static double find_diagonal(const starg_tetmesh *mesh) {
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+        lower[i % 3] = fmin(lower[i % 3], mesh->vertices[i]);
+        upper[i % 3] = fmax(upper[i % 3], mesh->vertices[i]);
+    }
+    return hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+}
+
+static starg_status state_create(starg_context *context, const starg_tetmesh *mesh,
+                                 paper_state *s) {
+    starg_status status = STARG_OK;
+    *s = (paper_state){.context = context, .diagonal = find_diagonal(mesh)};
+    STARG_TRY(tetmesh_copy(context, mesh, &s->mesh));
+    STARG_TRY(tet_sight_create(context, s->mesh, &s->sight));
+    STARG_TRY(tet_rings_create(context, s->mesh, &s->rings));
+    STARG_TRY(heap_create(context, mesh->count, &s->heap));
+    STARG_NEW(context, PAPER_STAGE, s->offer, mesh->count);
+    STARG_NEW(context, PAPER_STAGE, s->labels, mesh->count);
+    memset(s->labels, 0xff, mesh->count * sizeof *s->labels);
+done:
+    return status;
+}
+
+static void state_free(paper_state *s) {
+    tet_sight_free(s->context, &s->sight);
+    tet_rings_free(s->context, &s->rings);
+    heap_free(s->heap);
+    starg_release(s->context, s->offer);
+    starg_release(s->context, s->labels);
+    STARG_ARRAY_FREE(s->context, &s->guards);
+    starg_tetmesh_free(s->mesh);
+}
+
+/* ---- guards ---- */
+
+/* Takes those that are strictly inside, no more than `most` of them. */
+static starg_status take_guards(paper_state *s, const double *points, size_t count, size_t most) {
+    starg_status status = STARG_OK;
+    size_t outside = 0;
+    for (size_t i = 0; i < count && (most == 0 || paper_pieces(s) < most); i++) {
+        bool inside = tet_sight_contains(&s->sight, points + 3 * i);
+        outside += !inside;
+        for (size_t k = 0; inside && k < 3; k++)
+            STARG_PUSH(s->context, PAPER_STAGE, &s->guards, points[3 * i + k]);
+    }
+    if (outside > 0)
+        starg_log(s->context, STARG_LOG_NOTICE,
+                  "%zu of %zu guards are not strictly inside the tetrahedra and left out", outside,
+                  count);
+done:
+    return status;
+}
+
+/* Guards of section 3 for the boundary. Where that is no surface that they can be placed for
+ * (it touches itself in an edge, for example), all is left to be guarded as it is cut. */
+static starg_status place_guards(paper_state *s, size_t most, bool *time_limited) {
+    starg_status status = STARG_OK;
+    starg_mesh *surface = NULL;
+    starg_solid *solid = NULL;
+    starg_guards *guards = NULL;
+    starg_guard_options wanted;
+    starg_guard_options_default(&wanted);
+    wanted.max_guards = most;
+    STARG_TRY(starg_tetmesh_surface(s->context, s->mesh, &surface, NULL));
+    status = starg_solid_create(s->context, surface, &solid);
+    if (status == STARG_OK)
+        status = starg_guard(s->context, solid, &wanted, &guards);
+    if (status == STARG_ERROR_MESH || status == STARG_ERROR_TIME) {
+        status = STARG_OK;
+        goto done;
+    }
+    STARG_TRY(status);
+    *time_limited = guards->time_limited;
+    STARG_TRY(take_guards(s, guards->positions, guards->count, most));
+done:
+    starg_guards_free(s->context, guards);
+    starg_solid_free(solid);
+    starg_mesh_free(surface);
+    return status;
+}
+
+/* ---- growth ---- */
+
+static starg_status domain_of_all(paper_state *s, paper_domain *out) {
+    starg_status status = STARG_OK;
+    STARG_NEW(s->context, PAPER_STAGE, out->tetrahedra, s->mesh->count);
+    STARG_NEW(s->context, PAPER_STAGE, out->vertices, s->mesh->vertex_count);
+    out->count = s->mesh->count;
+    for (size_t t = 0; t < s->mesh->count; t++)
+        out->tetrahedra[t] = (uint32_t)t;
+    for (size_t v = 0; v < s->mesh->vertex_count; v++)
+        if (s->rings.first[v] < s->rings.first[v + 1])
+            out->vertices[out->vertex_count++] = (uint32_t)v;
+done:
+    return status;
+}
+
+static starg_status grow_from_guards(paper_state *s, size_t max_pieces) {
+    starg_status status = STARG_OK;
+    size_t count = paper_pieces(s);
+    paper_guard *guards = NULL;
+    paper_domain all = {0};
+    STARG_NEW_ZERO(s->context, PAPER_STAGE, guards, count);
+    STARG_TRY(domain_of_all(s, &all));
+    STARG_TRY(views_create(s, &all, s->guards.data, count, guards));
+    const paper_front front = {guards, count, 0};
+    growth_strict(s, &front);
+    growth_relaxed(s, &front, all.tetrahedra, all.count, PAPER_LEAST_SEEN);
+    if (max_pieces > 0 && count >= max_pieces)
+        growth_relaxed(s, &front, all.tetrahedra, all.count, 0);
+done:
+    for (size_t i = 0; guards != NULL && i < count; i++)
+        view_free(s, &guards[i]);
+    starg_release(s->context, guards);
+    starg_release(s->context, all.tetrahedra);
+    starg_release(s->context, all.vertices);
+    return status;
+}
+
+/* Pieces without a tetrahedron, whose guard stands where another one has been first, go. */
+static starg_status drop_empty_pieces(paper_state *s) {
+    starg_status status = STARG_OK;
+    size_t count = paper_pieces(s), kept = 0;
+    int32_t *number = NULL;
+    STARG_NEW(s->context, PAPER_STAGE, number, count);
+    memset(number, 0xff, count * sizeof *number);
+    for (size_t t = 0; t < s->mesh->count; t++)
+        number[s->labels[t]] = 0;
+    for (size_t p = 0; p < count; p++) {
+        if (number[p] < 0)
+            continue;
+        number[p] = (int32_t)kept;
+        vec3_copy(s->guards.data + 3 * p, s->guards.data + 3 * kept++);
+    }
+    s->guards.count = 3 * kept;
+    for (size_t t = 0; t < s->mesh->count; t++)
+        s->labels[t] = number[s->labels[t]];
+done:
+    starg_release(s->context, number);
+    return status;
+}
+
+static starg_status finish(paper_state *s, starg_decomposition **out) {
+    starg_tetmesh *mesh = s->mesh;
+    int32_t *labels = s->labels;
+    s->mesh = NULL;
+    s->labels = NULL;
+    return decomposition_finish(s->context, STARG_DECOMPOSE_PAPER, mesh, labels, s->guards.data,
+                                paper_pieces(s), out);
+}
+
+starg_status paper_decompose(starg_context *context, const starg_tetmesh *mesh,
+                             const starg_decompose_options *options, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    paper_state s;
+    bool time_limited = false;
+    *out = NULL;
+    starg_progress_begin(context, PAPER_STAGE);
+    STARG_TRY(state_create(context, mesh, &s));
+    if (options->guards != NULL)
+        STARG_TRY(take_guards(&s, options->guards, options->guard_count, options->max_pieces));
+    else
+        STARG_TRY(place_guards(&s, options->max_pieces, &time_limited));
+    STARG_TRY(grow_from_guards(&s, options->max_pieces));
+    STARG_TRY(rest_colour(&s, options->max_pieces));
+    STARG_TRY(drop_empty_pieces(&s));
+    STARG_TRY(smooth_borders(&s));
+    STARG_TRY(finish(&s, out));
+    (*out)->time_limited = time_limited;
+done:
+    state_free(&s);
+    starg_progress_end(context);
+    return status;
+}

@@ -1,0 +1,12 @@
+/* What no guard has claimed. */
+#ifndef STARG_STAR_PAPER_REST_H
+#define STARG_STAR_PAPER_REST_H
+
+#include "star/paper/state.h"
+
+/* Guards each uncoloured component anew and grows again, until every tetrahedron has a colour.
+ * There are no more than `max_pieces` pieces (0: any number) unless parts of the mesh have no guard
+ * yet. Errors: MEMORY, CANCELLED. */
+starg_status rest_colour(paper_state *s, size_t max_pieces);
+
+#endif
