@@ -5,7 +5,7 @@
 #include "mesh/solid.h"
 #include "star/decomposition.h"
 #include "star/paper/paper.h"
-#include "star/strict.h"
+#include "star/strict/strict.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces";

@@ -1,6 +1,6 @@
 /* Strict star decomposition: every piece is proven to be star-shaped. */
-#ifndef STARG_STAR_STRICT_H
-#define STARG_STAR_STRICT_H
+#ifndef STARG_STAR_STRICT_STRICT_H
+#define STARG_STAR_STRICT_STRICT_H
 
 #include "core/context.h"
 #include "starguard/decompose.h"

@@ -1,0 +1,117 @@
+/* The largest ball inside of half-spaces that come one by one.
+ *
+ * Problem: maximise r over (x, r) with n_i . x + r <= b_i, when the half-spaces are not known all
+ * at once, because there are many and only those that the ball violates are worth the time.
+ *
+ * Method: the dual simplex algorithm [Lemke 1954] in four variables. Four half-spaces are tight;
+ * their weights w >= 0 with sum w_i n_i = 0 and sum w_i = 1 prove that no ball inside of them is
+ * larger. A violated half-space is written as a combination of the four; the ratio test says which
+ * of the four it replaces so that all weights stay >= 0. Changing an offset changes no weight: so
+ * a half-space is taken away by moving it far out, and all that was learnt is kept.
+ *
+ * Invariants: weights >= 0 up to rounding; the inverse is computed anew each time, so that errors
+ * do not grow. Cost: some 200 operations for each half-space added. */
+#include "geometry/largest_ball.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double TINY = 1e-11;
+
+/* inverse = the inverse of the matrix with the rows (normal, 1); false when it has none. */
+static bool invert(largest_ball *ball) {
+    double m[4][8];
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 8; k++)
+            m[i][k] = k < 3 ? ball->normals[i][k] : k == 3 ? 1 : k == i + 4 ? 1 : 0;
+    for (int c = 0; c < 4; c++) {
+        int pivot = c;
+        for (int i = c + 1; i < 4; i++)
+            if (fabs(m[i][c]) > fabs(m[pivot][c]))
+                pivot = i;
+        if (fabs(m[pivot][c]) < TINY)
+            return false;
+        double swap[8];
+        memcpy(swap, m[c], sizeof swap);
+        memcpy(m[c], m[pivot], sizeof swap);
+        memcpy(m[pivot], swap, sizeof swap);
+        double scale = 1 / m[c][c];
+        for (int k = c; k < 8; k++)
+            m[c][k] *= scale;
+        for (int i = 0; i < 4; i++) {
+            double factor = m[i][c];
+            if (i == c || factor == 0)
+                continue;
+            for (int k = c; k < 8; k++)
+                m[i][k] -= factor * m[c][k];
+        }
+    }
+    for (int i = 0; i < 4; i++)
+        memcpy(ball->inverse[i], m[i] + 4, sizeof ball->inverse[i]);
+    return true;
+}
+
+static void place(largest_ball *ball) {
+    double at[4];
+    for (int i = 0; i < 4; i++) {
+        at[i] = 0;
+        for (int k = 0; k < 4; k++)
+            at[i] += ball->inverse[i][k] * ball->offsets[k];
+    }
+    memcpy(ball->center, at, sizeof ball->center);
+    ball->radius = at[3];
+}
+
+void largest_ball_start(largest_ball *ball) {
+    static const double corner[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++)
+            ball->normals[i][k] = corner[i][k] / sqrt(3);
+        ball->offsets[i] = LARGEST_BALL_DISTANCE;
+        ball->names[i] = LARGEST_BALL_FAR;
+        ball->weights[i] = 0.25;
+    }
+    invert(ball);
+    place(ball);
+}
+
+/* The place that the new half-space takes, whose normal is a combination of the four. */
+static int leaving(const largest_ball *ball, const double factors[4]) {
+    int best = -1;
+    double least = INFINITY;
+    for (int i = 0; i < 4; i++) {
+        if (factors[i] <= 1e-9)
+            continue;
+        double ratio = fmax(ball->weights[i], 0) / factors[i];
+        if (ratio < least || (ratio == least && factors[i] > factors[best])) {
+            least = ratio;
+            best = i;
+        }
+    }
+    return best;
+}
+
+bool largest_ball_add(largest_ball *ball, const double normal[3], double offset, uint32_t name) {
+    double factors[4];
+    for (int i = 0; i < 4; i++)
+        factors[i] = normal[0] * ball->inverse[0][i] + normal[1] * ball->inverse[1][i] +
+                     normal[2] * ball->inverse[2][i] + ball->inverse[3][i];
+    int out = leaving(ball, factors);
+    if (out < 0)
+        return false;
+    memcpy(ball->normals[out], normal, sizeof ball->normals[out]);
+    ball->offsets[out] = offset;
+    ball->names[out] = name;
+    if (!invert(ball))
+        return false;
+    for (int i = 0; i < 4; i++)
+        ball->weights[i] = ball->inverse[3][i];
+    place(ball);
+    return true;
+}
+
+void largest_ball_move(largest_ball *ball, int at, double offset, uint32_t name) {
+    ball->offsets[at] = offset;
+    ball->names[at] = name;
+    place(ball);
+}

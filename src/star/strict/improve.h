@@ -1,0 +1,22 @@
+/* Making the pieces of a partition fewer. */
+#ifndef STARG_STAR_STRICT_IMPROVE_H
+#define STARG_STAR_STRICT_IMPROVE_H
+
+#include "star/strict/partition.h"
+
+typedef struct improve_options {
+    uint64_t trials; /* to be made at most                             */
+    size_t enough;   /* stop when there are no more pieces than that   */
+} improve_options;
+
+typedef struct improve_report {
+    uint64_t trials, joins, recuts, moves, refused;
+    bool time_limited;
+} improve_report;
+
+/* Joins pieces whose union is star-shaped and cuts unions again into fewer pieces, until no trial
+ * helps for long, or the trials or the time are used up. The partition is valid at all times.
+ * Errors: MEMORY, CANCELLED. */
+starg_status improve(partition *p, const improve_options *options, improve_report *report);
+
+#endif

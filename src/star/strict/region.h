@@ -1,0 +1,60 @@
+/* What a search for cuts needs to know of some pieces together: where the surface of their union
+ * is and which half-spaces it asks a guard to be in. */
+#ifndef STARG_STAR_STRICT_REGION_H
+#define STARG_STAR_STRICT_REGION_H
+
+#include "star/strict/partition.h"
+
+/* A triangle, or a segment along an earlier cut (then two corners are the same). */
+typedef struct region_triangle {
+    uint32_t corners[3], row;
+} region_triangle;
+
+/* All in unit coordinates. A guard of all of it is strictly inside of every row. */
+typedef struct region {
+    STARG_ARRAY(double) vertices; /* x 3 */
+    STARG_ARRAY(region_triangle) triangles;
+    STARG_ARRAY(double) rows; /* x 4: outward normal of length one, offset; one for each plane */
+} region;
+
+/* How far a star-shaped part of a region reaches: its side of a plane across `normal` at any height
+ * up to `height` (at least where the guard may stay) meets no row that the guard is not inside of
+ * by the margin asked for. */
+typedef struct region_reach {
+    double height; /* -INFINITY: nowhere; INFINITY: all of the region has a kernel */
+    double guard[3];
+} region_reach;
+
+/* Working memory of one thread. */
+typedef struct region_scratch {
+    starg_context *context;
+    STARG_ARRAY(uint32_t) vertex_of; /* by the partition's vertex: 1 + the region's, or 0 */
+    STARG_ARRAY(uint32_t) row_of;    /* by 2 * plane + side: likewise */
+    STARG_ARRAY(double) heights;     /* of vertices along a direction */
+    STARG_ARRAY(double) lowest;      /* of rows likewise: their lowest vertex */
+} region_scratch;
+
+void region_scratch_free(region_scratch *scratch);
+
+/* The union of `count` pieces of a partition with an index. `region` may hold an older one.
+ * Errors: MEMORY. */
+starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
+                           region_scratch *scratch, region *out);
+void region_free(starg_context *context, region *r);
+
+/* The part of a region above a plane, closed by it. Errors: MEMORY. */
+starg_status region_clip(starg_context *context, const region *from, const double normal[3],
+                         double height, region *out);
+
+/* The highest that a star-shaped low side reaches along `normal` whose guard is inside by `margin`.
+ * Errors: MEMORY. */
+starg_status region_find_reach(const region *r, const double normal[3], double margin,
+                               region_scratch *scratch, region_reach *out);
+
+/* Centre and radius of the largest ball inside of all rows, or of those with a vertex below a
+ * plane and the plane itself, if `normal` is not NULL. The radius is negative when there is none.
+ * Errors: MEMORY. */
+starg_status region_find_center(const region *r, const double *normal, double height,
+                                region_scratch *scratch, double center[3], double *radius);
+
+#endif

@@ -1,0 +1,14 @@
+/* Undoing splits of facets that no cut needs any more. */
+#ifndef STARG_STAR_STRICT_TIDY_H
+#define STARG_STAR_STRICT_TIDY_H
+
+#include "star/strict/partition.h"
+
+/* Facets in one plane between the same two pieces are made anew with the vertices that their
+ * borders need; points that nothing uses go. The pieces stay the same but for rounding; they are
+ * certified again, and when that fails nothing is changed. The index is built again. Errors:
+ * MEMORY.
+ */
+starg_status tidy(partition *p);
+
+#endif
