@@ -15,8 +15,6 @@ static const char *const mode_words[] = {"strict", "paper", NULL};
 static const double TIME_LIMIT = 60; /* seconds, unless another one is asked for */
 static const double APART = 0.18;    /* pictures: how far pieces are moved from the middle of all */
 
-enum { HEAD = 1 << 16 }; /* bytes of a file that tell what it holds */
-
 typedef struct values {
     const char *output, *report, *guards, *tets, *surfaces, *picture;
     int mode;
@@ -118,51 +116,6 @@ static void subject_free(subject *s) {
     starg_tetmesh_free(s->tets);
 }
 
-/* All of standard input, or the head of a file; NULL with 0 bytes when it cannot be read. */
-static char *read_bytes(const char *name, size_t *size) {
-    bool whole = strcmp(name, "-") == 0;
-    FILE *file = whole ? stdin : fopen(name, "rb");
-    size_t capacity = HEAD, count = 0, got = 1;
-    char *bytes = file != NULL ? malloc(capacity) : NULL;
-    while (bytes != NULL && got > 0 && (whole || count < HEAD)) {
-        if (count == capacity) {
-            char *more = realloc(bytes, 2 * capacity);
-            if (more == NULL)
-                break;
-            bytes = more;
-            capacity *= 2;
-        }
-        got = fread(bytes + count, 1, capacity - count, file);
-        count += got;
-    }
-    if (file != NULL && !whole)
-        fclose(file);
-    *size = bytes != NULL ? count : 0;
-    return bytes;
-}
-
-/* The content tells a surface from tetrahedra. What cannot be opened is left to the reader of
- * surfaces, which says why. */
-static starg_status read_model(cli_session *session, subject *s) {
-    starg_status status = STARG_OK;
-    bool whole = strcmp(s->file, "-") == 0;
-    size_t size;
-    char *bytes = read_bytes(s->file, &size);
-    bool tets = bytes != NULL && starg_tetmesh_recognized(bytes, size, s->file);
-    if (whole && bytes == NULL)
-        status = cli_fail_memory(session);
-    else if (tets)
-        status = whole ? starg_tetmesh_read_memory(session->context, bytes, size, "standard input",
-                                                   &s->tets)
-                       : starg_tetmesh_read(session->context, s->file, &s->tets);
-    else
-        status = whole ? starg_mesh_read_memory(session->context, bytes, size, "standard input",
-                                                &s->surface)
-                       : starg_mesh_read(session->context, s->file, &s->surface);
-    free(bytes);
-    return status;
-}
-
 static starg_status read_subject(cli_session *session, const values *v, subject *s) {
     if ((session->operand_count == 0) == (v->tets == NULL))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
@@ -170,7 +123,7 @@ static starg_status read_subject(cli_session *session, const values *v, subject 
     s->file = v->tets != NULL ? v->tets : session->operands[0];
     if (v->tets != NULL)
         return starg_tetmesh_read(session->context, s->file, &s->tets);
-    return read_model(session, s);
+    return cli_shape_read(session, s->file, &s->surface, &s->tets);
 }
 
 /* ---- cutting ---- */

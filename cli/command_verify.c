@@ -1,5 +1,6 @@
 /* starguard verify: checks results by other means than those that made them. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "commands.h"
 #include "model.h"
@@ -18,8 +19,9 @@ static void tell_claims(cli_session *session, const starg_verdict *verdict) {
     }
 }
 
-static void tell_verdict(cli_session *session, const char *file, const starg_verdict *verdict,
-                         json_t *results) {
+/* Tells a verdict and adds it to the results; its entry there, for more keys. */
+static json_t *tell_verdict(cli_session *session, const char *file, const starg_verdict *verdict,
+                            json_t *results) {
     cli_say(session, "%s\n", file);
     tell_claims(session, verdict);
     cli_say(session, "  %s\n", verdict->passed ? "verified" : "NOT verified");
@@ -32,30 +34,106 @@ static void tell_verdict(cli_session *session, const char *file, const starg_ver
     cli_put(session, result, "passed", json_boolean(verdict->passed));
     cli_put(session, result, "claims", claims);
     cli_append(session, results, result);
-}
-
-static starg_status verify_one(cli_session *session, const starg_mesh *mesh, const char *file,
-                               const starg_guards *guards, json_t *results) {
-    starg_verdict *verdict = NULL;
-    starg_status status = starg_verify_guards(session->context, mesh, guards, &verdict);
-    if (status != STARG_OK)
-        return status;
-    tell_verdict(session, file, verdict, results);
     if (!verdict->passed)
         session->outcome = CLI_EXIT_FAILED;
+    return result;
+}
+
+/* ---- input ---- */
+
+/* The model: a surface, or a tetrahedral mesh. */
+typedef struct model {
+    starg_mesh *mesh; /* of a tetrahedral mesh its boundary */
+    starg_tetmesh *tetmesh;
+} model;
+
+static starg_status read_model(cli_session *session, model *out) {
+    starg_status status = cli_shape_read(session, session->operands[0], &out->mesh, &out->tetmesh);
+    if (status == STARG_OK && out->tetmesh != NULL)
+        status = starg_tetmesh_surface(session->context, out->tetmesh, &out->mesh, NULL);
+    return status;
+}
+
+/* All results are read before the first is verified: a bad name shows at once. */
+static starg_status read_results(cli_session *session, starg_result **results) {
+    starg_status status = STARG_OK;
+    for (size_t i = 1; i < session->operand_count && status == STARG_OK; i++)
+        status = starg_result_read(session->context, session->operands[i], &results[i]);
+    return status;
+}
+
+/* The two files of a decomposition: operands, 0 where there is none. */
+typedef struct decomposition {
+    size_t pieces, report;
+} decomposition;
+
+static starg_status find_decomposition(cli_session *session, starg_result *const *results,
+                                       decomposition *found) {
+    *found = (decomposition){0};
+    for (size_t i = 1; i < session->operand_count; i++) {
+        size_t *place = results[i]->pieces != NULL   ? &found->pieces
+                        : results[i]->report != NULL ? &found->report
+                                                     : NULL;
+        if (place == NULL)
+            continue;
+        if (*place != 0)
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "'%.200s' and '%.200s' are of two decompositions; verify one at a time",
+                            session->operands[*place], session->operands[i]);
+        *place = i;
+    }
+    if (found->report != 0 && found->pieces == 0)
+        return cli_fail(session, STARG_ERROR_READ,
+                        "'%.200s' only reports on a decomposition; name the PIECES.vtk that it "
+                        "belongs to as well",
+                        session->operands[found->report]);
+    if (found->pieces != 0 && found->report == 0)
+        cli_warn(session,
+                 "without its PIECES.json, guards and numbers of '%.200s' are not known: only its "
+                 "tetrahedra are checked",
+                 session->operands[found->pieces]);
+    return STARG_OK;
+}
+
+/* ---- verification ---- */
+
+static starg_status verify_guards(cli_session *session, const model *given, size_t operand,
+                                  const starg_result *result, json_t *list) {
+    starg_verdict *verdict = NULL;
+    starg_status status =
+        starg_verify_guards(session->context, given->mesh, result->guards, &verdict);
+    if (status != STARG_OK)
+        return status;
+    tell_verdict(session, session->operands[operand], verdict, list);
     starg_verdict_free(session->context, verdict);
     return STARG_OK;
 }
 
-/* All results are read before the first is verified: a bad name shows at once. */
-static starg_status read_results(cli_session *session, starg_guards **results) {
-    starg_status status = STARG_OK;
-    for (size_t i = 1; i < session->operand_count && status == STARG_OK; i++)
-        status = starg_guards_read(session->context, session->operands[i], &results[i]);
-    return status;
+static starg_status verify_pieces(cli_session *session, const model *given, decomposition found,
+                                  starg_result *const *results, json_t *list) {
+    starg_verdict *verdict = NULL;
+    const starg_pieces_mesh *pieces = results[found.pieces]->pieces;
+    const starg_pieces_report *report = found.report != 0 ? results[found.report]->report : NULL;
+    starg_status status =
+        given->tetmesh != NULL
+            ? starg_verify_pieces_of_tetmesh(session->context, given->tetmesh, pieces, report,
+                                             &verdict)
+            : starg_verify_pieces(session->context, given->mesh, pieces, report, &verdict);
+    if (status != STARG_OK)
+        return status;
+    json_t *entry = tell_verdict(session, session->operands[found.pieces], verdict, list);
+    cli_put(session, entry, "tetrahedra", json_integer((json_int_t)pieces->count));
+    if (report != NULL) {
+        cli_put(session, entry, "report", cli_json_text(session->operands[found.report]));
+        cli_put(session, entry, "pieces", json_integer((json_int_t)report->piece_count));
+        cli_put(session, entry, "strictly_star", json_integer((json_int_t)report->strictly_star));
+    }
+    starg_verdict_free(session->context, verdict);
+    return STARG_OK;
 }
 
-static void report(cli_session *session, json_t *results) {
+static void report(cli_session *session, const starg_mesh *mesh, json_t *results) {
+    cli_report_head(session, "starguard-verify", session->operands[0], mesh);
     cli_put(session, session->report, "passed", json_boolean(session->outcome == CLI_EXIT_DONE));
     cli_put(session, session->report, "results", json_incref(results));
 }
@@ -63,22 +141,32 @@ static void report(cli_session *session, json_t *results) {
 static starg_status run(cli_session *session, void *data) {
     (void)data;
     starg_status status = STARG_OK;
+    model given = {0};
+    decomposition found;
     json_t *list = json_array();
-    starg_guards **results = calloc(session->operand_count, sizeof(starg_guards *));
+    starg_result **results = calloc(session->operand_count, sizeof(starg_result *));
     if (results == NULL || list == NULL) {
         status = cli_fail_memory(session);
         goto done;
     }
+    CLI_TRY(read_model(session, &given));
     CLI_TRY(read_results(session, results));
-    for (size_t i = 1; i < session->operand_count; i++)
-        CLI_TRY(verify_one(session, session->mesh, session->operands[i], results[i], list));
+    CLI_TRY(find_decomposition(session, results, &found));
+    for (size_t i = 1; i < session->operand_count; i++) {
+        if (results[i]->guards != NULL)
+            CLI_TRY(verify_guards(session, &given, i, results[i], list));
+        else if (i == found.pieces)
+            CLI_TRY(verify_pieces(session, &given, found, results, list));
+    }
     if (session->report != NULL)
-        report(session, list);
+        report(session, given.mesh, list);
 done:
     for (size_t i = 1; results != NULL && i < session->operand_count; i++)
-        starg_guards_free(session->context, results[i]);
+        starg_result_free(session->context, results[i]);
     free(results);
     json_decref(list);
+    starg_mesh_free(given.mesh);
+    starg_tetmesh_free(given.tetmesh);
     return status;
 }
 
@@ -87,15 +175,23 @@ const cli_command cli_command_verify = {
     .usage = "MODEL RESULT... [options]",
     .summary = "check results by independent means",
     .description =
-        "Reads results of 'starguard guard' and checks what they claim about the model with code "
-        "that shares nothing with the code that made them: every guard is inside, sees as many "
-        "faces as it says, the coverage and the uncovered faces are right, and counts and bounds "
-        "agree. Slow and simple on purpose. Exit status 4 if a claim does not hold.",
+        "Checks what results claim about the model with code that shares nothing with the code "
+        "that "
+        "made them; signs are exact. The content of a file tells what it is. Exit status 4 if a "
+        "claim does not hold.\n"
+        "GUARDS.json, of 'starguard guard': every guard is inside, sees as many faces as it says, "
+        "the coverage and the uncovered faces are right, and counts and bounds agree.\n"
+        "PIECES.vtk and PIECES.json, of 'starguard decompose', in either order: the tetrahedra are "
+        "positive, conforming and labelled, fill the model and do not overlap; every piece is "
+        "connected, has the size and the contacts that are claimed, and is star-shaped about its "
+        "guard where it is called so. MODEL may then be a tetrahedral mesh. PIECES.vtk alone is "
+        "checked without its guards.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
                 "# several at once, for a script\n"
-                "starguard verify model.off ilp.json greedy.json --quiet && echo all good",
+                "starguard verify model.off ilp.json greedy.json --quiet && echo all good\n"
+                "# a star decomposition\n"
+                "starguard verify model.off pieces.json pieces.vtk",
     CLI_OPERANDS(2, SIZE_MAX),
-    .input = CLI_INPUT_MESH,
     .run = run,
 };

@@ -11,6 +11,8 @@
 
 static const uint8_t NEUTRAL[3] = {190, 195, 200};
 
+enum { HEAD = 1 << 16 }; /* bytes of a file that tell what it holds */
+
 starg_status cli_input_read(cli_session *session) {
     const cli_command *command = session->command;
     starg_status status = STARG_OK;
@@ -32,6 +34,54 @@ done:
 static bool has_ending(const char *name, const char *ending) {
     size_t size = strlen(name), tail = strlen(ending);
     return size > tail && strcasecmp(name + size - tail, ending) == 0;
+}
+
+/* All of standard input, or the head of a file; NULL with 0 bytes when it cannot be read. */
+static char *read_bytes(const char *name, size_t *size) {
+    bool whole = strcmp(name, "-") == 0;
+    FILE *file = whole ? stdin : fopen(name, "rb");
+    size_t capacity = HEAD, count = 0, got = 1;
+    char *bytes = file != NULL ? malloc(capacity) : NULL;
+    while (bytes != NULL && got > 0 && (whole || count < HEAD)) {
+        if (count == capacity) {
+            char *more = realloc(bytes, 2 * capacity);
+            if (more == NULL)
+                break;
+            bytes = more;
+            capacity *= 2;
+        }
+        got = fread(bytes + count, 1, capacity - count, file);
+        count += got;
+    }
+    if (file != NULL && !whole)
+        fclose(file);
+    *size = bytes != NULL ? count : 0;
+    return bytes;
+}
+
+/* The content tells a surface from tetrahedra. What cannot be opened is left to the reader of
+ * surfaces, which says why. */
+starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
+                            starg_tetmesh **tetmesh) {
+    starg_status status = STARG_OK;
+    bool whole = strcmp(file, "-") == 0;
+    size_t size;
+    char *bytes = read_bytes(file, &size);
+    bool tets = bytes != NULL && starg_tetmesh_recognized(bytes, size, file);
+    *mesh = NULL;
+    *tetmesh = NULL;
+    if (whole && bytes == NULL)
+        status = cli_fail_memory(session);
+    else if (tets)
+        status = whole ? starg_tetmesh_read_memory(session->context, bytes, size, "standard input",
+                                                   tetmesh)
+                       : starg_tetmesh_read(session->context, file, tetmesh);
+    else
+        status = whole
+                     ? starg_mesh_read_memory(session->context, bytes, size, "standard input", mesh)
+                     : starg_mesh_read(session->context, file, mesh);
+    free(bytes);
+    return status;
 }
 
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format) {

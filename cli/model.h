@@ -6,9 +6,14 @@
 #include "starguard/bits.h"
 #include "starguard/mesh.h"
 #include "starguard/solid.h"
+#include "starguard/tetra.h"
 
 /* Reads what the first operand names into the session, and begins the report with it. */
 starg_status cli_input_read(cli_session *session);
+
+/* Reads a surface or a tetrahedral mesh, told apart by the content; the other one is NULL. */
+starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
+                            starg_tetmesh **tetmesh);
 
 /* The format for an output mesh by its name's ending; OFF for "-". Errors: ARGUMENT. */
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);

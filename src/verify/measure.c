@@ -24,14 +24,38 @@ static void scaled_difference(const double a[3], const double b[3], int scale, d
         out[k] = ldexp(a[k] - b[k], scale);
 }
 
-double verify_area(const verify_surface *surface, size_t face, int scale) {
+double verify_volume(const double a[3], const double b[3], const double c[3], const double d[3],
+                     int scale) {
+    double u[3], v[3], w[3], n[3];
+    scaled_difference(b, a, scale, u);
+    scaled_difference(c, a, scale, v);
+    scaled_difference(d, a, scale, w);
+    cross(u, v, n);
+    return dot(n, w) / 6;
+}
+
+void verify_normal(const verify_surface *surface, size_t face, int scale, double n[3]) {
     const double *t[3];
-    double u[3], v[3], n[3];
+    double u[3], v[3];
     verify_corners(surface, face, t);
     scaled_difference(t[1], t[0], scale, u);
     scaled_difference(t[2], t[0], scale, v);
     cross(u, v, n);
+}
+
+double verify_area(const verify_surface *surface, size_t face, int scale) {
+    double n[3];
+    verify_normal(surface, face, scale, n);
     return 0.5 * sqrt(dot(n, n));
+}
+
+void verify_total_add(verify_total *total, double x) {
+    double sum = total->sum + x;
+    if (fabs(total->sum) >= fabs(x))
+        total->rest += (total->sum - sum) + x;
+    else
+        total->rest += (x - sum) + total->sum;
+    total->sum = sum;
 }
 
 /* Squared distance from the origin to the segment from a along e. */
@@ -60,15 +84,19 @@ static double squared_to_triangle(double a[3][3]) {
     return above ? fmin(least, height * (height / dot(n, n))) : least;
 }
 
+double verify_squared_distance(const verify_surface *surface, size_t face, const double p[3],
+                               int scale) {
+    const double *t[3];
+    double a[3][3];
+    verify_corners(surface, face, t);
+    for (int i = 0; i < 3; i++)
+        scaled_difference(t[i], p, scale, a[i]);
+    return squared_to_triangle(a);
+}
+
 double verify_distance(const verify_surface *surface, const double p[3], int scale) {
     double least = INFINITY;
-    for (size_t f = 0; f < surface->face_count; f++) {
-        const double *t[3];
-        double a[3][3];
-        verify_corners(surface, f, t);
-        for (int i = 0; i < 3; i++)
-            scaled_difference(t[i], p, scale, a[i]);
-        least = fmin(least, squared_to_triangle(a));
-    }
+    for (size_t f = 0; f < surface->face_count; f++)
+        least = fmin(least, verify_squared_distance(surface, f, p, scale));
     return ldexp(sqrt(least), -scale);
 }

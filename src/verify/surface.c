@@ -294,6 +294,33 @@ done:
     return status;
 }
 
+starg_status verify_surface_wrap(starg_context *context, const double *vertices,
+                                 size_t vertex_count, uint32_t *faces, size_t face_count,
+                                 verify_surface **out) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    *out = NULL;
+    STARG_NEW(context, STAGE, surface, 1);
+    *surface = (verify_surface){.context = context,
+                                .vertex_count = vertex_count,
+                                .face_count = face_count,
+                                .vertices = vertices,
+                                .faces = faces,
+                                .lower = {INFINITY, INFINITY, INFINITY},
+                                .upper = {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < 3 * face_count; i++)
+        for (size_t k = 0; k < 3; k++) {
+            double x = vertices[3 * (size_t)faces[i] + k];
+            surface->lower[k] = fmin(surface->lower[k], x);
+            surface->upper[k] = fmax(surface->upper[k], x);
+        }
+    *out = surface;
+done:
+    if (status != STARG_OK)
+        starg_release(context, faces);
+    return status;
+}
+
 void verify_surface_free(verify_surface *surface) {
     if (surface == NULL)
         return;

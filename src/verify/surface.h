@@ -14,13 +14,18 @@ typedef struct verify_surface {
     size_t vertex_count, face_count;
     const double *vertices;    /* of the mesh, which must outlive the surface */
     uint32_t *faces;           /* counter-clockwise seen from outside of the solid */
-    double lower[3], upper[3]; /* bounds of all vertices */
+    double lower[3], upper[3]; /* bounds of all vertices; of those of faces when wrapped */
 } verify_surface;
 
 /* Checks that every edge has two faces, which run along it in opposite ways, and turns shells.
  * Errors: MESH, MEMORY, CANCELLED. */
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
+/* The same for triangles of any kind, which are taken as they are: nothing is checked or turned.
+ * `faces` is a block of the context and taken over, also on failure. Errors: MEMORY. */
+starg_status verify_surface_wrap(starg_context *context, const double *vertices,
+                                 size_t vertex_count, uint32_t *faces, size_t face_count,
+                                 verify_surface **out);
 void verify_surface_free(verify_surface *surface);
 
 /* The corners of a face. */

@@ -1,0 +1,224 @@
+/* Is the boundary of a decomposition the surface of the model?
+ *
+ * An outer face must be a face of the model, corner for corner, or have its corners on one within
+ * a billionth of the diagonal (which leaves room for the rounding of points that were put on it)
+ * and look the same way. The model's face is searched near the outer face's centre.
+ *
+ * Why that is enough, with the area of each shell: the boundary is closed (verify/facets.c) and
+ * lies on the model, so on each shell of it, it is a whole multiple of that shell: what covers one
+ * face n times must cover its neighbours as often. All faces look the way of the model, so areas
+ * add up without cancelling, and the area says that the multiple is one.
+ *
+ * Cost: O(n log n). Signs do not depend on tolerances here; only "on" does. */
+#include "verify/boundary.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "verify/measure.h"
+#include "verify/tree.h"
+
+static const char STAGE[] = "verify";
+static const double TOLERANCE = 1e-9; /* relative to the diagonal, and of areas */
+
+enum { CANCEL_STEP = 256 };
+
+double verify_rounding(const verify_surface *surface) {
+    double size = 0;
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, fmax(fabs(surface->lower[k]), fabs(surface->upper[k])));
+    return size * 0x1p-50;
+}
+
+static double diagonal_of(const verify_surface *surface) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum = hypot(sum, surface->upper[k] - surface->lower[k]);
+    return sum;
+}
+
+/* ---- one face ---- */
+
+typedef enum place { OFF = 0, TURNED = 1, ON = 2, EQUAL = 3 } place;
+
+typedef struct matcher {
+    const verify_surface *outer, *model;
+    const verify_tree *tree;
+    int scale;
+    double near;  /* how far "on" reaches, in the model's unit */
+    double close; /* the same squared, in scaled units         */
+
+    size_t face; /* of the boundary, being placed; and where it is so far */
+    place best;
+    uint32_t on;
+} matcher;
+
+static bool same_point(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+static bool is_equal(const double *const s[3], const double *const t[3]) {
+    for (int i = 0; i < 3; i++)
+        if (same_point(s[0], t[i]) && same_point(s[1], t[(i + 1) % 3]) &&
+            same_point(s[2], t[(i + 2) % 3]))
+            return true;
+    return false;
+}
+
+/* Sum of the sides of a triangle's box, scaled: no edge is longer. */
+static double extent_of(const double *const t[3], int scale) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += fmax(fmax(t[0][k], t[1][k]), t[2][k]) - fmin(fmin(t[0][k], t[1][k]), t[2][k]);
+    return ldexp(sum, scale);
+}
+
+/* Does the outer face look the way of the model's? One so thin that its corners' rounding may have
+ * turned it looks any way. */
+static bool looks_alike(const matcher *own, uint32_t face, const double *const s[3]) {
+    double n[3], m[3], along = 0, length = 0;
+    verify_normal(own->outer, own->face, own->scale, n);
+    verify_normal(own->model, face, own->scale, m);
+    for (int k = 0; k < 3; k++) {
+        along += n[k] * m[k];
+        length = hypot(length, n[k]);
+    }
+    return along > 0 || length <= 8 * ldexp(own->near, own->scale) * extent_of(s, own->scale);
+}
+
+static bool consider(void *data, uint32_t face) {
+    matcher *own = data;
+    const double *s[3], *t[3];
+    verify_corners(own->outer, own->face, s);
+    verify_corners(own->model, face, t);
+    place found = is_equal(s, t) ? EQUAL : ON;
+    for (int i = 0; i < 3 && found == ON; i++)
+        if (!(verify_squared_distance(own->model, face, s[i], own->scale) <= own->close))
+            found = OFF;
+    if (found == ON && !looks_alike(own, face, s))
+        found = TURNED;
+    if (found > own->best) {
+        own->best = found;
+        own->on = face;
+    }
+    return found != EQUAL;
+}
+
+static void find_place(matcher *own, size_t face) {
+    const double *s[3];
+    double lower[3], upper[3];
+    verify_corners(own->outer, face, s);
+    for (int k = 0; k < 3; k++) {
+        double center = s[0][k] / 3 + s[1][k] / 3 + s[2][k] / 3;
+        lower[k] = center - own->near;
+        upper[k] = center + own->near;
+    }
+    own->face = face;
+    own->best = OFF;
+    verify_tree_visit(own->tree, lower, upper, consider, own);
+}
+
+/* ---- shells ---- */
+
+uint32_t verify_shell_of(uint32_t *parent, uint32_t v) {
+    while (parent[v] != v) {
+        parent[v] = parent[parent[v]];
+        v = parent[v];
+    }
+    return v;
+}
+
+starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent) {
+    starg_status status = STARG_OK;
+    STARG_NEW(surface->context, STAGE, *parent, surface->vertex_count);
+    for (size_t v = 0; v < surface->vertex_count; v++)
+        (*parent)[v] = (uint32_t)v;
+    for (size_t i = 0; i < 3 * surface->face_count; i++) {
+        uint32_t a = verify_shell_of(*parent, surface->faces[i]);
+        uint32_t b = verify_shell_of(*parent, surface->faces[i - i % 3]);
+        (*parent)[a > b ? a : b] = a > b ? b : a;
+    }
+done:
+    return status;
+}
+
+/* Areas of the model's shells, each kept at its root vertex. */
+typedef struct shell {
+    double area, covered, slack;
+} shell;
+
+typedef struct shells {
+    uint32_t *parent;
+    shell *of;
+} shells;
+
+static shell *shell_at(const shells *all, const verify_surface *model, size_t face) {
+    return &all->of[verify_shell_of(all->parent, model->faces[3 * face])];
+}
+
+static void compare_shells(const shells *all, const verify_surface *model, verify_match *match) {
+    for (size_t f = 0; f < model->face_count; f++) {
+        shell *own = shell_at(all, model, f);
+        if (own->area < 0)
+            continue; /* counted before */
+        bool even = fabs(own->covered - own->area) <= TOLERANCE * own->area + own->slack;
+        match->shells++;
+        match->area += own->covered;
+        match->model_area += own->area;
+        if (!even && match->uneven++ == 0) {
+            match->shell = f;
+            match->shell_area = own->area;
+            match->shell_covered = own->covered;
+        }
+        own->area = -1;
+    }
+}
+
+/* ---- all faces ---- */
+
+static void take_down(const matcher *own, const shells *all, double rounding, verify_match *match) {
+    const double *s[3];
+    verify_corners(own->outer, own->face, s);
+    match->equal += own->best == EQUAL;
+    if (own->best == OFF && match->off++ == 0)
+        match->first_off = own->face;
+    if (own->best == TURNED && match->turned++ == 0)
+        match->first_turned = own->face;
+    if (own->best == OFF || own->best == TURNED)
+        return;
+    shell *under = shell_at(all, own->model, own->on);
+    under->covered += verify_area(own->outer, own->face, own->scale);
+    if (own->best == ON)
+        under->slack += ldexp(rounding, own->scale) * extent_of(s, own->scale);
+}
+
+starg_status verify_match_boundary(const verify_pieces *pieces, const verify_surface *model,
+                                   verify_match *match) {
+    starg_status status = STARG_OK;
+    starg_context *context = pieces->context;
+    double rounding = verify_rounding(model);
+    matcher own = {.outer = pieces->outer, .model = model, .scale = pieces->scale};
+    verify_tree *tree = NULL;
+    shells all = {0};
+    *match = (verify_match){0};
+    own.near = TOLERANCE * diagonal_of(model) + rounding;
+    own.close = pow(ldexp(own.near, own.scale), 2);
+    STARG_TRY(verify_tree_create(model, &tree));
+    own.tree = tree;
+    STARG_TRY(verify_find_shells(model, &all.parent));
+    STARG_NEW_ZERO(context, STAGE, all.of, model->vertex_count);
+    for (size_t f = 0; f < model->face_count; f++)
+        shell_at(&all, model, f)->area += verify_area(model, f, own.scale);
+    for (size_t f = 0; f < own.outer->face_count; f++) {
+        if (f % CANCEL_STEP == 0)
+            STARG_TRY(starg_check_cancel(context, STAGE));
+        find_place(&own, f);
+        take_down(&own, &all, rounding, match);
+    }
+    compare_shells(&all, model, match);
+done:
+    starg_release(context, all.parent);
+    starg_release(context, all.of);
+    verify_tree_free(tree);
+    return status;
+}

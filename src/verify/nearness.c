@@ -1,0 +1,171 @@
+/* A boundary that is only near the model: how near, and does it bound its tetrahedra once? Points
+ * of up to 5,000 outer faces (drawn at random when there are more) are held against the model's
+ * surface: corners, centre, and one at random of each. The model need not be closed.
+ *
+ * Overlap: a point lies in as many tetrahedra as the boundary winds around it (verify/facets.c,
+ * when all are positive). That number changes only across the boundary. So no two outer faces may
+ * pass through one another, and for each shell it must be one at a point just behind it, in a
+ * tetrahedron of that shell. Exact; faces that cross along edges and corners alone, none of them
+ * strictly on both sides of another, are not found as crossing.
+ *
+ * Cost: O(n log n), and O(n) for each shell. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/rng.h"
+#include "verify/boundary.h"
+#include "verify/signs.h"
+#include "verify/tree.h"
+
+static const char STAGE[] = "verify";
+
+enum { MOST_FACES = 5000, POINTS = 5, RNG_STAGE = 0x6e656172, CANCEL_STEP = 256 };
+
+/* ---- distance ---- */
+
+/* Corners, centre, and a random point of a face. */
+static void sample_face(const double *const t[3], starg_rng *rng, double points[POINTS][3]) {
+    double u = starg_rng_unit(rng), v = starg_rng_unit(rng);
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 3; i++)
+            points[i][k] = t[i][k];
+        points[3][k] = t[0][k] / 3 + t[1][k] / 3 + t[2][k] / 3;
+        points[4][k] = t[0][k] + u * (t[1][k] - t[0][k]) + v * (t[2][k] - t[0][k]);
+    }
+}
+
+static starg_status measure_distance(const verify_pieces *pieces, const verify_surface *model,
+                                     verify_nearness *nearness) {
+    starg_status status = STARG_OK;
+    const verify_surface *outer = pieces->outer;
+    verify_tree *tree = NULL;
+    bool all = outer->face_count <= MOST_FACES;
+    size_t count = all ? outer->face_count : MOST_FACES;
+    STARG_TRY(verify_tree_create(model, &tree));
+    for (size_t i = 0; i < count; i++) {
+        starg_rng rng = starg_rng_make(0, RNG_STAGE, i);
+        size_t face = all ? i : (size_t)starg_rng_below(&rng, outer->face_count);
+        const double *t[3];
+        double points[POINTS][3];
+        verify_corners(outer, face, t);
+        sample_face(t, &rng, points);
+        for (int j = 0; j < POINTS; j++, nearness->points++) {
+            double distance = verify_tree_distance(tree, points[j], pieces->scale);
+            if (distance > nearness->farthest) {
+                nearness->farthest = distance;
+                nearness->face = face;
+            }
+        }
+        if (i % CANCEL_STEP == 0)
+            STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+    }
+done:
+    verify_tree_free(tree);
+    return status;
+}
+
+/* ---- crossings ---- */
+
+typedef struct crossing {
+    const verify_surface *outer;
+    size_t face;
+    verify_nearness *nearness;
+} crossing;
+
+static bool cross_face(void *data, uint32_t other) {
+    const crossing *own = data;
+    const double *s[3], *t[3];
+    if (other <= own->face)
+        return true;
+    verify_corners(own->outer, own->face, s);
+    verify_corners(own->outer, other, t);
+    if (verify_cross(s, t) && own->nearness->crossings++ == 0) {
+        own->nearness->first = own->face;
+        own->nearness->second = other;
+    }
+    return true;
+}
+
+static starg_status find_crossings(const verify_pieces *pieces, verify_nearness *nearness) {
+    starg_status status = STARG_OK;
+    const verify_surface *outer = pieces->outer;
+    verify_tree *tree = NULL;
+    STARG_TRY(verify_tree_create(outer, &tree));
+    for (size_t f = 0; f < outer->face_count; f++) {
+        crossing own = {outer, f, nearness};
+        const double *t[3];
+        double lower[3], upper[3];
+        verify_corners(outer, f, t);
+        for (int k = 0; k < 3; k++) {
+            lower[k] = fmin(fmin(t[0][k], t[1][k]), t[2][k]);
+            upper[k] = fmax(fmax(t[0][k], t[1][k]), t[2][k]);
+        }
+        verify_tree_visit(tree, lower, upper, cross_face, &own);
+        if (f % CANCEL_STEP == 0)
+            STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+    }
+done:
+    verify_tree_free(tree);
+    return status;
+}
+
+/* ---- winding ---- */
+
+/* The centre of a tetrahedron; false when rounding puts it on a side or beyond. */
+static bool center_of(const starg_pieces_mesh *mesh, uint32_t tetrahedron, double center[3]) {
+    const uint32_t *corners = mesh->tetrahedra + 4 * (size_t)tetrahedron;
+    for (int k = 0; k < 3; k++) {
+        center[k] = 0;
+        for (int i = 0; i < 4; i++)
+            center[k] += verify_point(mesh, corners[i])[k] / 4;
+    }
+    for (uint32_t i = 0; i < 4; i++) {
+        uint32_t side[3];
+        verify_facet_corners(mesh->tetrahedra, 4 * tetrahedron + i, side);
+        if (verify_side(verify_point(mesh, side[0]), verify_point(mesh, side[1]),
+                        verify_point(mesh, side[2]), center) <= 0)
+            return false;
+    }
+    return true;
+}
+
+static starg_status wind_shells(const verify_pieces *pieces, verify_nearness *nearness) {
+    starg_status status = STARG_OK;
+    const verify_surface *outer = pieces->outer;
+    uint32_t *parent = NULL;
+    uint8_t *done_with = NULL;
+    STARG_TRY(verify_find_shells(outer, &parent));
+    STARG_NEW_ZERO(pieces->context, STAGE, done_with, outer->vertex_count);
+    for (size_t f = 0; f < outer->face_count; f++) {
+        uint32_t shell = verify_shell_of(parent, outer->faces[3 * f]);
+        double center[3];
+        bool on_surface;
+        if (done_with[shell] || !center_of(pieces->mesh, pieces->outer_facets[f] / 4, center))
+            continue;
+        done_with[shell] = 1;
+        nearness->shells++;
+        int winding = verify_winding(outer, NULL, outer->face_count, center, &on_surface);
+        if ((on_surface || winding != 1) && nearness->multiple++ == 0)
+            nearness->shell = f;
+        STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+    }
+done:
+    starg_release(pieces->context, parent);
+    starg_release(pieces->context, done_with);
+    return status;
+}
+
+starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
+                                     verify_nearness *nearness) {
+    starg_status status = STARG_OK;
+    *nearness = (verify_nearness){0};
+    STARG_TRY(measure_distance(pieces, model, nearness));
+    STARG_TRY(find_crossings(pieces, nearness));
+    STARG_TRY(wind_shells(pieces, nearness));
+done:
+    return status;
+}

@@ -1,0 +1,124 @@
+/* A decomposition taken apart for verification, and what is found out about it. */
+#ifndef STARG_VERIFY_PIECES_H
+#define STARG_VERIFY_PIECES_H
+
+#include "starguard/verify.h"
+#include "verify/facets.h"
+#include "verify/surface.h"
+
+/* Labels that are not 0 to pieces - 1, each in use. */
+typedef struct verify_labels {
+    bool good;
+    size_t tetrahedron;  /* the first one with a wrong label, or VERIFY_NONE */
+    size_t empty, first; /* labels of no tetrahedron                         */
+} verify_labels;
+
+typedef struct verify_pieces {
+    starg_context *context;
+    const starg_pieces_mesh *mesh;
+    int scale; /* of the model (verify/measure.h)  */
+    verify_facets *facets;
+    verify_surface *outer;  /* the boundary of all tetrahedra   */
+    uint32_t *outer_facets; /* of each face of it               */
+
+    verify_labels labels;
+    size_t piece_count; /* of the report or, without one, as many as there are labels */
+    /* The rest only with good labels. A wall is a face of a piece's boundary; those of piece p are
+     * wall_start[p] to wall_start[p + 1] - 1. */
+    size_t *sizes; /* tetrahedra of each piece */
+    verify_surface *walls;
+    uint32_t *wall_facets;
+    size_t *wall_start;
+} verify_pieces;
+
+/* `report` may be NULL. Errors: MEMORY, CANCELLED. */
+starg_status verify_pieces_create(starg_context *context, const starg_pieces_mesh *mesh,
+                                  const starg_pieces_report *report, verify_pieces **out);
+void verify_pieces_free(verify_pieces *pieces);
+
+static inline const double *verify_point(const starg_pieces_mesh *mesh, uint32_t vertex) {
+    return mesh->vertices + 3 * (size_t)vertex;
+}
+
+/* The piece on the other side of a wall, or VERIFY_NONE. */
+static inline uint32_t verify_beyond(const verify_pieces *pieces, size_t wall) {
+    uint32_t mate = pieces->facets->mate[pieces->wall_facets[wall]];
+    return mate == VERIFY_NONE ? VERIFY_NONE : (uint32_t)pieces->mesh->labels[mate / 4];
+}
+
+/* ---- the boundary and the model ---- */
+
+typedef struct verify_match {
+    size_t equal;                     /* outer faces that are faces of the model as they are */
+    size_t off, first_off;            /* that do not lie on the model                        */
+    size_t turned, first_turned;      /* that lie on it the wrong way round                */
+    size_t shells, uneven;            /* of the model; not covered once                      */
+    size_t shell;                     /* a face of the first of these                        */
+    double shell_area, shell_covered; /* of it, in scaled units                       */
+    double area, model_area;          /* of all, in scaled units                      */
+} verify_match;
+
+/* Lays the outer faces on those of the model. Errors: MEMORY, CANCELLED. */
+starg_status verify_match_boundary(const verify_pieces *pieces, const verify_surface *model,
+                                   verify_match *match);
+
+typedef struct verify_nearness {
+    double farthest;         /* distance found from the boundary to the model */
+    size_t face;             /* outer face where it is                        */
+    size_t points;           /* looked at                                     */
+    size_t crossings;        /* pairs of outer faces that cross               */
+    size_t first, second;    /* the first pair                                */
+    size_t shells, multiple; /* shells; those about whose inside the boundary does not wind
+                                once                                          */
+    size_t shell;            /* an outer face of the first of these           */
+} verify_nearness;
+
+/* How far is the boundary from the model, and does it bound its tetrahedra once? Errors: MEMORY,
+ * CANCELLED. */
+starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
+                                     verify_nearness *nearness);
+
+/* ---- star-shapedness ---- */
+
+typedef enum verify_proof {
+    VERIFY_PROVEN = 0, /* the piece is star-shaped about its guard               */
+    VERIFY_BEHIND = 1, /* the guard is not strictly on the inner side of a wall  */
+    VERIFY_WOUND = 2   /* the walls do not wind once around the guard            */
+} verify_proof;
+
+typedef struct verify_certificate {
+    verify_proof proof;
+    size_t wall; /* BEHIND: the first such wall */
+    int winding; /* WOUND                       */
+} verify_certificate;
+
+/* The certificate of each piece (piece_count of them). Errors: CANCELLED. */
+starg_status verify_certify(const verify_pieces *pieces, const starg_pieces_report *report,
+                            verify_certificate *certificates);
+
+/* ---- contacts ---- */
+
+typedef struct verify_contacts {
+    size_t wrong;           /* contacts listed wrongly, twice or not at all        */
+    uint32_t first, second; /* the first of them                                   */
+    double listed, found;   /* its areas; 0: not listed, or no contact             */
+} verify_contacts;
+
+/* Holds the listed contacts against the walls. Errors: MEMORY. */
+starg_status verify_compare_contacts(const verify_pieces *pieces, const starg_pieces_report *report,
+                                     verify_contacts *contacts);
+
+/* ---- vertices seen ---- */
+
+typedef struct verify_seen {
+    size_t pairs;  /* of a piece and a vertex of it                            */
+    size_t proven; /* of them in star-shaped pieces, where all are seen        */
+    size_t looked; /* lines of sight that were tested among the other pairs    */
+    size_t seen;   /* of them free                                             */
+} verify_seen;
+
+/* Which vertices of its piece does each guard see past the boundary? Errors: MEMORY, CANCELLED. */
+starg_status verify_find_seen(const verify_pieces *pieces, const starg_pieces_report *report,
+                              const verify_certificate *certificates, verify_seen *seen);
+
+#endif

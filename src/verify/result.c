@@ -1,0 +1,58 @@
+/* Which result does a file hold? The content tells. */
+#include <jansson.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "starguard/verify.h"
+
+static const char STAGE[] = "result file";
+
+/* Is it JSON whose "format" is this? */
+static bool has_format(const char *bytes, size_t size, const char *format) {
+    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, NULL);
+    const char *found = json_string_value(json_object_get(root, "format"));
+    bool same = found != NULL && strcmp(found, format) == 0;
+    json_decref(root);
+    return same;
+}
+
+static bool is_vtk(const char *bytes, size_t size) {
+    static const char magic[] = "# vtk";
+    return size >= sizeof magic - 1 && memcmp(bytes, magic, sizeof magic - 1) == 0;
+}
+
+static starg_status read_bytes(starg_context *context, const char *bytes, size_t size,
+                               const char *name, starg_result *result) {
+    if (is_vtk(bytes, size))
+        return starg_pieces_mesh_read_memory(context, bytes, size, name, &result->pieces);
+    if (has_format(bytes, size, "starguard-pieces"))
+        return starg_pieces_report_read_memory(context, bytes, size, name, &result->report);
+    return starg_guards_read_memory(context, bytes, size, name, &result->guards);
+}
+
+starg_status starg_result_read(starg_context *context, const char *path, starg_result **out) {
+    starg_status status = STARG_OK;
+    starg_result *result = NULL;
+    char *bytes = NULL;
+    size_t size;
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, result, 1);
+    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    STARG_TRY(read_bytes(context, bytes, size, path, result));
+    *out = result;
+done:
+    starg_release(context, bytes);
+    if (status != STARG_OK)
+        starg_result_free(context, result);
+    return status;
+}
+
+void starg_result_free(starg_context *context, starg_result *result) {
+    if (result == NULL)
+        return;
+    starg_guards_free(context, result->guards);
+    starg_pieces_mesh_free(context, result->pieces);
+    starg_pieces_report_free(context, result->report);
+    starg_release(context, result);
+}

@@ -1,0 +1,27 @@
+/* Boxes around the faces of a surface: what is near a point, near a box, or in the way. */
+#ifndef STARG_VERIFY_TREE_H
+#define STARG_VERIFY_TREE_H
+
+#include "verify/surface.h"
+
+typedef struct verify_tree verify_tree;
+
+/* `surface` must outlive the tree. Errors: MEMORY. */
+starg_status verify_tree_create(const verify_surface *surface, verify_tree **out);
+void verify_tree_free(verify_tree *tree);
+
+/* Called with a face; false ends the visit. */
+typedef bool verify_visit(void *data, uint32_t face);
+
+/* Visits every face whose bounds meet a closed box, in an order that depends on the surface
+ * alone. */
+void verify_tree_visit(const verify_tree *tree, const double lower[3], const double upper[3],
+                       verify_visit *visit, void *data);
+
+/* Distance from p to the nearest face, rounded, in the model's own unit; infinite without faces. */
+double verify_tree_distance(const verify_tree *tree, const double p[3], int scale);
+
+/* Does a face meet [p, q), where p lies on none? Exact. */
+bool verify_tree_blocks(const verify_tree *tree, const double p[3], const double q[3]);
+
+#endif
