@@ -19,13 +19,14 @@ static void tell_claims(cli_session *session, const starg_verdict *verdict) {
     }
 }
 
-/* Tells a verdict and adds it to the results; its entry there, for more keys. */
-static json_t *tell_verdict(cli_session *session, const char *file, const starg_verdict *verdict,
-                            json_t *results) {
+/* Tells a verdict and adds it to the results; `result` holds the keys that only its kind has, and
+ * is taken over. */
+static void tell_verdict(cli_session *session, const char *file, const starg_verdict *verdict,
+                         json_t *result, json_t *results) {
     cli_say(session, "%s\n", file);
     tell_claims(session, verdict);
     cli_say(session, "  %s\n", verdict->passed ? "verified" : "NOT verified");
-    json_t *claims = json_array(), *result = json_object();
+    json_t *claims = json_array();
     for (size_t i = 0; i < verdict->count; i++)
         cli_append(session, claims,
                    json_pack("{s:o, s:b}", "claim", cli_json_text(verdict->claims[i].text), "holds",
@@ -36,7 +37,6 @@ static json_t *tell_verdict(cli_session *session, const char *file, const starg_
     cli_append(session, results, result);
     if (!verdict->passed)
         session->outcome = CLI_EXIT_FAILED;
-    return result;
 }
 
 /* ---- input ---- */
@@ -104,7 +104,7 @@ static starg_status verify_guards(cli_session *session, const model *given, size
         starg_verify_guards(session->context, given->mesh, result->guards, &verdict);
     if (status != STARG_OK)
         return status;
-    tell_verdict(session, session->operands[operand], verdict, list);
+    tell_verdict(session, session->operands[operand], verdict, json_object(), list);
     starg_verdict_free(session->context, verdict);
     return STARG_OK;
 }
@@ -121,13 +121,14 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
             : starg_verify_pieces(session->context, given->mesh, pieces, report, &verdict);
     if (status != STARG_OK)
         return status;
-    json_t *entry = tell_verdict(session, session->operands[found.pieces], verdict, list);
+    json_t *entry = json_object();
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)pieces->count));
     if (report != NULL) {
         cli_put(session, entry, "report", cli_json_text(session->operands[found.report]));
         cli_put(session, entry, "pieces", json_integer((json_int_t)report->piece_count));
         cli_put(session, entry, "strictly_star", json_integer((json_int_t)report->strictly_star));
     }
+    tell_verdict(session, session->operands[found.pieces], verdict, entry, list);
     starg_verdict_free(session->context, verdict);
     return STARG_OK;
 }
