@@ -1,0 +1,157 @@
+"""verify with star decompositions: which file is which, exit status, what is printed."""
+import json
+import os
+import struct
+
+import support
+from support import OPEN, TETRAHEDRON
+
+POINTS = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (.25, .25, .25)]
+# The faces of the model, coned from its middle; two tetrahedra make a piece.
+CELLS = [(0, 1, 2, 4), (0, 3, 1, 4), (0, 2, 3, 4), (1, 3, 2, 4)]
+LABELS = [0, 0, 1, 1]
+
+
+def vtk(points=POINTS, cells=CELLS, labels=LABELS, binary=False):
+    """A PIECES.vtk, as bytes."""
+    def numbers(values, code):
+        if binary:
+            return struct.pack(f">{len(values)}{code}", *values)
+        return (" ".join(map(repr, values)) + "\n").encode()
+    head = "# vtk DataFile Version 3.0\npieces\n" + ("BINARY" if binary else "ASCII")
+    return b"".join([
+        f"{head}\nDATASET UNSTRUCTURED_GRID\nPOINTS {len(points)} double\n".encode(),
+        numbers([float(x) for p in points for x in p], "d"),
+        f"\nCELLS {len(cells)} {5 * len(cells)}\n".encode(),
+        numbers([i for c in cells for i in (4, *c)], "i"),
+        f"\nCELL_TYPES {len(cells)}\n".encode(), numbers([10] * len(cells), "i"),
+        f"\nCELL_DATA {len(cells)}\nSCALARS piece int 1\nLOOKUP_TABLE default\n".encode(),
+        numbers(labels, "i")])
+
+
+def middle(*corners):
+    return [sum(POINTS[i][k] for i in corners) / 3 for k in range(3)]
+
+
+def area(a, b, c):
+    u, v = ([q - p for p, q in zip(POINTS[a], POINTS[i])] for i in (b, c))
+    return sum((u[i] * v[j] - u[j] * v[i]) ** 2 for i, j in ((0, 1), (1, 2), (2, 0))) ** .5 / 2
+
+
+def report(**changes):
+    """The PIECES.json that belongs to it: guards amid the face that the two tetrahedra share."""
+    shared = [(0, 2, 4), (1, 2, 4), (0, 3, 4), (1, 3, 4)]  # between the pieces
+    value = {
+        "format": "starguard-pieces", "version": 1, "mode": "strict", "tetrahedra": 4,
+        "pieces": [
+            {"guard": middle(0, 1, 4), "tetrahedra": 2, "volume": 1 / 12, "star": True},
+            {"guard": middle(2, 3, 4), "tetrahedra": 2, "volume": 1 / 12, "star": True}],
+        "strictly_star": 2, "visible_vertices": 1,
+        "adjacency": [[0, 1, sum(area(*f) for f in shared)]]}
+    value.update(changes)
+    return json.dumps(value)
+
+
+class Pieces(support.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("m.off", TETRAHEDRON)
+        self.write("p.vtk", vtk())
+        self.write("p.json", report())
+
+    def failed(self, *words):
+        found = self.run_json("verify", *words, status=4)
+        self.assertIs(found["passed"], False)
+        return [c["claim"] for r in found["results"] for c in r["claims"] if not c["holds"]]
+
+    def test_passes(self):
+        self.write("b.vtk", vtk(binary=True))
+        for words in [("p.json", "p.vtk"), ("p.vtk", "p.json"), ("b.vtk", "p.json")]:
+            out, err = self.run_text("verify", "m.off", *words)
+            self.assertEqual(err, "")
+            self.assertIn("2 of 2, exactly proven", out)
+            self.assertTrue(out.endswith("  verified\n"))
+        found = self.run_json("verify", "m.off", "p.json", "p.vtk")
+        result = found["results"][0]
+        self.assertIs(found["passed"], True)
+        self.assertEqual(len(found["results"]), 1)
+        self.assertEqual([result[k] for k in ("file", "report", "tetrahedra", "pieces",
+                                              "strictly_star")], ["p.vtk", "p.json", 4, 2, 2])
+        self.assertEqual(self.run_text("verify", "m.off", "p.json", "p.vtk", "--quiet"), ("", ""))
+
+    def test_standard_input(self):
+        self.run_text("verify", "m.off", "-", "p.vtk", input=report().encode())
+        self.run_text("verify", "m.off", "p.json", "-", input=vtk())
+        self.run_text("verify", "-", "p.json", "p.vtk", input=TETRAHEDRON.encode())
+
+    def test_beside_guards(self):
+        self.run_text("guard", "m.off", "-o", "g.json", "--count", "20", "--quiet")
+        found = self.run_json("verify", "m.off", "p.json", "g.json", "p.vtk")
+        self.assertEqual([r["file"] for r in found["results"]], ["g.json", "p.vtk"])
+
+    def test_tetrahedral_model(self):
+        self.write("m.vtk", vtk(binary=True))
+        self.run_text("verify", "m.vtk", "p.json", "p.vtk")
+        self.write("m.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n")
+        self.write("m.ele", "1 4 0\n0 0 1 2 3\n")
+        self.run_text("verify", "m.ele", "p.json", "p.vtk")
+        self.write("other.vtk", vtk(cells=CELLS[:3], labels=[0, 0, 0]))
+        self.assertTrue(self.failed("other.vtk", "p.json", "p.vtk"))
+
+    def test_fails(self):
+        pieces = json.loads(report())["pieces"]
+        moved = [dict(pieces[0], guard=[.25, .25, .25]), pieces[1]]
+        for name, says, changes in [
+                ("guard", "first piece 0, whose guard is not strictly", {"pieces": moved}),
+                ("count", "tetrahedra (the file holds 4)", {"tetrahedra": 5}),
+                ("star", "1 pieces are strictly", {"strictly_star": 1}),
+                ("contact", "contacts", {"adjacency": []}),
+                ("seen", "vertices", {"visible_vertices": .5})]:
+            self.write("bad.json", report(**changes))
+            self.assertTrue(any(says in c for c in self.failed("m.off", "bad.json", "p.vtk")), name)
+            out, _ = self.run_text("verify", "m.off", "bad.json", "p.vtk", status=4)
+            self.assertIn("NOT verified", out)
+        self.write("bad.vtk", vtk(cells=CELLS[:3] + [(1, 2, 3, 4)]))
+        out, err = self.run_text("verify", "m.off", "p.json", "bad.vtk", "--quiet", status=4)
+        self.assertEqual(out, "")
+        self.assertIn("inverted or flat, first tetrahedron 3 of piece 1", err)
+
+    def test_approximated(self):
+        self.write("near.json", report(surface="approximated", distance=.01))
+        self.write("open.off", OPEN)
+        self.run_text("verify", "m.off", "near.json", "p.vtk")
+        self.assertIn("away", self.failed("open.off", "near.json", "p.vtk")[0])
+        self.run_text("verify", "open.off", "p.json", "p.vtk", status=2)
+
+    def test_files_that_do_not_go_together(self):
+        out, err = self.run_text("verify", "m.off", "p.vtk")
+        self.assertIn("without its PIECES.json", err)
+        self.assertIn("verified", out)
+        self.assertIn("name the PIECES.vtk",
+                      self.run_text("verify", "m.off", "p.json", status=2)[1])
+        self.usage_error("verify", "m.off", "p.vtk", "p.json", "p.vtk", says="one at a time")
+
+    def test_unreadable(self):
+        self.write("short.vtk", vtk()[:200])
+        self.write("short.bin.vtk", vtk(binary=True)[:300])
+        self.write("huge.vtk", vtk().replace(b"CELLS 4 20", b"CELLS 100000000 500000000"))
+        self.write("nan.vtk", vtk().replace(b"0.25", b"nan", 1))
+        self.write("text.vtk", "some text")
+        self.write("bad.json", report(version=2))
+        for name in ["short.vtk", "short.bin.vtk", "huge.vtk", "nan.vtk", "text.vtk", "none.vtk"]:
+            _, err = self.run_text("verify", "m.off", "p.json", name, status=2)
+            self.assertIn(name, err)
+        self.run_text("verify", "m.off", "bad.json", "p.vtk", status=2)
+        self.run_text("verify", "none.off", "p.json", "p.vtk", status=2)
+
+    def test_keys_are_documented(self):
+        with open(os.path.join(os.path.dirname(__file__), "../../docs/formats.md"),
+                  encoding="utf-8") as file:
+            text = file.read()
+        result = self.run_json("verify", "m.off", "p.json", "p.vtk")["results"][0]
+        for key in list(json.loads(report())) + list(result):
+            self.assertRegex(text, rf"`[^`]*\b{key}\b[^`]*`")
+
+
+if __name__ == "__main__":
+    support.main()
