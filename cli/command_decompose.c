@@ -62,8 +62,9 @@ static const cli_option options[] = {
      .offset = offsetof(values, density),
      .value = "T",
      .high = 1e6,
-     .help = "Tetrahedra to aim at for each vertex of the surface; 0: as few as can be. Default "
-             "17.5, as in the paper."},
+     .help =
+         "Tetrahedra to begin with for each vertex of the surface; 0: as few as can be. Default "
+         "0 for strict, which makes its own in the end, and 17.5 for paper, as in the paper."},
     {.name = "max-pieces",
      .kind = CLI_COUNT,
      .offset = offsetof(values, max_pieces),
@@ -128,37 +129,19 @@ static starg_status read_subject(cli_session *session, const values *v, subject 
 
 /* ---- cutting ---- */
 
-/* A surface with holes is filled with what it winds around. */
-static starg_status cut_open_surface(cli_session *session, const subject *s,
-                                     const starg_decompose_options *wanted,
-                                     starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_tetmesh *mesh = NULL;
-    starg_tetra_report how;
-    cli_notice(session,
-               "%s; isosurface stuffing fills what the surface winds around, and closes holes of "
-               "its own accord",
-               starg_context_error(session->context)->message);
-    CLI_TRY(
-        starg_tetmesh_from_open_mesh(session->context, s->surface, &wanted->tetra, &how, &mesh));
-    CLI_TRY(starg_decompose_tetmesh(session->context, mesh, wanted, out));
-    (*out)->model_vertices = starg_mesh_vertex_count(s->surface);
-    (*out)->model_faces = starg_mesh_face_count(s->surface);
-    (*out)->model_tetrahedra = 0;
-    (*out)->tetra = how;
-done:
-    starg_tetmesh_free(mesh);
-    return status;
-}
-
 static starg_status cut(cli_session *session, const subject *s,
                         const starg_decompose_options *wanted, starg_decomposition **out) {
     starg_solid *solid = NULL;
     if (s->tets != NULL)
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
     starg_status status = starg_solid_create(session->context, s->surface, &solid);
-    if (status == STARG_ERROR_MESH)
-        return cut_open_surface(session, s, wanted, out);
+    if (status == STARG_ERROR_MESH) { /* a surface with holes is filled with what it winds around */
+        cli_notice(session,
+                   "%s; isosurface stuffing fills what the surface winds around, and closes holes "
+                   "of its own accord",
+                   starg_context_error(session->context)->message);
+        return starg_decompose_open_mesh(session->context, s->surface, wanted, out);
+    }
     if (status == STARG_OK)
         status = starg_decompose(session->context, solid, wanted, out);
     starg_solid_free(solid);
@@ -205,22 +188,17 @@ static json_t *pieces_json(cli_session *session, const starg_decomposition *d) {
     return list;
 }
 
-static json_t *distance_json(cli_session *session, const starg_tetra_report *t) {
-    json_t *distance = json_object();
-    cli_put(session, distance, "to_surface", cli_json_real(t->to_surface));
-    cli_put(session, distance, "from_surface", cli_json_real(t->from_surface));
-    cli_put(session, distance, "step", cli_json_real(t->step));
-    return distance;
-}
-
 static void report_pieces(cli_session *session, const starg_decomposition *d, const values *v) {
     json_t *report = session->report;
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "mode", json_string(mode_words[d->mode]));
     cli_put(session, report, "surface",
             json_string(d->tetra.surface_kept ? "kept" : "approximated"));
-    if (!d->tetra.surface_kept)
-        cli_put(session, report, "distance", distance_json(session, &d->tetra));
+    if (!d->tetra.surface_kept) {
+        cli_put(session, report, "distance", cli_json_real(d->tetra.to_surface + d->tetra.step));
+        cli_put(session, report, "distance_back",
+                cli_json_real(d->tetra.from_surface + d->tetra.step));
+    }
     cli_put(session, report, "tetrahedra", json_integer((json_int_t)starg_tetmesh_count(d->mesh)));
     cli_put(session, report, "volume", cli_json_real(starg_tetmesh_volume(d->mesh)));
     cli_put(session, report, "pieces", pieces_json(session, d));

@@ -56,6 +56,10 @@ typedef struct starg_decomposition {
     bool time_limited;       /* the time limit cut the search short: another run may differ */
 } starg_decomposition;
 
+/* A density of tetrahedra that leaves the choice to the mode: few for STRICT, which makes its own
+ * in the end, and that of [YL11] for PAPER. */
+#define STARG_DECOMPOSE_DENSITY (-1.0)
+
 typedef struct starg_decompose_options {
     starg_decompose_mode mode;
     starg_tetra_options tetra; /* how tetrahedra are made */
@@ -85,6 +89,12 @@ STARG_API starg_status starg_decompose(starg_context *context, const starg_solid
 STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
                                                const starg_decompose_options *options,
                                                starg_decomposition **out);
+
+/* Cuts what a mesh with holes winds around (starg_tetmesh_from_open_mesh). Errors: as of
+ * starg_decompose, and MESH. */
+STARG_API starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
+                                                 const starg_decompose_options *options,
+                                                 starg_decomposition **out);
 STARG_API void starg_decomposition_free(starg_context *context, starg_decomposition *decomposition);
 
 /* The closed outward surface of each piece, one after the other in one mesh, each with vertices of

@@ -13,6 +13,16 @@ static const char STAGE[] = "pieces";
 void starg_decompose_options_default(starg_decompose_options *options) {
     *options = (starg_decompose_options){.mode = STARG_DECOMPOSE_STRICT};
     starg_tetra_options_default(&options->tetra);
+    options->tetra.density = STARG_DECOMPOSE_DENSITY;
+}
+
+/* Strict pieces are made of their surfaces: the tetrahedra to start from may be few. */
+static starg_tetra_options tetra_options(const starg_decompose_options *o) {
+    starg_tetra_options tetra = o->tetra, usual;
+    starg_tetra_options_default(&usual);
+    if (tetra.density < 0)
+        tetra.density = o->mode == STARG_DECOMPOSE_STRICT ? 0 : usual.density;
+    return tetra;
 }
 
 static starg_status check_options(starg_context *context, const starg_decompose_options *o) {
@@ -66,10 +76,35 @@ starg_status starg_decompose(starg_context *context, const starg_solid *solid,
         options = &defaults;
     *out = NULL;
     STARG_TRY(check_options(context, options));
-    STARG_TRY(starg_tetmesh_from_solid(context, solid, &options->tetra, &report, &mesh));
+    const starg_tetra_options tetra = tetra_options(options);
+    STARG_TRY(starg_tetmesh_from_solid(context, solid, &tetra, &report, &mesh));
     STARG_TRY(run_mode(context, mesh, options, out));
     (*out)->model_vertices = solid->mesh->vertex_count;
     (*out)->model_faces = solid->mesh->face_count;
+    (*out)->model_tetrahedra = 0;
+    (*out)->tetra = report;
+done:
+    starg_tetmesh_free(mesh);
+    return status;
+}
+
+starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
+                                       const starg_decompose_options *options,
+                                       starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    starg_decompose_options_default(&defaults);
+    starg_tetra_report report;
+    starg_tetmesh *mesh = NULL;
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    const starg_tetra_options tetra = tetra_options(options);
+    STARG_TRY(starg_tetmesh_from_open_mesh(context, surface, &tetra, &report, &mesh));
+    STARG_TRY(run_mode(context, mesh, options, out));
+    (*out)->model_vertices = surface->vertex_count;
+    (*out)->model_faces = surface->face_count;
     (*out)->model_tetrahedra = 0;
     (*out)->tetra = report;
 done:

@@ -28,11 +28,6 @@ static json_t *model_json(const starg_decomposition *d, const char *file) {
                      (json_int_t)(surface ? d->model_faces : d->model_tetrahedra));
 }
 
-static json_t *distance_json(const starg_tetra_report *t) {
-    return json_pack("{s:f, s:f, s:f}", "to_surface", t->to_surface, "from_surface",
-                     t->from_surface, "step", t->step);
-}
-
 static json_t *piece_json(const starg_piece *p) {
     return json_pack("{s:[f, f, f], s:I, s:f, s:b, s:f}", "guard", p->guard[0], p->guard[1],
                      p->guard[2], "tetrahedra", (json_int_t)p->tetrahedra, "volume", p->volume,
@@ -51,7 +46,10 @@ static bool put_head(FILE *stream, const starg_decomposition *d, const char *mod
            starg_json_put(stream, "\"mode\": ", json_string(MODES[d->mode]), ",\n") &&
            starg_json_put(stream, "\"surface\": ", json_string(surface), ",\n") &&
            (d->tetra.surface_kept ||
-            starg_json_put(stream, "\"distance\": ", distance_json(&d->tetra), ",\n")) &&
+            (starg_json_put(
+                 stream, "\"distance\": ", json_real(d->tetra.to_surface + d->tetra.step), ",\n") &&
+             starg_json_put(stream, "\"distance_back\": ",
+                            json_real(d->tetra.from_surface + d->tetra.step), ",\n"))) &&
            starg_json_put(stream, "\"tetrahedra\": ", json_integer((json_int_t)d->mesh->count),
                           ",\n");
 }

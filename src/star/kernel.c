@@ -272,6 +272,7 @@ starg_status kernel_find(starg_context *context, const kernel_faces *surface,
                          starg_kernel_result *result) {
     starg_status status = STARG_OK;
     finder f = {.surface = surface};
+    *result = (starg_kernel_result){.verdict = STARG_KERNEL_UNDECIDED};
     STARG_NEW(context, STAGE, f.rows, ROW * surface->count);
     STARG_NEW(context, STAGE, f.order, surface->count);
     if (find_flat_face(&f, result))

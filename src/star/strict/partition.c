@@ -71,12 +71,18 @@ static bool is_border(const starg_tetmesh *mesh, const uint32_t *labels, size_t 
     return labels[slot / 4] < labels[beyond];
 }
 
-static starg_status add_vertex(partition *p, const starg_tetmesh *mesh, uint32_t *numbers,
-                               uint32_t vertex, uint32_t *number) {
+/* Numbers the vertices of all facets in the order of the mesh. */
+static starg_status add_points(partition *p, const starg_tetmesh *mesh, const uint32_t *labels,
+                               uint32_t *numbers) {
     starg_status status = STARG_OK;
-    if (numbers[vertex] == UINT32_MAX)
-        STARG_TRY(partition_add_point(p, mesh->vertices + 3 * (size_t)vertex, &numbers[vertex]));
-    *number = numbers[vertex];
+    memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
+    for (size_t slot = 0; slot < 4 * mesh->count; slot++)
+        for (int k = 0; is_border(mesh, labels, slot) && k < 3; k++)
+            numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)TETMESH_FACE[slot % 4][k]]] = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        if (numbers[v] == 0)
+            STARG_TRY(partition_add_point(p, mesh->vertices + 3 * v, &numbers[v]));
+    p->first_points = p->points.count / 3;
 done:
     return status;
 }
@@ -92,7 +98,7 @@ static void plane_of(const partition *p, const uint32_t corners[3], partition_pl
 }
 
 static starg_status add_facet(partition *p, const starg_tetmesh *mesh, const uint32_t *labels,
-                              uint32_t *numbers, size_t slot) {
+                              const uint32_t *numbers, size_t slot) {
     starg_status status = STARG_OK;
     uint32_t beyond = mesh->neighbours[slot];
     facet f = {.side = {labels[slot / 4],
@@ -100,8 +106,7 @@ static starg_status add_facet(partition *p, const starg_tetmesh *mesh, const uin
                .plane = (uint32_t)p->planes.count};
     for (int k = 0; k < 3; k++) {
         int corner = TETMESH_FACE[slot % 4][k];
-        STARG_TRY(add_vertex(p, mesh, numbers, mesh->tetrahedra[4 * (slot / 4) + (size_t)corner],
-                             &f.corners[k]));
+        f.corners[k] = numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)corner]];
     }
     partition_plane plane;
     plane_of(p, f.corners, &plane);
@@ -131,7 +136,7 @@ starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
     *out = (partition){.context = context};
     find_frame(mesh, out);
     STARG_NEW(context, PARTITION_STAGE, numbers, mesh->vertex_count);
-    memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
+    STARG_TRY(add_points(out, mesh, labels, numbers));
     for (size_t i = 0; i < count; i++) {
         piece fresh = {.stamp = ++out->stamps};
         vec3_copy(guards + 3 * i, fresh.guard);
@@ -142,7 +147,6 @@ starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
             STARG_TRY(add_facet(out, mesh, labels, numbers, slot));
     for (size_t t = 0; t < mesh->count; t++)
         add_volume(out, mesh, t, labels[t]);
-    out->first_points = out->points.count / 3;
     STARG_TRY(partition_build_index(out));
 done:
     starg_release(context, numbers);
@@ -176,7 +180,10 @@ void partition_free(partition *p) {
 
 starg_status partition_copy(const partition *from, partition *to) {
     starg_status status = STARG_OK;
-    *to = (partition){.context = from->context, .exponent = from->exponent, .stamps = from->stamps};
+    *to = (partition){.context = from->context,
+                      .exponent = from->exponent,
+                      .first_points = from->first_points,
+                      .stamps = from->stamps};
     vec3_copy(from->origin, to->origin);
     COPY_ARRAY(from->context, &to->points, &from->points);
     COPY_ARRAY(from->context, &to->unit, &from->unit);

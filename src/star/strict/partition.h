@@ -45,7 +45,7 @@ typedef struct partition {
     int exponent;
     STARG_ARRAY(double) points; /* x 3, in the coordinates of the solid */
     STARG_ARRAY(double) unit;   /* x 3, the same in unit coordinates    */
-    size_t first_points;        /* points before any cut: the first ones */
+    size_t first_points;        /* those before any cut: the first ones */
     STARG_ARRAY(partition_plane) planes;
     STARG_ARRAY(facet) facets;
     STARG_ARRAY(piece) pieces;
