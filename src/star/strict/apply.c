@@ -9,10 +9,7 @@
  * facets of the partition. */
 #include "star/strict/apply.h"
 
-#include <math.h>
-
 #include "geometry/predicates.h"
-#include "geometry/vec3.h"
 #include "star/strict/slice.h"
 
 typedef struct change {
@@ -22,36 +19,27 @@ typedef struct change {
     size_t old_points;
     double margin;
     region_scratch *scratch;
+    apply_effect *effect;
 } change;
 
 /* ---- numbers ---- */
 
-static void move_piece(partition *p, uint32_t from, uint32_t to) {
-    for (size_t i = 0; i < p->facets.count; i++)
-        for (int side = 0; side < 2; side++)
-            if (p->facets.data[i].side[side] == from)
-                p->facets.data[i].side[side] = to;
-    p->pieces.data[to] = p->pieces.data[from];
-}
-
-/* The joined pieces but the first have no facets: the last numbers take the place of theirs. */
+/* The joined pieces but the parts have no facets: the last numbers take the place of theirs, the
+ * highest first, so that what moves is never one of them. */
 static void drop_pieces(change *c, const uint32_t *unused, size_t count) {
-    bool gone[RECUT_PARTS_MOST] = {false};
-    partition *p = c->p;
+    bool gone[APPLY_MOST] = {false};
     for (size_t left = count; left > 0; left--) {
-        uint32_t last = (uint32_t)p->pieces.count - 1;
+        uint32_t last = (uint32_t)c->p->pieces.count - 1;
         size_t hole = count;
         for (size_t i = 0; i < count; i++)
             if (!gone[i] && (hole == count || unused[i] > unused[hole]))
                 hole = i;
         gone[hole] = true;
-        if (unused[hole] != last) {
-            move_piece(p, last, unused[hole]);
-            for (size_t i = 0; i < c->part_count; i++)
-                if (c->parts[i] == last)
-                    c->parts[i] = unused[hole];
-        }
-        p->pieces.count--;
+        partition_renumber(c->p, last, unused[hole]);
+        for (size_t i = 0; i < c->part_count; i++)
+            if (c->parts[i] == last)
+                c->parts[i] = unused[hole];
+        c->effect->moves[c->effect->move_count++] = (apply_move){last, unused[hole]};
     }
 }
 
@@ -78,15 +66,6 @@ done:
 
 /* ---- proofs ---- */
 
-static double volume_of(const partition *p, const uint32_t *triangles, size_t count) {
-    double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += vec3_triple(partition_unit(p, triangles[3 * i]),
-                           partition_unit(p, triangles[3 * i + 1]),
-                           partition_unit(p, triangles[3 * i + 2]));
-    return sum / 6;
-}
-
 double sum_of_squares(const partition *p, const uint32_t *pieces, size_t count) {
     double sum = 0;
     for (size_t i = 0; i < count; i++)
@@ -98,7 +77,7 @@ static starg_status settle_piece(change *c, uint32_t number, bool *done) {
     starg_status status = STARG_OK;
     partition *p = c->p;
     region r = {.vertices = {0}};
-    STARG_ARRAY(uint32_t) triangles = {0};
+    partition_triangles triangles = {0};
     piece fresh = {.stamp = ++p->stamps};
     double center[3];
     *done = false;
@@ -107,14 +86,9 @@ static starg_status settle_piece(change *c, uint32_t number, bool *done) {
     if (fresh.radius < c->margin)
         goto done;
     partition_from_unit(p, center, fresh.guard);
-    for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
-        uint32_t corners[3];
-        facet_outward(&p->facets.data[p->index.data[k] / 2], (int)(p->index.data[k] % 2), corners);
-        for (int i = 0; i < 3; i++)
-            STARG_PUSH(p->context, PARTITION_STAGE, &triangles, corners[i]);
-    }
+    STARG_TRY(partition_gather(p, number, &triangles));
     *done = partition_certify(p, triangles.data, triangles.count / 3, fresh.guard);
-    fresh.volume = volume_of(p, triangles.data, triangles.count / 3);
+    fresh.volume = partition_volume(p, triangles.data, triangles.count / 3);
     p->pieces.data[number] = fresh;
 done:
     region_free(p->context, &r);
@@ -151,25 +125,82 @@ static bool check_others(const change *c) {
 }
 
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, const recut_plan *plan,
-                        double margin, double least, region_scratch *scratch, bool *done) {
+                        double margin, double least, region_scratch *scratch,
+                        apply_effect *effect) {
     starg_status status = STARG_OK;
     partition copy = {.context = p->context};
-    change c = {
-        .p = &copy, .old_points = p->points.count / 3, .margin = margin, .scratch = scratch};
+    change c = {.p = &copy,
+                .old_points = p->points.count / 3,
+                .margin = margin,
+                .scratch = scratch,
+                .effect = effect};
+    bool done = false;
+    *effect = (apply_effect){.done = false};
     STARG_TRY(partition_copy(p, &copy));
-    STARG_TRY(cut(&c, pieces, count, plan, done));
-    if (!*done)
+    STARG_TRY(cut(&c, pieces, count, plan, &done));
+    if (!done)
         goto done;
     STARG_TRY(partition_build_index(&copy));
-    for (size_t i = 0; i < c.part_count && *done; i++)
-        STARG_TRY(settle_piece(&c, c.parts[i], done));
-    *done = *done && sum_of_squares(&copy, c.parts, c.part_count) > least && check_others(&c);
-    if (!*done)
+    for (size_t i = 0; i < c.part_count && done; i++)
+        STARG_TRY(settle_piece(&c, c.parts[i], &done));
+    effect->done = done && sum_of_squares(&copy, c.parts, c.part_count) > least && check_others(&c);
+    if (!effect->done)
         goto done;
     partition before = *p;
     *p = copy;
     copy = before;
 done:
     partition_free(&copy);
+    return status;
+}
+
+/* ---- joining ---- */
+
+/* The facets of two pieces without those between them. */
+static starg_status gather_union(const partition *p, uint32_t a, uint32_t b,
+                                 partition_triangles *out) {
+    starg_status status = STARG_OK;
+    const uint32_t pair[2] = {a, b};
+    for (int i = 0; i < 2; i++)
+        for (uint32_t k = p->start.data[pair[i]]; k < p->start.data[pair[i] + 1]; k++) {
+            uint32_t entry = p->index.data[k], corners[3];
+            const facet *f = &p->facets.data[entry / 2];
+            if (f->side[1 - entry % 2] == pair[1 - i])
+                continue;
+            facet_outward(f, (int)(entry % 2), corners);
+            for (int c = 0; c < 3; c++)
+                STARG_PUSH(p->context, PARTITION_STAGE, out, corners[c]);
+        }
+done:
+    return status;
+}
+
+starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
+                        region_scratch *scratch, bool *done) {
+    starg_status status = STARG_OK;
+    const uint32_t pair[2] = {a, b};
+    region r = {.vertices = {0}};
+    partition_triangles triangles = {0};
+    piece fresh = {.stamp = p->stamps + 1};
+    double center[3];
+    *done = false;
+    STARG_TRY(region_gather(p, pair, 2, scratch, &r));
+    STARG_TRY(region_find_center(&r, NULL, 0, scratch, center, &fresh.radius));
+    if (fresh.radius < margin)
+        goto done;
+    partition_from_unit(p, center, fresh.guard);
+    STARG_TRY(gather_union(p, a, b, &triangles));
+    *done = partition_certify(p, triangles.data, triangles.count / 3, fresh.guard);
+    if (!*done)
+        goto done;
+    fresh.volume = p->pieces.data[a].volume + p->pieces.data[b].volume;
+    p->stamps++;
+    partition_join(p, pair, 2);
+    p->pieces.data[a] = fresh;
+    partition_renumber(p, (uint32_t)p->pieces.count - 1, b);
+    STARG_TRY(partition_build_index(p));
+done:
+    region_free(p->context, &r);
+    STARG_ARRAY_FREE(p->context, &triangles);
     return status;
 }

@@ -4,13 +4,31 @@
 
 #include "star/strict/recut.h"
 
-/* Joins `count` pieces and cuts their union as planned. Every piece that results, and every other
- * one whose facets were split, is certified; if one fails, or if the sum of squares of the new
- * pieces is not above `least`, *done is false and the partition as it was. Guards of the new pieces
- * are the centres of their kernels, at least `margin` (unit coordinates) inside. The index is built
- * again. Errors: MEMORY. */
+enum { APPLY_MOST = RECUT_PARTS_MOST };
+
+/* A piece that has got another number. */
+typedef struct apply_move {
+    uint32_t from, to;
+} apply_move;
+
+typedef struct apply_effect {
+    bool done;
+    size_t move_count;
+    apply_move moves[APPLY_MOST]; /* one after the other */
+} apply_effect;
+
+/* Joins `count` pieces (at most APPLY_MOST) and cuts their union as planned. Every piece that
+ * results, and every other one whose facets were split, is certified; if one fails, or if the sum
+ * of squares of the new pieces is not above `least`, the partition is as it was. Guards of the new
+ * pieces are the centres of their kernels, at least `margin` (unit coordinates) inside. The index
+ * is built again. Errors: MEMORY. */
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, const recut_plan *plan,
-                        double margin, double least, region_scratch *scratch, bool *done);
+                        double margin, double least, region_scratch *scratch, apply_effect *effect);
+
+/* Makes pieces a and b one, with number a, if it has a kernel with such a margin (certified); the
+ * last piece takes the number b. Errors: MEMORY. */
+starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
+                        region_scratch *scratch, bool *done);
 
 /* Of the volumes of pieces (unit coordinates): the larger, the more uneven they are. */
 double sum_of_squares(const partition *p, const uint32_t *pieces, size_t count);

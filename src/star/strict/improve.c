@@ -14,15 +14,12 @@
  * facets of its union some hundred times. */
 #include "star/strict/improve.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "star/strict/apply.h"
 #include "star/strict/tidy.h"
 
-enum { BATCH = 16, UNION_MOST = 5 };
+enum { BATCH = 16, UNION_MOST = APPLY_MOST };
 
 static const double MARGIN = 4e-6; /* of guards to planes; the diagonal is at least 1/2 */
 
@@ -34,103 +31,79 @@ typedef struct trial {
     bool found;
 } trial;
 
-typedef struct contact {
-    uint32_t a, b;
-} contact;
-
 typedef struct improver {
     partition *p;
     improve_report *report;
     uint64_t stalled; /* trials since the last success */
     size_t crowded;   /* facets from which on it is time to tidy up */
     trial trials[BATCH];
-    region_scratch scratch;        /* of the calling thread */
-    STARG_ARRAY(contact) contacts; /* both ways, ascending: neighbours of a piece in a row */
-    STARG_ARRAY(uint32_t) first;   /* by piece: its first contact */
+    region_scratch scratch; /* of the calling thread */
+    /* neighbours of piece i: neighbours[first[i]] to neighbours[first[i + 1] - 1] */
+    STARG_ARRAY(uint32_t) neighbours;
+    STARG_ARRAY(uint32_t) first;
+    STARG_ARRAY(uint32_t) met; /* by piece: 1 + the last piece that met it */
 } improver;
 
 /* ---- neighbours ---- */
 
-static int by_pieces(const void *x, const void *y) {
-    const contact *c = x, *d = y;
-    if (c->a != d->a)
-        return c->a < d->a ? -1 : 1;
-    return c->b < d->b ? -1 : c->b > d->b;
-}
-
 static starg_status find_contacts(improver *m) {
     starg_status status = STARG_OK;
     const partition *p = m->p;
-    size_t kept = 0;
-    m->contacts.count = m->first.count = 0;
-    for (size_t i = 0; i < p->facets.count; i++) {
-        const uint32_t *side = p->facets.data[i].side;
-        if (side[1] == PARTITION_OUTSIDE)
-            continue;
-        contact one = {side[0], side[1]}, other = {side[1], side[0]};
-        STARG_PUSH(p->context, PARTITION_STAGE, &m->contacts, one);
-        STARG_PUSH(p->context, PARTITION_STAGE, &m->contacts, other);
+    m->neighbours.count = m->first.count = m->met.count = 0;
+    for (size_t i = 0; i < p->pieces.count; i++)
+        STARG_PUSH(p->context, PARTITION_STAGE, &m->met, 0);
+    for (uint32_t a = 0; a < p->pieces.count; a++) {
+        STARG_PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
+        for (uint32_t k = p->start.data[a]; k < p->start.data[a + 1]; k++) {
+            uint32_t entry = p->index.data[k], b = p->facets.data[entry / 2].side[1 - entry % 2];
+            if (b == PARTITION_OUTSIDE || m->met.data[b] == a + 1)
+                continue;
+            m->met.data[b] = a + 1;
+            STARG_PUSH(p->context, PARTITION_STAGE, &m->neighbours, b);
+        }
     }
-    if (m->contacts.count > 0)
-        qsort(m->contacts.data, m->contacts.count, sizeof *m->contacts.data, by_pieces);
-    for (size_t i = 0; i < m->contacts.count; i++)
-        if (i == 0 || by_pieces(&m->contacts.data[i], &m->contacts.data[kept - 1]) != 0)
-            m->contacts.data[kept++] = m->contacts.data[i];
-    m->contacts.count = kept;
-    for (size_t i = 0, at = 0; i <= p->pieces.count; i++) {
-        while (at < kept && m->contacts.data[at].a < i)
-            at++;
-        STARG_PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)at);
-    }
+    STARG_PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
 done:
     return status;
 }
 
 /* ---- joins ---- */
 
-static starg_status try_join(improver *m, uint32_t a, uint32_t b, bool *done) {
-    starg_status status = STARG_OK;
-    const uint32_t pair[2] = {a, b};
-    const recut_options options = {.margin = MARGIN};
-    const recut_plan plan = {.cuts = 0};
-    region r = {.vertices = {0}};
-    starg_rng rng = {0};
-    STARG_TRY(region_gather(m->p, pair, 2, &m->scratch, &r));
-    STARG_TRY(recut_find(&r, 1, &options, &rng, &m->scratch, NULL, done));
-    if (*done)
-        STARG_TRY(apply_plan(m->p, pair, 2, &plan, MARGIN, -1, &m->scratch, done));
-done:
-    region_free(m->p->context, &r);
-    return status;
-}
-
 /* Joins one piece with a neighbour if it can be done. */
 static starg_status join_one(improver *m, uint32_t a, bool *done) {
     starg_status status = STARG_OK;
+    piece *pieces = m->p->pieces.data;
     *done = false;
-    for (uint32_t i = m->first.data[a]; i < m->first.data[a + 1] && !*done; i++)
-        STARG_TRY(try_join(m, a, m->contacts.data[i].b, done));
+    for (uint32_t i = m->first.data[a]; i < m->first.data[a + 1] && !*done; i++) {
+        uint32_t b = m->neighbours.data[i];
+        bool known = pieces[a].stamp <= pieces[a].checked && pieces[b].stamp <= pieces[a].checked;
+        if (!known)
+            STARG_TRY(apply_join(m->p, a, b, MARGIN, &m->scratch, done));
+    }
     if (*done) {
         m->report->joins++;
         STARG_TRY(find_contacts(m));
+    } else {
+        m->p->pieces.data[a].checked = m->p->stamps;
     }
 done:
     return status;
 }
 
+/* Until no two neighbours can be joined. */
 static starg_status join_all(improver *m) {
     starg_status status = STARG_OK;
-    STARG_TRY(find_contacts(m));
-    for (uint32_t a = 0; a < m->p->pieces.count;) {
-        bool done;
-        STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
-        STARG_TRY(join_one(m, a, &done));
-        if (!done)
-            a++;
-        else
-            a = 0;
-        if (starg_time_is_over(m->p->context))
-            goto done;
+    bool any = true;
+    while (any && !starg_time_is_over(m->p->context)) {
+        any = false;
+        for (uint32_t a = 0; a < m->p->pieces.count; a++) {
+            bool done = true;
+            STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
+            while (done && a < m->p->pieces.count && !starg_time_is_over(m->p->context)) {
+                STARG_TRY(join_one(m, a, &done));
+                any = any || done;
+            }
+        }
     }
 done:
     return status;
@@ -158,7 +131,7 @@ static void choose_union(const improver *m, starg_rng *rng, size_t wanted, trial
         uint32_t degree = m->first.data[from + 1] - m->first.data[from];
         if (degree == 0)
             continue;
-        uint32_t next = m->contacts.data[m->first.data[from] + starg_rng_below(rng, degree)].b;
+        uint32_t next = m->neighbours.data[m->first.data[from] + starg_rng_below(rng, degree)];
         if (!is_in(t, next))
             t->pieces[t->count++] = next;
     }
@@ -204,18 +177,12 @@ static void free_scratch(starg_context *context, void *scratch) {
     starg_release(context, scratch);
 }
 
-static starg_status carry_out(improver *m, const trial *t, bool *done) {
+static starg_status carry_out(improver *m, const trial *t, apply_effect *effect) {
     starg_status status = STARG_OK;
     bool fewer = (size_t)t->parts < t->count;
     double least = fewer ? -1 : sum_of_squares(m->p, t->pieces, t->count);
-    if (!fewer) {
-        static double f = -2;
-        if (f == -2)
-            f = getenv("F") ? atof(getenv("F")) : 1;
-        least *= f;
-    }
-    STARG_TRY(apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, least, &m->scratch, done));
-    if (!*done)
+    STARG_TRY(apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, least, &m->scratch, effect));
+    if (!effect->done)
         m->report->refused++;
     else if (fewer)
         m->report->recuts++, m->stalled = 0;
@@ -225,22 +192,48 @@ done:
     return status;
 }
 
-/* One success of a batch changes piece numbers: the others wait for another batch. */
+/* Trials of the batch that have a piece of a trial that was carried out are void, the others may
+ * find pieces under other numbers. */
+static void follow(improver *m, size_t count, const trial *done, const apply_effect *effect) {
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < done->count; k++)
+            if (&m->trials[i] != done && is_in(&m->trials[i], done->pieces[k]))
+                m->trials[i].found = false;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < effect->move_count; k++)
+            for (size_t n = 0; n < m->trials[i].count; n++)
+                if (m->trials[i].pieces[n] == effect->moves[k].from)
+                    m->trials[i].pieces[n] = effect->moves[k].to;
+}
+
+static starg_status tidy_if_crowded(improver *m) {
+    if (m->p->facets.count <= m->crowded)
+        return STARG_OK;
+    starg_status status = tidy(m->p);
+    m->crowded = m->p->facets.count + m->p->facets.count / 8;
+    return status;
+}
+
+/* Those that save a piece first. */
 static starg_status carry_out_batch(improver *m, size_t count) {
     starg_status status = STARG_OK;
-    bool done = false;
+    bool any = false;
     for (int fewer = 1; fewer >= 0; fewer--)
-        for (size_t i = 0; i < count && !done; i++) {
-            const trial *t = &m->trials[i];
-            if (t->found && ((size_t)t->parts < t->count) == fewer)
-                STARG_TRY(carry_out(m, t, &done));
+        for (size_t i = 0; i < count; i++) {
+            trial *t = &m->trials[i];
+            apply_effect effect;
+            if (!t->found || ((size_t)t->parts < t->count) != fewer)
+                continue;
+            STARG_TRY(carry_out(m, t, &effect));
+            t->found = false;
+            if (effect.done)
+                follow(m, count, t, &effect);
+            any = any || effect.done;
         }
-    if (done && m->p->facets.count > m->crowded) {
-        STARG_TRY(tidy(m->p));
-        m->crowded = m->p->facets.count + m->p->facets.count / 8;
-    }
-    if (done)
+    if (any) {
+        STARG_TRY(tidy_if_crowded(m));
         STARG_TRY(find_contacts(m));
+    }
 done:
     return status;
 }
@@ -265,6 +258,7 @@ starg_status improve(partition *p, const improve_options *options, improve_repor
     starg_status status = STARG_OK;
     improver m = {.p = p, .report = report, .scratch = {.context = p->context}};
     *report = (improve_report){.trials = 0};
+    STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
     m.crowded = p->facets.count + p->facets.count / 8;
     while (p->pieces.count > 1 && p->pieces.count > options->enough &&
@@ -276,7 +270,8 @@ starg_status improve(partition *p, const improve_options *options, improve_repor
     }
 done:
     region_scratch_free(&m.scratch);
-    STARG_ARRAY_FREE(p->context, &m.contacts);
+    STARG_ARRAY_FREE(p->context, &m.neighbours);
+    STARG_ARRAY_FREE(p->context, &m.met);
     STARG_ARRAY_FREE(p->context, &m.first);
     return status;
 }

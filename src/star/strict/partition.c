@@ -231,6 +231,38 @@ done:
     return status;
 }
 
+starg_status partition_gather(const partition *p, uint32_t number, partition_triangles *triangles) {
+    starg_status status = STARG_OK;
+    for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
+        uint32_t corners[3];
+        facet_outward(&p->facets.data[p->index.data[k] / 2], (int)(p->index.data[k] % 2), corners);
+        for (int i = 0; i < 3; i++)
+            STARG_PUSH(p->context, PARTITION_STAGE, triangles, corners[i]);
+    }
+done:
+    return status;
+}
+
+double partition_volume(const partition *p, const uint32_t *triangles, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += vec3_triple(partition_unit(p, triangles[3 * i]),
+                           partition_unit(p, triangles[3 * i + 1]),
+                           partition_unit(p, triangles[3 * i + 2]));
+    return sum / 6;
+}
+
+void partition_renumber(partition *p, uint32_t from, uint32_t to) {
+    p->pieces.count--;
+    if (from == to)
+        return;
+    for (size_t i = 0; i < p->facets.count; i++)
+        for (int side = 0; side < 2; side++)
+            if (p->facets.data[i].side[side] == from)
+                p->facets.data[i].side[side] = to;
+    p->pieces.data[to] = p->pieces.data[from];
+}
+
 bool partition_certify(const partition *p, const uint32_t *triangles, size_t count,
                        const double guard[3]) {
     const kernel_faces surface = {p->points.data, triangles, count};

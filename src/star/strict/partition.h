@@ -29,10 +29,11 @@ typedef struct facet {
 } facet;
 
 typedef struct piece {
-    double guard[3]; /* in the coordinates of the solid; certified                          */
-    double radius;   /* of the ball about it in the kernel, in unit coordinates; rounded     */
-    double volume;   /* in unit coordinates                                                  */
-    uint64_t stamp;  /* changes whenever the piece does                                      */
+    double guard[3];  /* in the coordinates of the solid; certified                          */
+    double radius;    /* of the ball about it in the kernel, in unit coordinates; rounded     */
+    double volume;    /* in unit coordinates                                                  */
+    uint64_t stamp;   /* changes whenever the piece does                                      */
+    uint64_t checked; /* partition's stamps when its union with each neighbour was last tried */
 } piece;
 
 /* Invariants between operations: every piece's surface is closed, and its guard is strictly on the
@@ -91,6 +92,16 @@ static inline void facet_outward(const facet *f, int side, uint32_t corners[3]) 
     corners[1] = f->corners[side == FACET_INNER ? 1 : 2];
     corners[2] = f->corners[side == FACET_INNER ? 2 : 1];
 }
+
+/* All facets of a piece, outward, appended to `triangles`. Errors: MEMORY. */
+typedef STARG_ARRAY(uint32_t) partition_triangles;
+starg_status partition_gather(const partition *p, uint32_t number, partition_triangles *triangles);
+
+/* Volume inside of closed triangles, in unit coordinates. */
+double partition_volume(const partition *p, const uint32_t *triangles, size_t count);
+
+/* Piece `from`, the last one, takes over the number `to`, which has no facets any more. */
+void partition_renumber(partition *p, uint32_t from, uint32_t to);
 
 /* Is the guard strictly inside each of the `count` triangles, and do they wind around it once?
  * Exact. */

@@ -292,17 +292,11 @@ done:
 
 static starg_status certify_all(const partition *p, bool *done) {
     starg_status status = STARG_OK;
-    STARG_ARRAY(uint32_t) triangles = {0};
+    partition_triangles triangles = {0};
     *done = true;
-    for (size_t i = 0; i < p->pieces.count && *done; i++) {
+    for (uint32_t i = 0; i < p->pieces.count && *done; i++) {
         triangles.count = 0;
-        for (uint32_t k = p->start.data[i]; k < p->start.data[i + 1]; k++) {
-            uint32_t corners[3];
-            facet_outward(&p->facets.data[p->index.data[k] / 2], (int)(p->index.data[k] % 2),
-                          corners);
-            for (int c = 0; c < 3; c++)
-                STARG_PUSH(p->context, PARTITION_STAGE, &triangles, corners[c]);
-        }
+        STARG_TRY(partition_gather(p, i, &triangles));
         *done = partition_certify(p, triangles.data, triangles.count / 3, p->pieces.data[i].guard);
     }
 done:
