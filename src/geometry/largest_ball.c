@@ -16,7 +16,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double TINY = 1e-11;
+enum { UPDATES_MOST = 12 };
+
+static const double TINY = 1e-11, SMALL = 1e-3;
 
 /* inverse = the inverse of the matrix with the rows (normal, 1); false when it has none. */
 static bool invert(largest_ball *ball) {
@@ -51,6 +53,21 @@ static bool invert(largest_ball *ball) {
     return true;
 }
 
+/* The inverse after row `out` has become a combination of the four with these factors. */
+static bool replace(largest_ball *ball, int out, const double factors[4]) {
+    if (factors[out] < SMALL || ++ball->updates == UPDATES_MOST) {
+        ball->updates = 0;
+        return invert(ball);
+    }
+    for (int i = 0; i < 4; i++) {
+        double share = ball->inverse[i][out] / factors[out];
+        for (int k = 0; k < 4; k++)
+            ball->inverse[i][k] -= share * factors[k];
+        ball->inverse[i][out] = share;
+    }
+    return true;
+}
+
 static void place(largest_ball *ball) {
     double at[4];
     for (int i = 0; i < 4; i++) {
@@ -71,6 +88,7 @@ void largest_ball_start(largest_ball *ball) {
         ball->names[i] = LARGEST_BALL_FAR;
         ball->weights[i] = 0.25;
     }
+    ball->updates = 0;
     invert(ball);
     place(ball);
 }
@@ -102,7 +120,7 @@ bool largest_ball_add(largest_ball *ball, const double normal[3], double offset,
     memcpy(ball->normals[out], normal, sizeof ball->normals[out]);
     ball->offsets[out] = offset;
     ball->names[out] = name;
-    if (!invert(ball))
+    if (!replace(ball, out, factors))
         return false;
     for (int i = 0; i < 4; i++)
         ball->weights[i] = ball->inverse[3][i];

@@ -12,9 +12,10 @@
  * >= 0, hold the ball where it is; at the start those of a tetrahedron far away. */
 typedef struct largest_ball {
     double normals[4][3], offsets[4];
-    uint32_t names[4]; /* as the caller gave them, or LARGEST_BALL_FAR                       */
-    double weights[4]; /* their sum is 1, the weighted sum of the normals 0                  */
-    double inverse[4][4];
+    uint32_t names[4];    /* as the caller gave them, or LARGEST_BALL_FAR                       */
+    double weights[4];    /* their sum is 1, the weighted sum of the normals 0                  */
+    double inverse[4][4]; /* of the matrix with the rows (normal, 1) */
+    int updates;          /* since it was computed anew               */
     double center[3], radius; /* a negative radius: how far the least bad point is outside    */
 } largest_ball;
 

@@ -137,6 +137,20 @@ static void choose_union(const improver *m, starg_rng *rng, size_t wanted, trial
     }
 }
 
+/* Would a move make the pieces more uneven? */
+static starg_status is_uneven(const improver *m, const region *r, const trial *t, bool *better) {
+    starg_status status = STARG_OK;
+    const partition_plane *plane = &t->plan.planes[0];
+    region above = {.vertices = {0}};
+    double whole = m->p->pieces.data[t->pieces[0]].volume + m->p->pieces.data[t->pieces[1]].volume;
+    STARG_TRY(region_clip(m->p->context, r, plane->normal, plane->offset, &above));
+    double high = region_volume_above(&above, plane->normal, plane->offset), low = whole - high;
+    *better = high * high + low * low > sum_of_squares(m->p, t->pieces, t->count);
+done:
+    region_free(m->p->context, &above);
+    return status;
+}
+
 static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
     starg_status status = STARG_OK;
     improver *m = shared;
@@ -155,6 +169,8 @@ static starg_status run_trial(starg_context *context, void *shared, void *scratc
     const recut_options options = {.margin = 1e-5, .directions = 24, .steps = 16, .anywhere = move};
     STARG_TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
     STARG_TRY(recut_find(&r, t->parts, &options, &rng, scratch, &t->plan, &t->found));
+    if (move && t->found)
+        STARG_TRY(is_uneven(m, &r, t, &t->found));
 done:
     region_free(context, &r);
     return status;

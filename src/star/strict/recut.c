@@ -161,13 +161,10 @@ done:
 static starg_status measure_overlap(const searcher *s, direction *d) {
     starg_status status = STARG_OK;
     region_reach up, down;
-    double back[3];
-    negate(d->normal, back);
     d->score = -INFINITY;
-    STARG_TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up));
+    STARG_TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up, &down));
     if (up.height == -INFINITY)
         goto done;
-    STARG_TRY(region_find_reach(s->r, back, s->options->margin, s->scratch, &down));
     d->high = up.height;
     d->low = -down.height;
     d->score = d->high - d->low;
@@ -262,7 +259,7 @@ static starg_status measure_peel(const searcher *s, direction *d) {
     starg_status status = STARG_OK;
     region_reach up;
     d->score = -INFINITY;
-    STARG_TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up));
+    STARG_TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up, NULL));
     if (up.height == -INFINITY)
         goto done;
     d->high = up.height;

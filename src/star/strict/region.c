@@ -25,20 +25,23 @@
 
 #include "geometry/largest_ball.h"
 #include "geometry/vec3.h"
+#include "star/strict/scan.h"
 
-enum { ROUNDS_MOST = 500, BLOCK = 128, ROW = 4 };
+enum { ROUNDS_MOST = 500, ROW = 4 };
 
 void region_scratch_free(region_scratch *scratch) {
     STARG_ARRAY_FREE(scratch->context, &scratch->vertex_of);
     STARG_ARRAY_FREE(scratch->context, &scratch->row_of);
     STARG_ARRAY_FREE(scratch->context, &scratch->heights);
     STARG_ARRAY_FREE(scratch->context, &scratch->lowest);
+    STARG_ARRAY_FREE(scratch->context, &scratch->lowest_back);
 }
 
 void region_free(starg_context *context, region *r) {
     STARG_ARRAY_FREE(context, &r->vertices);
     STARG_ARRAY_FREE(context, &r->triangles);
     STARG_ARRAY_FREE(context, &r->rows);
+    STARG_ARRAY_FREE(context, &r->blocks);
     *r = (region){.vertices = {0}};
 }
 
@@ -123,6 +126,21 @@ static void forget(const partition *p, const uint32_t *pieces, size_t count,
         }
 }
 
+/* The rows in blocks, the last one filled up with rows that nothing violates. */
+static starg_status make_blocks(starg_context *context, region *r) {
+    starg_status status = STARG_OK;
+    size_t rows = r->rows.count / ROW, blocks = (rows + SCAN_BLOCK - 1) / SCAN_BLOCK;
+    r->blocks.count = 0;
+    for (size_t i = 0; i < blocks * SCAN_SIZE; i++)
+        STARG_PUSH(context, PARTITION_STAGE, &r->blocks, i % SCAN_SIZE < 3 * SCAN_BLOCK ? 0 : 16);
+    for (size_t i = 0; i < rows; i++)
+        for (size_t k = 0; k < ROW; k++)
+            r->blocks.data[i / SCAN_BLOCK * SCAN_SIZE + k * SCAN_BLOCK + i % SCAN_BLOCK] =
+                r->rows.data[ROW * i + k];
+done:
+    return status;
+}
+
 starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
                            region_scratch *scratch, region *out) {
     starg_status status = STARG_OK;
@@ -138,6 +156,7 @@ starg_status region_gather(const partition *p, const uint32_t *pieces, size_t co
                 STARG_TRY(gather_facet(p, entry, scratch, out));
         }
     forget(p, pieces, count, scratch);
+    STARG_TRY(make_blocks(p->context, out));
 done:
     return status;
 }
@@ -214,6 +233,21 @@ done:
     return status;
 }
 
+double region_volume_above(const region *part, const double normal[3], double height) {
+    double sum = 0, origin[3];
+    for (int k = 0; k < 3; k++)
+        origin[k] = height * normal[k];
+    for (size_t i = 0; i < part->triangles.count; i++) {
+        double corner[3][3];
+        for (int k = 0; k < 3; k++)
+            vec3_subtract(part->vertices.data +
+                              3 * (size_t)part->triangles.data[i].corners[k],
+                          origin, corner[k]);
+        sum += vec3_triple(corner[0], corner[1], corner[2]);
+    }
+    return sum / 6;
+}
+
 starg_status region_clip(starg_context *context, const region *from, const double normal[3],
                          double height, region *out) {
     starg_status status = STARG_OK;
@@ -234,28 +268,47 @@ starg_status region_clip(starg_context *context, const region *from, const doubl
         clip_triangle(&c, &from->triangles.data[i], &polygon);
         STARG_TRY(add_clipped(&c, &polygon, from->triangles.data[i].row));
     }
+    STARG_TRY(make_blocks(context, out));
 done:
     return status;
 }
 
 /* ---- rows along a direction ---- */
 
+/* `count` values, each infinite. */
+static starg_status reset(starg_context *context, region_values *out, size_t count) {
+    starg_status status = STARG_OK;
+    if (out->capacity < count) {
+        starg_release(context, out->data);
+        *out = (region_values){.capacity = 0};
+        STARG_NEW(context, PARTITION_STAGE, out->data, 2 * count);
+        out->capacity = 2 * count;
+    }
+    for (size_t i = 0; i < count; i++)
+        out->data[i] = INFINITY;
+    out->count = count;
+done:
+    return status;
+}
+
 static starg_status find_heights(const region *r, const double normal[3], region_scratch *scratch) {
     starg_status status = STARG_OK;
-    size_t vertices = r->vertices.count / 3, rows = r->rows.count / ROW;
-    scratch->heights.count = scratch->lowest.count = 0;
+    size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
+    STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
+    STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
+    STARG_TRY(reset(scratch->context, &scratch->lowest_back, padded));
+    double *height = scratch->heights.data;
     for (size_t i = 0; i < vertices; i++)
-        STARG_PUSH(scratch->context, PARTITION_STAGE, &scratch->heights,
-                   vec3_dot(normal, r->vertices.data + 3 * i));
-    for (size_t i = 0; i < rows; i++)
-        STARG_PUSH(scratch->context, PARTITION_STAGE, &scratch->lowest, INFINITY);
-    const double *height = scratch->heights.data;
+        height[i] = vec3_dot(normal, r->vertices.data + 3 * i);
     for (size_t i = 0; i < r->triangles.count; i++) {
         const region_triangle *t = &r->triangles.data[i];
         double a = height[t->corners[0]], b = height[t->corners[1]], c = height[t->corners[2]];
-        double low = a < b ? a : b, *lowest = &scratch->lowest.data[t->row];
+        double low = a < b ? a : b, high = a < b ? b : a;
+        double *lowest = &scratch->lowest.data[t->row], *back = &scratch->lowest_back.data[t->row];
         low = low < c ? low : c;
+        high = high < c ? c : high;
         *lowest = low < *lowest ? low : *lowest;
+        *back = -high < *back ? -high : *back;
     }
 done:
     return status;
@@ -268,8 +321,8 @@ static const uint32_t THE_PLANE = UINT32_MAX - 1;
 /* The search for a ball among the rows that count below the bound. */
 typedef struct ball_search {
     const region *r;
-    region_scratch *scratch;
     const double *normal; /* of the plane; NULL: there is none */
+    const double *lowest; /* of rows along it */
     double bound;
     largest_ball ball;
     size_t at; /* the block of rows where the last violated one was begins there */
@@ -278,24 +331,15 @@ typedef struct ball_search {
 /* A row that the ball's centre is less than `room` inside of: the worst of the first block that has
  * one, from where the last one was. False when there is none. */
 static bool find_violated(ball_search *w, double room, uint32_t *worst) {
-    const double *rows = w->r->rows.data, *lowest = w->scratch->lowest.data;
-    size_t count = w->r->rows.count / ROW, seen = 0;
-    double x = w->ball.center[0], y = w->ball.center[1], z = w->ball.center[2];
-    while (seen < count) {
-        size_t end = w->at + BLOCK < count ? w->at + BLOCK : count;
-        double least = room;
-        for (size_t i = w->at; i < end; i++) {
-            const double *n = rows + ROW * i;
-            double inside = n[3] - (n[0] * x + n[1] * y + n[2] * z);
-            if (inside < least && lowest[i] < w->bound) {
-                least = inside;
-                *worst = (uint32_t)i;
-            }
-        }
-        if (least < room)
+    size_t blocks = w->r->blocks.count / SCAN_SIZE;
+    for (size_t seen = 0; seen < blocks; seen++) {
+        size_t found = scan_block(w->r->blocks.data + SCAN_SIZE * w->at,
+                                  w->lowest + SCAN_BLOCK * w->at, w->bound, w->ball.center, room);
+        if (found < SCAN_BLOCK) {
+            *worst = (uint32_t)(SCAN_BLOCK * w->at + found);
             return true;
-        seen += end - w->at;
-        w->at = end < count ? end : 0;
+        }
+        w->at = w->at + 1 < blocks ? w->at + 1 : 0;
     }
     return false;
 }
@@ -321,7 +365,7 @@ static double highest_tight(const ball_search *w) {
     double highest = -INFINITY;
     for (int k = 0; k < 4; k++)
         if (w->ball.names[k] < THE_PLANE && w->ball.weights[k] > 1e-12)
-            highest = fmax(highest, w->scratch->lowest.data[w->ball.names[k]]);
+            highest = fmax(highest, w->lowest[w->ball.names[k]]);
     return highest;
 }
 
@@ -332,35 +376,45 @@ static void lower_bound_to(ball_search *w, double bound) {
         uint32_t name = w->ball.names[k];
         if (name == THE_PLANE)
             largest_ball_move(&w->ball, k, bound, THE_PLANE);
-        else if (name != LARGEST_BALL_FAR && w->scratch->lowest.data[name] >= bound)
+        else if (name != LARGEST_BALL_FAR && w->lowest[name] >= bound)
             largest_ball_move(&w->ball, k, LARGEST_BALL_DISTANCE, LARGEST_BALL_FAR);
     }
 }
 
-starg_status region_find_reach(const region *r, const double normal[3], double margin,
-                               region_scratch *scratch, region_reach *out) {
-    starg_status status = STARG_OK;
-    ball_search w = {.r = r, .scratch = scratch, .normal = normal, .bound = INFINITY};
+static void find_reach(ball_search *w, double margin, region_reach *out) {
     *out = (region_reach){.height = -INFINITY};
-    STARG_TRY(find_heights(r, normal, scratch));
-    largest_ball_start(&w.ball);
+    largest_ball_start(&w->ball);
     for (int round = 0; round < ROUNDS_MOST; round++) {
-        if (w.ball.radius < margin) {
-            double bound = highest_tight(&w);
+        if (w->ball.radius < margin) {
+            double bound = highest_tight(w);
             if (bound == -INFINITY)
-                goto done;
-            lower_bound_to(&w, bound);
+                return;
+            lower_bound_to(w, bound);
             continue;
         }
-        int added = add_violated(&w, 0.5 * margin); /* the ball itself is rounded */
+        int added = add_violated(w, 0.5 * margin); /* the ball itself is rounded */
         if (added < 0)
-            goto done;
+            return;
         if (added == 0) {
-            out->height = w.bound;
-            vec3_copy(w.ball.center, out->guard);
-            goto done;
+            out->height = w->bound;
+            vec3_copy(w->ball.center, out->guard);
+            return;
         }
     }
+}
+
+starg_status region_find_reach(const region *r, const double normal[3], double margin,
+                               region_scratch *scratch, region_reach *up, region_reach *down) {
+    starg_status status = STARG_OK;
+    double back[3] = {-normal[0], -normal[1], -normal[2]};
+    STARG_TRY(find_heights(r, normal, scratch));
+    ball_search w = {.r = r, .normal = normal, .lowest = scratch->lowest.data, .bound = INFINITY};
+    find_reach(&w, margin, up);
+    if (down == NULL || up->height == -INFINITY)
+        goto done;
+    w = (ball_search){
+        .r = r, .normal = back, .lowest = scratch->lowest_back.data, .bound = INFINITY};
+    find_reach(&w, margin, down);
 done:
     return status;
 }
@@ -368,11 +422,13 @@ done:
 starg_status region_find_center(const region *r, const double *normal, double height,
                                 region_scratch *scratch, double center[3], double *radius) {
     starg_status status = STARG_OK;
-    ball_search w = {
-        .r = r, .scratch = scratch, .normal = normal, .bound = normal == NULL ? INFINITY : height};
     static const double anywhere[3] = {0, 0, 0};
     *radius = -1;
     STARG_TRY(find_heights(r, normal == NULL ? anywhere : normal, scratch));
+    ball_search w = {.r = r,
+                     .normal = normal,
+                     .lowest = scratch->lowest.data,
+                     .bound = normal == NULL ? INFINITY : height};
     largest_ball_start(&w.ball);
     for (int round = 0; round < 4 * ROUNDS_MOST && w.ball.radius > 0; round++) {
         int added = add_violated(&w, w.ball.radius - 1e-9);

@@ -14,7 +14,8 @@ typedef struct region_triangle {
 typedef struct region {
     STARG_ARRAY(double) vertices; /* x 3 */
     STARG_ARRAY(region_triangle) triangles;
-    STARG_ARRAY(double) rows; /* x 4: outward normal of length one, offset; one for each plane */
+    STARG_ARRAY(double) rows;   /* x 4: outward normal of length one, offset; one for each plane */
+    STARG_ARRAY(double) blocks; /* the same for the scan (star/strict/scan.h) */
 } region;
 
 /* How far a star-shaped part of a region reaches: its side of a plane across `normal` at any height
@@ -25,13 +26,16 @@ typedef struct region_reach {
     double guard[3];
 } region_reach;
 
+typedef STARG_ARRAY(double) region_values;
+
 /* Working memory of one thread. */
 typedef struct region_scratch {
     starg_context *context;
     STARG_ARRAY(uint32_t) vertex_of; /* by the partition's vertex: 1 + the region's, or 0 */
     STARG_ARRAY(uint32_t) row_of;    /* by 2 * plane + side: likewise */
-    STARG_ARRAY(double) heights;     /* of vertices along a direction */
-    STARG_ARRAY(double) lowest;      /* of rows likewise: their lowest vertex */
+    region_values heights;           /* of vertices along a direction */
+    region_values lowest;            /* of rows likewise: their lowest vertex */
+    region_values lowest_back;       /* the same along the opposite direction */
 } region_scratch;
 
 void region_scratch_free(region_scratch *scratch);
@@ -46,10 +50,14 @@ void region_free(starg_context *context, region *r);
 starg_status region_clip(starg_context *context, const region *from, const double normal[3],
                          double height, region *out);
 
-/* The highest that a star-shaped low side reaches along `normal` whose guard is inside by `margin`.
- * Errors: MEMORY. */
+/* Volume of a part that region_clip has made with that plane. */
+double region_volume_above(const region *part, const double normal[3], double height);
+
+/* The highest that a star-shaped low side reaches along `normal` whose guard is inside by `margin`;
+ * and, unless `down` is NULL, the same for the high side along the opposite direction (its height
+ * is minus the lowest place of the plane), if the low side reaches anywhere. Errors: MEMORY. */
 starg_status region_find_reach(const region *r, const double normal[3], double margin,
-                               region_scratch *scratch, region_reach *out);
+                               region_scratch *scratch, region_reach *up, region_reach *down);
 
 /* Centre and radius of the largest ball inside of all rows, or of those with a vertex below a
  * plane and the plane itself, if `normal` is not NULL. The radius is negative when there is none.
