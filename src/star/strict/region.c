@@ -105,8 +105,10 @@ static starg_status gather_facet(const partition *p, uint32_t entry, region_scra
     starg_status status = STARG_OK;
     const facet *f = &p->facets.data[entry / 2];
     region_triangle fresh;
+    uint32_t corners[3];
+    facet_outward(f, (int)(entry % 2), corners);
     for (int k = 0; k < 3; k++)
-        STARG_TRY(gather_vertex(p, f->corners[k], scratch, out, &fresh.corners[k]));
+        STARG_TRY(gather_vertex(p, corners[k], scratch, out, &fresh.corners[k]));
     STARG_TRY(gather_row(p, f->plane, (int)(entry % 2), scratch, out, &fresh.row));
     STARG_PUSH(p->context, PARTITION_STAGE, &out->triangles, fresh);
 done:
@@ -240,8 +242,7 @@ double region_volume_above(const region *part, const double normal[3], double he
     for (size_t i = 0; i < part->triangles.count; i++) {
         double corner[3][3];
         for (int k = 0; k < 3; k++)
-            vec3_subtract(part->vertices.data +
-                              3 * (size_t)part->triangles.data[i].corners[k],
+            vec3_subtract(part->vertices.data + 3 * (size_t)part->triangles.data[i].corners[k],
                           origin, corner[k]);
         sum += vec3_triple(corner[0], corner[1], corner[2]);
     }

@@ -5,7 +5,8 @@
 
 #include "star/strict/partition.h"
 
-/* A triangle, or a segment along an earlier cut (then two corners are the same). */
+/* A triangle, counter-clockwise seen from outside, or a segment along an earlier cut (then two
+ * corners are the same). */
 typedef struct region_triangle {
     uint32_t corners[3], row;
 } region_triangle;
