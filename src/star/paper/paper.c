@@ -18,10 +18,10 @@
 
 #include "geometry/vec3.h"
 #include "star/decomposition.h"
+#include "star/paper/component.h"
 #include "star/paper/growth.h"
 #include "star/paper/rest.h"
 #include "star/paper/smooth.h"
-#include "star/paper/view.h"
 #include "starguard/guard.h"
 
 /* ---- state ---- */
@@ -124,6 +124,23 @@ done:
     return status;
 }
 
+/* Crumbs between the regions. */
+static starg_status take_crumbs(paper_state *s, const paper_front *front) {
+    starg_status status = STARG_OK;
+    component_search c;
+    STARG_TRY(component_create(s, &c));
+    for (size_t t = 0; t < s->mesh->count; t++) {
+        if (s->labels[t] >= 0 || c.tet_mark[t] > 0)
+            continue;
+        component_find(s, &c, (uint32_t)t);
+        if (c.found.count <= PAPER_CRUMB)
+            growth_relaxed(s, front, c.found.tetrahedra, c.found.count, PAPER_LEAST_SEEN);
+    }
+done:
+    component_free(s, &c);
+    return status;
+}
+
 static starg_status grow_from_guards(paper_state *s, size_t max_pieces) {
     starg_status status = STARG_OK;
     size_t count = paper_pieces(s);
@@ -134,7 +151,8 @@ static starg_status grow_from_guards(paper_state *s, size_t max_pieces) {
     STARG_TRY(views_create(s, &all, s->guards.data, count, guards));
     const paper_front front = {guards, count, 0};
     growth_strict(s, &front);
-    growth_relaxed(s, &front, all.tetrahedra, all.count, PAPER_LEAST_SEEN);
+    growth_relaxed(s, &front, all.tetrahedra, all.count, 4);
+    STARG_TRY(take_crumbs(s, &front));
     if (max_pieces > 0 && count >= max_pieces)
         growth_relaxed(s, &front, all.tetrahedra, all.count, 0);
 done:

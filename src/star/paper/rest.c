@@ -13,55 +13,17 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "star/paper/component.h"
 #include "star/paper/growth.h"
-#include "star/paper/view.h"
 
 enum { CANDIDATES = 32, RNG_STAGE = 0x7265 };
 
 typedef struct rest {
     paper_state *state;
-    paper_domain component;
-    uint32_t *tet_mark; /* by which search a tetrahedron was found last */
-    uint32_t *number;   /* of vertices within the component; the mark says whether it counts */
-    uint32_t *vertex_mark;
-    uint32_t search;
+    component_search component;
     paper_guard guard;
     view_scratch scratch;
 } rest;
-
-/* ---- components ---- */
-
-static void add_vertices(rest *r, uint32_t tetrahedron) {
-    for (size_t k = 0; k < 4; k++) {
-        uint32_t v = r->state->mesh->tetrahedra[4 * (size_t)tetrahedron + k];
-        if (r->vertex_mark[v] == r->search)
-            continue;
-        r->vertex_mark[v] = r->search;
-        r->number[v] = (uint32_t)r->component.vertex_count;
-        r->component.vertices[r->component.vertex_count++] = v;
-    }
-}
-
-static void add_tetrahedron(rest *r, uint32_t tetrahedron) {
-    if (tetrahedron == PAPER_NONE || r->state->labels[tetrahedron] >= 0 ||
-        r->tet_mark[tetrahedron] == r->search)
-        return;
-    r->tet_mark[tetrahedron] = r->search;
-    r->component.tetrahedra[r->component.count++] = tetrahedron;
-    add_vertices(r, tetrahedron);
-}
-
-/* The uncoloured component of a tetrahedron, breadth first. */
-static void collect(rest *r, uint32_t tetrahedron) {
-    r->search++;
-    r->component.count = 0;
-    r->component.vertex_count = 0;
-    add_tetrahedron(r, tetrahedron);
-    for (size_t i = 0; i < r->component.count; i++)
-        for (size_t k = 0; k < 4; k++)
-            add_tetrahedron(r,
-                            r->state->mesh->neighbours[4 * (size_t)r->component.tetrahedra[i] + k]);
-}
 
 /* ---- the next guard ---- */
 
@@ -72,7 +34,7 @@ typedef struct trial {
 } trial;
 
 static size_t pick_candidates(const rest *r, trial *t) {
-    const paper_domain *c = &r->component;
+    const paper_domain *c = &r->component.found;
     starg_rng rng = starg_rng_make(r->state->context->seed, RNG_STAGE, c->tetrahedra[0]);
     size_t count = c->count < CANDIDATES ? c->count : CANDIDATES;
     for (size_t i = 0; i < count; i++) {
@@ -86,7 +48,7 @@ static starg_status make_seen(starg_context *context, void *shared, void **scrat
     starg_status status = STARG_OK;
     const trial *t = shared;
     bool *seen = NULL;
-    STARG_NEW(context, PAPER_STAGE, seen, t->rest->component.vertex_count);
+    STARG_NEW(context, PAPER_STAGE, seen, t->rest->component.found.vertex_count);
     *scratch = seen;
 done:
     return status;
@@ -104,14 +66,14 @@ static starg_status score(starg_context *context, void *shared, void *scratch, s
     double p[3];
     (void)context;
     paper_centroid(s, t->candidates[item], p);
-    for (size_t i = 0; i < r->component.vertex_count; i++)
+    for (size_t i = 0; i < r->component.found.vertex_count; i++)
         seen[i] = tet_sight_is_free(&s->sight, p,
-                                    s->mesh->vertices + 3 * (size_t)r->component.vertices[i]);
+                                    s->mesh->vertices + 3 * (size_t)r->component.found.vertices[i]);
     t->scores[item] = 0;
-    for (size_t i = 0; i < r->component.count; i++) {
-        const uint32_t *v = s->mesh->tetrahedra + 4 * (size_t)r->component.tetrahedra[i];
-        t->scores[item] += seen[r->number[v[0]]] && seen[r->number[v[1]]] &&
-                           seen[r->number[v[2]]] && seen[r->number[v[3]]];
+    for (size_t i = 0; i < r->component.found.count; i++) {
+        const uint32_t *v = s->mesh->tetrahedra + 4 * (size_t)r->component.found.tetrahedra[i];
+        t->scores[item] += seen[r->component.number[v[0]]] && seen[r->component.number[v[1]]] &&
+                           seen[r->component.number[v[2]]] && seen[r->component.number[v[3]]];
     }
     return STARG_OK;
 }
@@ -143,57 +105,35 @@ static starg_status choose_guard(rest *r) {
 static starg_status grow_new_piece(rest *r) {
     starg_status status = STARG_OK;
     paper_state *s = r->state;
+    const paper_domain *c = &r->component.found;
     const paper_front front = {&r->guard, 1, (int32_t)paper_pieces(s)};
+    int least = c->count > PAPER_CRUMB ? 4 : PAPER_LEAST_SEEN;
     STARG_TRY(choose_guard(r));
     for (int k = 0; k < 3; k++)
         STARG_PUSH(s->context, PAPER_STAGE, &s->guards, r->guard.position[k]);
-    view_fill(s, &r->guard, &r->component, &r->scratch);
+    view_fill(s, &r->guard, c, &r->scratch);
     growth_strict(s, &front);
-    growth_relaxed(s, &front, r->component.tetrahedra, r->component.count, PAPER_LEAST_SEEN);
-    view_clear(&r->guard, &r->component);
+    growth_relaxed(s, &front, c->tetrahedra, c->count, least);
+    view_clear(&r->guard, c);
 done:
     return status;
 }
 
 static starg_status colour_component(rest *r, uint32_t tetrahedron, size_t max_pieces) {
-    collect(r, tetrahedron);
+    component_find(r->state, &r->component, tetrahedron);
     if (max_pieces > 0 && paper_pieces(r->state) >= max_pieces)
-        growth_absorb(r->state, r->component.tetrahedra, r->component.count);
+        growth_absorb(r->state, r->component.found.tetrahedra, r->component.found.count);
     if (r->state->labels[tetrahedron] >= 0)
         return STARG_OK;
     return grow_new_piece(r);
 }
 
-static starg_status rest_create(rest *r) {
-    starg_status status = STARG_OK;
-    starg_context *context = r->state->context;
-    size_t count = r->state->mesh->count, vertex_count = r->state->mesh->vertex_count;
-    STARG_NEW(context, PAPER_STAGE, r->component.tetrahedra, count);
-    STARG_NEW(context, PAPER_STAGE, r->component.vertices, vertex_count);
-    STARG_NEW_ZERO(context, PAPER_STAGE, r->tet_mark, count);
-    STARG_NEW_ZERO(context, PAPER_STAGE, r->vertex_mark, vertex_count);
-    STARG_NEW(context, PAPER_STAGE, r->number, vertex_count);
-    STARG_TRY(view_scratch_create(r->state, &r->scratch));
-    STARG_TRY(view_create(r->state, &r->guard));
-done:
-    return status;
-}
-
-static void rest_free(rest *r) {
-    starg_context *context = r->state->context;
-    starg_release(context, r->component.tetrahedra);
-    starg_release(context, r->component.vertices);
-    starg_release(context, r->tet_mark);
-    starg_release(context, r->vertex_mark);
-    starg_release(context, r->number);
-    view_scratch_free(r->state, &r->scratch);
-    view_free(r->state, &r->guard);
-}
-
 starg_status rest_colour(paper_state *s, size_t max_pieces) {
     starg_status status = STARG_OK;
     rest r = {.state = s};
-    STARG_TRY(rest_create(&r));
+    STARG_TRY(component_create(s, &r.component));
+    STARG_TRY(view_scratch_create(s, &r.scratch));
+    STARG_TRY(view_create(s, &r.guard));
     for (size_t t = 0; t < s->mesh->count; t++) {
         starg_progress_step(s->context, t, s->mesh->count);
         while (s->labels[t] < 0) {
@@ -202,6 +142,8 @@ starg_status rest_colour(paper_state *s, size_t max_pieces) {
         }
     }
 done:
-    rest_free(&r);
+    component_free(s, &r.component);
+    view_scratch_free(s, &r.scratch);
+    view_free(s, &r.guard);
     return status;
 }
