@@ -13,38 +13,14 @@
 #include "core/memory.h"
 #include "core/rng.h"
 #include "decomposition_oracle.h"
-#include "geometry/delaunay.h"
 #include "shapes.h"
 #include "star/decomposition.h"
 #include "starguard/check.h"
 #include "starguard/decompose.h"
 #include "tetra/tetmesh.h"
+#include "tetrahedra.h"
 
 /* ---- random input ---- */
-
-/* Delaunay tetrahedra of random points, of which some are left out. */
-static starg_tetmesh *random_mesh(starg_context *context, uint64_t seed, size_t points_wanted,
-                                  bool lattice, double scale) {
-    starg_rng rng = starg_rng_make(seed, 11, 0);
-    double points[3 * 100];
-    delaunay *d = NULL;
-    starg_tetmesh *mesh = NULL;
-    for (size_t i = 0; i < 3 * points_wanted; i++)
-        points[i] = scale * (lattice ? (double)starg_rng_below(&rng, 4) : starg_rng_unit(&rng));
-    test_ok(context, delaunay_create(context, points, points_wanted, &d));
-    uint32_t *kept = malloc(16 * d->count + 16);
-    assert_non_null(kept);
-    size_t count = 0;
-    for (size_t t = 0; t < d->count; t++)
-        if (starg_rng_below(&rng, 8) > 0)
-            memcpy(kept + 4 * count++, d->tetrahedra[t], 16);
-    if (count > 0)
-        test_ok(context,
-                starg_tetmesh_create(context, points, points_wanted, kept, count, NULL, &mesh));
-    free(kept);
-    delaunay_free(d);
-    return mesh;
-}
 
 /* A guard in the middle of a tetrahedron, of one of its faces or edges, at a vertex, or far off. */
 static void random_guard(starg_rng *rng, const starg_tetmesh *mesh, size_t tetrahedron,
@@ -91,10 +67,9 @@ static int32_t *random_labels(starg_context *context, starg_rng *rng, const star
 
 static starg_decomposition *random_result(starg_context *context, uint64_t seed, double scale) {
     starg_rng rng = starg_rng_make(seed, 12, 0);
-    starg_tetmesh *mesh = random_mesh(context, seed, 8 + seed % 24, seed % 3 == 1, scale);
+    starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + seed % 24, seed % 3 == 1, scale);
     starg_decomposition *d = NULL;
     double guards[3 * 1000];
-    assert_non_null(mesh);
     assert_true(mesh->count <= 1000);
     /* many pieces, or few */
     size_t pieces = seed % 2 == 0 ? 1 + starg_rng_below(&rng, mesh->count)
@@ -334,7 +309,7 @@ static void test_solids(void **state) {
 static void test_arguments(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_tetmesh *mesh = random_mesh(context, 3, 10, false, 1);
+    starg_tetmesh *mesh = random_tetmesh(context, 3, 10, false, 1);
     starg_decompose_options options;
     starg_decompose_options_default(&options);
     starg_decomposition *d = NULL;
@@ -384,7 +359,7 @@ static bool run_rationed(size_t ration, const char *report) {
     double guards[3 * 4] = {0};
     assert_int_equal(starg_context_create(&options, &context), STARG_OK);
     starg_rng rng = starg_rng_make(1, 2, 3);
-    starg_tetmesh *mesh = random_mesh(context, 5, 20, false, 1);
+    starg_tetmesh *mesh = random_tetmesh(context, 5, 20, false, 1);
     int32_t *labels = random_labels(context, &rng, mesh, 4, guards);
     left = ration;
     starg_status status =

@@ -1,0 +1,17 @@
+/* Random tetrahedral meshes for tests. */
+#ifndef TESTS_TETRAHEDRA_H
+#define TESTS_TETRAHEDRA_H
+
+#include <stdbool.h>
+
+#include "starguard/tetra.h"
+
+/* Delaunay tetrahedra of random points (at most 100), or of points of a small lattice, of which
+ * some are left out; coordinates are multiplied by `scale`. */
+starg_tetmesh *random_tetmesh(starg_context *context, uint64_t seed, size_t points, bool lattice,
+                              double scale);
+
+/* Isosurface stuffing of a procedural sample with about so many tetrahedra. */
+starg_tetmesh *sample_tetmesh(starg_context *context, const char *name, size_t target);
+
+#endif
