@@ -1,0 +1,191 @@
+"""Star decomposition: files that agree with each other, models of every kind, failures that leave
+nothing behind."""
+import json
+import os
+
+import support
+from support import TETRAHEDRON
+
+MEDIT = """MeshVersionFormatted 2
+Dimension 3
+Vertices
+5
+0 0 0 0
+1 0 0 0
+0 1 0 0
+0 0 1 0
+1 1 1 0
+Tetrahedra
+2
+1 2 3 4 0
+2 3 4 5 0
+End
+"""
+
+
+class Decompose(support.Case):
+    def setUp(self):
+        super().setUp()
+        self.write("m.off", TETRAHEDRON)
+        self.write("m.mesh", MEDIT)
+
+    def grid(self, name):
+        """Points, tetrahedra and labels of a VTK file as text."""
+        words = self.read(name).decode().split()
+        at = words.index("POINTS")
+        count = int(words[at + 1])
+        numbers = list(map(float, words[at + 3:at + 3 + 3 * count]))
+        points = [numbers[i:i + 3] for i in range(0, 3 * count, 3)]
+        at = words.index("CELLS")
+        cells = int(words[at + 1])
+        rows = list(map(int, words[at + 3:at + 3 + 5 * cells]))
+        tets = [rows[i + 1:i + 5] for i in range(0, 5 * cells, 5)]
+        at = words.index("LOOKUP_TABLE")
+        self.assertEqual(words[at - 4:at + 2],
+                         ["SCALARS", "piece", "int", "1", "LOOKUP_TABLE", "default"])
+        return points, tets, list(map(int, words[at + 2:at + 2 + cells]))
+
+    def volume(self, points, tet):
+        a, b, c, d = (points[i] for i in tet)
+        u, v, w = ([p[k] - a[k] for k in range(3)] for p in (b, c, d))
+        return (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2])
+                + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6
+
+    def agree(self, grid, report):
+        """The two files tell of the same pieces."""
+        points, tets, labels = self.grid(grid)
+        result = json.loads(self.read(report))
+        self.assertEqual(result["format"], "starguard-pieces")
+        self.assertEqual(result["version"], 1)
+        self.assertEqual(result["tetrahedra"], len(tets))
+        volumes, counts = {}, {}
+        for tet, label in zip(tets, labels):
+            size = self.volume(points, tet)
+            self.assertGreater(size, 0)
+            volumes[label] = volumes.get(label, 0) + size
+            counts[label] = counts.get(label, 0) + 1
+        self.assertEqual(sorted(counts), list(range(len(result["pieces"]))))
+        for label, piece in enumerate(result["pieces"]):
+            self.assertEqual(piece["tetrahedra"], counts[label])
+            self.assertAlmostEqual(piece["volume"], volumes[label])
+            if piece["star"]:
+                self.assertGreater(piece["radius"], 0)
+        self.assertEqual(result["strictly_star"], sum(p["star"] for p in result["pieces"]))
+        for i, j, area in result["adjacency"]:
+            self.assertLess(i, j)
+            self.assertGreater(area, 0)
+        return result
+
+    def test_strict(self):
+        room = self.sample("l-room")
+        report = self.run_json("decompose", room, "-o", "p.vtk", "--report", "p.json",
+                               "--density", "3", "--time-limit", "3")
+        result = self.agree("p.vtk", "p.json")
+        self.assertEqual(report["format"], "starguard-decompose")
+        self.assertEqual(result["mode"], "strict")
+        self.assertEqual(result["model"], report["model"])
+        self.assertTrue(all(piece["star"] for piece in result["pieces"]))
+        self.assertEqual(result["visible_vertices"], 1)
+        self.assertEqual(report["pieces"], result["pieces"])
+        self.assertEqual(report["contacts"], len(result["adjacency"]))
+
+    def test_paper(self):
+        room = self.sample("l-room")
+        for threads in "1", "3":
+            self.run_text("decompose", room, "-o", f"{threads}.vtk", "--report",
+                          f"{threads}.json", "--mode", "paper", "--density", "5",
+                          "--threads", threads)
+        self.assertEqual(self.read("1.vtk"), self.read("3.vtk"))
+        self.assertEqual(self.read("1.json"), self.read("3.json"))
+        result = self.agree("1.vtk", "1.json")
+        self.assertEqual(result["mode"], "paper")
+        self.assertGreater(result["visible_vertices"], 0.99)
+        self.run_text("guard", room, "-o", "g.json", "--count", "100")
+        self.run_text("decompose", room, "-o", "g.vtk", "--report", "p.json", "--mode", "paper",
+                      "--density", "5", "--guards", "g.json", "--max-pieces", "1")
+        self.assertEqual(len(self.agree("g.vtk", "p.json")["pieces"]), 1)
+
+    def test_tetrahedra(self):
+        wanted = {"file": "m.mesh", "vertices": 5, "tetrahedra": 2}
+        for words in ["m.mesh"], ["--tets", "m.mesh"]:
+            report = self.run_json("decompose", *words, "-o", "p.vtk", "--report", "p.json",
+                                   "--mode", "paper")
+            self.assertEqual(report["model"], wanted)
+            self.assertEqual(self.agree("p.vtk", "p.json")["model"], wanted)
+            self.assertEqual(report["surface"], "kept")
+            self.assertAlmostEqual(report["volume"], 0.5)
+        self.write("flat.mesh", MEDIT.replace("1 2 3 4 0", "1 2 3 3 0"))
+        _, err = self.run_text("decompose", "flat.mesh", "-o", "q.vtk", status=2)
+        self.assertIn("no volume", err)
+
+    def test_standard_streams(self):
+        out, err = self.run_text("decompose", "-", "-o", "-", input=TETRAHEDRON.encode())
+        self.assertTrue(out.startswith("# vtk DataFile"))
+        self.assertIn("pieces", err)
+        out, _ = self.run_text("decompose", "-", "-o", "-", "--mode", "paper",
+                               input=MEDIT.encode())
+        self.assertIn("CELLS 2 10", out)
+        self.run_text("decompose", "-", "-o", "p.vtk", input=b"", status=2)
+
+    def test_open_surface(self):
+        lines = self.read(self.sample("torus")).decode().splitlines()
+        vertices, faces, _ = map(int, lines[1].split())
+        lines[1] = f"{vertices} {faces - 3} 0"
+        self.write("open.off", "\n".join(lines[:2 + vertices + faces - 3]) + "\n")
+        report = self.run_json("decompose", "open.off", "-o", "p.vtk", "--report", "p.json",
+                               "--mode", "paper", "--density", "4")
+        result = self.agree("p.vtk", "p.json")
+        self.assertEqual(result["surface"], "approximated")
+        self.assertEqual(result["distance"], report["distance"])
+        self.assertGreater(result["distance"]["step"], 0)
+        self.assertEqual(result["model"]["faces"], faces - 3)
+        self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
+
+    def test_surfaces_and_picture(self):
+        room = self.sample("l-room")
+        report = self.run_json("decompose", room, "-o", "p.vtk", "--mode", "paper", "--density",
+                               "5", "--surfaces", "parts", "--picture", "p.png")
+        count = len(report["pieces"])
+        names = sorted(os.listdir(self.path("parts")))
+        self.assertEqual(names, [f"piece_{i:04d}.ply" for i in range(count)] + ["pieces.obj"])
+        total = 0
+        for i in range(count):
+            piece = self.run_json("check", f"parts/piece_{i:04d}.ply")
+            total += piece["volume"]
+            self.assertAlmostEqual(piece["volume"], report["pieces"][i]["volume"])
+            self.assertIn(b"property uchar red", self.read(f"parts/piece_{i:04d}.ply"))
+        self.assertAlmostEqual(total, report["volume"])
+        groups = [line for line in self.read("parts/pieces.obj").decode().splitlines()
+                  if line.startswith("g ")]
+        self.assertEqual(groups, [f"g piece_{i:04d}" for i in range(count)])
+        self.assertTrue(self.read("p.png").startswith(b"\x89PNG"))
+        # again, into the folder that is there now
+        self.run_text("decompose", "m.off", "-o", "p.vtk", "--surfaces", "parts")
+
+    def test_binary(self):
+        self.run_text("decompose", "m.mesh", "-o", "b.vtk", "--binary", "--mode", "paper")
+        self.assertIn(b"\nBINARY\n", self.read("b.vtk"))
+        self.run_text("decompose", "b.vtk", "-o", "t.vtk", "--mode", "paper")
+        self.run_text("decompose", "m.mesh", "-o", "u.vtk", "--mode", "paper")
+        self.assertEqual(self.read("t.vtk"), self.read("u.vtk"))
+
+    def test_leaves_nothing(self):
+        names = self.names()
+        self.write("closed", "")
+        self.run_text("decompose", "none.off", "-o", "p.vtk", "--surfaces", "parts", status=2)
+        self.run_text("decompose", "m.off", "-o", "no/p.vtk", "--surfaces", "parts", status=3)
+        self.run_text("decompose", "m.off", "-o", "p.vtk", "--surfaces", "closed", status=3)
+        self.run_text("decompose", "m.off", "-o", "p.vtk", "--surfaces", "no/parts", status=3)
+        self.run_text("decompose", "m.off", "-o", "p.vtk", "--guards", "none.json", status=2)
+        self.assertEqual(self.names(), sorted(names + ["closed"]))
+
+    def test_usage(self):
+        self.usage_error("decompose", "m.off", says="-o PIECES.vtk")
+        self.usage_error("decompose", "-o", "p.vtk", says="--tets")
+        self.usage_error("decompose", "m.off", "--tets", "m.mesh", "-o", "p.vtk", says="--tets")
+        self.usage_error("decompose", "m.off", "-o", "p.vtk", "--mode", "papr", says="paper")
+        self.usage_error("decompose", "m.off", "-o", "p.vtk", "--picture", "p.jpg", says=".png")
+
+
+if __name__ == "__main__":
+    support.main()
