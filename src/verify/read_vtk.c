@@ -106,6 +106,7 @@ static void skip_line(reader *r) {
 /* The next decimal integer of a text. */
 static starg_status text_integer(reader *r, int64_t *value) {
     skip_blanks(r);
+    *value = 0;
     const char *c = r->at;
     bool negative = c < r->end && *c == '-';
     int64_t sum = 0;
@@ -171,6 +172,7 @@ static starg_status read_real(reader *r, double *value) {
 static starg_status read_count(reader *r, size_t numbers_each, size_t bytes_each, size_t *count) {
     int64_t declared;
     starg_status status = text_integer(r, &declared);
+    *count = 0;
     if (status != STARG_OK)
         return status;
     size_t left = (size_t)(r->end - r->at);
