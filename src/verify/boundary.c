@@ -6,8 +6,9 @@
  *
  * Why that is enough, with the area of each shell: the boundary is closed (verify/facets.c) and
  * lies on the model, so on each shell of it, it is a whole multiple of that shell: what covers one
- * face n times must cover its neighbours as often. All faces look the way of the model, so areas
- * add up without cancelling, and the area says that the multiple is one.
+ * face n times must cover its neighbour across an edge of two faces as often (verify/shells.h). All
+ * faces look the way of the model, so areas add up without cancelling, and the area says that the
+ * multiple is one.
  *
  * Cost: O(n log n). Signs do not depend on tolerances here; only "on" does. */
 #include "verify/boundary.h"
@@ -16,6 +17,7 @@
 
 #include "core/memory.h"
 #include "verify/measure.h"
+#include "verify/shells.h"
 #include "verify/tree.h"
 
 static const char STAGE[] = "verify";
@@ -120,29 +122,7 @@ static void find_place(matcher *own, size_t face) {
 
 /* ---- shells ---- */
 
-uint32_t verify_shell_of(uint32_t *parent, uint32_t v) {
-    while (parent[v] != v) {
-        parent[v] = parent[parent[v]];
-        v = parent[v];
-    }
-    return v;
-}
-
-starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent) {
-    starg_status status = STARG_OK;
-    STARG_NEW(surface->context, STAGE, *parent, surface->vertex_count);
-    for (size_t v = 0; v < surface->vertex_count; v++)
-        (*parent)[v] = (uint32_t)v;
-    for (size_t i = 0; i < 3 * surface->face_count; i++) {
-        uint32_t a = verify_shell_of(*parent, surface->faces[i]);
-        uint32_t b = verify_shell_of(*parent, surface->faces[i - i % 3]);
-        (*parent)[a > b ? a : b] = a > b ? b : a;
-    }
-done:
-    return status;
-}
-
-/* Areas of the model's shells, each kept at its root vertex. */
+/* Areas of the model's shells, each kept at its lowest face. */
 typedef struct shell {
     double area, covered, slack;
 } shell;
@@ -152,15 +132,15 @@ typedef struct shells {
     shell *of;
 } shells;
 
-static shell *shell_at(const shells *all, const verify_surface *model, size_t face) {
-    return &all->of[verify_shell_of(all->parent, model->faces[3 * face])];
+static shell *shell_at(const shells *all, size_t face) {
+    return &all->of[verify_shell_of(all->parent, (uint32_t)face)];
 }
 
 static void compare_shells(const shells *all, const verify_surface *model, verify_match *match) {
     for (size_t f = 0; f < model->face_count; f++) {
-        shell *own = shell_at(all, model, f);
-        if (own->area < 0)
-            continue; /* counted before */
+        const shell *own = &all->of[f];
+        if (all->parent[f] != f)
+            continue;
         bool even = fabs(own->covered - own->area) <= TOLERANCE * own->area + own->slack;
         match->shells++;
         match->area += own->covered;
@@ -170,7 +150,6 @@ static void compare_shells(const shells *all, const verify_surface *model, verif
             match->shell_area = own->area;
             match->shell_covered = own->covered;
         }
-        own->area = -1;
     }
 }
 
@@ -186,7 +165,7 @@ static void take_down(const matcher *own, const shells *all, double rounding, ve
         match->first_turned = own->face;
     if (own->best == OFF || own->best == TURNED)
         return;
-    shell *under = shell_at(all, own->model, own->on);
+    shell *under = shell_at(all, own->on);
     under->covered += verify_area(own->outer, own->face, own->scale);
     if (own->best == ON)
         under->slack += ldexp(rounding, own->scale) * extent_of(s, own->scale);
@@ -206,9 +185,9 @@ starg_status verify_match_boundary(const verify_pieces *pieces, const verify_sur
     STARG_TRY(verify_tree_create(model, &tree));
     own.tree = tree;
     STARG_TRY(verify_find_shells(model, &all.parent));
-    STARG_NEW_ZERO(context, STAGE, all.of, model->vertex_count);
+    STARG_NEW_ZERO(context, STAGE, all.of, model->face_count);
     for (size_t f = 0; f < model->face_count; f++)
-        shell_at(&all, model, f)->area += verify_area(model, f, own.scale);
+        shell_at(&all, f)->area += verify_area(model, f, own.scale);
     for (size_t f = 0; f < own.outer->face_count; f++) {
         if (f % CANCEL_STEP == 0)
             STARG_TRY(starg_check_cancel(context, STAGE));

@@ -13,7 +13,8 @@
 
 #include "core/memory.h"
 #include "core/rng.h"
-#include "verify/boundary.h"
+#include "verify/pieces.h"
+#include "verify/shells.h"
 #include "verify/signs.h"
 #include "verify/tree.h"
 
@@ -139,9 +140,9 @@ static starg_status wind_shells(const verify_pieces *pieces, verify_nearness *ne
     uint32_t *parent = NULL;
     uint8_t *done_with = NULL;
     STARG_TRY(verify_find_shells(outer, &parent));
-    STARG_NEW_ZERO(pieces->context, STAGE, done_with, outer->vertex_count);
+    STARG_NEW_ZERO(pieces->context, STAGE, done_with, outer->face_count);
     for (size_t f = 0; f < outer->face_count; f++) {
-        uint32_t shell = verify_shell_of(parent, outer->faces[3 * f]);
+        uint32_t shell = verify_shell_of(parent, (uint32_t)f);
         double center[3];
         bool on_surface;
         if (done_with[shell] || !center_of(pieces->mesh, pieces->outer_facets[f] / 4, center))

@@ -25,6 +25,7 @@ struct verify_tree {
     const verify_surface *surface;
     uint32_t *order; /* faces */
     box *boxes;      /* of the nodes, from 1 */
+    double *centers; /* of the faces' boxes; while it is built */
 };
 
 /* A node and its range of the order. */
@@ -52,8 +53,8 @@ static const box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINIT
 
 static void widen(box *own, const double lower[3], const double upper[3]) {
     for (int k = 0; k < 3; k++) {
-        own->lower[k] = fmin(own->lower[k], lower[k]);
-        own->upper[k] = fmax(own->upper[k], upper[k]);
+        own->lower[k] = lower[k] < own->lower[k] ? lower[k] : own->lower[k];
+        own->upper[k] = upper[k] > own->upper[k] ? upper[k] : own->upper[k];
     }
 }
 
@@ -66,18 +67,15 @@ static box box_of(const verify_surface *surface, uint32_t face) {
     return own;
 }
 
-static double center_of(const verify_surface *surface, uint32_t face, int axis) {
-    box own = box_of(surface, face);
-    return own.lower[axis] / 2 + own.upper[axis] / 2;
+static double center_of(const verify_tree *tree, size_t place, int axis) {
+    return tree->centers[3 * (size_t)tree->order[place] + (size_t)axis];
 }
 
 static int longest_axis(const verify_tree *tree, node own) {
     box centers = NOTHING;
     for (size_t i = own.begin; i < own.end; i++) {
-        double c[3];
-        for (int k = 0; k < 3; k++)
-            c[k] = center_of(tree->surface, tree->order[i], k);
-        widen(&centers, c, c);
+        const double *center = tree->centers + 3 * (size_t)tree->order[i];
+        widen(&centers, center, center);
     }
     int axis = 0;
     for (int k = 1; k < 3; k++)
@@ -94,18 +92,17 @@ static void exchange(uint32_t *a, uint32_t *b) {
 
 /* Puts what belongs before the middle of the range there (Hoare's selection). */
 static void part_at_middle(verify_tree *tree, node own, int axis) {
-    const verify_surface *surface = tree->surface;
     uint32_t *order = tree->order;
     size_t middle = own.begin + (own.end - own.begin) / 2, begin = own.begin, last = own.end - 1;
     while (begin < last) {
         size_t pick = begin + (size_t)(starg_hash64(begin ^ last << 20) % (last - begin + 1));
-        double pivot = center_of(surface, order[pick], axis);
+        double pivot = center_of(tree, pick, axis);
         size_t i = begin, j = last;
         exchange(&order[begin], &order[pick]); /* so that j ends below `last` */
         for (;; i++, j--) {
-            while (center_of(surface, order[i], axis) < pivot)
+            while (center_of(tree, i, axis) < pivot)
                 i++;
-            while (center_of(surface, order[j], axis) > pivot)
+            while (center_of(tree, j, axis) > pivot)
                 j--;
             if (i >= j)
                 break;
@@ -136,6 +133,15 @@ static box build(verify_tree *tree, node own) {
     return all;
 }
 
+static void find_centers(verify_tree *tree) {
+    for (uint32_t f = 0; f < tree->surface->face_count; f++) {
+        box own = box_of(tree->surface, f);
+        tree->order[f] = f;
+        for (size_t k = 0; k < 3; k++)
+            tree->centers[3 * (size_t)f + k] = own.lower[k] / 2 + own.upper[k] / 2;
+    }
+}
+
 starg_status verify_tree_create(const verify_surface *surface, verify_tree **out) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
@@ -148,9 +154,11 @@ starg_status verify_tree_create(const verify_surface *surface, verify_tree **out
     tree->surface = surface;
     STARG_NEW(context, STAGE, tree->order, surface->face_count);
     STARG_NEW(context, STAGE, tree->boxes, node_count);
-    for (uint32_t f = 0; f < surface->face_count; f++)
-        tree->order[f] = f;
+    STARG_NEW(context, STAGE, tree->centers, 3 * surface->face_count);
+    find_centers(tree);
     build(tree, root_of(tree));
+    starg_release(context, tree->centers);
+    tree->centers = NULL;
     *out = tree;
 done:
     if (status != STARG_OK)
@@ -163,6 +171,7 @@ void verify_tree_free(verify_tree *tree) {
         return;
     starg_release(tree->surface->context, tree->order);
     starg_release(tree->surface->context, tree->boxes);
+    starg_release(tree->surface->context, tree->centers);
     starg_release(tree->surface->context, tree);
 }
 

@@ -492,6 +492,30 @@ static void test_double_winding(void **state) {
     test_context_free(context);
 }
 
+/* Two cells that touch in a corner: one of them twice, the other not at all. Area, volume and faces
+ * are those of the model. */
+static void test_one_shell_for_another(void **state) {
+    (void)state;
+    static const grid cell = {"A", {1, 1, 1}};
+    starg_context *context = test_context(1);
+    shape model = shape_cells("#......#", 2, 2, 2);
+    cut *c = cut_new(&cell);
+    uint32_t base = (uint32_t)c->mesh.vertex_count;
+    memcpy(c->vertices + 3 * (size_t)base, c->vertices, 3 * base * sizeof(double));
+    c->mesh.vertex_count *= 2;
+    for (size_t t = 0; t < 12; t++) {
+        const uint32_t *v = c->tetrahedra + 4 * t;
+        cut_add_tetrahedron(c, base + v[0], base + v[1], base + v[2], base + v[3], 1);
+    }
+    c->report.piece_count = c->report.strictly_star = 2;
+    c->pieces[1] = c->pieces[0];
+    cut_recount(c);
+    expect_failure(context, &model, c, "shells once: not so for 2", true);
+    free(c);
+    shape_free(&model);
+    test_context_free(context);
+}
+
 static void test_model_turned_inside_out(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -899,6 +923,7 @@ int main(void) {
         cmocka_unit_test(test_guard_at_a_plane),
         cmocka_unit_test(test_subdivided),
         cmocka_unit_test(test_double_winding),
+        cmocka_unit_test(test_one_shell_for_another),
         cmocka_unit_test(test_model_turned_inside_out),
         cmocka_unit_test(test_approximated),
         cmocka_unit_test(test_overlap_of_shells),

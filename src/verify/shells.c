@@ -1,0 +1,76 @@
+/* Union-find over faces. A hash table holds the first directed edge of every pair of vertices; the
+ * second one becomes its partner, a third one spoils the pair. Faces that touch in a vertex only,
+ * or in an edge of more than two faces, stay apart: what is known of one says nothing of the other.
+ * Cost: O(n). */
+#include "verify/shells.h"
+
+#include "core/memory.h"
+#include "core/rng.h"
+
+static const char STAGE[] = "verify";
+
+#define ALONE  UINT32_MAX
+#define SPOILT (UINT32_MAX - 1)
+
+/* Edge e runs from corner e % 3 of face e / 3 to the next; its ends, the lower one first. */
+static uint64_t ends_of(const verify_surface *surface, uint32_t e) {
+    uint64_t a = surface->faces[e], b = surface->faces[e % 3 == 2 ? e - 2 : e + 1];
+    return a < b ? a << 32 | b : b << 32 | a;
+}
+
+/* Slots hold edge + 1. */
+static void insert(const verify_surface *surface, uint32_t *slots, size_t mask, uint32_t *partner,
+                   uint32_t e) {
+    uint64_t ends = ends_of(surface, e);
+    for (size_t i = (size_t)starg_hash64(ends) & mask;; i = (i + 1) & mask) {
+        if (slots[i] == 0) {
+            slots[i] = e + 1;
+            return;
+        }
+        uint32_t first = slots[i] - 1;
+        if (ends_of(surface, first) == ends) {
+            partner[first] = partner[first] == ALONE ? e : SPOILT;
+            return;
+        }
+    }
+}
+
+uint32_t verify_shell_of(uint32_t *parent, uint32_t face) {
+    while (parent[face] != face) {
+        parent[face] = parent[parent[face]];
+        face = parent[face];
+    }
+    return face;
+}
+
+static void join(uint32_t *parent, uint32_t f, uint32_t g) {
+    uint32_t a = verify_shell_of(parent, f), b = verify_shell_of(parent, g);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
+starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent) {
+    starg_context *context = surface->context;
+    starg_status status = STARG_OK;
+    uint32_t *slots = NULL, *partner = NULL;
+    size_t edges = 3 * surface->face_count, mask = 1;
+    while (mask < 2 * edges)
+        mask = 2 * mask + 1;
+    if (edges >= SPOILT)
+        return starg_fail_memory(context, STAGE);
+    STARG_NEW(context, STAGE, *parent, surface->face_count);
+    STARG_NEW(context, STAGE, partner, edges);
+    STARG_NEW_ZERO(context, STAGE, slots, mask + 1);
+    for (size_t f = 0; f < surface->face_count; f++)
+        (*parent)[f] = (uint32_t)f;
+    for (size_t e = 0; e < edges; e++)
+        partner[e] = ALONE;
+    for (size_t e = 0; e < edges; e++)
+        insert(surface, slots, mask, partner, (uint32_t)e);
+    for (size_t e = 0; e < edges; e++)
+        if (partner[e] < SPOILT)
+            join(*parent, (uint32_t)(e / 3), partner[e] / 3);
+done:
+    starg_release(context, slots);
+    starg_release(context, partner);
+    return status;
+}
