@@ -11,12 +11,11 @@
  * multiple is one.
  *
  * Cost: O(n log n). Signs do not depend on tolerances here; only "on" does. */
-#include "verify/boundary.h"
-
 #include <math.h>
 
 #include "core/memory.h"
 #include "verify/measure.h"
+#include "verify/pieces.h"
 #include "verify/shells.h"
 #include "verify/tree.h"
 
@@ -24,13 +23,6 @@ static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* relative to the diagonal, and of areas */
 
 enum { CANCEL_STEP = 256 };
-
-double verify_rounding(const verify_surface *surface) {
-    double size = 0;
-    for (int k = 0; k < 3; k++)
-        size = fmax(size, fmax(fabs(surface->lower[k]), fabs(surface->upper[k])));
-    return size * 0x1p-50;
-}
 
 static double diagonal_of(const verify_surface *surface) {
     double sum = 0;
@@ -133,7 +125,7 @@ typedef struct shells {
 } shells;
 
 static shell *shell_at(const shells *all, size_t face) {
-    return &all->of[verify_shell_of(all->parent, (uint32_t)face)];
+    return &all->of[verify_root(all->parent, (uint32_t)face)];
 }
 
 static void compare_shells(const shells *all, const verify_surface *model, verify_match *match) {

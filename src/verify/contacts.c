@@ -77,7 +77,8 @@ static void compare_listed(ledger *own, uint32_t piece) {
         const starg_piece_contact *contact = &own->report->contacts[own->listed[i]];
         uint32_t other = contact->second;
         double found = own->open[other] ? ldexp(own->area[other], -2 * own->pieces->scale) : 0;
-        bool same = fabs(contact->area - found) <= TOLERANCE * fmax(fabs(contact->area), found);
+        bool same =
+            fabs(contact->area - found) <= TOLERANCE * fmax(fabs(contact->area), found) + 0x1p-1022;
         if (!own->open[other] || !same)
             note(own, piece, other, contact->area, found);
         own->open[other] = 0;

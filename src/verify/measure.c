@@ -9,6 +9,13 @@ int verify_scale(const verify_surface *surface) {
     return extent > 0 ? -ilogb(extent) : 0;
 }
 
+double verify_rounding(const verify_surface *surface) {
+    double size = 0;
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, fmax(fabs(surface->lower[k]), fabs(surface->upper[k])));
+    return size * 0x1p-50;
+}
+
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -24,8 +31,9 @@ static void scaled_difference(const double a[3], const double b[3], int scale, d
         out[k] = ldexp(a[k] - b[k], scale);
 }
 
-double verify_volume(const double a[3], const double b[3], const double c[3], const double d[3],
-                     int scale) {
+/* Of a tetrahedron, negative when it is inverted. */
+static double volume_of(const double a[3], const double b[3], const double c[3], const double d[3],
+                        int scale) {
     double u[3], v[3], w[3], n[3];
     scaled_difference(b, a, scale, u);
     scaled_difference(c, a, scale, v);
@@ -49,13 +57,27 @@ double verify_area(const verify_surface *surface, size_t face, int scale) {
     return 0.5 * sqrt(dot(n, n));
 }
 
-void verify_total_add(verify_total *total, double x) {
-    double sum = total->sum + x;
-    if (fabs(total->sum) >= fabs(x))
-        total->rest += (total->sum - sum) + x;
-    else
-        total->rest += (x - sum) + total->sum;
-    total->sum = sum;
+/* A sum that keeps its rounding errors aside [Neumaier 1974]. */
+static void add(verify_volume *own, double x) {
+    double sum = own->sum + x;
+    own->rest += fabs(own->sum) >= fabs(x) ? (own->sum - sum) + x : (x - sum) + own->sum;
+    own->sum = sum;
+}
+
+void verify_add_volume(verify_volume *own, const double *const t[4], int scale) {
+    double box = 1;
+    for (int k = 0; k < 3; k++) {
+        double lower = fmin(fmin(t[0][k], t[1][k]), fmin(t[2][k], t[3][k]));
+        double upper = fmax(fmax(t[0][k], t[1][k]), fmax(t[2][k], t[3][k]));
+        box *= ldexp(upper - lower, scale);
+    }
+    add(own, volume_of(t[0], t[1], t[2], t[3], scale));
+    own->slack += 0x1p-48 * box;
+}
+
+bool verify_same_volume(const verify_volume *own, double claimed, double slack) {
+    double value = verify_volume_value(own);
+    return fabs(value - claimed) <= 1e-9 * fmax(fabs(value), fabs(claimed)) + own->slack + slack;
 }
 
 /* Squared distance from the origin to the segment from a along e. */

@@ -8,26 +8,30 @@
 /* The power of two that brings the model's extent to about 1. */
 int verify_scale(const verify_surface *surface);
 
+/* How far the rounding of coordinates may move a point of the surface, generously. */
+double verify_rounding(const verify_surface *surface);
+
 /* Area of a face in units of 2^(-2 scale). */
 double verify_area(const verify_surface *surface, size_t face, int scale);
 
 /* Twice the area, outward: the normal of a face in the same units. */
 void verify_normal(const verify_surface *surface, size_t face, int scale, double n[3]);
 
-/* Volume of a tetrahedron in units of 2^(-3 scale), negative when it is inverted. */
-double verify_volume(const double a[3], const double b[3], const double c[3], const double d[3],
-                     int scale);
+/* A sum of volumes of tetrahedra in units of 2^(-3 scale), and how far rounding may have moved it.
+ */
+typedef struct verify_volume {
+    double sum, rest, slack;
+} verify_volume;
 
-/* A sum with its rounding errors kept aside [Neumaier 1974]; it is sum + rest. */
-typedef struct verify_total {
-    double sum, rest;
-} verify_total;
+/* Adds a tetrahedron by its corners; an inverted one is negative. */
+void verify_add_volume(verify_volume *own, const double *const t[4], int scale);
 
-void verify_total_add(verify_total *total, double x);
-
-static inline double verify_total_value(verify_total total) {
-    return total.sum + total.rest;
+static inline double verify_volume_value(const verify_volume *own) {
+    return own->sum + own->rest;
 }
+
+/* Is it the volume that is claimed, but for a billionth of it, rounding, and `slack`? */
+bool verify_same_volume(const verify_volume *own, double claimed, double slack);
 
 /* Squared distance from p to a face, in units of 2^(-2 scale). */
 double verify_squared_distance(const verify_surface *surface, size_t face, const double p[3],

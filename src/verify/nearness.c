@@ -142,7 +142,7 @@ static starg_status wind_shells(const verify_pieces *pieces, verify_nearness *ne
     STARG_TRY(verify_find_shells(outer, &parent));
     STARG_NEW_ZERO(pieces->context, STAGE, done_with, outer->face_count);
     for (size_t f = 0; f < outer->face_count; f++) {
-        uint32_t shell = verify_shell_of(parent, (uint32_t)f);
+        uint32_t shell = verify_root(parent, (uint32_t)f);
         double center[3];
         bool on_surface;
         if (done_with[shell] || !center_of(pieces->mesh, pieces->outer_facets[f] / 4, center))

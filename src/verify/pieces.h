@@ -4,6 +4,7 @@
 
 #include "starguard/verify.h"
 #include "verify/facets.h"
+#include "verify/measure.h"
 #include "verify/surface.h"
 
 /* Labels that are not 0 to pieces - 1, each in use. */
@@ -38,6 +39,15 @@ void verify_pieces_free(verify_pieces *pieces);
 
 static inline const double *verify_point(const starg_pieces_mesh *mesh, uint32_t vertex) {
     return mesh->vertices + 3 * (size_t)vertex;
+}
+
+/* Adds the volume of a tetrahedron. */
+static inline void verify_add_tetrahedron(verify_volume *volume, const starg_pieces_mesh *mesh,
+                                          size_t tetrahedron, int scale) {
+    const double *t[4];
+    for (size_t i = 0; i < 4; i++)
+        t[i] = verify_point(mesh, mesh->tetrahedra[4 * tetrahedron + i]);
+    verify_add_volume(volume, t, scale);
 }
 
 /* The piece on the other side of a wall, or VERIFY_NONE. */

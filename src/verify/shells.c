@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/rng.h"
+#include "verify/sets.h"
 
 static const char STAGE[] = "verify";
 
@@ -35,19 +36,6 @@ static void insert(const verify_surface *surface, uint32_t *slots, size_t mask, 
     }
 }
 
-uint32_t verify_shell_of(uint32_t *parent, uint32_t face) {
-    while (parent[face] != face) {
-        parent[face] = parent[parent[face]];
-        face = parent[face];
-    }
-    return face;
-}
-
-static void join(uint32_t *parent, uint32_t f, uint32_t g) {
-    uint32_t a = verify_shell_of(parent, f), b = verify_shell_of(parent, g);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
-
 starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
@@ -68,7 +56,7 @@ starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent
         insert(surface, slots, mask, partner, (uint32_t)e);
     for (size_t e = 0; e < edges; e++)
         if (partner[e] < SPOILT)
-            join(*parent, (uint32_t)(e / 3), partner[e] / 3);
+            verify_join(*parent, (uint32_t)(e / 3), partner[e] / 3);
 done:
     starg_release(context, slots);
     starg_release(context, partner);

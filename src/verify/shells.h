@@ -2,13 +2,11 @@
 #ifndef STARG_VERIFY_SHELLS_H
 #define STARG_VERIFY_SHELLS_H
 
+#include "verify/sets.h"
 #include "verify/surface.h"
 
-/* Finds shells: *parent (face_count, a block of the context) names for each face another one of its
- * shell; verify_shell_of follows that to the lowest. Errors: MEMORY. */
+/* Finds shells as disjoint sets of faces: *parent (face_count) is a block of the context. Errors:
+ * MEMORY. */
 starg_status verify_find_shells(const verify_surface *surface, uint32_t **parent);
-
-/* The face that stands for the shell of a face, the lowest one of it. */
-uint32_t verify_shell_of(uint32_t *parent, uint32_t face);
 
 #endif

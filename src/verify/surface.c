@@ -14,6 +14,7 @@
 #include "core/memory.h"
 #include "core/rng.h"
 #include "verify/exact_sum.h"
+#include "verify/sets.h"
 #include "verify/signs.h"
 
 static const char STAGE[] = "verify";
@@ -65,14 +66,6 @@ static starg_status insert_edges(starg_context *context, edge_table *table, size
 
 /* ---- shells ---- */
 
-static uint32_t find_root(uint32_t *parent, uint32_t f) {
-    while (parent[f] != f) {
-        parent[f] = parent[parent[f]];
-        f = parent[f];
-    }
-    return f;
-}
-
 /* Joins faces that share an edge; the root of a shell is its lowest face. */
 static starg_status join_faces(starg_context *context, const edge_table *table, size_t edge_count,
                                uint32_t *parent) {
@@ -88,9 +81,7 @@ static starg_status join_faces(starg_context *context, const edge_table *table, 
                                  "on its other side",
                                  a, b, (size_t)(e / 3));
         }
-        uint32_t u = find_root(parent, (uint32_t)(e / 3));
-        uint32_t v = find_root(parent, (uint32_t)((twin - 1) / 3));
-        parent[u > v ? u : v] = u > v ? v : u;
+        verify_join(parent, (uint32_t)(e / 3), (uint32_t)((twin - 1) / 3));
     }
     return STARG_OK;
 }
@@ -122,7 +113,7 @@ static starg_status gather_shells(const verify_surface *surface, uint32_t *paren
     STARG_NEW_ZERO(context, STAGE, place, n);
     STARG_NEW(context, STAGE, shells->faces, n);
     for (uint32_t f = 0; f < n; f++)
-        place[find_root(parent, f)]++;
+        place[verify_root(parent, f)]++;
     for (uint32_t f = 0; f < n; f++)
         if (parent[f] == f) {
             shell own = {.faces = shells->faces + next,
@@ -134,7 +125,7 @@ static starg_status gather_shells(const verify_surface *surface, uint32_t *paren
             STARG_PUSH(context, STAGE, &shells->list, own);
         }
     for (uint32_t f = 0; f < n; f++)
-        shells->faces[place[find_root(parent, f)]++] = f;
+        shells->faces[place[verify_root(parent, f)]++] = f;
     for (size_t s = 0; s < shells->list.count; s++) {
         shell *own = &shells->list.data[s];
         for (size_t i = 0; i < 3 * own->count; i++) {

@@ -111,7 +111,7 @@ static void test_scales(void **state) {
     (void)state;
     static const struct {
         double scale, offset;
-    } places[] = {{1e90, 0}, {1e-90, 0}, {1, 1048576}, {0.1, 1000.1}, {3e-7, -0.3}};
+    } places[] = {{1e90, 0}, {1e-90, 0}, {1e-110, 0}, {1, 1048576}, {0.1, 1000.1}, {3e-7, -0.3}};
     starg_context *context = test_context(1);
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         shape model = grid_model(&CAVITY);
@@ -808,6 +808,10 @@ static void test_bad_arrays(void **state) {
                      STARG_ERROR_ARGUMENT);
     c->tetrahedra[7] = 0;
     c->vertices[4] = INFINITY;
+    assert_int_equal(starg_verify_pieces(context, mesh, &c->mesh, &c->report, &verdict),
+                     STARG_ERROR_RANGE);
+    c->vertices[4] = 0;
+    c->pieces[1].guard[2] = NAN;
     assert_int_equal(starg_verify_pieces(context, mesh, &c->mesh, &c->report, &verdict),
                      STARG_ERROR_RANGE);
     c->mesh.count = 0;

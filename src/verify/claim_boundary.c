@@ -1,0 +1,125 @@
+/* The claims about boundary and volume. A boundary that is the model's surface is laid on it
+ * (verify/boundary.c), and the volumes agree; of one that is only near it the distance is measured
+ * (verify/nearness.c), and volumes are not compared. */
+#include <math.h>
+
+#include "verify/hearing.h"
+
+static const double TOLERANCE = 1e-9; /* relative */
+
+/* ---- the boundary ---- */
+
+static void claim_on_model(const verify_hearing *own, const verify_match *match) {
+    size_t count = own->pieces->outer->face_count;
+    static const char claim[] = "the boundary lies on the model's surface and looks its way";
+    if (match->off > 0)
+        verify_claim(own->verdict, false, "%s: %zu of %zu faces lie elsewhere, first %s", claim,
+                     match->off, count, verify_outer_words(own, match->first_off).text);
+    else if (match->turned > 0)
+        verify_claim(own->verdict, false, "%s: %zu of %zu faces look the other way, first %s",
+                     claim, match->turned, count,
+                     verify_outer_words(own, match->first_turned).text);
+    else
+        verify_claim(own->verdict, true, "%s: %zu faces are faces of the model, %zu parts of them",
+                     claim, match->equal, count - match->equal);
+}
+
+static void claim_covered(const verify_hearing *own, const verify_match *match) {
+    int scale = own->pieces->scale;
+    if (match->uneven == 0)
+        verify_claim(own->verdict, true,
+                     "the boundary covers each of the model's %zu shells once (area %.17g)",
+                     match->shells, ldexp(match->area, -2 * scale));
+    else
+        verify_claim(own->verdict, false,
+                     "the boundary covers each of the model's %zu shells once: not so for %zu, "
+                     "first that of face %zu, of area %.17g, covered %.17g",
+                     match->shells, match->uneven, match->shell,
+                     ldexp(match->shell_area, -2 * scale), ldexp(match->shell_covered, -2 * scale));
+}
+
+static void claim_near(const verify_hearing *own, const verify_nearness *nearness) {
+    double limit = own->report->distance;
+    bool near = nearness->farthest <= limit * (1 + TOLERANCE) + verify_rounding(own->model);
+    if (near)
+        verify_claim(own->verdict, true,
+                     "the boundary is at most %.17g from the model's surface (%.17g at %zu points)",
+                     limit, nearness->farthest, nearness->points);
+    else
+        verify_claim(own->verdict, false,
+                     "the boundary is at most %.17g from the model's surface: %s is %.17g away",
+                     limit, verify_outer_words(own, nearness->face).text, nearness->farthest);
+}
+
+static void claim_simple(const verify_hearing *own, const verify_nearness *nearness) {
+    if (nearness->crossings == 0)
+        verify_claim(own->verdict, true, "no two faces of the boundary pass through one another");
+    else
+        verify_claim(own->verdict, false,
+                     "no two faces of the boundary pass through one another: %zu pairs do, first "
+                     "%s and one of tetrahedron %u",
+                     nearness->crossings, verify_outer_words(own, nearness->first).text,
+                     own->pieces->outer_facets[nearness->second] / 4);
+    if (nearness->multiple == 0)
+        verify_claim(own->verdict, true,
+                     "the boundary winds once around the inside of its %zu shells",
+                     nearness->shells);
+    else
+        verify_claim(own->verdict, false,
+                     "the boundary winds once around the inside of its %zu shells: not so for "
+                     "%zu, first behind %s",
+                     nearness->shells, nearness->multiple,
+                     verify_outer_words(own, nearness->shell).text);
+}
+
+/* ---- volume ---- */
+
+static void claim_volume(const verify_hearing *own) {
+    const verify_surface *model = own->model;
+    int scale = own->pieces->scale;
+    verify_volume tetrahedra = {0}, solid = {0};
+    double center[3], area = 0;
+    for (int k = 0; k < 3; k++)
+        center[k] = model->lower[k] / 2 + model->upper[k] / 2;
+    for (size_t t = 0; t < own->mesh->count; t++)
+        verify_add_tetrahedron(&tetrahedra, own->mesh, t, scale);
+    for (size_t f = 0; f < model->face_count; f++) {
+        const double *t[4] = {center};
+        verify_corners(model, f, t + 1);
+        verify_add_volume(&solid, t, scale);
+        area += verify_area(model, f, scale);
+    }
+    double expected = verify_volume_value(&solid);
+    double slack = solid.slack + area * ldexp(verify_rounding(model), scale);
+    verify_claim(own->verdict, verify_same_volume(&tetrahedra, expected, slack),
+                 "the tetrahedra have the volume of the model (%.17g and %.17g)",
+                 ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
+}
+
+/* ---- all of it ---- */
+
+static starg_status claim_nearness(const verify_hearing *own) {
+    verify_nearness nearness;
+    starg_status status = verify_measure_boundary(own->pieces, own->model, &nearness);
+    if (status != STARG_OK)
+        return status;
+    claim_near(own, &nearness);
+    claim_simple(own, &nearness);
+    return STARG_OK;
+}
+
+static starg_status claim_match(const verify_hearing *own) {
+    verify_match match;
+    starg_status status = verify_match_boundary(own->pieces, own->model, &match);
+    if (status != STARG_OK)
+        return status;
+    claim_on_model(own, &match);
+    claim_covered(own, &match);
+    claim_volume(own);
+    return STARG_OK;
+}
+
+starg_status verify_claim_boundary(const verify_hearing *own) {
+    bool approximated = own->report != NULL && own->report->approximated;
+    return approximated ? claim_nearness(own) : claim_match(own);
+}

@@ -1,0 +1,99 @@
+/* The claims about guards: star-shaped pieces by their certificates (verify/certificate.c), and
+ * what share of its vertices each guard sees (verify/seen.c). */
+#include <math.h>
+
+#include "core/memory.h"
+#include "verify/hearing.h"
+
+static const char STAGE[] = "verify";
+static const double TOLERANCE = 1e-9; /* of fractions */
+
+/* ---- star-shapedness ---- */
+
+static void tell_failed_proof(const verify_hearing *own, const verify_certificate *failed,
+                              const char *claim, size_t bad, size_t first) {
+    if (failed->proof == VERIFY_BEHIND)
+        verify_claim(own->verdict, false,
+                     "%s: %zu are not, first piece %zu, whose guard is not strictly on the inner "
+                     "side of %s",
+                     claim, bad, first,
+                     verify_facet_words(own, own->pieces->wall_facets[failed->wall]).text);
+    else
+        verify_claim(own->verdict, false,
+                     "%s: %zu are not, first piece %zu, whose boundary winds %d times around its "
+                     "guard",
+                     claim, bad, first, failed->winding);
+}
+
+static void claim_star(const verify_hearing *own, const verify_certificate *certificates) {
+    static const char claim[] = "pieces called star-shaped are so about their guards";
+    const starg_pieces_report *report = own->report;
+    size_t bad = 0, first = 0, called = 0, proven = 0;
+    for (size_t p = report->piece_count; p-- > 0;) {
+        bool good = certificates[p].proof == VERIFY_PROVEN;
+        called += report->pieces[p].star;
+        proven += good;
+        if (report->pieces[p].star && !good) {
+            bad++;
+            first = p;
+        }
+    }
+    if (bad > 0)
+        tell_failed_proof(own, &certificates[first], claim, bad, first);
+    else
+        verify_claim(own->verdict, true, "%s (%zu of %zu, exactly proven)", claim, called,
+                     report->piece_count);
+    verify_claim(own->verdict, report->strictly_star == proven && called == proven,
+                 "%zu pieces are strictly star-shaped (called so: %zu, found: %zu)",
+                 report->strictly_star, called, proven);
+    if (report->mode == STARG_DECOMPOSE_STRICT)
+        verify_claim(own->verdict, proven == report->piece_count,
+                     "in strict mode all %zu pieces are star-shaped (found: %zu)",
+                     report->piece_count, proven);
+}
+
+/* All vertices but those drawn at random leave no doubt; a share that was drawn is allowed five
+ * times its standard error. */
+static bool agrees(const verify_seen *seen, double claimed) {
+    double open = (double)(seen->pairs - seen->proven), all = (double)seen->pairs;
+    if (seen->looked == seen->pairs - seen->proven)
+        return fabs(claimed * all - (double)(seen->proven + seen->seen)) <= TOLERANCE * all;
+    double share = (claimed * all - (double)seen->proven) / open;
+    double drawn = (double)seen->looked, found = (double)seen->seen / drawn;
+    if (!(share >= -TOLERANCE && share <= 1 + TOLERANCE))
+        return false;
+    return fabs(found - share) <= 5 * sqrt(fmax(share * (1 - share), 0) / drawn) + 5 / drawn;
+}
+
+static starg_status claim_seen(const verify_hearing *own, const verify_certificate *certificates) {
+    starg_status status = STARG_OK;
+    verify_seen seen;
+    STARG_TRY(verify_find_seen(own->pieces, own->report, certificates, &seen));
+    double open = (double)(seen.pairs - seen.proven), share = 0;
+    if (seen.looked > 0)
+        share = (double)seen.seen / (double)seen.looked;
+    verify_claim(own->verdict, agrees(&seen, own->report->visible_vertices),
+                 "guards see a fraction of %.17g of their pieces' vertices (found: %.17g; %zu of "
+                 "%zu lines tested)",
+                 own->report->visible_vertices,
+                 ((double)seen.proven + share * open) / (double)seen.pairs, seen.looked,
+                 seen.pairs);
+done:
+    return status;
+}
+
+/* ---- all of it ---- */
+
+starg_status verify_claim_stars(const verify_hearing *own) {
+    starg_status status = STARG_OK;
+    verify_certificate *certificates = NULL;
+    if (!own->pieces->labels.good)
+        return STARG_OK;
+    STARG_NEW(own->context, STAGE, certificates, own->report->piece_count);
+    STARG_TRY(verify_certify(own->pieces, own->report, certificates));
+    claim_star(own, certificates);
+    STARG_TRY(claim_seen(own, certificates));
+done:
+    starg_release(own->context, certificates);
+    return status;
+}
