@@ -261,6 +261,19 @@ done:
     return status;
 }
 
+/* Of the vertices that faces name: one that none does may be anywhere. */
+static void find_bounds(verify_surface *surface) {
+    for (size_t k = 0; k < 3; k++) {
+        surface->lower[k] = INFINITY;
+        surface->upper[k] = -INFINITY;
+        for (size_t i = 0; i < 3 * surface->face_count; i++) {
+            double x = surface->vertices[3 * (size_t)surface->faces[i] + k];
+            surface->lower[k] = fmin(surface->lower[k], x);
+            surface->upper[k] = fmax(surface->upper[k], x);
+        }
+    }
+}
+
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out) {
     starg_status status = STARG_OK;
@@ -274,9 +287,9 @@ starg_status verify_surface_create(starg_context *context, const starg_mesh *mes
     surface->vertex_count = starg_mesh_vertex_count(mesh);
     surface->face_count = face_count;
     surface->vertices = starg_mesh_vertices(mesh);
-    starg_mesh_bounds(mesh, surface->lower, surface->upper);
     STARG_NEW(context, STAGE, surface->faces, 3 * face_count);
     memcpy(surface->faces, starg_mesh_faces(mesh), 3 * face_count * sizeof *surface->faces);
+    find_bounds(surface);
     STARG_TRY(orient(surface));
     *out = surface;
 done:
@@ -296,15 +309,8 @@ starg_status verify_surface_wrap(starg_context *context, const double *vertices,
                                 .vertex_count = vertex_count,
                                 .face_count = face_count,
                                 .vertices = vertices,
-                                .faces = faces,
-                                .lower = {INFINITY, INFINITY, INFINITY},
-                                .upper = {-INFINITY, -INFINITY, -INFINITY}};
-    for (size_t i = 0; i < 3 * face_count; i++)
-        for (size_t k = 0; k < 3; k++) {
-            double x = vertices[3 * (size_t)faces[i] + k];
-            surface->lower[k] = fmin(surface->lower[k], x);
-            surface->upper[k] = fmax(surface->upper[k], x);
-        }
+                                .faces = faces};
+    find_bounds(surface);
     *out = surface;
 done:
     if (status != STARG_OK)

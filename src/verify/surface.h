@@ -14,7 +14,7 @@ typedef struct verify_surface {
     size_t vertex_count, face_count;
     const double *vertices;    /* of the mesh, which must outlive the surface */
     uint32_t *faces;           /* counter-clockwise seen from outside of the solid */
-    double lower[3], upper[3]; /* bounds of all vertices; of those of faces when wrapped */
+    double lower[3], upper[3]; /* bounds of the vertices that faces name */
 } verify_surface;
 
 /* Checks that every edge has two faces, which run along it in opposite ways, and turns shells.

@@ -449,6 +449,24 @@ static void test_subdivided(void **state) {
     test_context_free(context);
 }
 
+/* A vertex that no face names, very far away, does not make all near. */
+static void test_far_vertex(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape model = grid_model(&RING);
+    cut *c = cut_new(&RING);
+    const double far[3] = {1e50, 0, 0};
+    model.vertices = realloc(model.vertices, 3 * (model.vertex_count + 1) * sizeof(double));
+    memcpy(model.vertices + 3 * model.vertex_count++, far, sizeof far);
+    cut_add_vertex(c, far);
+    expect_pass(context, &model, c);
+    move_outer_vertex(c);
+    expect_failure(context, &model, c, "faces lie elsewhere", false);
+    free(c);
+    shape_free(&model);
+    test_context_free(context);
+}
+
 /* A ring around an axis, run through twice: all tetrahedra positive, all faces on the model with
  * the right side, and the guard behind none; but everything is covered twice. */
 static void test_double_winding(void **state) {
@@ -926,6 +944,7 @@ int main(void) {
         cmocka_unit_test(test_each_falsification_fails),
         cmocka_unit_test(test_guard_at_a_plane),
         cmocka_unit_test(test_subdivided),
+        cmocka_unit_test(test_far_vertex),
         cmocka_unit_test(test_double_winding),
         cmocka_unit_test(test_one_shell_for_another),
         cmocka_unit_test(test_model_turned_inside_out),
