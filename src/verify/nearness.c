@@ -1,5 +1,5 @@
 /* A boundary that is only near the model: how near, and does it bound its tetrahedra once? Points
- * of up to 5,000 outer faces (drawn at random when there are more) are held against the model's
+ * of up to 20,000 outer faces (drawn at random when there are more) are held against the model's
  * surface: corners, centre, and one at random of each. The model need not be closed.
  *
  * Overlap: a point lies in as many tetrahedra as the boundary winds around it (verify/facets.c,
@@ -20,7 +20,7 @@
 
 static const char STAGE[] = "verify";
 
-enum { MOST_FACES = 5000, POINTS = 5, RNG_STAGE = 0x6e656172, CANCEL_STEP = 256 };
+enum { MOST_FACES = 20000, POINTS = 5, RNG_STAGE = 0x6e656172, CANCEL_STEP = 256 };
 
 /* ---- distance ---- */
 
