@@ -8,7 +8,7 @@
  * tetrahedron of that shell. Exact; faces that cross along edges and corners alone, none of them
  * strictly on both sides of another, are not found as crossing.
  *
- * Cost: O(n log n), and O(n) for each shell. */
+ * Cost: typically O(n log n). */
 #include <math.h>
 
 #include "core/memory.h"
@@ -91,11 +91,10 @@ static bool cross_face(void *data, uint32_t other) {
     return true;
 }
 
-static starg_status find_crossings(const verify_pieces *pieces, verify_nearness *nearness) {
+static starg_status find_crossings(const verify_pieces *pieces, const verify_tree *tree,
+                                   verify_nearness *nearness) {
     starg_status status = STARG_OK;
     const verify_surface *outer = pieces->outer;
-    verify_tree *tree = NULL;
-    STARG_TRY(verify_tree_create(outer, &tree));
     for (size_t f = 0; f < outer->face_count; f++) {
         crossing own = {outer, f, nearness};
         const double *t[3];
@@ -110,7 +109,6 @@ static starg_status find_crossings(const verify_pieces *pieces, verify_nearness 
             STARG_TRY(starg_check_cancel(pieces->context, STAGE));
     }
 done:
-    verify_tree_free(tree);
     return status;
 }
 
@@ -134,7 +132,8 @@ static bool center_of(const starg_pieces_mesh *mesh, uint32_t tetrahedron, doubl
     return true;
 }
 
-static starg_status wind_shells(const verify_pieces *pieces, verify_nearness *nearness) {
+static starg_status wind_shells(const verify_pieces *pieces, const verify_tree *tree,
+                                verify_nearness *nearness) {
     starg_status status = STARG_OK;
     const verify_surface *outer = pieces->outer;
     uint32_t *parent = NULL;
@@ -149,7 +148,7 @@ static starg_status wind_shells(const verify_pieces *pieces, verify_nearness *ne
             continue;
         done_with[shell] = 1;
         nearness->shells++;
-        int winding = verify_winding(outer, NULL, outer->face_count, center, &on_surface);
+        int winding = verify_tree_winding(tree, center, &on_surface);
         if ((on_surface || winding != 1) && nearness->multiple++ == 0)
             nearness->shell = f;
         STARG_TRY(starg_check_cancel(pieces->context, STAGE));
@@ -163,10 +162,13 @@ done:
 starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
                                      verify_nearness *nearness) {
     starg_status status = STARG_OK;
+    verify_tree *tree = NULL;
     *nearness = (verify_nearness){0};
     STARG_TRY(measure_distance(pieces, model, nearness));
-    STARG_TRY(find_crossings(pieces, nearness));
-    STARG_TRY(wind_shells(pieces, nearness));
+    STARG_TRY(verify_tree_create(pieces->outer, &tree));
+    STARG_TRY(find_crossings(pieces, tree, nearness));
+    STARG_TRY(wind_shells(pieces, tree, nearness));
 done:
+    verify_tree_free(tree);
     return status;
 }

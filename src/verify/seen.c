@@ -64,14 +64,13 @@ done:
 
 static starg_status find_inside(search *own) {
     starg_status status = STARG_OK;
-    const verify_surface *outer = own->pieces->outer;
     STARG_NEW_ZERO(own->pieces->context, STAGE, own->inside, own->pieces->piece_count);
     for (size_t p = 0; p < own->pieces->piece_count; p++) {
         if (own->certificates[p].proof == VERIFY_PROVEN)
             continue;
         const double *guard = own->report->pieces[p].guard;
         bool on_surface;
-        int winding = verify_winding(outer, NULL, outer->face_count, guard, &on_surface);
+        int winding = verify_tree_winding(own->tree, guard, &on_surface);
         own->inside[p] = !on_surface && winding > 0;
         STARG_TRY(starg_check_cancel(own->pieces->context, STAGE));
     }

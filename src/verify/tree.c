@@ -175,6 +175,10 @@ void verify_tree_free(verify_tree *tree) {
     starg_release(tree->surface->context, tree);
 }
 
+const verify_surface *verify_tree_surface(const verify_tree *tree) {
+    return tree->surface;
+}
+
 /* ---- boxes ---- */
 
 static bool meet(const box *a, const box *b) {
@@ -205,11 +209,11 @@ static bool visit_node(const visitor *own, node at) {
     return true;
 }
 
-void verify_tree_visit(const verify_tree *tree, const double lower[3], const double upper[3],
+bool verify_tree_visit(const verify_tree *tree, const double lower[3], const double upper[3],
                        verify_visit *visit, void *data) {
     visitor own = {.tree = tree, .within = NOTHING, .visit = visit, .data = data};
     widen(&own.within, lower, upper);
-    visit_node(&own, root_of(tree));
+    return visit_node(&own, root_of(tree));
 }
 
 /* ---- distance ---- */
@@ -260,13 +264,12 @@ double verify_tree_distance(const verify_tree *tree, const double p[3], int scal
 /* ---- segments ---- */
 
 typedef struct segment {
-    const double *p, *q;
     double middle[3], half[3]; /* half = (q - p) / 2, rounded */
     double size;               /* no coordinate of it is larger in magnitude */
 } segment;
 
 static segment segment_of(const double p[3], const double q[3]) {
-    segment own = {.p = p, .q = q};
+    segment own = {.size = 0};
     for (int k = 0; k < 3; k++) {
         own.middle[k] = p[k] / 2 + q[k] / 2;
         own.half[k] = q[k] / 2 - p[k] / 2;
@@ -298,21 +301,44 @@ static bool apart(const segment *own, const box *b) {
     return false;
 }
 
-static bool blocked(const verify_tree *tree, const segment *own, node at) {
-    if (apart(own, &tree->boxes[at.index]))
-        return false;
+typedef struct follower {
+    const verify_tree *tree;
+    segment way;
+    verify_visit *visit;
+    void *data;
+} follower;
+
+static bool follow(const follower *own, node at) {
+    const verify_tree *tree = own->tree;
+    if (apart(&own->way, &tree->boxes[at.index]))
+        return true;
     if (!is_leaf(at))
-        return blocked(tree, own, child_of(at, 0)) || blocked(tree, own, child_of(at, 1));
-    for (size_t i = at.begin; i < at.end; i++) {
-        const double *t[3];
-        verify_corners(tree->surface, tree->order[i], t);
-        if (verify_blocks(own->p, own->q, t))
-            return true;
-    }
-    return false;
+        return follow(own, child_of(at, 0)) && follow(own, child_of(at, 1));
+    for (size_t i = at.begin; i < at.end; i++)
+        if (!own->visit(own->data, tree->order[i]))
+            return false;
+    return true;
+}
+
+bool verify_tree_follow(const verify_tree *tree, const double p[3], const double q[3],
+                        verify_visit *visit, void *data) {
+    const follower own = {.tree = tree, .way = segment_of(p, q), .visit = visit, .data = data};
+    return follow(&own, root_of(tree));
+}
+
+typedef struct sight_line {
+    const verify_surface *surface;
+    const double *p, *q;
+} sight_line;
+
+static bool leaves_free(void *data, uint32_t face) {
+    const sight_line *own = data;
+    const double *t[3];
+    verify_corners(own->surface, face, t);
+    return !verify_blocks(own->p, own->q, t);
 }
 
 bool verify_tree_blocks(const verify_tree *tree, const double p[3], const double q[3]) {
-    segment own = segment_of(p, q);
-    return blocked(tree, &own, root_of(tree));
+    sight_line own = {tree->surface, p, q};
+    return !verify_tree_follow(tree, p, q, leaves_free, &own);
 }

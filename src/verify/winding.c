@@ -8,6 +8,7 @@
 #include "core/rng.h"
 #include "verify/signs.h"
 #include "verify/surface.h"
+#include "verify/tree.h"
 
 enum { RNG_STAGE = 0x77696e64 };
 
@@ -82,5 +83,42 @@ int verify_winding(const verify_surface *surface, const uint32_t *faces, size_t 
         outside_point(surface, attempt, q);
         if (count_crossings(surface, faces, count, p, q, &winding))
             return winding;
+    }
+}
+
+/* ---- by a tree ---- */
+
+/* A point, or a segment from it, on its way through a tree. */
+typedef struct ray {
+    const verify_surface *surface;
+    const double *p;
+    double q[3];
+    int winding;
+} ray;
+
+static bool misses_point(void *data, uint32_t face) {
+    const ray *own = data;
+    const double *t[3];
+    verify_corners(own->surface, face, t);
+    return !verify_on_triangle(own->p, t);
+}
+
+static bool passes_face(void *data, uint32_t face) {
+    ray *own = data;
+    const double *t[3];
+    verify_corners(own->surface, face, t);
+    return add_crossing(own->p, own->q, t, &own->winding);
+}
+
+int verify_tree_winding(const verify_tree *tree, const double p[3], bool *on_surface) {
+    ray own = {.surface = verify_tree_surface(tree), .p = p};
+    *on_surface = !verify_tree_visit(tree, p, p, misses_point, &own);
+    if (*on_surface || !in_bounds(own.surface, p))
+        return 0;
+    for (uint64_t attempt = 0;; attempt++) {
+        own.winding = 0;
+        outside_point(own.surface, attempt, own.q);
+        if (verify_tree_follow(tree, p, own.q, passes_face, &own))
+            return own.winding;
     }
 }

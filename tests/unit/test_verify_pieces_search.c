@@ -97,6 +97,51 @@ static void test_tree(void **state) {
     test_context_free(context);
 }
 
+/* Winding numbers with and without the tree; corners, lattice points and points between. */
+static void test_tree_winding(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t inside = 0, outside = 0, on = 0;
+    for (int which = 0; which < 4; which++) {
+        shape s = which == 0   ? shape_cavity()
+                  : which == 1 ? shape_columns()
+                  : which == 2 ? shape_blob(2, 3)
+                               : shape_cube(2);
+        const double nearby[3] = {0.5, 0.25, 0.125};
+        if (which == 3) { /* two of them, one in the other: winding numbers up to 2 */
+            shape other = shape_cube(2);
+            shape_append(&s, &other, nearby, 0);
+            shape_free(&other);
+        }
+        uint32_t *faces = starg_allocate(context, 3 * s.face_count, sizeof *faces);
+        memcpy(faces, s.faces, 3 * s.face_count * sizeof *faces);
+        verify_surface *surface = NULL;
+        verify_tree *tree = NULL;
+        test_ok(context, verify_surface_wrap(context, s.vertices, s.vertex_count, faces,
+                                             s.face_count, &surface));
+        test_ok(context, verify_tree_create(surface, &tree));
+        for (uint64_t round = 0; round < 600; round++) {
+            starg_rng rng = starg_rng_make(43, (uint64_t)which, round);
+            double p[3];
+            bool expected_on, found_on;
+            for (int k = 0; k < 3; k++)
+                p[k] = round % 2 ? 4 * starg_rng_unit(&rng) - 0.5
+                                 : (double)starg_rng_below(&rng, 9) / 2 - 0.5;
+            int expected = verify_winding(surface, NULL, s.face_count, p, &expected_on);
+            assert_int_equal(verify_tree_winding(tree, p, &found_on), expected);
+            assert_int_equal(found_on, expected_on);
+            inside += expected > 0;
+            outside += expected == 0 && !expected_on;
+            on += expected_on;
+        }
+        verify_tree_free(tree);
+        verify_surface_free(surface);
+        shape_free(&s);
+    }
+    assert_true(inside > 100 && outside > 100 && on > 100);
+    test_context_free(context);
+}
+
 /* ---- facets ---- */
 
 /* Random tetrahedra on few vertices: mates are unique, mutual and opposite; every triangle without
@@ -152,6 +197,7 @@ static void test_facets(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_tree),
+        cmocka_unit_test(test_tree_winding),
         cmocka_unit_test(test_facets),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
