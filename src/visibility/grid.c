@@ -8,7 +8,8 @@
  *      counting into the cells of a grid there, row by row, so that the cells that a face touches
  *      in one row are one run of vertices;
  *   3. for each kept face, near chunks first: the vertices in the cells of its bounding box that
- *      are not hidden yet are tested against the planes through p and its edges, and its own.
+ *      are not hidden yet are tested against the planes through p and its edges, and its own. Faces
+ *      that lie behind a single one are left out.
  *
  * Cells only choose what is tested; they are chosen with a margin above the rounding of the
  * projection. With A, B, C, V the corners and the vertex relative to p and D = det(A, B, C) > 0,
@@ -16,8 +17,13 @@
  * w0 + w1 + w2 > D: the sum is the normal of the face times V, larger than D where V lies beyond
  * its plane. Signs within the static error bound [She97] are decided by the exact segment test.
  *
+ * What a face hides strictly, all signs positive, is a convex set, so that it holds a face if it
+ * holds its corners. A face within it may be left out: the first face on the way from p to a hidden
+ * vertex has a point there that nothing comes before, and so is tested. Where limbs and folds lie
+ * behind each other, two kept faces in three are left out.
+ *
  * Cost per point: O(n) for sorting plus the pairs of faces and vertices in common cells, about
- * ten a face. Memory per thread: 60 bytes a vertex and the cells. */
+ * ten a face. Memory per thread: 64 bytes a vertex and the cells. */
 #include "visibility/grid.h"
 
 #include <math.h>
@@ -43,6 +49,7 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_release(context, g->sx);
     starg_release(context, g->sy);
     starg_release(context, g->sz);
+    starg_release(context, g->hider);
     starg_release(context, g->hidden);
     starg_release(context, g->chunks);
     starg_release(context, g);
@@ -67,11 +74,12 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->sx = starg_allocate_zero(context, n + LANES, sizeof *g->sx);
     g->sy = starg_allocate_zero(context, n + LANES, sizeof *g->sy);
     g->sz = starg_allocate_zero(context, n + LANES, sizeof *g->sz);
+    g->hider = starg_allocate(context, n, sizeof *g->hider);
     g->hidden = starg_allocate(context, starg_bit_words(n) + 1, sizeof *g->hidden);
     g->chunks = starg_allocate(context, scene->face_count / CHUNK + 1, sizeof *g->chunks);
     if (cube_make(context, n, &g->at) && g->rows && g->cell_start && g->cube && g->in_use &&
-        g->used && g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hidden &&
-        g->chunks) {
+        g->used && g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hider &&
+        g->hidden && g->chunks) {
         g->run = grid_choose_form(FORM_WIDEST);
         *scratch = g;
         return STARG_OK;

@@ -55,6 +55,7 @@ typedef struct grid_scratch {
     uint32_t *place;      /* slot -> position */
     uint32_t *slot;       /* position -> slot */
     double *sx, *sy, *sz; /* LANES more than there are vertices, of any value */
+    uint32_t *hider;      /* slot -> rank of a face that certainly hides it, or SCENE_NONE */
     uint64_t *hidden;     /* bits by position, one word more than it takes */
     chunk_distance *chunks;
 } grid_scratch;

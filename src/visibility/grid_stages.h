@@ -230,6 +230,7 @@ static void test_run(const visibility_scene *scene, const double p[3], grid_scra
     maybe &= live & ~sure;
     STARG_FOR_BITS (bit, sure) {
         starg_bit_set(g->hidden, begin + bit);
+        g->hider[g->slot[begin + bit]] = (uint32_t)f->rank;
     }
     if (maybe != 0)
         decide_exactly(scene, p, g, f, begin, maybe);
@@ -336,10 +337,20 @@ static void test_face(const visibility_scene *scene, const double p[3], grid_scr
         test_tall(scene, p, g, f, first, last);
 }
 
+/* Does one face certainly hide all three corners, and so the whole face? */
+static inline bool is_behind_one(const grid_scratch *g, const uint32_t corner[3]) {
+    uint32_t hider = g->hider[corner[0]];
+    return hider != SCENE_NONE && hider == g->hider[corner[1]] && hider == g->hider[corner[2]];
+}
+
 static void test_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
                        grid_scratch *g) {
+    for (size_t slot = 0; slot < scene->vertex_count; slot++)
+        g->hider[slot] = SCENE_NONE;
     for (size_t i = 0; i < g->kept_count; i++) {
         size_t rank = g->kept[i];
+        if (is_behind_one(g, scene->corners + 3 * rank))
+            continue;
         blocker f = {.rank = rank, .side = side[rank], .corner = scene->corners + 3 * rank};
         test_face(scene, p, g, &f);
     }
