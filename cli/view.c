@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-const char *const cli_engine_words[] = {"grid", "bvh", "sweep", "contours", NULL};
+const char *const cli_engine_words[] = {"grid", "bvh", "sweep", "contours", "fastest", NULL};
 const char *const cli_target_words[] = {"faces", "vertices", NULL};
 const char *const cli_face_rule_words[] = {"vertices", "whole", NULL};
 

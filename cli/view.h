@@ -21,9 +21,11 @@ starg_visibility_options cli_view_options(const cli_view *view);
 
 /* The options for a member `view`; the engine goes by another name in each command. */
 #define CLI_VIEW_OPTIONS(ENGINE)                                                                   \
-    CLI_CHOICE_OPTION(ENGINE, view.engine, cli_engine_words, "grid|bvh|sweep",                     \
-                      "How to see: a grid over directions (default), a bounding volume "           \
-                      "hierarchy, or the sweep. All are exact and agree; they differ in speed."),  \
+    CLI_CHOICE_OPTION(ENGINE, view.engine, cli_engine_words, "fastest|contours|grid|bvh|sweep",    \
+                      "How to see: by counting across contours, by a grid over directions, by "    \
+                      "the one of them that suits the point (default), by a bounding volume "      \
+                      "hierarchy, or by the sweep. All are exact and agree; they differ in "       \
+                      "speed."),                                                                   \
         CLI_CHOICE_OPTION("target", view.target, cli_target_words, "faces|vertices",               \
                           "What is to be seen. Default faces."),                                   \
         CLI_CHOICE_OPTION("faces", view.face_rule, cli_face_rule_words, "vertices|whole",          \

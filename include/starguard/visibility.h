@@ -18,10 +18,11 @@ extern "C" {
 #endif
 
 typedef enum starg_visibility_engine {
-    STARG_VISIBILITY_GRID = 0,    /* a grid over the directions from the point          */
-    STARG_VISIBILITY_BVH = 1,     /* each segment against a bounding volume hierarchy   */
-    STARG_VISIBILITY_SWEEP = 2,   /* the paper's sweep by angle                         */
-    STARG_VISIBILITY_CONTOURS = 3 /* layers counted across contours; else by the grid   */
+    STARG_VISIBILITY_GRID = 0,     /* a grid over the directions from the point          */
+    STARG_VISIBILITY_BVH = 1,      /* each segment against a bounding volume hierarchy   */
+    STARG_VISIBILITY_SWEEP = 2,    /* the paper's sweep by angle                         */
+    STARG_VISIBILITY_CONTOURS = 3, /* layers counted across contours; else by the grid   */
+    STARG_VISIBILITY_FASTEST = 4   /* contours or the grid, whichever suits the point    */
 } starg_visibility_engine;
 
 typedef enum starg_target { STARG_TARGET_FACES = 0, STARG_TARGET_VERTICES = 1 } starg_target;
@@ -44,7 +45,7 @@ typedef struct starg_visibility_options {
                                   length but 0; not kept                                        */
 } starg_visibility_options;
 
-/* Contours, faces, by vertices, any distance, all around. */
+/* The fastest engine, faces, by vertices, any distance, all around. */
 STARG_API void starg_visibility_options_default(starg_visibility_options *options);
 
 /* The cosine of half an opening angle in degrees: the number that decides. */

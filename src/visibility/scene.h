@@ -88,7 +88,7 @@ typedef struct visibility_engine {
 } visibility_engine;
 
 extern const visibility_engine visibility_grid, visibility_tree, visibility_sweep,
-    visibility_contours;
+    visibility_contours, visibility_fastest;
 
 /* starg_visibility for callers that can use a part: when the time limit strikes, the rows that are
  * finished by then are told by finished[i] = 1, and there is no error. */

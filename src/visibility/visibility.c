@@ -33,7 +33,7 @@ typedef struct worker {
 
 void starg_visibility_options_default(starg_visibility_options *options) {
     *options = (starg_visibility_options){
-        .engine = STARG_VISIBILITY_CONTOURS, .range = INFINITY, .cone = 360};
+        .engine = STARG_VISIBILITY_FASTEST, .range = INFINITY, .cone = 360};
 }
 
 double starg_cone_cosine(double degrees) {
@@ -185,7 +185,7 @@ static starg_status check_arguments(starg_context *context, const double *points
     if (!(options->range >= 0))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "the range is %g; it must be zero or more", options->range);
-    if (options->engine > STARG_VISIBILITY_CONTOURS || options->target > STARG_TARGET_VERTICES ||
+    if (options->engine > STARG_VISIBILITY_FASTEST || options->target > STARG_TARGET_VERTICES ||
         options->face_rule > STARG_FACES_WHOLE)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "an option holds a number that its enum does not have");
@@ -199,11 +199,19 @@ static starg_status check_arguments(starg_context *context, const double *points
     return STARG_OK;
 }
 
+/* Of those that suit every point only contours tell plainly which faces are wholly visible. */
+static const visibility_engine *choose_engine(const starg_visibility_options *options) {
+    static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
+                                                       &visibility_sweep, &visibility_contours,
+                                                       &visibility_fastest};
+    bool whole = options->target == STARG_TARGET_FACES && options->face_rule == STARG_FACES_WHOLE;
+    return options->engine == STARG_VISIBILITY_FASTEST && whole ? &visibility_contours
+                                                                : engines[options->engine];
+}
+
 starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
                              size_t count, const starg_visibility_options *options,
                              uint8_t *finished, starg_bits **out) {
-    static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
-                                                       &visibility_sweep, &visibility_contours};
     starg_status status = STARG_OK;
     starg_visibility_options defaults;
     visibility_scene *scene = NULL;
@@ -215,12 +223,12 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     STARG_TRY(check_arguments(context, points, count, options));
     STARG_TRY(check_cone(context, count, options));
     STARG_TRY(scene_create(context, solid, &scene));
-    if (options->engine == STARG_VISIBILITY_CONTOURS && count > 1) /* one does not pay for it */
+    if (options->engine >= STARG_VISIBILITY_CONTOURS && count > 1) /* one does not pay for it */
         STARG_TRY(scene_add_net(scene));
     size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                               : solid->mesh->face_count;
     STARG_TRY(starg_bits_create(context, count, columns, &rows));
-    job all = {scene,    engines[options->engine],        options, points, rows,
+    job all = {scene,    choose_engine(options),          options, points, rows,
                finished, starg_cone_cosine(options->cone)};
     starg_parallel_loop loop = {.stage = STAGE,
                                 .count = count,

@@ -195,7 +195,7 @@ class Visible(support.Case):
         for rule in ["vertices", "whole"]:
             seen = [self.run_json("visible", room, "--from", point, "--engine", engine,
                                   "--faces", rule)["points"]
-                    for engine in ["contours", "grid", "bvh", "sweep"]]
+                    for engine in ["fastest", "contours", "grid", "bvh", "sweep"]]
             self.assertGreater(seen[0][0]["count"], 0)
             for other in seen[1:]:
                 self.assertEqual(seen[0], other)

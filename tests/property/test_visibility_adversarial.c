@@ -58,7 +58,7 @@ static void compare(const char *name, const char *engine, const starg_bits *bits
 /* Vertices and whole faces; what lies between follows from the vertices. */
 static void check_solid(starg_context *context, const char *name, const starg_solid *solid,
                         uint64_t seed) {
-    static const char *const engines[] = {"grid", "bvh", "sweep", "contours"};
+    static const char *const engines[] = {"grid", "bvh", "sweep", "contours", "fastest"};
     const starg_mesh *mesh = starg_solid_mesh(solid);
     const double *v = starg_mesh_vertices(mesh);
     const uint32_t *f = starg_mesh_faces(mesh);
@@ -68,7 +68,7 @@ static void check_solid(starg_context *context, const char *name, const starg_so
            few = count < WHOLE_POINTS ? count : WHOLE_POINTS;
     bool *expected = malloc(n + m);
     assert_non_null(expected);
-    for (int engine = 0; engine < 4; engine++)
+    for (int engine = 0; engine < 5; engine++)
         for (int whole = 0; whole < 2; whole++) {
             starg_visibility_options options;
             starg_bits *bits = NULL;

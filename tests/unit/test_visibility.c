@@ -50,7 +50,7 @@ static void compare_row(const char *name, const char *what, const starg_bits *bi
 
 static void check_engines(starg_context *context, const char *name, const starg_solid *solid,
                           const double *points, size_t count) {
-    static const char *const engines[] = {"grid", "bvh", "sweep", "contours"};
+    static const char *const engines[] = {"grid", "bvh", "sweep", "contours", "fastest"};
     const starg_mesh *mesh = starg_solid_mesh(solid);
     size_t n = starg_mesh_vertex_count(mesh), m = starg_mesh_face_count(mesh);
     bool *expected = malloc(3 * count * (n + m) * sizeof *expected);
@@ -66,7 +66,7 @@ static void check_engines(starg_context *context, const char *name, const starg_
             visibility_oracle_faces(starg_mesh_vertices(mesh), n, starg_mesh_faces(mesh), m,
                                     points + 3 * i, true, whole + i * m);
     }
-    for (int engine = 0; engine < 4; engine++)
+    for (int engine = 0; engine < 5; engine++)
         for (int what = 0; what < 3; what++) {
             starg_visibility_options options;
             starg_bits *bits = NULL;
