@@ -210,13 +210,12 @@ typedef struct form_case {
     uint8_t *plain, *wide;
 } form_case;
 
-static void make_form_case(form_case *c) {
+static void make_form_case(const char *name, form_case *c) {
     starg_sample_options sample;
     starg_sample_options_default(&sample);
     sample.vertex_count = 3000;
     *c = (form_case){.context = test_context(1)};
-    test_ok(c->context,
-            starg_sample_create(c->context, starg_sample_at(0)->name, &sample, &c->mesh));
+    test_ok(c->context, starg_sample_create(c->context, name, &sample, &c->mesh));
     test_ok(c->context, starg_solid_create(c->context, c->mesh, &c->solid));
     test_ok(c->context, scene_create(c->context, c->solid, &c->scene));
     test_ok(c->context, scene_add_net(c->scene));
@@ -244,7 +243,7 @@ static void test_grid_forms(void **state) {
     (void)state;
     form_case c;
     void *scratch = NULL;
-    make_form_case(&c);
+    make_form_case(starg_sample_at(0)->name, &c);
     assert_int_equal(visibility_grid.make_scratch(c.scene, &scratch), STARG_OK);
     grid_scratch *grid = scratch;
     for (size_t i = 0; i < c.count; i++) {
@@ -269,7 +268,7 @@ static void test_contours_forms(void **state) {
     form_case c;
     void *scratch = NULL;
     size_t decided = 0;
-    make_form_case(&c);
+    make_form_case(starg_sample_at(0)->name, &c);
     assert_int_equal(visibility_contours.make_scratch(c.scene, &scratch), STARG_OK);
     contours_scratch *s = scratch;
     for (size_t i = 0; i < c.count; i++) {
@@ -292,6 +291,32 @@ static void test_contours_forms(void **state) {
     assert_true(2 * decided >= c.count);
     visibility_contours.free_scratch(c.scene, scratch);
     free_form_case(&c);
+}
+
+/* Each engine is chosen for some points of the samples, and either gives the same bits. */
+static void test_fastest(void **state) {
+    (void)state;
+    size_t by_contours = 0, count = 0;
+    for (size_t i = 0; i < starg_sample_count(); i++) {
+        form_case c;
+        void *scratch = NULL;
+        make_form_case(starg_sample_at(i)->name, &c);
+        assert_int_equal(visibility_fastest.make_scratch(c.scene, &scratch), STARG_OK);
+        contours_scratch *s = scratch;
+        for (size_t k = 0; k < c.count; k++) {
+            const double *p = c.points + 3 * k;
+            scene_sides(c.scene, p, c.side);
+            visibility_grid.find(c.scene, s->grid, p, c.side, c.plain);
+            s->decided = false;
+            visibility_fastest.find(c.scene, scratch, p, c.side, c.wide);
+            assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
+            by_contours += s->decided;
+        }
+        count += c.count;
+        visibility_fastest.free_scratch(c.scene, scratch);
+        free_form_case(&c);
+    }
+    assert_in_range(by_contours, 1, count - 1);
 }
 
 static void test_arguments(void **state) {
@@ -334,6 +359,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_samples),        cmocka_unit_test(test_shared),
         cmocka_unit_test(test_lattice_boxes),  cmocka_unit_test(test_grid_forms),
-        cmocka_unit_test(test_contours_forms), cmocka_unit_test(test_arguments)};
+        cmocka_unit_test(test_contours_forms), cmocka_unit_test(test_fastest),
+        cmocka_unit_test(test_arguments)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
