@@ -7,7 +7,7 @@ export DEBIAN_FRONTEND=noninteractive
 packages=""
 for purpose in "$@"; do
     case $purpose in
-    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev" ;;
+    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libarpack2-dev libsuitesparse-dev" ;;
     check) packages="$packages libcmocka-dev libgmp-dev clang clang-format clang-tidy libclang-rt-14-dev python3 tetgen" ;;
     bench) packages="$packages libembree-dev hyperfine" ;;
     *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;

@@ -37,6 +37,26 @@ STARG_API starg_status starg_picture_write(starg_context *context, const starg_m
 /* The i-th of a sequence of colours that are easy to tell apart; used for guards and pieces. */
 STARG_API void starg_distinct_color(size_t index, uint8_t rgb[3]);
 
+/* Draws a square table of distances as a PNG, a cell an entry: black where none is smaller, white
+ * where none is larger, grey by rank between them, so that the contrast does not depend on how the
+ * distances are spread. Errors: ARGUMENT (over 8192 rows, an entry that is no number), WRITE,
+ * MEMORY, CANCELLED. */
+STARG_API starg_status starg_matrix_picture_write(starg_context *context, const double *values,
+                                                  size_t rows, const char *path);
+
+/* One curve of a chart: points in the unit square, x ascending. */
+typedef struct starg_curve {
+    const char *name; /* for the legend */
+    const double *x, *y;
+    size_t count;
+    bool strong; /* drawn thick and black, above the others */
+} starg_curve;
+
+/* Draws curves over axes from 0 to 1 as an SVG. Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_chart_write(starg_context *context, const starg_curve *curves,
+                                         size_t count, const char *x_label, const char *y_label,
+                                         const char *path);
+
 #ifdef __cplusplus
 }
 #endif

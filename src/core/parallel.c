@@ -55,7 +55,8 @@ static void work(team *crew, bool reports) {
             note_failure(crew, item, status);
         size_t finished = atomic_fetch_add(&crew->finished, 1) + 1;
         if (reports)
-            starg_progress_step(crew->context, finished, loop->count);
+            starg_progress_step(crew->context, loop->before + finished,
+                                loop->whole > 0 ? loop->whole : loop->count);
     }
     if (loop->free_scratch != NULL)
         loop->free_scratch(crew->context, scratch);
@@ -88,7 +89,8 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
     if (helpers + 1 > loop->count)
         helpers = loop->count > 0 ? loop->count - 1 : 0;
 
-    starg_progress_begin(context, loop->stage);
+    if (loop->whole == 0)
+        starg_progress_begin(context, loop->stage);
     thrd_t *threads = helpers ? starg_allocate(context, helpers, sizeof *threads) : NULL;
     if (helpers != 0 && threads == NULL)
         return starg_fail_memory(context, loop->stage);
@@ -107,6 +109,7 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
 
     mtx_destroy(&crew.lock);
     starg_release(context, threads);
-    starg_progress_end(context);
+    if (loop->whole == 0)
+        starg_progress_end(context);
     return explain(context, loop->stage, crew.failed_status);
 }

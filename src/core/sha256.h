@@ -1,0 +1,13 @@
+/* SHA-256 (FIPS 180-4) of a block of memory: names contents, so that equal files are known as such.
+ */
+#ifndef STARG_CORE_SHA256_H
+#define STARG_CORE_SHA256_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum { STARG_SHA256_BYTES = 32 };
+
+void starg_sha256(const void *bytes, size_t size, uint8_t digest[STARG_SHA256_BYTES]);
+
+#endif

@@ -1,0 +1,173 @@
+/* Classes of models: from their file names, or from a text. */
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "shape/database.h"
+
+static const char STAGE[] = "classes";
+static const char BLANKS[] = " \t\r";
+
+/* ---- from words ---- */
+
+/* A model and the word of its class, which is a part of a longer text. */
+typedef struct naming {
+    const char *word;
+    size_t size;
+    size_t model;
+} naming;
+
+static int by_word(const void *a, const void *b) {
+    const naming *x = a, *y = b;
+    int order = memcmp(x->word, y->word, x->size < y->size ? x->size : y->size);
+    if (order != 0)
+        return order;
+    return x->size != y->size ? (x->size > y->size) - (x->size < y->size)
+                              : (x->model > y->model) - (x->model < y->model);
+}
+
+static bool same_word(const naming *a, const naming *b) {
+    return a->size == b->size && memcmp(a->word, b->word, a->size) == 0;
+}
+
+static starg_status add_class(starg_context *context, starg_classes *classes, const naming *n) {
+    starg_status status = STARG_OK;
+    char *name = NULL;
+    STARG_NEW(context, STAGE, name, n->size + 1);
+    memcpy(name, n->word, n->size);
+    name[n->size] = '\0';
+    classes->names[classes->count++] = name;
+done:
+    return status;
+}
+
+/* Sorts the namings and numbers the different words. */
+static starg_status make_classes(starg_context *context, naming *namings, size_t count,
+                                 size_t model_count, starg_classes **out) {
+    starg_status status = STARG_OK;
+    starg_classes *classes = NULL;
+    STARG_NEW_ZERO(context, STAGE, classes, 1);
+    classes->model_count = model_count;
+    STARG_NEW(context, STAGE, classes->names, count);
+    STARG_NEW(context, STAGE, classes->class_of, model_count);
+    for (size_t i = 0; i < model_count; i++)
+        classes->class_of[i] = STARG_NO_CLASS;
+    if (count > 0)
+        qsort(namings, count, sizeof *namings, by_word);
+    for (size_t i = 0; i < count; i++) {
+        if (i == 0 || !same_word(&namings[i - 1], &namings[i]))
+            STARG_TRY(add_class(context, classes, &namings[i]));
+        classes->class_of[namings[i].model] = (uint32_t)classes->count - 1;
+    }
+    *out = classes;
+done:
+    if (status != STARG_OK)
+        starg_classes_free(context, classes);
+    return status;
+}
+
+starg_status starg_classes_by_prefix(starg_context *context, const starg_database_models *models,
+                                     starg_classes **out) {
+    starg_status status = STARG_OK;
+    naming *namings = NULL;
+    *out = NULL;
+    STARG_NEW(context, STAGE, namings, models->count);
+    for (size_t i = 0; i < models->count; i++) {
+        const char *name = models->items[i].name, *end = strrchr(name, '_');
+        namings[i] = (naming){name, end != NULL ? (size_t)(end - name) : strlen(name), i};
+    }
+    STARG_TRY(make_classes(context, namings, models->count, models->count, out));
+done:
+    starg_release(context, namings);
+    return status;
+}
+
+void starg_classes_free(starg_context *context, starg_classes *classes) {
+    if (classes == NULL)
+        return;
+    for (size_t i = 0; i < classes->count; i++)
+        starg_release(context, classes->names[i]);
+    starg_release(context, classes->names);
+    starg_release(context, classes->class_of);
+    starg_release(context, classes);
+}
+
+/* ---- from a text ---- */
+
+typedef struct reading {
+    starg_context *context;
+    const char *path;
+    const starg_database_models *models;
+    size_t line;
+    bool *named; /* by model */
+    STARG_ARRAY(naming) namings;
+} reading;
+
+static starg_status fail_line(const reading *r, const char *what, const char *word) {
+    uint64_t line = r->line;
+    return starg_fail_at(r->context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
+                         "'%s', line %zu: %s '%.200s'", r->path, r->line, what, word);
+}
+
+static starg_status give_class(reading *r, const char *model, const char *class) {
+    starg_status status = STARG_OK;
+    size_t found = 0;
+    for (size_t i = 0; i < r->models->count; i++) {
+        const starg_database_model *item = &r->models->items[i];
+        if (strcmp(item->path, model) != 0 && strcmp(item->name, model) != 0)
+            continue;
+        if (r->named[i])
+            return fail_line(r, "a second class for", model);
+        r->named[i] = true;
+        STARG_PUSH(r->context, STAGE, &r->namings, ((naming){class, strlen(class), i}));
+        found++;
+    }
+    if (found == 0)
+        status = fail_line(r, "the database has no model", model);
+done:
+    return status;
+}
+
+/* The class is the last word, the model all before it. */
+static starg_status read_line(reading *r, char *line) {
+    line += strspn(line, BLANKS);
+    size_t size = strlen(line);
+    while (size > 0 && strchr(BLANKS, line[size - 1]) != NULL)
+        line[--size] = '\0';
+    if (size == 0 || *line == '#')
+        return STARG_OK;
+    char *class = line + size;
+    while (class > line && strchr(BLANKS, class[-1]) == NULL)
+        class --;
+    char *end = class;
+    while (end > line && strchr(BLANKS, end[-1]) != NULL)
+        end--;
+    if (end == line)
+        return fail_line(r, "no class behind", line);
+    *end = '\0';
+    return give_class(r, line, class);
+}
+
+starg_status starg_classes_read(starg_context *context, const char *path,
+                                const starg_database_models *models, starg_classes **out) {
+    starg_status status = STARG_OK;
+    char *text = NULL;
+    size_t size;
+    reading r = {.context = context, .path = path, .models = models};
+    *out = NULL;
+    STARG_TRY(starg_file_read(context, STAGE, path, &text, &size));
+    STARG_NEW_ZERO(context, STAGE, r.named, models->count);
+    for (char *line = text; line < text + size;) {
+        char *next = line + strcspn(line, "\n");
+        r.line++;
+        *next = '\0';
+        STARG_TRY(read_line(&r, line));
+        line = next + 1;
+    }
+    STARG_TRY(make_classes(context, r.namings.data, r.namings.count, models->count, out));
+done:
+    starg_release(context, text);
+    starg_release(context, r.named);
+    STARG_ARRAY_FREE(context, &r.namings);
+    return status;
+}

@@ -1,0 +1,160 @@
+/* The D2 shape distribution [OFCD02]: how far apart are two random points of the surface?
+ *
+ * Stages: running sums of the face areas; pairs of points, uniform in area; their distances by the
+ * mean distance; a histogram of equal bins, whose values sum to 1.
+ *
+ * Pair i depends on the seed and i only, so that the numbers are the same at any thread count; the
+ * sum of the distances is taken in order. Distances beyond the last bin count in it (between points
+ * of a segment none is over three times the mean; only surfaces that are mostly in one place have
+ * some).
+ *
+ * Two histograms differ by the sum of the bins' differences (L1), from 0 to 2.
+ *
+ * Cost: 2^20 pairs, each with two binary searches in the sums. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "geometry/vec3.h"
+#include "shape/signature_kinds.h"
+
+static const char STAGE[] = "d2";
+
+enum { BINS = 64, CHUNKS = 256, CHUNK_PAIRS = 4096, PAIRS = CHUNKS * CHUNK_PAIRS };
+static const double LAST = 3; /* upper end of the histogram, in mean distances */
+static const uint64_t RANDOM = 0x6432;
+
+typedef struct sampler {
+    const starg_mesh *mesh;
+    uint64_t seed;
+    double origin[3], extent; /* positions become (x - origin) / extent */
+    double *sums;             /* of the areas of the faces up to each */
+    double *distances;        /* of the pairs */
+} sampler;
+
+static void corner(const sampler *s, size_t face, size_t k, double out[3]) {
+    const double *p =
+        starg_mesh_vertices(s->mesh) + 3 * (size_t)starg_mesh_faces(s->mesh)[3 * face + k];
+    for (int c = 0; c < 3; c++)
+        out[c] = (p[c] - s->origin[c]) / s->extent;
+}
+
+static double area(const sampler *s, size_t face) {
+    double p[3], u[3], v[3], normal[3];
+    corner(s, face, 0, p);
+    corner(s, face, 1, u);
+    corner(s, face, 2, v);
+    vec3_subtract(u, p, u);
+    vec3_subtract(v, p, v);
+    vec3_cross(u, v, normal);
+    return 0.5 * sqrt(vec3_dot(normal, normal));
+}
+
+static starg_status sum_areas(starg_context *context, sampler *s) {
+    starg_status status = STARG_OK;
+    size_t count = starg_mesh_face_count(s->mesh);
+    double upper[3], sum = 0;
+    starg_mesh_bounds(s->mesh, s->origin, upper);
+    for (int k = 0; k < 3; k++)
+        s->extent = fmax(s->extent, upper[k] - s->origin[k]);
+    STARG_NEW(context, STAGE, s->sums, count);
+    for (size_t i = 0; s->extent > 0 && i < count; i++)
+        s->sums[i] = sum += area(s, i);
+    if (!(sum > 0))
+        status = starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
+done:
+    return status;
+}
+
+/* The first face whose sum exceeds `goal`; goal is below the last sum, so the face has an area. */
+static size_t find_face(const sampler *s, double goal) {
+    size_t low = 0, high = starg_mesh_face_count(s->mesh) - 1;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (s->sums[middle] > goal)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* The square root spreads points evenly towards the edge opposite to the first corner. */
+static void random_point(const sampler *s, starg_rng *rng, double out[3]) {
+    double a[3], b[3], c[3];
+    double all = s->sums[starg_mesh_face_count(s->mesh) - 1];
+    size_t face = find_face(s, all * starg_rng_unit(rng));
+    double far = sqrt(starg_rng_unit(rng)), along = starg_rng_unit(rng);
+    corner(s, face, 0, a);
+    corner(s, face, 1, b);
+    corner(s, face, 2, c);
+    for (int k = 0; k < 3; k++)
+        out[k] = (1 - far) * a[k] + far * ((1 - along) * b[k] + along * c[k]);
+}
+
+static starg_status measure_chunk(starg_context *context, void *shared, void *scratch,
+                                  size_t chunk) {
+    const sampler *s = shared;
+    (void)context, (void)scratch;
+    for (size_t i = chunk * CHUNK_PAIRS; i < (chunk + 1) * CHUNK_PAIRS; i++) {
+        double p[3], q[3];
+        starg_rng rng = starg_rng_make(s->seed, RANDOM, i);
+        random_point(s, &rng, p);
+        random_point(s, &rng, q);
+        vec3_subtract(q, p, q);
+        s->distances[i] = sqrt(vec3_dot(q, q));
+    }
+    return STARG_OK;
+}
+
+static void count_bins(const sampler *s, double *bins) {
+    double mean = 0;
+    for (size_t i = 0; i < PAIRS; i++)
+        mean += s->distances[i] / PAIRS;
+    memset(bins, 0, BINS * sizeof *bins);
+    for (size_t i = 0; i < PAIRS; i++) {
+        double place = s->distances[i] / mean * (BINS / LAST);
+        bins[place < BINS - 1 ? (size_t)place : BINS - 1] += 1.0 / PAIRS;
+    }
+}
+
+static starg_status compute(starg_context *context, const starg_mesh *mesh, double **numbers,
+                            size_t *count) {
+    starg_status status = STARG_OK;
+    double *bins = NULL;
+    sampler s = {.mesh = mesh, .seed = context->seed};
+    STARG_TRY(sum_areas(context, &s));
+    STARG_NEW(context, STAGE, s.distances, PAIRS);
+    STARG_NEW(context, STAGE, bins, BINS);
+    STARG_TRY(starg_parallel_for(
+        context, &(starg_parallel_loop){
+                     .stage = STAGE, .count = CHUNKS, .shared = &s, .item = measure_chunk}));
+    count_bins(&s, bins);
+    *numbers = bins;
+    *count = BINS;
+done:
+    starg_release(context, s.sums);
+    starg_release(context, s.distances);
+    if (status != STARG_OK)
+        starg_release(context, bins);
+    return status;
+}
+
+static bool check(const double *numbers, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!(numbers[i] >= 0 && numbers[i] <= 1))
+            return false;
+    return count == BINS;
+}
+
+static double compare(const double *a, size_t a_count, const double *b, size_t b_count) {
+    double sum = 0;
+    (void)b_count;
+    for (size_t i = 0; i < a_count; i++)
+        sum += fabs(a[i] - b[i]);
+    return sum;
+}
+
+const signature_method signature_d2 = {
+    .name = "d2", .version = 1, .compute = compute, .check = check, .compare = compare};

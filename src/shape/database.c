@@ -1,0 +1,262 @@
+/* The database file: making it, opening it, transactions.
+ *
+ * The schema is told apart by SQLite's application_id (ours or not) and user_version (which). The
+ * journal is SQLite's default, a rollback journal: it works in every folder that can be written,
+ * leaves one file when nothing is under way, and a process that dies in a transaction leaves a
+ * journal that the next one to open the file plays back. */
+#include "shape/database.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+
+const char DATABASE_STAGE[] = "database";
+
+enum { APPLICATION = 0x53544744, SCHEMA_VERSION = 1, WAIT_MILLISECONDS = 20, WAITS = 3000 };
+
+static const char SCHEMA[] =
+    "CREATE TABLE model (id INTEGER PRIMARY KEY, path TEXT NOT NULL, hash BLOB NOT NULL UNIQUE,"
+    " vertices INTEGER NOT NULL, faces INTEGER NOT NULL) STRICT;"
+    "CREATE TABLE signature (model INTEGER NOT NULL REFERENCES model (id) ON DELETE CASCADE,"
+    " kind TEXT NOT NULL, version INTEGER NOT NULL, numbers BLOB NOT NULL,"
+    " PRIMARY KEY (model, kind)) STRICT;";
+
+/* ---- errors ---- */
+
+starg_status database_fail(starg_database *d) {
+    starg_context *context = d->context;
+    const char *reason = sqlite3_errmsg(d->handle);
+    switch (sqlite3_errcode(d->handle) & 0xff) {
+    case SQLITE_NOMEM:
+        return starg_fail_memory(context, DATABASE_STAGE);
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        if (atomic_load(&context->cancelled))
+            return starg_check_cancel(context, DATABASE_STAGE);
+        return starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE,
+                          "'%s' is held by another process; try again later", d->path);
+    case SQLITE_NOTADB:
+        return starg_fail(context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                          "'%s' is no starguard database", d->path);
+    case SQLITE_CORRUPT:
+    case SQLITE_ERROR:
+    case SQLITE_CONSTRAINT:
+        return starg_fail(context, STARG_ERROR_FORMAT, DATABASE_STAGE, "'%s' is damaged: %s",
+                          d->path, reason);
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+        return starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE,
+                          "'%s' cannot be changed: %s; it and its folder must be writable", d->path,
+                          reason);
+    default:
+        return starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE, "'%s': %s", d->path, reason);
+    }
+}
+
+/* Waits while another process writes; gives up after a minute or when cancelled. */
+static int wait_busy(void *user, int waits) {
+    const starg_context *context = user;
+    if (waits >= WAITS || atomic_load(&context->cancelled))
+        return 0;
+    nanosleep(&(struct timespec){.tv_nsec = WAIT_MILLISECONDS * 1000000L}, NULL);
+    return 1;
+}
+
+/* ---- statements ---- */
+
+starg_status database_run(starg_database *d, const char *sql) {
+    return sqlite3_exec(d->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? STARG_OK
+                                                                       : database_fail(d);
+}
+
+starg_status database_prepare(starg_database *d, const char *sql, sqlite3_stmt **out) {
+    return sqlite3_prepare_v2(d->handle, sql, -1, out, NULL) == SQLITE_OK ? STARG_OK
+                                                                          : database_fail(d);
+}
+
+starg_status database_step(starg_database *d, sqlite3_stmt *statement, bool *row) {
+    int result = sqlite3_step(statement);
+    *row = result == SQLITE_ROW;
+    if (*row)
+        return STARG_OK;
+    starg_status status = result == SQLITE_DONE ? STARG_OK : database_fail(d);
+    sqlite3_reset(statement);
+    return status;
+}
+
+starg_status database_begin(starg_database *d) {
+    return database_run(d, "BEGIN IMMEDIATE");
+}
+
+starg_status database_commit(starg_database *d) {
+    return database_run(d, "COMMIT");
+}
+
+void database_roll_back(starg_database *d) {
+    if (!sqlite3_get_autocommit(d->handle))
+        sqlite3_exec(d->handle, "ROLLBACK", NULL, NULL, NULL);
+}
+
+char *database_copy(starg_context *context, const char *text) {
+    size_t size = strlen(text) + 1;
+    char *copy = starg_allocate(context, size, 1);
+    if (copy != NULL)
+        memcpy(copy, text, size);
+    return copy;
+}
+
+const char *database_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+/* ---- opening ---- */
+
+static starg_status connect(starg_context *context, const char *path, int flags,
+                            starg_database **out) {
+    starg_status status = STARG_OK;
+    starg_database *d = NULL;
+    STARG_NEW_ZERO(context, DATABASE_STAGE, d, 1);
+    d->context = context;
+    d->path = database_copy(context, path);
+    if (d->path == NULL) {
+        status = starg_fail_memory(context, DATABASE_STAGE);
+        goto done;
+    }
+    if (sqlite3_open_v2(path, &d->handle, flags | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK) {
+        status = d->handle == NULL
+                     ? starg_fail_memory(context, DATABASE_STAGE)
+                     : starg_fail(context, STARG_ERROR_READ, DATABASE_STAGE, "cannot open '%s': %s",
+                                  path, sqlite3_errmsg(d->handle));
+        goto done;
+    }
+    sqlite3_busy_handler(d->handle, wait_busy, context);
+    *out = d;
+done:
+    if (status != STARG_OK)
+        starg_database_close(d);
+    return status;
+}
+
+static starg_status read_pragma(starg_database *d, const char *sql, int *value) {
+    starg_status status = STARG_OK;
+    sqlite3_stmt *statement = NULL;
+    bool row;
+    STARG_TRY(database_prepare(d, sql, &statement));
+    STARG_TRY(database_step(d, statement, &row));
+    *value = row ? sqlite3_column_int(statement, 0) : 0;
+done:
+    sqlite3_finalize(statement);
+    return status;
+}
+
+static starg_status check_schema(starg_database *d) {
+    starg_status status = STARG_OK;
+    int application, version;
+    STARG_TRY(read_pragma(d, "PRAGMA application_id", &application));
+    STARG_TRY(read_pragma(d, "PRAGMA user_version", &version));
+    if (application != APPLICATION)
+        status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                            "'%s' is no starguard database", d->path);
+    else if (version != SCHEMA_VERSION)
+        status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                            "'%s' has schema version %d, this program knows version %d; %s",
+                            d->path, version, SCHEMA_VERSION,
+                            version > SCHEMA_VERSION ? "use a newer starguard"
+                                                     : "create a new one and add the models again");
+done:
+    return status;
+}
+
+starg_status starg_database_open(starg_context *context, const char *path, starg_database **out) {
+    starg_status status = STARG_OK;
+    starg_database *d = NULL;
+    *out = NULL;
+    if (access(path, R_OK) != 0)
+        return errno == ENOENT
+                   ? starg_fail(context, STARG_ERROR_READ, DATABASE_STAGE,
+                                "there is no database '%s'; 'starguard db create' makes one", path)
+                   : starg_fail(context, STARG_ERROR_READ, DATABASE_STAGE, "cannot open '%s': %s",
+                                path, strerror(errno));
+    STARG_TRY(connect(context, path, SQLITE_OPEN_READWRITE, &d));
+    STARG_TRY(check_schema(d));
+    STARG_TRY(database_run(d, "PRAGMA foreign_keys = ON"));
+    *out = d;
+done:
+    if (status != STARG_OK)
+        starg_database_close(d);
+    return status;
+}
+
+void starg_database_close(starg_database *d) {
+    if (d == NULL)
+        return;
+    sqlite3_close(d->handle);
+    starg_release(d->context, d->path);
+    starg_release(d->context, d);
+}
+
+/* ---- creating ---- */
+
+static starg_status write_schema(starg_database *d) {
+    starg_status status = STARG_OK;
+    char marks[96];
+    snprintf(marks, sizeof marks, "PRAGMA application_id = %d; PRAGMA user_version = %d",
+             APPLICATION, SCHEMA_VERSION);
+    STARG_TRY(database_begin(d));
+    STARG_TRY(database_run(d, SCHEMA));
+    STARG_TRY(database_run(d, marks));
+    STARG_TRY(database_commit(d));
+done:
+    return status;
+}
+
+static starg_status fail_create(starg_context *context, const char *path, int error) {
+    return error == EEXIST
+               ? starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE,
+                            "'%s' exists already; a database is never overwritten", path)
+               : starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE, "cannot write '%s': %s",
+                            path, strerror(error));
+}
+
+/* A link, unlike a renaming, fails when the name is taken: of two processes one wins. File systems
+ * without links get the renaming. */
+static starg_status put_in_place(starg_context *context, const char *made, const char *path) {
+    if (link(made, path) == 0)
+        return STARG_OK;
+    if (errno != EEXIST && access(path, F_OK) != 0 && rename(made, path) == 0)
+        return STARG_OK;
+    return fail_create(context, path, access(path, F_OK) == 0 ? EEXIST : errno);
+}
+
+starg_status starg_database_create(starg_context *context, const char *path) {
+    starg_status status = STARG_OK;
+    starg_database *d = NULL;
+    char *made = NULL;
+    size_t size = strlen(path) + 64;
+    if (access(path, F_OK) == 0)
+        return fail_create(context, path, EEXIST);
+    STARG_NEW(context, DATABASE_STAGE, made, size);
+    snprintf(made, size, "%s.%ld.tmp", path, (long)getpid());
+    if (connect(context, made, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, &d) != STARG_OK) {
+        int error = errno;
+        status = starg_context_error(context)->status == STARG_ERROR_MEMORY
+                     ? STARG_ERROR_MEMORY
+                     : fail_create(context, path, error != 0 ? error : EIO);
+        goto done;
+    }
+    STARG_TRY(write_schema(d));
+    starg_database_close(d);
+    d = NULL;
+    STARG_TRY(put_in_place(context, made, path));
+done:
+    starg_database_close(d);
+    if (made != NULL)
+        unlink(made);
+    starg_release(context, made);
+    return status;
+}

@@ -1,0 +1,38 @@
+/* Inside of the database: the connection, statements, and SQLite's errors in our words. */
+#ifndef STARG_SHAPE_DATABASE_H
+#define STARG_SHAPE_DATABASE_H
+
+#include <sqlite3.h>
+
+#include "core/context.h"
+#include "starguard/database.h"
+
+struct starg_database {
+    starg_context *context;
+    sqlite3 *handle;
+    char *path;
+};
+
+extern const char DATABASE_STAGE[];
+
+/* The failure of the last call on the connection. */
+starg_status database_fail(starg_database *database);
+
+starg_status database_run(starg_database *database, const char *sql);
+starg_status database_prepare(starg_database *database, const char *sql, sqlite3_stmt **out);
+
+/* One row, *row false at the end. A finished statement is reset. */
+starg_status database_step(starg_database *database, sqlite3_stmt *statement, bool *row);
+
+/* Transactions that may write; rolling back never fails. */
+starg_status database_begin(starg_database *database);
+starg_status database_commit(starg_database *database);
+void database_roll_back(starg_database *database);
+
+/* A copy of text in the context's memory; NULL when memory is out. */
+char *database_copy(starg_context *context, const char *text);
+
+/* The file name at the end of a path. */
+const char *database_name(const char *path);
+
+#endif

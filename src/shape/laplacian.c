@@ -1,0 +1,252 @@
+/* The cotangent Laplacian: linear finite elements with lumped masses.
+ *
+ * Stages: scale by the extent, so that no square overflows; drop faces without extent; subdivide at
+ * the edges' midpoints until there are enough vertices; number the vertices in use; sum the
+ * triangles' contributions to edges, diagonal and masses; lay the matrix out by columns.
+ *
+ * A triangle with edge vectors e0, e1, e2 and area A adds e_i . e_j / (4 A) for the corners i and
+ * j, a third of A to each corner's mass. That is a Gram matrix for any A > 0: so a needle, whose
+ * area is taken as at least a tiny part of its longest edge's square, leaves the sum semidefinite.
+ *
+ * Cost: O(faces). */
+#include "shape/laplacian.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "skeleton/edge_table.h"
+
+static const char STAGE[] = "shape-dna";
+
+/* The smallest eigenvalues are right to about one in a hundred at this resolution. */
+enum { ENOUGH_VERTICES = 2000, ENOUGH_FACES = 20 * ENOUGH_VERTICES };
+static const double LEAST_AREA = 1e-10; /* of a triangle, to the square of its longest edge */
+
+typedef struct surface {
+    starg_context *context;
+    size_t vertex_count, face_count;
+    double *positions; /* within a unit cube */
+    uint32_t *faces;
+} surface;
+
+static void surface_free(surface *s) {
+    starg_release(s->context, s->positions);
+    starg_release(s->context, s->faces);
+}
+
+/* ---- the surface ---- */
+
+static bool has_extent(const surface *s, const uint32_t f[3]) {
+    double u[3], v[3];
+    if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0])
+        return false;
+    vec3_subtract(s->positions + 3 * (size_t)f[1], s->positions + 3 * (size_t)f[0], u);
+    vec3_subtract(s->positions + 3 * (size_t)f[2], s->positions + 3 * (size_t)f[0], v);
+    return vec3_dot(u, u) + vec3_dot(v, v) > 0;
+}
+
+static starg_status copy_surface(const starg_mesh *mesh, surface *s) {
+    starg_status status = STARG_OK;
+    const double *vertices = starg_mesh_vertices(mesh);
+    const uint32_t *faces = starg_mesh_faces(mesh);
+    double lower[3], upper[3], extent = 0;
+    s->vertex_count = starg_mesh_vertex_count(mesh);
+    starg_mesh_bounds(mesh, lower, upper);
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, upper[k] - lower[k]);
+    if (!(extent > 0))
+        return starg_fail(s->context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
+    STARG_NEW(s->context, STAGE, s->positions, 3 * s->vertex_count);
+    STARG_NEW(s->context, STAGE, s->faces, 3 * starg_mesh_face_count(mesh));
+    for (size_t i = 0; i < s->vertex_count; i++)
+        for (size_t k = 0; k < 3; k++)
+            s->positions[3 * i + k] = (vertices[3 * i + k] - lower[k]) / extent;
+    for (size_t f = 0; f < starg_mesh_face_count(mesh); f++)
+        if (has_extent(s, faces + 3 * f))
+            memcpy(s->faces + 3 * s->face_count++, faces + 3 * f, 3 * sizeof *faces);
+    if (s->face_count == 0)
+        status = starg_fail(s->context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
+done:
+    return status;
+}
+
+/* Four triangles for each: corners and midpoints, the middle one last. */
+static void split_face(const uint32_t f[3], const uint32_t middle[3], uint32_t *out) {
+    for (size_t k = 0; k < 3; k++) {
+        out[3 * k] = f[k];
+        out[3 * k + 1] = middle[k];
+        out[3 * k + 2] = middle[(k + 2) % 3];
+        out[9 + k] = middle[k];
+    }
+}
+
+static starg_status subdivide(surface *s) {
+    starg_status status = STARG_OK;
+    size_t edges = 3 * s->face_count;
+    surface fine = {.context = s->context, .face_count = 4 * s->face_count};
+    edge_table table = {0};
+    STARG_TRY(edge_table_make(s->context, STAGE, edges, &table));
+    STARG_NEW(s->context, STAGE, fine.positions, 3 * (s->vertex_count + edges));
+    STARG_NEW(s->context, STAGE, fine.faces, 3 * fine.face_count);
+    memcpy(fine.positions, s->positions, 3 * s->vertex_count * sizeof *fine.positions);
+    for (size_t i = 0; i < s->face_count; i++) {
+        const uint32_t *f = s->faces + 3 * i;
+        uint32_t middle[3];
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t a = f[k], b = f[(k + 1) % 3];
+            middle[k] = (uint32_t)s->vertex_count + edge_table_number(&table, a, b);
+            for (size_t c = 0; c < 3; c++)
+                fine.positions[3 * (size_t)middle[k] + c] =
+                    0.5 * (s->positions[3 * (size_t)a + c] + s->positions[3 * (size_t)b + c]);
+        }
+        split_face(f, middle, fine.faces + 12 * i);
+    }
+    fine.vertex_count = s->vertex_count + table.count;
+    surface_free(s);
+    *s = fine;
+done:
+    if (status != STARG_OK)
+        surface_free(&fine);
+    edge_table_free(s->context, &table);
+    return status;
+}
+
+/* Gives the vertices that faces use the numbers from 0 on, in their order. */
+static starg_status renumber(surface *s) {
+    starg_status status = STARG_OK;
+    uint32_t *numbers = NULL;
+    size_t used = 0;
+    STARG_NEW_ZERO(s->context, STAGE, numbers, s->vertex_count);
+    for (size_t i = 0; i < 3 * s->face_count; i++)
+        numbers[s->faces[i]] = 1;
+    for (size_t v = 0; v < s->vertex_count; v++) {
+        if (numbers[v] == 0)
+            continue;
+        memmove(s->positions + 3 * used, s->positions + 3 * v, 3 * sizeof *s->positions);
+        numbers[v] = (uint32_t)used++;
+    }
+    for (size_t i = 0; i < 3 * s->face_count; i++)
+        s->faces[i] = numbers[s->faces[i]];
+    s->vertex_count = used;
+done:
+    starg_release(s->context, numbers);
+    return status;
+}
+
+/* ---- the matrix ---- */
+
+typedef struct sums {
+    edge_table edges;
+    double *weights;  /* of edges: minus the entry of the matrix */
+    double *diagonal; /* of vertices */
+} sums;
+
+/* Adds one triangle; returns the area that it counts with. */
+static double add_face(const surface *s, const uint32_t f[3], sums *sum, double *masses) {
+    double e[3][3], normal[3], longest = 0;
+    for (size_t k = 0; k < 3; k++) {
+        vec3_subtract(s->positions + 3 * (size_t)f[(k + 2) % 3],
+                      s->positions + 3 * (size_t)f[(k + 1) % 3], e[k]);
+        longest = fmax(longest, vec3_dot(e[k], e[k]));
+    }
+    vec3_cross(e[0], e[1], normal);
+    double area = fmax(0.5 * sqrt(vec3_dot(normal, normal)), LEAST_AREA * longest);
+    for (size_t k = 0; k < 3; k++) {
+        size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        double weight = -vec3_dot(e[i], e[j]) / (4 * area);
+        sum->weights[edge_table_number(&sum->edges, f[i], f[j])] += weight;
+        sum->diagonal[f[i]] += weight;
+        sum->diagonal[f[j]] += weight;
+        masses[f[k]] += area / 3;
+    }
+    return area;
+}
+
+static void put(laplacian *l, int64_t *next, uint32_t row, uint32_t column, double value) {
+    l->rows[next[column]] = row;
+    l->values[next[column]++] = value;
+}
+
+/* By columns: the diagonal, then the edges in the order of their numbers. */
+static starg_status lay_out(starg_context *context, const sums *sum, laplacian *l) {
+    starg_status status = STARG_OK;
+    int64_t *next = NULL;
+    size_t entries = l->count + 2 * (size_t)sum->edges.count;
+    STARG_NEW_ZERO(context, STAGE, l->starts, l->count + 1);
+    STARG_NEW(context, STAGE, l->rows, entries);
+    STARG_NEW(context, STAGE, l->values, entries);
+    STARG_NEW(context, STAGE, next, l->count);
+    for (size_t slot = 0; slot <= sum->edges.mask; slot++) {
+        uint64_t key = sum->edges.keys[slot];
+        if (key != 0) {
+            l->starts[(key >> 32) + 1]++;
+            l->starts[(key & UINT32_MAX) + 1]++;
+        }
+    }
+    for (size_t i = 0; i < l->count; i++) {
+        l->starts[i + 1] += l->starts[i] + 1;
+        next[i] = l->starts[i];
+        put(l, next, (uint32_t)i, (uint32_t)i, sum->diagonal[i]);
+    }
+    for (size_t slot = 0; slot <= sum->edges.mask; slot++) {
+        uint64_t key = sum->edges.keys[slot];
+        if (key == 0)
+            continue;
+        uint32_t u = (uint32_t)(key >> 32), v = (uint32_t)key;
+        double weight = sum->weights[sum->edges.numbers[slot]];
+        put(l, next, u, v, -weight);
+        put(l, next, v, u, -weight);
+    }
+done:
+    starg_release(context, next);
+    return status;
+}
+
+static starg_status assemble(const surface *s, laplacian *l) {
+    starg_context *context = s->context;
+    starg_status status = STARG_OK;
+    sums sum = {0};
+    double area = 0;
+    l->count = s->vertex_count;
+    STARG_TRY(edge_table_make(context, STAGE, 3 * s->face_count, &sum.edges));
+    STARG_NEW_ZERO(context, STAGE, sum.weights, 3 * s->face_count);
+    STARG_NEW_ZERO(context, STAGE, sum.diagonal, l->count);
+    STARG_NEW_ZERO(context, STAGE, l->masses, l->count);
+    for (size_t i = 0; i < s->face_count; i++)
+        area += add_face(s, s->faces + 3 * i, &sum, l->masses);
+    for (size_t i = 0; i < l->count; i++)
+        l->masses[i] /= area;
+    STARG_TRY(lay_out(context, &sum, l));
+done:
+    edge_table_free(context, &sum.edges);
+    starg_release(context, sum.weights);
+    starg_release(context, sum.diagonal);
+    return status;
+}
+
+starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, laplacian *out) {
+    starg_status status = STARG_OK;
+    surface s = {.context = context};
+    *out = (laplacian){0};
+    STARG_TRY(copy_surface(mesh, &s));
+    STARG_TRY(renumber(&s));
+    while (s.vertex_count < ENOUGH_VERTICES && s.face_count < ENOUGH_FACES) {
+        STARG_TRY(starg_check_cancel(context, STAGE));
+        STARG_TRY(subdivide(&s));
+    }
+    STARG_TRY(assemble(&s, out));
+done:
+    surface_free(&s);
+    if (status != STARG_OK)
+        laplacian_free(context, out);
+    return status;
+}
+
+void laplacian_free(starg_context *context, laplacian *l) {
+    starg_release(context, l->starts);
+    starg_release(context, l->rows);
+    starg_release(context, l->values);
+    starg_release(context, l->masses);
+    *l = (laplacian){0};
+}

@@ -1,0 +1,27 @@
+/* The cotangent Laplacian of a triangle mesh. */
+#ifndef STARG_SHAPE_LAPLACIAN_H
+#define STARG_SHAPE_LAPLACIAN_H
+
+#include <stdint.h>
+
+#include "core/context.h"
+#include "starguard/mesh.h"
+
+/* A symmetric, positive semidefinite matrix with zero row sums, stored by columns (all of it), and
+ * a positive diagonal of masses, which sum to 1. The eigenvalues of L x = lambda M x are those of
+ * the surface times its area: they do not change with its scale. */
+typedef struct laplacian {
+    size_t count;
+    int64_t *starts; /* count + 1 */
+    int64_t *rows;
+    double *values;
+    double *masses;
+} laplacian;
+
+/* Of a mesh that is closed or not; vertices that no face with an extent uses are left out. A mesh
+ * of few vertices is subdivided first, which leaves the surface as it is: a spectrum needs a
+ * resolution. Errors: MESH (no area), MEMORY, CANCELLED. */
+starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, laplacian *out);
+void laplacian_free(starg_context *context, laplacian *l);
+
+#endif

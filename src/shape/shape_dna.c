@@ -1,0 +1,61 @@
+/* Shape-DNA [RWP06]: the beginning of the spectrum of the surface's Laplacian, normalised by area.
+ *
+ * The numbers are the eigenvalues behind the first one, which is 0, in ascending order (further
+ * zeros mean further components). Isometric surfaces have the same spectrum, so that bending a
+ * model changes little; the scale is taken out by the area.
+ *
+ * Eigenvalues grow about in proportion to their number (Weyl's law: by 4 pi each). Two spectra
+ * differ by the Euclidean distance of the eigenvalues, each divided by its number, so that the low
+ * ones, which tell of the coarse shape, are not drowned by the high ones.
+ *
+ * Cost: see spectrum.c; a second for about 50,000 vertices. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "shape/laplacian.h"
+#include "shape/signature_kinds.h"
+#include "shape/spectrum.h"
+
+static const char STAGE[] = "shape-dna";
+
+enum { EIGENVALUES = 50 };
+
+static starg_status compute(starg_context *context, const starg_mesh *mesh, double **numbers,
+                            size_t *count) {
+    starg_status status = STARG_OK;
+    double *values = NULL;
+    laplacian l = {0};
+    STARG_TRY(laplacian_create(context, mesh, &l));
+    STARG_NEW(context, STAGE, values, EIGENVALUES + 1);
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values));
+    memmove(values, values + 1, EIGENVALUES * sizeof *values);
+    for (size_t i = 0; i < EIGENVALUES; i++)
+        values[i] = fmax(values[i], 0); /* rounding about the zeros */
+    *numbers = values;
+    *count = EIGENVALUES;
+done:
+    laplacian_free(context, &l);
+    if (status != STARG_OK)
+        starg_release(context, values);
+    return status;
+}
+
+static bool check(const double *numbers, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!(numbers[i] >= (i > 0 ? numbers[i - 1] : 0) && isfinite(numbers[i])))
+            return false;
+    return count == EIGENVALUES;
+}
+
+static double compare(const double *a, size_t a_count, const double *b, size_t b_count) {
+    double sum = 0;
+    (void)b_count;
+    for (size_t i = 0; i < a_count; i++) {
+        double difference = (a[i] - b[i]) / (double)(i + 1);
+        sum += difference * difference;
+    }
+    return sqrt(sum);
+}
+
+const signature_method signature_shape_dna = {
+    .name = "shape-dna", .version = 1, .compute = compute, .check = check, .compare = compare};

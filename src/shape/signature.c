@@ -1,0 +1,144 @@
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "shape/signature_kinds.h"
+
+static const char STAGE[] = "signature";
+
+/* In the order of starg_signature_kind. */
+static const signature_method *const methods[STARG_SIGNATURE_KINDS] = {
+    [STARG_SIGNATURE_D2] = &signature_d2,
+    [STARG_SIGNATURE_SHAPE_DNA] = &signature_shape_dna,
+};
+
+static const signature_method *method_of(starg_signature_kind kind) {
+    return (size_t)kind < STARG_SIGNATURE_KINDS ? methods[kind] : NULL;
+}
+
+const char *starg_signature_name(starg_signature_kind kind) {
+    const signature_method *method = method_of(kind);
+    return method != NULL ? method->name : NULL;
+}
+
+int starg_signature_version(starg_signature_kind kind) {
+    const signature_method *method = method_of(kind);
+    return method != NULL ? method->version : 0;
+}
+
+static starg_status fail_kind(starg_context *context, starg_signature_kind kind) {
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no signature kind %d",
+                      (int)kind);
+}
+
+/* Takes the numbers. */
+static starg_status wrap(starg_context *context, starg_signature_kind kind, double *numbers,
+                         size_t count, starg_signature **out) {
+    starg_status status = STARG_OK;
+    starg_signature *signature = NULL;
+    STARG_NEW(context, STAGE, signature, 1);
+    *signature = (starg_signature){
+        .kind = kind, .version = methods[kind]->version, .count = count, .numbers = numbers};
+    *out = signature;
+done:
+    if (status != STARG_OK)
+        starg_release(context, numbers);
+    return status;
+}
+
+starg_status starg_signature_create(starg_context *context, const starg_mesh *mesh,
+                                    starg_signature_kind kind, starg_signature **out) {
+    const signature_method *method = method_of(kind);
+    double *numbers = NULL;
+    size_t count = 0;
+    *out = NULL;
+    if (method == NULL)
+        return fail_kind(context, kind);
+    starg_status status = method->compute(context, mesh, &numbers, &count);
+    return status == STARG_OK ? wrap(context, kind, numbers, count, out) : status;
+}
+
+starg_status starg_signature_restore(starg_context *context, starg_signature_kind kind, int version,
+                                     const double *numbers, size_t count, starg_signature **out) {
+    const signature_method *method = method_of(kind);
+    starg_status status = STARG_OK;
+    double *copy = NULL;
+    *out = NULL;
+    if (method == NULL)
+        return fail_kind(context, kind);
+    if (version != method->version)
+        return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
+                          "a %s signature of version %d cannot be used, only version %d",
+                          method->name, version, method->version);
+    if (!method->check(numbers, count))
+        return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
+                          "these %zu numbers are no %s signature", count, method->name);
+    STARG_NEW(context, STAGE, copy, count);
+    memcpy(copy, numbers, count * sizeof *copy);
+    status = wrap(context, kind, copy, count, out);
+done:
+    return status;
+}
+
+void starg_signature_free(starg_context *context, starg_signature *signature) {
+    if (signature == NULL)
+        return;
+    starg_release(context, signature->numbers);
+    starg_release(context, signature);
+}
+
+/* ---- distances ---- */
+
+static bool comparable(const starg_signature *a, const starg_signature *b) {
+    const signature_method *method = method_of(a->kind);
+    return method != NULL && a->kind == b->kind && a->version == method->version &&
+           b->version == method->version;
+}
+
+static starg_status fail_comparison(starg_context *context) {
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                      "only signatures of the same kind and of its present version compare");
+}
+
+static double distance(const starg_signature *a, const starg_signature *b) {
+    return methods[a->kind]->compare(a->numbers, a->count, b->numbers, b->count);
+}
+
+starg_status starg_signature_distance(starg_context *context, const starg_signature *a,
+                                      const starg_signature *b, double *out) {
+    *out = 0;
+    if (!comparable(a, b))
+        return fail_comparison(context);
+    *out = distance(a, b);
+    return STARG_OK;
+}
+
+typedef struct table {
+    starg_signature *const *signatures;
+    size_t count;
+    double *distances;
+} table;
+
+/* The part of a row right of the diagonal, and its mirror image. */
+static starg_status fill_row(starg_context *context, void *shared, void *scratch, size_t row) {
+    const table *t = shared;
+    (void)context, (void)scratch;
+    t->distances[row * t->count + row] = 0;
+    for (size_t i = row + 1; i < t->count; i++) {
+        double d = distance(t->signatures[row], t->signatures[i]);
+        t->distances[row * t->count + i] = d;
+        t->distances[i * t->count + row] = d;
+    }
+    return STARG_OK;
+}
+
+starg_status starg_signature_distances(starg_context *context, starg_signature *const *signatures,
+                                       size_t count, double *distances) {
+    table t = {.signatures = signatures, .count = count, .distances = distances};
+    for (size_t i = 0; i < count; i++)
+        if (!comparable(signatures[0], signatures[i]))
+            return fail_comparison(context);
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = count, .shared = &t, .item = fill_row};
+    return starg_parallel_for(context, &loop);
+}

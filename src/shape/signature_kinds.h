@@ -1,0 +1,30 @@
+/* The kinds of signatures: what each consists of and how two are compared. A new kind is an entry
+ * in the table of signature.c and a file of its own. */
+#ifndef STARG_SHAPE_SIGNATURE_KINDS_H
+#define STARG_SHAPE_SIGNATURE_KINDS_H
+
+#include "core/context.h"
+#include "starguard/shape.h"
+
+/* Makes the numbers in a new block. */
+typedef starg_status signature_compute(starg_context *context, const starg_mesh *mesh,
+                                       double **numbers, size_t *count);
+
+/* Are these numbers of the kind? They may come from a damaged file. */
+typedef bool signature_check(const double *numbers, size_t count);
+
+/* Symmetric, not negative, 0 for equal numbers; both have passed the check. */
+typedef double signature_compare(const double *a, size_t a_count, const double *b, size_t b_count);
+
+typedef struct signature_method {
+    const char *name;
+    int version;
+    signature_compute *compute;
+    signature_check *check;
+    signature_compare *compare;
+} signature_method;
+
+extern const signature_method signature_d2;
+extern const signature_method signature_shape_dna;
+
+#endif

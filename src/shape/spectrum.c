@@ -1,0 +1,229 @@
+/* The smallest eigenvalues of a Laplacian by shifted inversion.
+ *
+ * Implicitly restarted Lanczos iterations (ARPACK) on M^1/2 (L + M)^-1 M^1/2, whose largest
+ * eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is positive definite, because
+ * the masses are positive: an LDL' factorisation without pivoting (LDL, in the order of AMD) is
+ * stable and done once; each step costs one solution with it.
+ *
+ * ARPACK keeps its state in static variables: one run at a time, behind a lock. Its start vector is
+ * given, so that the result depends on the matrix only. AMD takes its memory from malloc; all other
+ * memory is the context's.
+ *
+ * Cost: the fill-in of the factor, about 30 n to 60 n numbers for surfaces, for each of some 2 to 4
+ * steps per eigenvalue. */
+#include "shape/spectrum.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <suitesparse/amd.h>
+#include <suitesparse/ldl.h>
+#include <threads.h>
+
+#include <arpack/arpack.h>
+
+#include "core/memory.h"
+#include "core/rng.h"
+
+static const char STAGE[] = "shape-dna";
+
+enum { ITERATIONS = 300, SPARE_VECTORS = 20 };
+static const double SHIFT = 1, TOLERANCE = 1e-10;
+
+static once_flag lock_once = ONCE_FLAG_INIT;
+static mtx_t arpack_lock;
+static bool lock_made;
+
+static void make_lock(void) {
+    lock_made = mtx_init(&arpack_lock, mtx_plain) == thrd_success;
+}
+
+/* ---- factorisation ---- */
+
+typedef struct factor {
+    int64_t count;
+    int64_t *order, *inverse; /* of the rows */
+    int64_t *parents, *sizes, *flags, *pattern;
+    int64_t *starts, *rows;
+    double *values, *diagonal, *row;
+} factor;
+
+static void factor_free(starg_context *context, factor *f) {
+    void *const blocks[] = {f->order,  f->inverse, f->parents, f->sizes,    f->flags, f->pattern,
+                            f->starts, f->rows,    f->values,  f->diagonal, f->row};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+        starg_release(context, blocks[i]);
+}
+
+static starg_status make_room(starg_context *context, factor *f) {
+    starg_status status = STARG_OK;
+    size_t n = (size_t)f->count;
+    int64_t **const lists[] = {&f->order, &f->inverse, &f->parents,
+                               &f->sizes, &f->flags,   &f->pattern};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        STARG_NEW(context, STAGE, *lists[i], n);
+    STARG_NEW(context, STAGE, f->starts, n + 1);
+    STARG_NEW(context, STAGE, f->diagonal, n);
+    STARG_NEW(context, STAGE, f->row, n);
+done:
+    return status;
+}
+
+/* L + SHIFT M: the same entries with the masses on the diagonal, which comes first by column. */
+static starg_status shifted(starg_context *context, const laplacian *l, double **values) {
+    starg_status status = STARG_OK;
+    size_t entries = (size_t)l->starts[l->count];
+    STARG_NEW(context, STAGE, *values, entries);
+    memcpy(*values, l->values, entries * sizeof **values);
+    for (size_t i = 0; i < l->count; i++)
+        (*values)[l->starts[i]] += SHIFT * l->masses[i];
+done:
+    return status;
+}
+
+static starg_status order_rows(starg_context *context, const laplacian *l, factor *f) {
+    double information[AMD_INFO];
+    SuiteSparse_long result =
+        amd_l_order(f->count, l->starts, l->rows, f->order, NULL, information);
+    if (result == AMD_OUT_OF_MEMORY)
+        return starg_fail_memory(context, STAGE);
+    if (result != AMD_OK && result != AMD_OK_BUT_JUMBLED)
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "the matrix cannot be ordered");
+    return STARG_OK;
+}
+
+static starg_status factorise(starg_context *context, const laplacian *l, factor *f) {
+    starg_status status = STARG_OK;
+    double *values = NULL;
+    f->count = (int64_t)l->count;
+    STARG_TRY(make_room(context, f));
+    STARG_TRY(order_rows(context, l, f));
+    STARG_TRY(shifted(context, l, &values));
+    ldl_l_symbolic(f->count, l->starts, l->rows, f->starts, f->parents, f->sizes, f->flags,
+                   f->order, f->inverse);
+    STARG_NEW(context, STAGE, f->rows, (size_t)f->starts[f->count]);
+    STARG_NEW(context, STAGE, f->values, (size_t)f->starts[f->count]);
+    if (ldl_l_numeric(f->count, l->starts, l->rows, values, f->starts, f->parents, f->sizes,
+                      f->rows, f->values, f->diagonal, f->row, f->pattern, f->flags, f->order,
+                      f->inverse) != f->count)
+        status =
+            starg_fail(context, STARG_ERROR_SOLVER, STAGE,
+                       "the Laplacian cannot be factorised: the faces' shapes are too extreme; "
+                       "'repair' may help");
+done:
+    starg_release(context, values);
+    return status;
+}
+
+/* ---- iteration ---- */
+
+typedef struct iteration {
+    const laplacian *l;
+    const factor *f;
+    double *roots; /* of the masses */
+    double *solution, *residual, *vectors, *work, *small;
+    a_int *chosen;
+} iteration;
+
+/* y = M^1/2 (L + SHIFT M)^-1 M^1/2 x */
+static void apply(const iteration *it, const double *x, double *y) {
+    const factor *f = it->f;
+    for (size_t i = 0; i < it->l->count; i++)
+        y[i] = it->roots[i] * x[i];
+    ldl_l_perm(f->count, it->solution, y, f->order);
+    ldl_l_lsolve(f->count, it->solution, f->starts, f->rows, f->values);
+    ldl_l_dsolve(f->count, it->solution, f->diagonal);
+    ldl_l_ltsolve(f->count, it->solution, f->starts, f->rows, f->values);
+    ldl_l_permt(f->count, y, it->solution, f->order);
+    for (size_t i = 0; i < it->l->count; i++)
+        y[i] *= it->roots[i];
+}
+
+static void start_vector(const iteration *it) {
+    starg_rng rng = starg_rng_make(1, 0, 0);
+    for (size_t i = 0; i < it->l->count; i++)
+        it->residual[i] = starg_rng_unit(&rng) - 0.5;
+}
+
+/* The largest eigenvalues of the operator, in any order. The lock is held. */
+static starg_status iterate(starg_context *context, const iteration *it, a_int wanted,
+                            a_int vectors, double *largest) {
+    a_int n = (a_int)it->l->count, ido = 0, info = 1, small = vectors * (vectors + 8);
+    size_t expected = 8 * (size_t)wanted; /* more or less: for the progress only */
+    a_int parameters[11] = {1, 0, ITERATIONS, 1, 0, 0, 1}, places[14] = {0};
+    start_vector(it);
+    starg_progress_begin(context, STAGE);
+    for (size_t steps = 0;; steps++) {
+        dsaupd_c(&ido, "I", n, "LM", wanted, TOLERANCE, it->residual, vectors, it->vectors, n,
+                 parameters, places, it->work, it->small, small, &info);
+        if (ido != 1 && ido != -1)
+            break;
+        apply(it, it->work + places[0] - 1, it->work + places[1] - 1);
+        starg_progress_step(context, steps < expected ? steps : expected, expected);
+        starg_status status = starg_check_cancel(context, STAGE);
+        if (status != STARG_OK)
+            return status;
+    }
+    starg_progress_end(context);
+    if (info == 0 && parameters[4] >= wanted)
+        dseupd_c(0, "A", it->chosen, largest, it->vectors, n, 0, "I", n, "LM", wanted, TOLERANCE,
+                 it->residual, vectors, it->vectors, n, parameters, places, it->work, it->small,
+                 small, &info);
+    if (info != 0)
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE,
+                          "the eigenvalues did not converge (ARPACK says %d)", (int)info);
+    return STARG_OK;
+}
+
+static starg_status locked_iterate(starg_context *context, const iteration *it, a_int wanted,
+                                   a_int vectors, double *largest) {
+    call_once(&lock_once, make_lock);
+    if (!lock_made || mtx_lock(&arpack_lock) != thrd_success)
+        return starg_fail_memory(context, STAGE);
+    starg_status status = iterate(context, it, wanted, vectors, largest);
+    mtx_unlock(&arpack_lock);
+    return status;
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_t wanted,
+                               double *eigenvalues) {
+    starg_status status = STARG_OK;
+    size_t n = l->count, vectors = 2 * wanted + SPARE_VECTORS;
+    factor f = {0};
+    iteration it = {.l = l, .f = &f};
+    if (vectors > n)
+        vectors = n;
+    if (wanted >= n || n * sizeof(double) > INT_MAX)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "a mesh of %zu vertices has too %s for its spectrum", n,
+                          wanted >= n ? "few" : "many");
+    STARG_TRY(factorise(context, l, &f));
+    STARG_NEW(context, STAGE, it.roots, n);
+    STARG_NEW(context, STAGE, it.solution, n);
+    STARG_NEW(context, STAGE, it.residual, n);
+    STARG_NEW(context, STAGE, it.vectors, n * vectors);
+    STARG_NEW(context, STAGE, it.work, 3 * n);
+    STARG_NEW_ZERO(context, STAGE, it.chosen, vectors);
+    STARG_NEW(context, STAGE, it.small, vectors * (vectors + 8));
+    for (size_t i = 0; i < n; i++)
+        it.roots[i] = sqrt(l->masses[i]);
+    STARG_TRY(locked_iterate(context, &it, (a_int)wanted, (a_int)vectors, eigenvalues));
+    for (size_t i = 0; i < wanted; i++)
+        eigenvalues[i] = 1 / eigenvalues[i] - SHIFT;
+    qsort(eigenvalues, wanted, sizeof *eigenvalues, by_size);
+done:
+    starg_release(context, it.roots);
+    starg_release(context, it.solution);
+    starg_release(context, it.residual);
+    starg_release(context, it.vectors);
+    starg_release(context, it.work);
+    starg_release(context, it.small);
+    starg_release(context, it.chosen);
+    factor_free(context, &f);
+    return status;
+}
