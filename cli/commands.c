@@ -8,11 +8,18 @@ const cli_command *const cli_commands[] = {
     &cli_command_visible, &cli_command_kernel,
     &cli_command_guard,   &cli_command_decompose,
     &cli_command_verify,  NULL,
+    &cli_command_guard,   &cli_command_verify,
+    &cli_command_db,      NULL,
 };
 
-const cli_command *cli_command_find(const char *name) {
-    for (size_t i = 0; cli_commands[i] != NULL; i++)
-        if (strcmp(cli_commands[i]->name, name) == 0)
-            return cli_commands[i];
+const char *cli_command_word(const cli_command *command) {
+    const char *space = strrchr(command->name, ' ');
+    return space != NULL ? space + 1 : command->name;
+}
+
+const cli_command *cli_command_find(const cli_command *const *table, const char *word) {
+    for (size_t i = 0; table[i] != NULL; i++)
+        if (strcmp(cli_command_word(table[i]), word) == 0)
+            return table[i];
     return NULL;
 }

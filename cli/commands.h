@@ -16,10 +16,12 @@ typedef enum cli_input {
 
 struct cli_command {
     const char *name;
-    const char *usage;       /* what follows the name: "MODEL -o FILE [options]" */
-    const char *summary;     /* one line, no full stop                           */
-    const char *description; /* paragraphs, parted by newlines                   */
-    const char *examples;    /* lines: "# what it does", then the command        */
+    const char *usage;                 /* what follows the name: "MODEL -o FILE [options]" */
+    const char *summary;               /* one line, no full stop                           */
+    const char *description;           /* paragraphs, parted by newlines                   */
+    const char *examples;              /* lines: "# what it does", then the command        */
+    const cli_command *const *members; /* a group ("db") has commands ("db add") and nothing below;
+                                          ends with NULL */
     const cli_option *options;
     size_t option_count;
     size_t least_operands, most_operands;
@@ -46,11 +48,23 @@ extern const cli_command cli_command_kernel;
 extern const cli_command cli_command_guard;
 extern const cli_command cli_command_decompose;
 extern const cli_command cli_command_verify;
+extern const cli_command cli_command_db;
+extern const cli_command cli_command_db_create;
+extern const cli_command cli_command_db_add;
+extern const cli_command cli_command_db_remove;
+extern const cli_command cli_command_db_list;
+extern const cli_command cli_command_db_query;
+extern const cli_command cli_command_db_matrix;
+extern const cli_command cli_command_db_evaluate;
 
 /* All commands in the order of the help; ends with NULL. */
 extern const cli_command *const cli_commands[];
 
-/* NULL if there is none of that name. */
-const cli_command *cli_command_find(const char *name);
+/* The command of that name in a table; NULL if there is none. Members of a group are found by the
+ * last word of their names. */
+const cli_command *cli_command_find(const cli_command *const *table, const char *word);
+
+/* The last word of a command's name. */
+const char *cli_command_word(const cli_command *command);
 
 #endif

@@ -49,14 +49,14 @@ static void print_options(FILE *stream, const cli_option *options, size_t count)
     }
 }
 
-static void print_commands(FILE *stream) {
-    for (size_t i = 0; cli_commands[i] != NULL; i++)
-        fprintf(stream, "  %-10s %s\n", cli_commands[i]->name, cli_commands[i]->summary);
+static void print_commands(FILE *stream, const cli_command *const *table) {
+    for (size_t i = 0; table[i] != NULL; i++)
+        fprintf(stream, "  %-10s %s\n", cli_command_word(table[i]), table[i]->summary);
 }
 
 void cli_help_short(FILE *stream) {
     fprintf(stream, "Usage: starguard COMMAND ... [options]\n\nCommands:\n");
-    print_commands(stream);
+    print_commands(stream, cli_commands);
     fprintf(stream, "\n'starguard help' tells more, 'starguard help COMMAND' all about one.\n");
 }
 
@@ -67,7 +67,7 @@ void cli_help_program(FILE *stream) {
          "gallery problem in 3D), with exact visibility and a proven bound on how few could do.",
          0, 0);
     heading(stream, "Commands");
-    print_commands(stream);
+    print_commands(stream, cli_commands);
     fprintf(stream, "  %-10s %s\n", "help", "all about a command: starguard help COMMAND");
     heading(stream, "Options of every command");
     print_options(stream, cli_common_options, cli_common_option_count);
@@ -108,6 +108,10 @@ static void print_examples(FILE *stream, const char *examples) {
 void cli_help_command(FILE *stream, const cli_command *command) {
     fprintf(stream, "Usage: starguard %s %s\n\n", command->name, command->usage);
     wrap(stream, command->description, 0, 0);
+    if (command->members != NULL) {
+        heading(stream, "Commands");
+        print_commands(stream, command->members);
+    }
     heading(stream, "Options");
     print_options(stream, command->options, command->option_count);
     heading(stream, "Options of every command");

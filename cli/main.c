@@ -30,12 +30,13 @@ static int reject(const char *kind, const char *word, const char *best) {
     return CLI_EXIT_USAGE;
 }
 
-static int reject_command(const char *word) {
+static int reject_command(const cli_command *const *table, const char *word) {
     cli_suggestion near;
     cli_suggest_begin(&near, word);
-    for (size_t i = 0; cli_commands[i] != NULL; i++)
-        cli_suggest_try(&near, cli_commands[i]->name);
-    cli_suggest_try(&near, "help");
+    for (size_t i = 0; table[i] != NULL; i++)
+        cli_suggest_try(&near, cli_command_word(table[i]));
+    if (table == cli_commands)
+        cli_suggest_try(&near, "help");
     return reject("command", word, near.best);
 }
 
@@ -55,14 +56,19 @@ static int reject_option(const char *word) {
 }
 
 static int print_help(int argc, char **argv) {
-    const cli_command *command = argc > 0 ? cli_command_find(argv[0]) : NULL;
-    if (argc > 1) {
+    const cli_command *command = argc > 0 ? cli_command_find(cli_commands, argv[0]) : NULL;
+    if (argc == 2 && command != NULL && command->members != NULL) {
+        const cli_command *member = cli_command_find(command->members, argv[1]);
+        if (member == NULL)
+            return reject_command(command->members, argv[1]);
+        command = member;
+    } else if (argc > 1) {
         fputs("starguard help: takes one command\n", stderr);
         return CLI_EXIT_USAGE;
     }
     if (argc == 1 && command == NULL && strcmp(argv[0], "help") != 0 &&
         strcmp(argv[0], "--help") != 0)
-        return reject_command(argv[0]);
+        return reject_command(cli_commands, argv[0]);
     if (command != NULL)
         cli_help_command(stdout, command);
     else
@@ -156,6 +162,25 @@ free_values:
     return result;
 }
 
+/* A command of a group: "db add ...". */
+static int run_member(const cli_command *group, int argc, char **argv) {
+    const char *word = argc > 0 ? argv[0] : NULL;
+    if (word == NULL) {
+        cli_help_command(stderr, group);
+        return CLI_EXIT_USAGE;
+    }
+    if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
+        cli_help_command(stdout, group);
+        return finish_text();
+    }
+    if (strcmp(word, "--version") == 0)
+        return print_version();
+    if (word[0] == '-')
+        return reject_option(word);
+    const cli_command *member = cli_command_find(group->members, word);
+    return member != NULL ? run(member, argc - 1, argv + 1) : reject_command(group->members, word);
+}
+
 int main(int argc, char **argv) {
     if (argc < 2) {
         cli_help_short(stderr);
@@ -166,8 +191,10 @@ int main(int argc, char **argv) {
         return print_help(argc - 2, argv + 2);
     if (strcmp(word, "--version") == 0)
         return print_version();
-    const cli_command *command = cli_command_find(word);
+    const cli_command *command = cli_command_find(cli_commands, word);
     if (command == NULL)
-        return word[0] == '-' ? reject_option(word) : reject_command(word);
+        return word[0] == '-' ? reject_option(word) : reject_command(cli_commands, word);
+    if (command->members != NULL)
+        return run_member(command, argc - 2, argv + 2);
     return run(command, argc - 2, argv + 2);
 }

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "core/file.h"
+#include "mesh/io.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "chart";
@@ -83,6 +84,8 @@ starg_status starg_chart_write(starg_context *context, const starg_curve *curves
     starg_status status = STARG_OK;
     starg_output output;
     size_t height = TOP + SIDE + BELOW, needed = TOP + 16 + LEGEND_STEP * count;
+    starg_c_locale locale = {0};
+    STARG_TRY(starg_c_locale_enter(context, &locale));
     STARG_TRY(starg_output_open(context, STAGE, path, &output));
     FILE *stream = output.stream;
     fprintf(stream,
@@ -100,5 +103,6 @@ starg_status starg_chart_write(starg_context *context, const starg_curve *curves
     fputs("</svg>\n", stream);
     status = starg_output_commit(&output);
 done:
+    starg_c_locale_leave(&locale);
     return status;
 }

@@ -1,0 +1,345 @@
+/* starguard db matrix, evaluate: all stored models with one another. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "csv.h"
+#include "database.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/picture.h"
+
+typedef struct values {
+    const char *output, *picture, *classes;
+    int distance;
+} values;
+
+static void set_defaults(void *data) {
+    *(values *)data = (values){.distance = STARG_SIGNATURE_DEFAULT, .classes = "by-prefix"};
+}
+
+/* ---- distances ---- */
+
+/* The models of a database with all their distances. */
+typedef struct table {
+    starg_database *database;
+    starg_database_models *models;
+    double *distances;
+} table;
+
+static void free_table(cli_session *session, table *t) {
+    free(t->distances);
+    starg_database_models_free(session->context, t->models);
+    starg_database_close(t->database);
+}
+
+static starg_status make_distances(cli_session *session, table *t) {
+    size_t count = t->models->count;
+    starg_signature **signatures = calloc(count, sizeof(starg_signature *));
+    t->distances = count <= SIZE_MAX / sizeof(double) / count
+                       ? malloc(count * count * sizeof *t->distances)
+                       : NULL;
+    starg_status status = STARG_OK;
+    if (signatures == NULL || t->distances == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (size_t i = 0; i < count; i++)
+        signatures[i] = t->models->items[i].signature;
+    CLI_TRY(starg_signature_distances(session->context, signatures, count, t->distances));
+done:
+    free(signatures);
+    return status;
+}
+
+static starg_status make_table(cli_session *session, const values *v, table *t) {
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_database_open(session, &t->database));
+    CLI_TRY(starg_database_signatures(t->database, (starg_signature_kind)v->distance, &t->models));
+    if (t->models->count == 0) {
+        status = cli_fail(session, STARG_ERROR_FORMAT,
+                          "'%s' has no models; 'starguard db add' adds some", session->operands[0]);
+        goto done;
+    }
+    CLI_TRY(make_distances(session, t));
+done:
+    return status;
+}
+
+static void report_head(cli_session *session, const values *v, const char *format) {
+    cli_report_head(session, format, NULL, NULL);
+    cli_put(session, session->report, "database", cli_json_text(session->operands[0]));
+    cli_put(session, session->report, "distance", json_string(cli_distance_words[v->distance]));
+}
+
+/* ---- matrix ---- */
+
+static const cli_option matrix_options[] = {
+    CLI_OUTPUT_OPTION("FILE.csv",
+                      "Where to write the distances: a row and a column for each model, "
+                      "by file name; '-' writes to standard output."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png",
+                    "Draw them: black where models are alike, white where they differ most."),
+    CLI_DISTANCE_OPTION,
+};
+
+static starg_status prepare_matrix(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    if (v->output == NULL && v->picture == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "name an output: -o FILE.csv, --picture FILE.png, or both");
+    CLI_TRY(cli_announce_with_ending(session, "-o", v->output, ".csv"));
+    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+done:
+    return status;
+}
+
+static starg_status write_matrix(cli_session *session, const char *name, const table *t) {
+    size_t count = t->models->count;
+    cli_csv csv;
+    starg_status status = cli_csv_open(session, name, &csv);
+    if (status != STARG_OK)
+        return status;
+    cli_csv_text(&csv, "model");
+    for (size_t i = 0; i < count; i++)
+        cli_csv_text(&csv, t->models->items[i].name);
+    cli_csv_end_line(&csv);
+    for (size_t i = 0; i < count; i++) {
+        cli_csv_text(&csv, t->models->items[i].name);
+        for (size_t k = 0; k < count; k++)
+            cli_csv_real(&csv, t->distances[i * count + k]);
+        cli_csv_end_line(&csv);
+    }
+    return cli_csv_close(&csv);
+}
+
+static starg_status run_matrix(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    table t = {0};
+    CLI_TRY(make_table(session, v, &t));
+    if (v->picture != NULL)
+        CLI_TRY(starg_matrix_picture_write(session->context, t.distances, t.models->count,
+                                           cli_outputs_place(&session->outputs, v->picture)));
+    if (v->output != NULL)
+        CLI_TRY(write_matrix(session, v->output, &t));
+    cli_say(session, "%s, %s distances\n", cli_count_of(t.models->count, "model", "models").text,
+            cli_distance_words[v->distance]);
+    if (session->report != NULL) {
+        report_head(session, v, "starguard-db-matrix");
+        cli_put(session, session->report, "models", json_integer((json_int_t)t.models->count));
+    }
+done:
+    free_table(session, &t);
+    return status;
+}
+
+const cli_command cli_command_db_matrix = {
+    .name = "db matrix",
+    .usage = "DB -o FILE.csv [--picture FILE.png] [options]",
+    .summary = "all distances, as a table and a picture",
+    .description =
+        "Computes the distance of every stored model to every other, in the order of their "
+        "file names.",
+    .examples = "# a table, and the picture of it\n"
+                "starguard db matrix shapes.db -o distances.csv --picture distances.png",
+    .options = matrix_options,
+    .option_count = sizeof matrix_options / sizeof *matrix_options,
+    .values_size = sizeof(values),
+    CLI_OPERANDS(1, 1),
+    .defaults = set_defaults,
+    .prepare = prepare_matrix,
+    .run = run_matrix,
+};
+
+/* ---- evaluate ---- */
+
+static const cli_option evaluate_options[] = {
+    CLI_TEXT_OPTION(
+        "classes", classes, "by-prefix|FILE",
+        "Which models belong together: by-prefix (default) takes the file name up to the "
+        "last '_'; a FILE has lines 'MODEL CLASS', and models it does not name are left "
+        "out."),
+    CLI_DISTANCE_OPTION,
+    CLI_OUTPUT_OPTION("FILE.csv", "Where to write precision by recall, overall and by class; '-' "
+                                  "writes to standard output."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.svg", "Draw the same."),
+};
+
+static starg_status prepare_evaluate(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_announce_with_ending(session, "-o", v->output, ".csv"));
+    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".svg"));
+done:
+    return status;
+}
+
+typedef struct evaluation {
+    const starg_classes *classes;
+    const starg_retrieval *by_class, *overall;
+    double recall[STARG_RECALL_LEVELS];
+} evaluation;
+
+static const struct {
+    const char *key, *head;
+    size_t offset;
+} measures[] = {{"nearest_neighbour", "nearest", offsetof(starg_retrieval, nearest_neighbour)},
+                {"first_tier", "tier 1", offsetof(starg_retrieval, first_tier)},
+                {"second_tier", "tier 2", offsetof(starg_retrieval, second_tier)},
+                {"e_measure", "E", offsetof(starg_retrieval, e_measure)},
+                {"dcg", "DCG", offsetof(starg_retrieval, dcg)}};
+enum { MEASURES = sizeof measures / sizeof *measures };
+
+static double measure(const starg_retrieval *r, size_t i) {
+    return *(const double *)((const char *)r + measures[i].offset);
+}
+
+static void tell_line(cli_session *session, const char *name, const starg_retrieval *r) {
+    cli_say(session, "%-16s %6zu", name, r->models);
+    for (size_t i = 0; i < MEASURES && r->queries > 0; i++)
+        cli_say(session, "  %7.3f", measure(r, i));
+    cli_say(session, "\n");
+}
+
+static void tell_evaluation(cli_session *session, const evaluation *e) {
+    cli_say(session, "%-16s %6s", "class", "models");
+    for (size_t i = 0; i < MEASURES; i++)
+        cli_say(session, "  %7s", measures[i].head);
+    cli_say(session, "\n");
+    for (size_t c = 0; c < e->classes->count; c++)
+        tell_line(session, e->classes->names[c], &e->by_class[c]);
+    tell_line(session, "all", e->overall);
+}
+
+static void put_measures(cli_session *session, json_t *object, const starg_retrieval *r) {
+    for (size_t i = 0; i < MEASURES; i++)
+        cli_put(session, object, measures[i].key,
+                r->queries > 0 ? json_real(measure(r, i)) : json_null());
+    cli_put(session, object, "models", json_integer((json_int_t)r->models));
+    cli_put(session, object, "queries", json_integer((json_int_t)r->queries));
+}
+
+static void report_evaluation(cli_session *session, const values *v, const evaluation *e) {
+    json_t *classes = json_object(), *precision = json_array(), *report = session->report;
+    report_head(session, v, "starguard-db-evaluate");
+    put_measures(session, report, e->overall);
+    for (size_t i = 0; i < STARG_RECALL_LEVELS; i++)
+        cli_append(session, precision, json_pack("[f, f]", e->recall[i], e->overall->precision[i]));
+    cli_put(session, report, "precision_at_recall", precision);
+    for (size_t c = 0; c < e->classes->count; c++) {
+        json_t *class = json_object(), *name = cli_json_text(e->classes->names[c]);
+        put_measures(session, class, &e->by_class[c]);
+        cli_put(session, classes, json_string_value(name), class);
+        json_decref(name);
+    }
+    cli_put(session, report, "classes", classes);
+}
+
+static starg_status write_precision(cli_session *session, const char *name, const evaluation *e) {
+    cli_csv csv;
+    starg_status status = cli_csv_open(session, name, &csv);
+    if (status != STARG_OK)
+        return status;
+    cli_csv_text(&csv, "recall");
+    cli_csv_text(&csv, "all");
+    for (size_t c = 0; c < e->classes->count; c++)
+        cli_csv_text(&csv, e->classes->names[c]);
+    cli_csv_end_line(&csv);
+    for (size_t i = 0; i < STARG_RECALL_LEVELS; i++) {
+        cli_csv_real(&csv, e->recall[i]);
+        cli_csv_real(&csv, e->overall->precision[i]);
+        for (size_t c = 0; c < e->classes->count; c++)
+            cli_csv_real(&csv, e->by_class[c].precision[i]);
+        cli_csv_end_line(&csv);
+    }
+    return cli_csv_close(&csv);
+}
+
+static starg_status draw_precision(cli_session *session, const char *name, const evaluation *e) {
+    starg_curve *curves = calloc(e->classes->count + 1, sizeof *curves);
+    if (curves == NULL)
+        return cli_fail_memory(session);
+    curves[0] = (starg_curve){"all", e->recall, e->overall->precision, STARG_RECALL_LEVELS, true};
+    size_t count = 1;
+    for (size_t c = 0; c < e->classes->count; c++)
+        if (e->by_class[c].queries > 0)
+            curves[count++] = (starg_curve){e->classes->names[c], e->recall,
+                                            e->by_class[c].precision, STARG_RECALL_LEVELS, false};
+    starg_status status = starg_chart_write(session->context, curves, count, "recall", "precision",
+                                            cli_outputs_place(&session->outputs, name));
+    free(curves);
+    return status;
+}
+
+static starg_status make_classes(cli_session *session, const values *v, const table *t,
+                                 starg_classes **out) {
+    if (strcmp(v->classes, "by-prefix") == 0)
+        return starg_classes_by_prefix(session->context, t->models, out);
+    return starg_classes_read(session->context, v->classes, t->models, out);
+}
+
+static starg_status deliver(cli_session *session, const values *v, evaluation *e) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < STARG_RECALL_LEVELS; i++)
+        e->recall[i] = (double)(i + 1) / STARG_RECALL_LEVELS;
+    tell_evaluation(session, e);
+    if (e->overall->queries == 0)
+        cli_warn(session, "warning: no class has two models; there is nothing to find");
+    if (session->report != NULL)
+        report_evaluation(session, v, e);
+    if (v->picture != NULL)
+        CLI_TRY(draw_precision(session, v->picture, e));
+    if (v->output != NULL)
+        CLI_TRY(write_precision(session, v->output, e));
+done:
+    return status;
+}
+
+static starg_status run_evaluate(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    table t = {0};
+    starg_classes *classes = NULL;
+    starg_retrieval overall, *by_class = NULL;
+    CLI_TRY(make_table(session, v, &t));
+    CLI_TRY(make_classes(session, v, &t, &classes));
+    by_class = calloc(classes->count + 1, sizeof *by_class);
+    if (by_class == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    CLI_TRY(starg_retrieval_measure(session->context, t.distances, classes->class_of,
+                                    t.models->count, classes->count, by_class, &overall));
+    evaluation e = {.classes = classes, .by_class = by_class, .overall = &overall};
+    CLI_TRY(deliver(session, v, &e));
+done:
+    free(by_class);
+    starg_classes_free(session->context, classes);
+    free_table(session, &t);
+    return status;
+}
+
+const cli_command cli_command_db_evaluate = {
+    .name = "db evaluate",
+    .usage = "DB [--classes by-prefix|FILE] [options]",
+    .summary = "how well do distances find models of the same class",
+    .description = "Takes every stored model as a query in turn, ranks the others by distance and "
+                   "measures how "
+                   "far in front those of its class stand: nearest neighbour, first and second "
+                   "tier, E-measure "
+                   "and discounted cumulative gain, by class and overall, each in [0, 1] "
+                   "(docs/retrieval.md). Models alone in their class are ranked but ask nothing.",
+    .examples = "# classes by name: cat_1.off, cat_2.off, dog_1.off ...\n"
+                "starguard db evaluate shapes.db\n"
+                "# another distance, and its precision and recall\n"
+                "starguard db evaluate shapes.db --distance d2 -o d2.csv --picture d2.svg",
+    .options = evaluate_options,
+    .option_count = sizeof evaluate_options / sizeof *evaluate_options,
+    .values_size = sizeof(values),
+    CLI_OPERANDS(1, 1),
+    .defaults = set_defaults,
+    .prepare = prepare_evaluate,
+    .run = run_evaluate,
+};

@@ -1,0 +1,193 @@
+/* starguard db create, add, remove, list: what is stored. */
+#include "commands.h"
+#include "database.h"
+#include "model.h"
+#include "report.h"
+
+static void report_file(cli_session *session, const char *format) {
+    cli_report_head(session, format, NULL, NULL);
+    if (session->report != NULL)
+        cli_put(session, session->report, "database", cli_json_text(session->operands[0]));
+}
+
+/* ---- create ---- */
+
+static starg_status create(cli_session *session, void *data) {
+    (void)data;
+    starg_status status = starg_database_create(session->context, session->operands[0]);
+    if (status != STARG_OK)
+        return status;
+    cli_say(session, "%s: an empty database\n", session->operands[0]);
+    report_file(session, "starguard-db-create");
+    return STARG_OK;
+}
+
+const cli_command cli_command_db_create = {
+    .name = "db create",
+    .usage = "DB [options]",
+    .summary = "make an empty database",
+    .description = "Makes an empty database. A file that exists is never overwritten.",
+    .examples = "# a database of some models\n"
+                "starguard db create shapes.db\n"
+                "starguard db add shapes.db models/*.off",
+    CLI_OPERANDS(1, 1),
+    .run = create,
+};
+
+/* ---- add ---- */
+
+static const char *const outcome_words[] = {
+    [STARG_DATABASE_ADDED] = "added",
+    [STARG_DATABASE_KNOWN] = "known",
+    [STARG_DATABASE_REFUSED] = "refused",
+};
+
+static json_t *result_json(cli_session *session, const char *file,
+                           const starg_database_result *result) {
+    json_t *object = json_object();
+    cli_put(session, object, "file", cli_json_text(file));
+    cli_put(session, object, "outcome", json_string(outcome_words[result->outcome]));
+    if (result->text != NULL)
+        cli_put(session, object, result->outcome == STARG_DATABASE_KNOWN ? "as" : "message",
+                cli_json_text(result->text));
+    return object;
+}
+
+/* What became of the files; those that were refused last, where they are seen. */
+static void tell_added(cli_session *session, const starg_database_report *r) {
+    for (size_t i = 0; i < r->count; i++)
+        if (r->results[i].outcome == STARG_DATABASE_KNOWN)
+            cli_say(session, "%s: stored already, as %s\n", session->operands[i + 1],
+                    r->results[i].text);
+    cli_say(session, "%zu added, %zu stored already, %zu refused\n", r->added, r->known,
+            r->refused);
+    for (size_t i = 0; i < r->count; i++)
+        if (r->results[i].outcome == STARG_DATABASE_REFUSED)
+            cli_warn(session, "not added: %s", r->results[i].text);
+    if (r->refused > 0)
+        session->outcome = CLI_EXIT_UNFINISHED;
+}
+
+static void report_added(cli_session *session, const starg_database_report *r) {
+    json_t *list = json_array(), *report = session->report;
+    report_file(session, "starguard-db-add");
+    cli_put(session, report, "added", json_integer((json_int_t)r->added));
+    cli_put(session, report, "known", json_integer((json_int_t)r->known));
+    cli_put(session, report, "refused", json_integer((json_int_t)r->refused));
+    for (size_t i = 0; i < r->count; i++)
+        cli_append(session, list, result_json(session, session->operands[i + 1], &r->results[i]));
+    cli_put(session, report, "files", list);
+}
+
+static starg_status add(cli_session *session, void *data) {
+    (void)data;
+    starg_status status = STARG_OK;
+    starg_database *database = NULL;
+    starg_database_report *report = NULL;
+    CLI_TRY(cli_database_open(session, &database));
+    CLI_TRY(starg_database_add(database, (const char *const *)session->operands + 1,
+                               session->operand_count - 1, &report));
+    tell_added(session, report);
+    if (session->report != NULL)
+        report_added(session, report);
+done:
+    starg_database_report_free(session->context, report);
+    starg_database_close(database);
+    return status;
+}
+
+const cli_command cli_command_db_add = {
+    .name = "db add",
+    .usage = "DB MODEL... [options]",
+    .summary = "store models with their signatures",
+    .description =
+        "Describes models and stores them under their paths as given. Contents that are stored "
+        "already are skipped, whatever the file is called. A file that cannot be used does not "
+        "keep the others from being stored: such files are told of at the end, and the exit status "
+        "is 3. Several processes may add to one database at once. After an interruption what was "
+        "stored so far is there; the same command goes on from there.",
+    .examples = "# all models of a folder\n"
+                "starguard db add shapes.db models/*.off\n"
+                "# what was refused, for a script\n"
+                "starguard db add shapes.db *.stl --json | jq '.files[] | select(.outcome == "
+                "\"refused\")'",
+    CLI_OPERANDS(2, SIZE_MAX),
+    .run = add,
+};
+
+/* ---- remove ---- */
+
+static starg_status run_remove(cli_session *session, void *data) {
+    (void)data;
+    starg_status status = STARG_OK;
+    starg_database *database = NULL;
+    size_t count = session->operand_count - 1;
+    CLI_TRY(cli_database_open(session, &database));
+    CLI_TRY(starg_database_remove(database, (const char *const *)session->operands + 1, count));
+    cli_say(session, "%s removed\n", cli_count_of(count, "model", "models").text);
+    report_file(session, "starguard-db-remove");
+    if (session->report != NULL)
+        cli_put(session, session->report, "removed", json_integer((json_int_t)count));
+done:
+    starg_database_close(database);
+    return status;
+}
+
+const cli_command cli_command_db_remove = {
+    .name = "db remove",
+    .usage = "DB MODEL... [options]",
+    .summary = "take models out",
+    .description =
+        "Removes models, all that are named or none. A model is named by its path as it was "
+        "added, by the file name at the end of it, or as id:N with the number that 'db "
+        "list' shows.",
+    .examples = "# by name, and by number\n"
+                "starguard db remove shapes.db cat_01.off id:7",
+    CLI_OPERANDS(2, SIZE_MAX),
+    .run = run_remove,
+};
+
+/* ---- list ---- */
+
+static void report_list(cli_session *session, const starg_database_models *models) {
+    json_t *list = json_array();
+    report_file(session, "starguard-db-list");
+    for (size_t i = 0; i < models->count; i++) {
+        json_t *model = cli_json_model(&models->items[i]);
+        cli_put(session, model, "hash", json_string(models->items[i].hash));
+        cli_append(session, list, model);
+    }
+    cli_put(session, session->report, "models", list);
+}
+
+static starg_status list(cli_session *session, void *data) {
+    (void)data;
+    starg_status status = STARG_OK;
+    starg_database *database = NULL;
+    starg_database_models *models = NULL;
+    CLI_TRY(cli_database_open(session, &database));
+    CLI_TRY(starg_database_list(database, &models));
+    for (size_t i = 0; i < models->count; i++) {
+        const starg_database_model *model = &models->items[i];
+        cli_say(session, "%6lld  %-24s %8zu vertices %8zu faces  %s\n", (long long)model->id,
+                model->name, model->vertices, model->faces, model->path);
+    }
+    cli_say(session, "%s\n", cli_count_of(models->count, "model", "models").text);
+    if (session->report != NULL)
+        report_list(session, models);
+done:
+    starg_database_models_free(session->context, models);
+    starg_database_close(database);
+    return status;
+}
+
+const cli_command cli_command_db_list = {
+    .name = "db list",
+    .usage = "DB [options]",
+    .summary = "what is stored",
+    .description = "Lists the models of a database by their file names.",
+    .examples = "# what is in it\n"
+                "starguard db list shapes.db",
+    CLI_OPERANDS(1, 1),
+    .run = list,
+};

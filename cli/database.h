@@ -1,0 +1,25 @@
+/* What the commands about a database share. */
+#ifndef STARGUARD_CLI_DATABASE_H
+#define STARGUARD_CLI_DATABASE_H
+
+#include "options.h"
+#include "session.h"
+#include "starguard/database.h"
+
+/* The words of --distance, in the order of starg_signature_kind; end with NULL. */
+extern const char *const cli_distance_words[];
+
+#define CLI_DISTANCE_OPTION                                                                        \
+    CLI_CHOICE_OPTION(                                                                             \
+        "distance", distance, cli_distance_words, "shape-dna|d2",                                  \
+        "What models are compared by: shape-dna (default), the spectrum of the "                   \
+        "surface, which bending hardly changes; or d2, the distances between points "              \
+        "of the surface.")
+
+/* Opens the database that the first operand names. */
+starg_status cli_database_open(cli_session *session, starg_database **out);
+
+/* {"id", "name", "path", "vertices", "faces"} */
+json_t *cli_json_model(const starg_database_model *model);
+
+#endif
