@@ -28,25 +28,25 @@ static const uint64_t RANDOM = 0x6432;
 typedef struct sampler {
     const starg_mesh *mesh;
     uint64_t seed;
-    double origin[3], extent; /* positions become (x - origin) / extent */
-    double *sums;             /* of the areas of the faces up to each */
-    double *distances;        /* of the pairs */
+    double extent;     /* lengths are measured by it, so that no square vanishes */
+    double *sums;      /* of the areas of the faces up to each */
+    double *distances; /* of the pairs */
 } sampler;
 
-static void corner(const sampler *s, size_t face, size_t k, double out[3]) {
-    const double *p =
-        starg_mesh_vertices(s->mesh) + 3 * (size_t)starg_mesh_faces(s->mesh)[3 * face + k];
-    for (int c = 0; c < 3; c++)
-        out[c] = (p[c] - s->origin[c]) / s->extent;
+static const double *corner(const sampler *s, size_t face, size_t k) {
+    return starg_mesh_vertices(s->mesh) + 3 * (size_t)starg_mesh_faces(s->mesh)[3 * face + k];
+}
+
+/* From p to q by the extent. */
+static void way(const sampler *s, const double p[3], const double q[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = (q[k] - p[k]) / s->extent;
 }
 
 static double area(const sampler *s, size_t face) {
-    double p[3], u[3], v[3], normal[3];
-    corner(s, face, 0, p);
-    corner(s, face, 1, u);
-    corner(s, face, 2, v);
-    vec3_subtract(u, p, u);
-    vec3_subtract(v, p, v);
+    double u[3], v[3], normal[3];
+    way(s, corner(s, face, 0), corner(s, face, 1), u);
+    way(s, corner(s, face, 0), corner(s, face, 2), v);
     vec3_cross(u, v, normal);
     return 0.5 * sqrt(vec3_dot(normal, normal));
 }
@@ -54,10 +54,10 @@ static double area(const sampler *s, size_t face) {
 static starg_status sum_areas(starg_context *context, sampler *s) {
     starg_status status = STARG_OK;
     size_t count = starg_mesh_face_count(s->mesh);
-    double upper[3], sum = 0;
-    starg_mesh_bounds(s->mesh, s->origin, upper);
+    double lower[3], upper[3], sum = 0;
+    starg_mesh_bounds(s->mesh, lower, upper);
     for (int k = 0; k < 3; k++)
-        s->extent = fmax(s->extent, upper[k] - s->origin[k]);
+        s->extent = fmax(s->extent, upper[k] - lower[k]);
     STARG_NEW(context, STAGE, s->sums, count);
     for (size_t i = 0; s->extent > 0 && i < count; i++)
         s->sums[i] = sum += area(s, i);
@@ -82,13 +82,10 @@ static size_t find_face(const sampler *s, double goal) {
 
 /* The square root spreads points evenly towards the edge opposite to the first corner. */
 static void random_point(const sampler *s, starg_rng *rng, double out[3]) {
-    double a[3], b[3], c[3];
     double all = s->sums[starg_mesh_face_count(s->mesh) - 1];
     size_t face = find_face(s, all * starg_rng_unit(rng));
     double far = sqrt(starg_rng_unit(rng)), along = starg_rng_unit(rng);
-    corner(s, face, 0, a);
-    corner(s, face, 1, b);
-    corner(s, face, 2, c);
+    const double *a = corner(s, face, 0), *b = corner(s, face, 1), *c = corner(s, face, 2);
     for (int k = 0; k < 3; k++)
         out[k] = (1 - far) * a[k] + far * ((1 - along) * b[k] + along * c[k]);
 }
@@ -98,12 +95,12 @@ static starg_status measure_chunk(starg_context *context, void *shared, void *sc
     const sampler *s = shared;
     (void)context, (void)scratch;
     for (size_t i = chunk * CHUNK_PAIRS; i < (chunk + 1) * CHUNK_PAIRS; i++) {
-        double p[3], q[3];
+        double p[3], q[3], d[3];
         starg_rng rng = starg_rng_make(s->seed, RANDOM, i);
         random_point(s, &rng, p);
         random_point(s, &rng, q);
-        vec3_subtract(q, p, q);
-        s->distances[i] = sqrt(vec3_dot(q, q));
+        way(s, p, q, d);
+        s->distances[i] = sqrt(vec3_dot(d, d));
     }
     return STARG_OK;
 }

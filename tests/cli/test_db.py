@@ -1,0 +1,363 @@
+"""The retrieval database: contract, wrong use, harm from outside, several processes at once."""
+import json
+import os
+import re
+import shutil
+import signal
+import sqlite3
+import time
+import unittest
+
+from support import SLOWNESS, TETRAHEDRON, Case, main
+
+MEASURES = ["nearest_neighbour", "first_tier", "second_tier", "e_measure", "dcg"]
+
+
+def box(x, y, z):
+    """The surface of a box, whose measures make its content its own."""
+    corners = "\n".join(f"{x * (i & 1)} {y * (i >> 1 & 1)} {z * (i >> 2)}" for i in range(8))
+    faces = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3),
+             (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)]
+    return f"OFF\n8 12 0\n{corners}\n" + "\n".join("3 %d %d %d" % f for f in faces) + "\n"
+
+
+class Database(Case):
+    def boxes(self, count, prefix="box"):
+        return [self.write(f"{prefix}_{i}.off", box(1 + i, 2 + 0.1 * i, 1)) for i in range(count)]
+
+    def create(self, *files, name="shapes.db"):
+        self.run_text("db", "create", name, "--quiet")
+        if files:
+            self.run_text("db", "add", name, *files, "--quiet")
+        return name
+
+    def db(self, word, *words, **options):
+        out, _ = self.run_text("db", word, *words, "--json", **options)
+        return json.loads(out)
+
+    def stored(self, name="shapes.db"):
+        return self.db("list", name)["models"]
+
+
+class Contract(Database):
+    @classmethod
+    def setUpClass(cls):
+        cls.cached = None
+
+    def filled(self):
+        """Three boxes and three rods, made once for all tests."""
+        for i in range(3):
+            self.write(f"box_{i}.off", box(1, 1.1 + 0.02 * i, 1))
+            self.write(f"rod_{i}.off", box(1, 1, 8 + 0.1 * i))
+        files = sorted(n for n in self.names() if n.endswith(".off"))
+        if Contract.cached is None:
+            self.create(*files)
+            Contract.cached = self.read("shapes.db")
+        self.write("shapes.db", Contract.cached)
+        return "shapes.db"
+
+    def test_list(self):
+        models = self.stored(self.filled())
+        self.assertEqual([m["name"] for m in models], [f"{c}_{i}.off" for c in ("box", "rod") for i in range(3)])
+        self.assertEqual({m["faces"] for m in models}, {12})
+        self.assertTrue(all(re.fullmatch("[0-9a-f]{64}", m["hash"]) for m in models))
+        out, _ = self.run_text("db", "list", "shapes.db")
+        self.assertIn("6 models", out)
+
+    def test_query(self):
+        self.filled()
+        for distance in "d2", "shape-dna":
+            found = self.db("query", "shapes.db", "rod_1.off", "-k", "3", "--distance", distance)
+            self.assertEqual(found["distance"], distance)
+            self.assertEqual(found["models"][0]["name"], "rod_1.off")
+            self.assertEqual(found["models"][0]["distance"], 0)
+            self.assertEqual({m["name"][:3] for m in found["models"]}, {"rod"})
+            distances = [m["distance"] for m in found["models"]]
+            self.assertEqual(distances, sorted(distances))
+        by_pipe = self.db("query", "shapes.db", "-", input=self.read("rod_1.off"))
+        self.assertEqual(len(by_pipe["models"]), 6)
+
+    def test_matrix(self):
+        self.filled()
+        self.run_text("db", "matrix", "shapes.db", "-o", "m.csv", "--picture", "m.png")
+        rows = [line.split(",") for line in self.read("m.csv").decode().splitlines()]
+        self.assertEqual(rows[0], ["model"] + [r[0] for r in rows[1:]])
+        table = [[float(x) for x in r[1:]] for r in rows[1:]]
+        for i in range(6):
+            self.assertEqual(table[i][i], 0)
+            self.assertEqual(table[i], [table[k][i] for k in range(6)])
+        query = self.db("query", "shapes.db", "box_0.off")
+        self.assertEqual(sorted(table[0]), [m["distance"] for m in query["models"]])
+        self.assertEqual(self.read("m.png")[:8], b"\x89PNG\r\n\x1a\n")
+        out, _ = self.run_bytes("db", "matrix", "shapes.db", "-o", "-")
+        self.assertEqual(out, self.read("m.csv"))
+
+    def test_evaluate(self):
+        self.filled()
+        result = self.db("evaluate", "shapes.db", "--classes", "by-prefix", "-o", "pr.csv",
+                         "--picture", "pr.svg")
+        self.assertEqual(result["format"], "starguard-db-evaluate")
+        for part in result, result["classes"]["box"], result["classes"]["rod"]:
+            for key in MEASURES:
+                self.assertTrue(0 <= part[key] <= 1)
+            self.assertEqual(part["nearest_neighbour"], 1)
+            self.assertEqual(part["first_tier"], 1)
+        self.assertEqual(set(result["classes"]), {"box", "rod"})
+        rows = self.read("pr.csv").decode().splitlines()
+        self.assertEqual(rows[0], "recall,all,box,rod")
+        self.assertEqual(len(rows), 21)
+        self.assertTrue(self.read("pr.svg").startswith(b"<svg"))
+        self.assertIn(b">rod</text>", self.read("pr.svg"))
+
+    def test_classes_of_a_file(self):
+        self.filled()
+        self.write("classes.txt", "box_0.off a\nrod_1.off a\nbox_1.off b\n")
+        result = self.db("evaluate", "shapes.db", "--classes", "classes.txt")
+        self.assertEqual(result["models"], 3)
+        self.assertEqual(result["queries"], 2)
+        self.assertEqual(result["classes"]["a"]["nearest_neighbour"], 0)
+        self.assertIsNone(result["classes"]["b"]["dcg"])
+        self.write("classes.txt", "unknown.off a\n")
+        _, err = self.run_text("db", "evaluate", "shapes.db", "--classes", "classes.txt", status=2)
+        self.assertIn("unknown.off", err)
+        self.assertIn("line 1", err)
+
+    def test_remove(self):
+        self.filled()
+        before = self.read("shapes.db")
+        _, err = self.run_text("db", "remove", "shapes.db", "box_1.off", "cube.off", status=2)
+        self.assertIn("cube.off", err)
+        self.assertEqual(self.read("shapes.db"), before)
+        self.run_text("db", "remove", "shapes.db", "box_1.off", "id:6")
+        self.assertEqual(len(self.stored()), 4)
+
+    def test_same_bytes(self):
+        """The same models in the same order give the same results on any number of threads."""
+        files = self.boxes(6)
+        texts = []
+        for threads in "1", "4":
+            self.run_text("db", "create", f"{threads}.db")
+            self.run_text("db", "add", f"{threads}.db", *files, "--threads", threads)
+            self.run_text("db", "matrix", f"{threads}.db", "-o", "m.csv", "--threads", threads)
+            texts.append(self.read("m.csv"))
+        self.assertEqual(texts[0], texts[1])
+
+
+class Usage(Database):
+    def test_help(self):
+        for words in ("db", "--help"), ("help", "db"), ("db", "-h"):
+            out, err = self.run_text(*words)
+            self.assertEqual(err, "")
+            for word in "create", "add", "remove", "list", "query", "matrix", "evaluate":
+                self.assertRegex(out, rf"\n  {word} ")
+                self.assertIn(f"starguard db {word}", self.run_text("help", "db", word)[0])
+                self.assertEqual(self.run_text("db", word, "--help")[0],
+                                 self.run_text("help", "db", word)[0])
+
+    def test_wrong_words(self):
+        self.usage_error("db", says="Usage")
+        self.usage_error("db", "evalute", "x.db", says="did you mean 'evaluate'?")
+        self.assertIn("options follow", self.run_text("db", "--json", "list", "x.db", status=1)[1])
+        self.usage_error("help", "db", "lst", says="did you mean 'list'?")
+        self.usage_error("db", "list", says="too few")
+        self.usage_error("db", "add", "x.db", says="too few")
+        self.usage_error("db", "matrix", "x.db", says="name an output")
+        self.usage_error("db", "matrix", "x.db", "-o", "x.txt", says=".csv")
+        self.usage_error("db", "evaluate", "x.db", "--distance", "d3", says="did you mean 'd2'?")
+        self.usage_error("db", "query", "x.db", "m.off", "-k", "0", says="from 1")
+
+    def test_standard_input(self):
+        self.create()
+        _, err = self.run_text("db", "add", "shapes.db", "-", status=1)
+        self.assertIn("standard input", err)
+
+
+class Harm(Database):
+    """Files that are none of ours, and folders that cannot be written."""
+
+    def all_fail(self, name, says, status=2):
+        self.write("m.off", TETRAHEDRON)
+        before = self.read(name) if os.path.isfile(self.path(name)) else None
+        for words in (("list", name), ("add", name, "m.off"), ("remove", name, "m.off"),
+                      ("query", name, "m.off"), ("matrix", name, "-o", "m.csv"),
+                      ("evaluate", name)):
+            _, err = self.run_text("db", *words, status=status)
+            self.assertIn(says, err)
+        self.assertEqual(before, self.read(name) if before is not None else None)
+        self.assertNotIn("m.csv", self.names())
+
+    def test_missing(self):
+        self.all_fail("none.db", "starguard db create")
+
+    def test_no_database(self):
+        self.write("text.db", "nothing of the kind " * 100)
+        self.all_fail("text.db", "no starguard database")
+        self.write("empty.db", "")
+        self.all_fail("empty.db", "no starguard database")
+        sqlite3.connect(self.path("foreign.db")).executescript("CREATE TABLE x (y); INSERT INTO x VALUES (1)")
+        self.all_fail("foreign.db", "no starguard database")
+
+    def test_other_versions(self):
+        for version, says in (0, "create a new one"), (9, "newer"):
+            name = self.create(name=f"v{version}.db")
+            sqlite3.connect(self.path(name)).execute(f"PRAGMA user_version = {version}").connection.commit()
+            self.all_fail(name, says)
+
+    def test_exists(self):
+        self.write("mine.txt", "precious")
+        _, err = self.run_text("db", "create", "mine.txt", status=3)
+        self.assertIn("exists already", err)
+        self.assertEqual(self.read("mine.txt"), b"precious")
+        self.assertEqual(self.names(), ["mine.txt"])
+
+    def test_empty(self):
+        self.create()
+        self.assertEqual(self.stored(), [])
+        self.write("m.off", TETRAHEDRON)
+        self.assertEqual(self.db("query", "shapes.db", "m.off")["models"], [])
+        for words in ("matrix", "shapes.db", "-o", "m.csv"), ("evaluate", "shapes.db"):
+            _, err = self.run_text("db", *words, status=2)
+            self.assertIn("has no models", err)
+        self.assertNotIn("m.csv", self.names())
+
+    def test_bad_files(self):
+        """Bad files are told of at the end, the others are stored."""
+        good = self.boxes(2)
+        self.write("bad.off", "OFF\n3 1 0\n")
+        self.write("flat.off", "OFF\n3 1 0\n1 1 1\n1 1 1\n1 1 1\n3 0 1 2\n")
+        self.create()
+        out, err = self.run_text("db", "add", "shapes.db", good[0], "bad.off", "none.off", "flat.off",
+                                 good[1], good[0], status=3)
+        self.assertIn("2 added, 1 stored already, 3 refused", out)
+        for name in "bad.off", "none.off":
+            self.assertIn(name, err)
+        self.assertEqual(len(self.stored()), 2)
+        result = self.db("add", "shapes.db", "bad.off", good[1], status=3)
+        self.assertEqual([f["outcome"] for f in result["files"]], ["refused", "known"])
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everything")
+    def test_read_only(self):
+        name = self.create(*self.boxes(1))
+        os.chmod(self.folder, 0o555)
+        self.addCleanup(os.chmod, self.folder, 0o755)
+        self.assertEqual(len(self.stored()), 1)
+        _, err = self.run_text("db", "remove", name, "box_0.off", status=3)
+        self.assertIn("writable", err)
+        self.run_text("db", "create", "new.db", status=3)
+
+    def test_no_folder(self):
+        self.run_text("db", "create", "nowhere/new.db", status=3)
+
+    @unittest.skipUnless(shutil.which("prlimit"), "there is no prlimit")
+    def test_disk_full(self):
+        """A limit on the size of files stands for a full disk: nothing is stored, nothing harmed."""
+        name = self.create()
+        files = self.boxes(12)
+        size = len(self.read(name))
+        with self.start("db", "add", name, *files, stdin=None) as process:
+            os.system(f"prlimit --pid {process.pid} --fsize={size}")
+            _, err = process.communicate(timeout=120 * SLOWNESS)
+        self.assertEqual(process.returncode, 3, err)
+        self.assertEqual(self.stored(), [])
+        self.run_text("db", "add", name, *files[:2])
+        self.assertEqual(len(self.stored()), 2)
+
+
+class Several(Database):
+    def whole(self, name="shapes.db"):
+        """Is every stored model stored whole? How many there are."""
+        connection = sqlite3.connect(self.path(name))
+        self.assertEqual(connection.execute("PRAGMA integrity_check").fetchone(), ("ok",))
+        models = connection.execute("SELECT count(*) FROM model").fetchone()[0]
+        kinds = connection.execute("SELECT count(DISTINCT kind) FROM signature").fetchone()[0]
+        signatures = connection.execute("SELECT count(*) FROM signature").fetchone()[0]
+        connection.close()
+        self.assertEqual(signatures, models * kinds)
+        return models
+
+    def count(self):
+        connection = sqlite3.connect(self.path("shapes.db"), timeout=60)
+        models = connection.execute("SELECT count(*) FROM model").fetchone()[0]
+        connection.close()
+        return models
+
+    def test_killed(self):
+        """Killed at several moments of adding: the file stays in order, and adding goes on."""
+        files = self.boxes(24)
+        self.create()
+        for wanted in 0, 1, 1, 9:
+            process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
+            time.sleep(0.05)
+            while self.count() < wanted and process.poll() is None:
+                time.sleep(0.01)
+            process.kill()
+            process.communicate()
+            count = self.whole()
+            self.assertTrue(wanted <= count < 24)
+            self.assertEqual([m["name"] for m in sorted(self.stored(), key=lambda m: m["id"])],
+                             files[:count])
+        self.run_text("db", "add", "shapes.db", *files, timeout=120)
+        self.assertEqual(self.whole(), 24)
+
+    def test_killed_while_writing(self):
+        """A journal that a dead writer left behind is played back."""
+        self.create(*self.boxes(3))
+        script = ("import os, sqlite3, sys\n"
+                  "c = sqlite3.connect(sys.argv[1])\n"
+                  "c.execute('PRAGMA cache_size = 1')\n"
+                  "c.execute('BEGIN IMMEDIATE')\n"
+                  "c.execute('DELETE FROM signature')\n"
+                  "c.execute('DELETE FROM model')\n"
+                  "c.execute('CREATE TABLE big (x)')\n"
+                  "c.executemany('INSERT INTO big VALUES (?)', [('x' * 3000,)] * 100)\n"
+                  "os.kill(os.getpid(), 9)\n")
+        self.write("die.py", script)
+        os.system(f"/usr/bin/python3 {self.path('die.py')} {self.path('shapes.db')} 2>/dev/null")
+        self.assertIn("shapes.db-journal", self.names())
+        self.assertEqual(len(self.stored()), 3)
+        self.assertEqual(self.whole(), 3)
+
+    def test_interrupted(self):
+        files = self.boxes(24)
+        self.create()
+        process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
+        while self.count() < 1 and process.poll() is None:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60 * SLOWNESS)
+        self.assertEqual(process.returncode, 130)
+        self.assertTrue(1 <= self.whole() < 24)
+
+    def test_two_writers(self):
+        """Two processes add at once, some models both: nothing is lost, nothing is double."""
+        files = self.boxes(16)
+        self.create()
+        first = self.start("db", "add", "shapes.db", *files[:11], "--json")
+        second = self.start("db", "add", "shapes.db", *files[5:], "--json")
+        reports = []
+        for process in first, second:
+            out, err = process.communicate(timeout=120 * SLOWNESS)
+            self.assertEqual(process.returncode, 0, err)
+            reports.append(json.loads(out))
+        self.assertEqual(sum(r["added"] for r in reports), 16)
+        self.assertEqual(sum(r["known"] for r in reports), 6)
+        self.assertEqual(self.whole(), 16)
+        self.assertEqual(sorted(m["name"] for m in self.stored()), sorted(files))
+
+    def test_waits_for_a_writer(self):
+        name = self.create()
+        self.write("m.off", TETRAHEDRON)
+        holder = sqlite3.connect(self.path(name), isolation_level=None)
+        holder.execute("BEGIN IMMEDIATE")
+        process = self.start("db", "add", name, "m.off")
+        time.sleep(2 * SLOWNESS)
+        self.assertIsNone(process.poll())
+        holder.execute("COMMIT")
+        holder.close()
+        process.communicate(timeout=60 * SLOWNESS)
+        self.assertEqual(process.returncode, 0)
+        self.assertEqual(len(self.stored()), 1)
+
+
+if __name__ == "__main__":
+    main()
