@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 #include "commands.h"
 #include "report.h"
@@ -36,10 +37,20 @@ static bool has_ending(const char *name, const char *ending) {
     return size > tail && strcasecmp(name + size - tail, ending) == 0;
 }
 
-/* All of standard input, or the head of a file; NULL with 0 bytes when it cannot be read. */
+static bool is_standard(const char *name) {
+    return strcmp(name, "-") == 0;
+}
+
+/* Standard input and pipes can be read once only. */
+static bool is_read_once(const char *name) {
+    struct stat info;
+    return is_standard(name) || (stat(name, &info) == 0 && S_ISFIFO(info.st_mode));
+}
+
+/* All of what can be read once, or the head of a file; NULL with 0 bytes when it cannot be read. */
 static char *read_bytes(const char *name, size_t *size) {
-    bool whole = strcmp(name, "-") == 0;
-    FILE *file = whole ? stdin : fopen(name, "rb");
+    bool whole = is_read_once(name);
+    FILE *file = is_standard(name) ? stdin : fopen(name, "rb");
     size_t capacity = HEAD, count = 0, got = 1;
     char *bytes = file != NULL ? malloc(capacity) : NULL;
     while (bytes != NULL && got > 0 && (whole || count < HEAD)) {
@@ -53,7 +64,7 @@ static char *read_bytes(const char *name, size_t *size) {
         got = fread(bytes + count, 1, capacity - count, file);
         count += got;
     }
-    if (file != NULL && !whole)
+    if (file != NULL && file != stdin)
         fclose(file);
     *size = bytes != NULL ? count : 0;
     return bytes;
@@ -64,22 +75,21 @@ static char *read_bytes(const char *name, size_t *size) {
 starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
                             starg_tetmesh **tetmesh) {
     starg_status status = STARG_OK;
-    bool whole = strcmp(file, "-") == 0;
+    const char *name = is_standard(file) ? "standard input" : file;
     size_t size;
     char *bytes = read_bytes(file, &size);
+    bool whole = bytes != NULL && is_read_once(file);
     bool tets = bytes != NULL && starg_tetmesh_recognized(bytes, size, file);
     *mesh = NULL;
     *tetmesh = NULL;
-    if (whole && bytes == NULL)
+    if (bytes == NULL && is_standard(file))
         status = cli_fail_memory(session);
     else if (tets)
-        status = whole ? starg_tetmesh_read_memory(session->context, bytes, size, "standard input",
-                                                   tetmesh)
+        status = whole ? starg_tetmesh_read_memory(session->context, bytes, size, name, tetmesh)
                        : starg_tetmesh_read(session->context, file, tetmesh);
     else
-        status = whole
-                     ? starg_mesh_read_memory(session->context, bytes, size, "standard input", mesh)
-                     : starg_mesh_read(session->context, file, mesh);
+        status = whole ? starg_mesh_read_memory(session->context, bytes, size, name, mesh)
+                       : starg_mesh_read(session->context, file, mesh);
     free(bytes);
     return status;
 }

@@ -84,6 +84,14 @@ class Pieces(support.Case):
         self.run_text("verify", "m.off", "p.json", "-", input=vtk())
         self.run_text("verify", "-", "p.json", "p.vtk", input=TETRAHEDRON.encode())
 
+    def test_pipe(self):
+        for model in (TETRAHEDRON.encode(), vtk()):
+            read, write = os.pipe()
+            os.write(write, model)
+            os.close(write)
+            self.run_text("verify", f"/dev/fd/{read}", "p.json", "p.vtk", pass_fds=[read])
+            os.close(read)
+
     def test_beside_guards(self):
         self.run_text("guard", "m.off", "-o", "g.json", "--count", "20", "--quiet")
         found = self.run_json("verify", "m.off", "p.json", "g.json", "p.vtk")
