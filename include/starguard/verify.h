@@ -57,8 +57,9 @@ typedef struct starg_pieces_report {
     starg_piece_contact *contacts;
     size_t strictly_star;
     double visible_vertices;
-    bool approximated; /* the boundary is near the model's surface only ...     */
-    double distance;   /* ... and no point of it is farther than this away from it */
+    bool approximated;    /* the boundary is near the model's surface only; then: */
+    double distance;      /* no point of the boundary is farther from the model's surface ...   */
+    double distance_back; /* ... and no point of the surface from it; infinite when not told    */
 } starg_pieces_report;
 
 /* Reads PIECES.vtk with code of its own: a legacy VTK unstructured grid of tetrahedra with the

@@ -39,16 +39,24 @@ static void claim_covered(const verify_hearing *own, const verify_match *match) 
 }
 
 static void claim_near(const verify_hearing *own, const verify_nearness *nearness) {
-    double limit = own->report->distance;
-    bool near = nearness->farthest <= limit * (1 + TOLERANCE) + verify_rounding(own->model);
-    if (near)
+    const starg_pieces_report *report = own->report;
+    double rounding = verify_rounding(own->model);
+    double limit = report->distance;
+    if (nearness->to.farthest <= limit * (1 + TOLERANCE) + rounding)
         verify_claim(own->verdict, true,
                      "the boundary is at most %.17g from the model's surface (%.17g at %zu points)",
-                     limit, nearness->farthest, nearness->points);
+                     limit, nearness->to.farthest, nearness->to.points);
     else
         verify_claim(own->verdict, false,
                      "the boundary is at most %.17g from the model's surface: %s is %.17g away",
-                     limit, verify_outer_words(own, nearness->face).text, nearness->farthest);
+                     limit, verify_outer_words(own, nearness->to.face).text, nearness->to.farthest);
+    limit = report->distance_back;
+    if (limit == INFINITY)
+        return; /* not told */
+    verify_claim(own->verdict, nearness->from.farthest <= limit * (1 + TOLERANCE) + rounding,
+                 "the model's surface is at most %.17g from the boundary (%.17g at %zu points, in "
+                 "face %zu)",
+                 limit, nearness->from.farthest, nearness->from.points, nearness->from.face);
 }
 
 static void claim_simple(const verify_hearing *own, const verify_nearness *nearness) {

@@ -1,6 +1,6 @@
 /* A boundary that is only near the model: how near, and does it bound its tetrahedra once? Points
- * of up to 20,000 outer faces (drawn at random when there are more) are held against the model's
- * surface: corners, centre, and one at random of each. The model need not be closed.
+ * of up to 20,000 faces of either surface (drawn at random when there are more) are held against
+ * the other: corners, centre, and one at random of each. The model need not be closed.
  *
  * Overlap: a point lies in as many tetrahedra as the boundary winds around it (verify/facets.c,
  * when all are positive). That number changes only across the boundary. So no two outer faces may
@@ -39,33 +39,30 @@ static void sample_face(const double *const t[3], starg_rng *rng, double points[
     }
 }
 
-static starg_status measure_distance(const verify_pieces *pieces, const verify_surface *model,
-                                     verify_nearness *nearness) {
+/* How far are points of `surface` from what the tree holds? */
+static starg_status measure_reach(const verify_surface *surface, const verify_tree *tree, int scale,
+                                  verify_reach *reach) {
     starg_status status = STARG_OK;
-    const verify_surface *outer = pieces->outer;
-    verify_tree *tree = NULL;
-    bool all = outer->face_count <= MOST_FACES;
-    size_t count = all ? outer->face_count : MOST_FACES;
-    STARG_TRY(verify_tree_create(model, &tree));
+    bool all = surface->face_count <= MOST_FACES;
+    size_t count = all ? surface->face_count : MOST_FACES;
     for (size_t i = 0; i < count; i++) {
         starg_rng rng = starg_rng_make(0, RNG_STAGE, i);
-        size_t face = all ? i : (size_t)starg_rng_below(&rng, outer->face_count);
+        size_t face = all ? i : (size_t)starg_rng_below(&rng, surface->face_count);
         const double *t[3];
         double points[POINTS][3];
-        verify_corners(outer, face, t);
+        verify_corners(surface, face, t);
         sample_face(t, &rng, points);
-        for (int j = 0; j < POINTS; j++, nearness->points++) {
-            double distance = verify_tree_distance(tree, points[j], pieces->scale);
-            if (distance > nearness->farthest) {
-                nearness->farthest = distance;
-                nearness->face = face;
+        for (int j = 0; j < POINTS; j++, reach->points++) {
+            double distance = verify_tree_distance(tree, points[j], scale);
+            if (distance > reach->farthest) {
+                reach->farthest = distance;
+                reach->face = face;
             }
         }
         if (i % CANCEL_STEP == 0)
-            STARG_TRY(starg_check_cancel(pieces->context, STAGE));
+            STARG_TRY(starg_check_cancel(surface->context, STAGE));
     }
 done:
-    verify_tree_free(tree);
     return status;
 }
 
@@ -162,13 +159,16 @@ done:
 starg_status verify_measure_boundary(const verify_pieces *pieces, const verify_surface *model,
                                      verify_nearness *nearness) {
     starg_status status = STARG_OK;
-    verify_tree *tree = NULL;
+    verify_tree *tree = NULL, *model_tree = NULL;
     *nearness = (verify_nearness){0};
-    STARG_TRY(measure_distance(pieces, model, nearness));
     STARG_TRY(verify_tree_create(pieces->outer, &tree));
+    STARG_TRY(verify_tree_create(model, &model_tree));
+    STARG_TRY(measure_reach(pieces->outer, model_tree, pieces->scale, &nearness->to));
+    STARG_TRY(measure_reach(model, tree, pieces->scale, &nearness->from));
     STARG_TRY(find_crossings(pieces, tree, nearness));
     STARG_TRY(wind_shells(pieces, tree, nearness));
 done:
     verify_tree_free(tree);
+    verify_tree_free(model_tree);
     return status;
 }

@@ -72,10 +72,15 @@ typedef struct verify_match {
 starg_status verify_match_boundary(const verify_pieces *pieces, const verify_surface *model,
                                    verify_match *match);
 
+/* From one surface to another. */
+typedef struct verify_reach {
+    double farthest; /* distance found          */
+    size_t face;     /* where it starts         */
+    size_t points;   /* that were looked at     */
+} verify_reach;
+
 typedef struct verify_nearness {
-    double farthest;         /* distance found from the boundary to the model */
-    size_t face;             /* outer face where it is                        */
-    size_t points;           /* looked at                                     */
+    verify_reach to, from;   /* from the boundary to the model, and back      */
     size_t crossings;        /* pairs of outer faces that cross               */
     size_t first, second;    /* the first pair                                */
     size_t shells, multiple; /* shells; those about whose inside the boundary does not wind

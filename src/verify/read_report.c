@@ -123,8 +123,12 @@ done:
 static void read_surface(reader *r, const json_t *root, starg_pieces_report *report) {
     if (json_object_get(root, "surface") != NULL)
         report->approximated = read_word(r, root, "surface", "kept", "approximated") == 1;
-    if (report->approximated)
-        report->distance = read_real(r, root, "distance");
+    report->distance_back = INFINITY;
+    if (!report->approximated)
+        return;
+    report->distance = read_real(r, root, "distance");
+    if (json_object_get(root, "distance_back") != NULL)
+        report->distance_back = read_real(r, root, "distance_back");
 }
 
 static void read_document(reader *r, const json_t *root, starg_pieces_report *report) {

@@ -125,7 +125,8 @@ class Pieces(support.Case):
         self.assertIn("inverted or flat, first tetrahedron 3 of piece 1", err)
 
     def test_approximated(self):
-        self.write("near.json", report(surface="approximated", distance=.01))
+        self.write("near.json", report(surface="approximated", distance=.01,
+                                      distance_back=.01))
         self.write("open.off", OPEN)
         self.run_text("verify", "m.off", "near.json", "p.vtk")
         self.assertIn("away", self.failed("open.off", "near.json", "p.vtk")[0])

@@ -175,6 +175,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
         r.report.strictly_star == r.mesh.count ? STARG_DECOMPOSE_STRICT : STARG_DECOMPOSE_PAPER;
     r.report.approximated = !made->surface_kept;
     r.report.distance = made->to_surface + made->step;
+    r.report.distance_back = made->from_surface + made->step;
     if (!passes(context, model, &r, true))
         fail_msg("%s: does not pass", name);
     for (int kind = 0; kind < SPOILINGS; kind++) {

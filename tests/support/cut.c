@@ -305,7 +305,9 @@ cut_file cut_write_report(const starg_pieces_report *report) {
         fprintf(file, "%s[%u, %u, %.17g]", i > 0 ? ", " : "", report->contacts[i].first,
                 report->contacts[i].second, report->contacts[i].area);
     fprintf(file, "]%s}\n",
-            report->approximated ? ", \"surface\": \"approximated\", \"distance\": 0.25" : "");
+            report->approximated ? ", \"surface\": \"approximated\", \"distance\": 0.25, "
+                                   "\"distance_back\": 0.5"
+                                 : "");
     fclose(file);
     return out;
 }

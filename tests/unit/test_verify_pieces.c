@@ -502,7 +502,7 @@ static void test_double_winding(void **state) {
     expect_failure(context, &model, c, "shells once: not so for 1", false);
     expect_failure(context, &model, c, "the volume of the model", false);
     c->report.approximated = true;
-    c->report.distance = 1e-9;
+    c->report.distance = c->report.distance_back = 1e-9;
     expect_failure(context, &model, c,
                    "no two faces of the boundary pass through one another: ", false);
     free(c);
@@ -558,7 +558,7 @@ static void test_approximated(void **state) {
     cut *c = cut_new(&RING);
     shape_place(&model, 1, 0.0625);
     c->report.approximated = true;
-    c->report.distance = 0.0625 * sqrt(3);
+    c->report.distance = c->report.distance_back = 0.0625 * sqrt(3);
     expect_pass(context, &model, c);
     model.face_count -= 2; /* an open model has no inside, but a surface */
     expect_failure(context, &model, c, "the boundary is at most", true);
@@ -568,6 +568,11 @@ static void test_approximated(void **state) {
     expect_failure(context, &model, c, "the boundary is at most", true);
     c->report.distance = NAN;
     expect_failure(context, &model, c, "the boundary is at most", true);
+    c->report.distance = 0.3;
+    c->report.distance_back = 0.0624;
+    expect_failure(context, &model, c, "the model's surface is at most", true);
+    c->report.distance_back = INFINITY; /* not told */
+    expect_pass(context, &model, c);
     free(c);
     shape_free(&model);
     test_context_free(context);
@@ -594,7 +599,7 @@ static void test_overlap_of_shells(void **state) {
     c->pieces[2] = inner->pieces[0];
     cut_recount(c);
     c->report.approximated = true;
-    c->report.distance = 1;
+    c->report.distance = c->report.distance_back = 1;
     expect_failure(context, &model, c, "winds once around the inside of its 2 shells: not so for 1",
                    true);
     free(c);

@@ -52,7 +52,8 @@ static void test_files_give_back_what_was_written(void **state) {
     assert_int_equal(report->piece_count, c->report.piece_count);
     assert_int_equal(report->contact_count, c->report.contact_count);
     assert_int_equal(report->strictly_star, c->report.strictly_star);
-    assert_true(report->visible_vertices == 1 && report->approximated && report->distance == 0.25);
+    assert_true(report->visible_vertices == 1 && report->approximated);
+    assert_true(report->distance == 0.25 && report->distance_back == 0.5);
     for (size_t p = 0; p < report->piece_count; p++) {
         assert_memory_equal(report->pieces[p].guard, c->pieces[p].guard, 3 * sizeof(double));
         assert_true(report->pieces[p].volume == c->pieces[p].volume && report->pieces[p].star);
@@ -208,6 +209,10 @@ static void test_bad_files(void **state) {
         {"\"adjacency\"", "\"contacts\"", "\"adjacency\" must be an array"},
         {"]}", "], \"surface\": \"near\"}", "\"surface\" must be"},
         {"]}", "], \"surface\": \"approximated\"}", "\"distance\" must be a number"},
+        {"]}",
+         "], \"surface\": \"approximated\", \"distance\": 1,"
+         "\"distance_back\": null}",
+         "\"distance_back\" must be"},
         {"]}", "]", "line"},
     };
     starg_context *context = test_context(1);
