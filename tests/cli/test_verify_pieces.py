@@ -124,6 +124,17 @@ class Pieces(support.Case):
         self.assertEqual(out, "")
         self.assertIn("inverted or flat, first tetrahedron 3 of piece 1", err)
 
+    def test_what_decompose_makes(self):
+        room = self.sample("l-room")
+        for options in [(), ("--binary",)]:
+            self.run_text("decompose", room, "-o", "d.vtk", "--report", "d.json", "--time-limit",
+                          "1", "--quiet", *options)
+            found = self.run_json("verify", room, "d.vtk", "d.json")
+            self.assertIs(found["passed"], True)
+            self.assertGreater(found["results"][0]["strictly_star"], 0)
+        other = self.sample("torus")
+        self.assertTrue(self.failed(other, "d.vtk", "d.json"))
+
     def test_approximated(self):
         self.write("near.json", report(surface="approximated", distance=.01,
                                       distance_back=.01))
