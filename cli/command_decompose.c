@@ -205,6 +205,8 @@ static void report_pieces(cli_session *session, const starg_decomposition *d, co
     cli_put(session, report, "strictly_star", json_integer((json_int_t)d->strictly_star));
     cli_put(session, report, "single_tetrahedra", json_integer((json_int_t)count_single(d)));
     cli_put(session, report, "visible_vertices", cli_json_real(d->visible_vertices));
+    cli_put(session, report, "flattest", cli_json_real(d->flattest));
+    cli_put(session, report, "flattest_given", cli_json_real(d->flattest_given));
     cli_put(session, report, "contacts", json_integer((json_int_t)d->contact_count));
     cli_put(session, report, "time_limited", json_boolean(d->time_limited));
 }

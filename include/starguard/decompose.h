@@ -53,7 +53,9 @@ typedef struct starg_decomposition {
     size_t strictly_star;          /* pieces that are star-shaped, proven */
     double visible_vertices; /* fraction of the vertices of tetrahedra that the guard of each piece
                                 that they belong to sees (counted once per piece) */
-    bool time_limited;       /* the time limit cut the search short: another run may differ */
+    double flattest; /* least height over longest edge of a tetrahedron (0.816: the regular one) */
+    double flattest_given; /* the same for the tetrahedra to begin with */
+    bool time_limited;     /* the time limit cut the search short: another run may differ */
 } starg_decomposition;
 
 /* A density of tetrahedra that leaves the choice to the mode: few for STRICT, which makes its own

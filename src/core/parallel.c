@@ -54,7 +54,7 @@ static void work(team *crew, bool reports) {
         if (status != STARG_OK)
             note_failure(crew, item, status);
         size_t finished = atomic_fetch_add(&crew->finished, 1) + 1;
-        if (reports)
+        if (reports && !loop->silent)
             starg_progress_step(crew->context, loop->before + finished,
                                 loop->whole > 0 ? loop->whole : loop->count);
     }
@@ -90,7 +90,8 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
         helpers = loop->count > 0 ? loop->count - 1 : 0;
 
     if (loop->whole == 0)
-        starg_progress_begin(context, loop->stage);
+        if (!loop->silent)
+            starg_progress_begin(context, loop->stage);
     thrd_t *threads = helpers ? starg_allocate(context, helpers, sizeof *threads) : NULL;
     if (helpers != 0 && threads == NULL)
         return starg_fail_memory(context, loop->stage);
@@ -110,6 +111,7 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
     mtx_destroy(&crew.lock);
     starg_release(context, threads);
     if (loop->whole == 0)
-        starg_progress_end(context);
+        if (!loop->silent)
+            starg_progress_end(context);
     return explain(context, loop->stage, crew.failed_status);
 }

@@ -19,6 +19,7 @@ typedef struct starg_parallel_loop {
     starg_status (*make_scratch)(starg_context *context, void *shared, void **scratch);
     void (*free_scratch)(starg_context *context, void *scratch);
     bool stop_at_deadline; /* give up with STARG_ERROR_TIME when the time limit passes */
+    bool silent;           /* the caller tells the progress of a longer stage */
     /* One of several loops that are a stage together: `whole` items, of which `before` are done.
      * The caller begins and ends the progress of the stage. whole 0: the loop is the stage. */
     size_t before, whole;

@@ -43,9 +43,14 @@ static starg_status check_options(starg_context *context, const starg_decompose_
 
 static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
                              const starg_decompose_options *options, starg_decomposition **out) {
-    if (options->mode == STARG_DECOMPOSE_PAPER)
-        return paper_decompose(context, mesh, options, out);
-    return strict_decompose(context, mesh, options, out);
+    bool paper = options->mode == STARG_DECOMPOSE_PAPER;
+    starg_status status = paper ? paper_decompose(context, mesh, options, out)
+                                : strict_decompose(context, mesh, options, out);
+    if (status != STARG_OK)
+        return status;
+    (*out)->flattest = tetmesh_flattest((*out)->mesh);
+    (*out)->flattest_given = tetmesh_flattest(mesh);
+    return STARG_OK;
 }
 
 starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,

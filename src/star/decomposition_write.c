@@ -81,6 +81,8 @@ static bool put_all(FILE *stream, const starg_decomposition *d, const char *mode
                           ",\n") &&
            starg_json_put(stream, "\"visible_vertices\": ", json_real(d->visible_vertices),
                           ",\n") &&
+           starg_json_put(stream, "\"flattest\": ", json_real(d->flattest), ",\n") &&
+           starg_json_put(stream, "\"flattest_given\": ", json_real(d->flattest_given), ",\n") &&
            put_contacts(stream, d) &&
            starg_json_put(stream, "\"time_limited\": ", json_boolean(d->time_limited), "\n}\n");
 }

@@ -46,6 +46,9 @@ double tetmesh_scaled_volume(const starg_tetmesh *mesh, size_t tetrahedron, int 
  */
 starg_status tetmesh_connect(starg_tetmesh *mesh);
 
+/* The least height over the longest edge of any tetrahedron. */
+double tetmesh_flattest(const starg_tetmesh *mesh);
+
 /* Errors: MESH (two tetrahedra overlap), MEMORY, CANCELLED. */
 starg_status tetmesh_check_overlap(const starg_tetmesh *mesh);
 

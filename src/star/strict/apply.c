@@ -10,6 +10,7 @@
 #include "star/strict/apply.h"
 
 #include "geometry/predicates.h"
+#include "geometry/vec3.h"
 #include "star/strict/slice.h"
 
 typedef struct change {
@@ -199,6 +200,40 @@ starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
     p->pieces.data[a] = fresh;
     partition_renumber(p, (uint32_t)p->pieces.count - 1, b);
     STARG_TRY(partition_build_index(p));
+done:
+    region_free(p->context, &r);
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
+}
+
+/* ---- guards ---- */
+
+static starg_status center_guard(partition *p, uint32_t number, region *r,
+                                 partition_triangles *triangles, region_scratch *scratch) {
+    starg_status status = STARG_OK;
+    piece *it = &p->pieces.data[number];
+    double center[3], guard[3], radius;
+    triangles->count = 0;
+    STARG_TRY(region_gather(p, &number, 1, scratch, r));
+    STARG_TRY(region_find_center(r, NULL, 0, scratch, center, &radius));
+    partition_from_unit(p, center, guard);
+    if (radius <= it->radius)
+        goto done;
+    STARG_TRY(partition_gather(p, number, triangles));
+    if (!partition_certify(p, triangles->data, triangles->count / 3, guard))
+        goto done;
+    vec3_copy(guard, it->guard);
+    it->radius = radius;
+done:
+    return status;
+}
+
+starg_status apply_centers(partition *p, region_scratch *scratch) {
+    starg_status status = STARG_OK;
+    region r = {.vertices = {0}};
+    partition_triangles triangles = {0};
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        STARG_TRY(center_guard(p, i, &r, &triangles, scratch));
 done:
     region_free(p->context, &r);
     STARG_ARRAY_FREE(p->context, &triangles);

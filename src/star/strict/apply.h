@@ -30,6 +30,10 @@ starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, cons
 starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
                         region_scratch *scratch, bool *done);
 
+/* Puts each guard into the centre of its kernel where that is certified and better. Errors: MEMORY.
+ */
+starg_status apply_centers(partition *p, region_scratch *scratch);
+
 /* Of the volumes of pieces (unit coordinates): the larger, the more uneven they are. */
 double sum_of_squares(const partition *p, const uint32_t *pieces, size_t count);
 

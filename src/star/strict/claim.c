@@ -34,7 +34,7 @@ static const char STAGE[] = "claim";
 enum {
     CLIMBERS = 16,    /* guards that start and climb                                       */
     CLIMB_STEPS = 24, /* most steps of each                                                */
-    EFFORT = 8000000  /* tetrahedra that may be looked at for one component, about          */
+    EFFORT = 4000000  /* tetrahedra that may be looked at for one component, about          */
 };
 
 #define UNCLAIMED UINT32_MAX
@@ -61,6 +61,7 @@ typedef struct claimer {
     uint32_t *labels;   /* claimed pieces; UNCLAIMED */
     uint32_t *region;   /* per tetrahedron: the component that it belonged to last */
     uint32_t regions;   /* numbered so far */
+    size_t claimed;     /* tetrahedra */
     index_list members; /* of the component at hand */
     double *running;    /* volumes of the members, added up */
     size_t running_size;
@@ -200,6 +201,8 @@ static bool start(const claimer *c, size_t item, starg_rng *rng, climber *out) {
 
 static size_t steps_for(const claimer *c) {
     size_t steps = EFFORT / CLIMBERS / c->members.count;
+    if (starg_time_is_over(c->context))
+        return 0;
     return steps > CLIMB_STEPS ? CLIMB_STEPS : steps;
 }
 
@@ -309,6 +312,7 @@ static starg_status add_piece(claims *out, claimer *c, const double guard[3], co
     starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++)
         c->labels[set[i]] = (uint32_t)out->count;
+    c->claimed += count;
     for (int k = 0; k < 3; k++)
         STARG_PUSH(c->context, STAGE, &out->guards, guard[k]);
     out->count++;
@@ -339,7 +343,8 @@ static starg_status claim_from(claimer *c, uint32_t t, grower *grow, claims *out
                                       .shared = c,
                                       .item = climb,
                                       .make_scratch = make_grower,
-                                      .free_scratch = free_grower};
+                                      .free_scratch = free_grower,
+                                      .silent = true};
     STARG_TRY(starg_parallel_for(c->context, &loop));
     const climber *best = best_climber(c);
     if (best->volume > 0) {
@@ -394,15 +399,18 @@ starg_status claim_all(starg_context *context, const starg_tetmesh *mesh, const 
     STARG_TRY(make_grower(context, &c, &scratch));
     measure(&c);
     locate_hints(&c);
+    starg_progress_begin(context, STAGE);
     /* a component that a claim leaves is found again from one of its tetrahedra */
     for (uint32_t t = 0; t < mesh->count; t++)
         while (c.labels[t] == UNCLAIMED) {
             STARG_TRY(starg_check_cancel(context, STAGE));
+            starg_progress_step(context, c.claimed, mesh->count);
             STARG_TRY(claim_from(&c, t, scratch, out));
         }
     out->labels = c.labels;
     c.labels = NULL;
 done:
+    starg_progress_end(context);
     free_grower(context, scratch);
     starg_release(context, c.volumes);
     starg_release(context, c.running);

@@ -14,12 +14,19 @@
  * facets of its union some hundred times. */
 #include "star/strict/improve.h"
 
+#include <math.h>
+
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "star/strict/apply.h"
 #include "star/strict/tidy.h"
 
-enum { BATCH = 16, UNION_MOST = APPLY_MOST };
+enum {
+    BATCH = 16,
+    UNION_MOST = APPLY_MOST,
+    PATIENCE = 300, /* trials for each piece without a piece less, after which the search ends */
+    PATIENCE_LEAST = 3000
+};
 
 static const double MARGIN = 4e-6; /* of guards to planes; the diagonal is at least 1/2 */
 
@@ -34,6 +41,7 @@ typedef struct trial {
 typedef struct improver {
     partition *p;
     improve_report *report;
+    double began;     /* clock */
     uint64_t stalled; /* trials since the last success */
     size_t crowded;   /* facets from which on it is time to tidy up */
     trial trials[BATCH];
@@ -261,7 +269,8 @@ static starg_status run_batch(improver *m) {
                                       .shared = m,
                                       .item = run_trial,
                                       .make_scratch = make_scratch,
-                                      .free_scratch = free_scratch};
+                                      .free_scratch = free_scratch,
+                                      .silent = true};
     STARG_TRY(starg_parallel_for(m->p->context, &loop));
     m->stalled += BATCH;
     STARG_TRY(carry_out_batch(m, BATCH));
@@ -270,21 +279,50 @@ done:
     return status;
 }
 
+/* How far the search is, by whatever will end it. */
+static void tell_progress(const improver *m, const improve_options *options, uint64_t patience) {
+    const starg_context *context = m->p->context;
+    double part = (double)m->stalled / (double)patience, now = starg_clock();
+    if (options->trials != UINT64_MAX)
+        part = fmax(part, (double)m->report->trials / (double)options->trials);
+    if (context->deadline > 0 && context->deadline > m->began)
+        part = fmax(part, (now - m->began) / (context->deadline - m->began));
+    starg_progress_step(m->p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
+}
+
+/* Until there are few enough, or trials, time or patience are at an end. */
+static starg_status search(improver *m, const improve_options *options) {
+    starg_status status = STARG_OK;
+    improve_report *report = m->report;
+    while (m->p->pieces.count > options->enough && report->trials < options->trials) {
+        uint64_t patience = PATIENCE * m->p->pieces.count + PATIENCE_LEAST;
+        if (m->stalled >= patience)
+            break;
+        report->time_limited = starg_time_is_over(m->p->context);
+        if (report->time_limited)
+            break;
+        STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
+        STARG_TRY(run_batch(m));
+        tell_progress(m, options, patience);
+    }
+done:
+    return status;
+}
+
 starg_status improve(partition *p, const improve_options *options, improve_report *report) {
     starg_status status = STARG_OK;
-    improver m = {.p = p, .report = report, .scratch = {.context = p->context}};
+    improver m = {
+        .p = p, .report = report, .scratch = {.context = p->context}, .began = starg_clock()};
     *report = (improve_report){.trials = 0};
+    starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
     m.crowded = p->facets.count + p->facets.count / 8;
-    while (p->pieces.count > 1 && p->pieces.count > options->enough &&
-           report->trials < options->trials && m.stalled < 100 * p->pieces.count + 1000) {
-        STARG_TRY(run_batch(&m));
-        report->time_limited = starg_time_is_over(p->context);
-        if (report->time_limited)
-            break;
-    }
+    STARG_TRY(search(&m, options));
+    STARG_TRY(tidy(p));
+    STARG_TRY(apply_centers(p, &m.scratch));
 done:
+    starg_progress_end(p->context);
     region_scratch_free(&m.scratch);
     STARG_ARRAY_FREE(p->context, &m.neighbours);
     STARG_ARRAY_FREE(p->context, &m.met);

@@ -15,7 +15,8 @@ typedef struct improve_report {
 } improve_report;
 
 /* Joins pieces whose union is star-shaped and cuts unions again into fewer pieces, until no trial
- * helps for long, or the trials or the time are used up. The partition is valid at all times.
+ * helps for long, or the trials or the time are used up; then every guard goes where
+ * it is farthest from all planes. The partition is valid at all times.
  * Errors: MEMORY, CANCELLED. */
 starg_status improve(partition *p, const improve_options *options, improve_report *report);
 

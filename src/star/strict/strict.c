@@ -13,7 +13,6 @@
 #include "star/strict/claim.h"
 #include "star/strict/cone.h"
 #include "star/strict/improve.h"
-#include "star/strict/tidy.h"
 
 static starg_status collect_guards(const partition *p, double **guards) {
     starg_status status = STARG_OK;
@@ -55,7 +54,6 @@ starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
     STARG_TRY(claim_all(context, mesh, options->guards, options->guard_count, &start));
     STARG_TRY(partition_create(context, mesh, start.labels, start.guards.data, start.count, &p));
     STARG_TRY(improve(&p, &wanted, &report));
-    STARG_TRY(tidy(&p));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = report.time_limited;
 done:
