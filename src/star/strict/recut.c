@@ -22,9 +22,9 @@
 
 #include "geometry/vec3.h"
 
-enum { CLIMBERS = 2, PEELS = 3, PLACES = 4 };
+enum { CLIMBERS = 2, PEELS = 3, PLACES = 4, PEEL_GAPS = 16 };
 
-static const double PLANE_ROOM = 1e-7;
+static const double PLANE_ROOM = 1e-7, FAIR = 0.2;
 
 /* A search ends when the best overlap is still this bad, as a share of the region's size. Measured:
  * of 3,500 unions below the first after a third of the directions, 3 could be cut; of 2,500 below
@@ -119,7 +119,15 @@ done:
     return status;
 }
 
-/* The roomiest gaps between heights of vertices from low to high; or any ones. */
+static double widest_gap(const double *heights, size_t count) {
+    double widest = 0;
+    for (size_t i = 0; i + 1 < count; i++)
+        widest = fmax(widest, heights[i + 1] - heights[i]);
+    return widest;
+}
+
+/* The roomiest gaps between heights of vertices from low to high; or any ones of fair width: a
+ * plane close to a vertex makes slivers. */
 static int find_places(const searcher *s, const direction *d, place places[PLACES]) {
     double *heights = s->scratch->heights.data;
     size_t count = 0;
@@ -128,9 +136,10 @@ static int find_places(const searcher *s, const direction *d, place places[PLACE
         if (heights[i] >= d->low && heights[i] <= d->high)
             heights[count++] = heights[i];
     qsort(heights, count, sizeof *heights, ascending);
+    double least = fmax(2 * PLANE_ROOM, FAIR * widest_gap(heights, count));
     for (size_t i = 0; i + 1 < count; i++) {
         place fresh = {0.5 * (heights[i] + heights[i + 1]), heights[i + 1] - heights[i]};
-        if (fresh.room < 2 * PLANE_ROOM)
+        if (fresh.room < least)
             continue;
         if (s->options->anywhere)
             fresh.room = starg_rng_unit(s->rng);
@@ -279,8 +288,11 @@ static starg_status place_peel(const searcher *s, const direction *d, double *he
         if (heights[i] <= d->high)
             heights[count++] = heights[i];
     qsort(heights, count, sizeof *heights, ascending);
+    /* among the highest gaps, not the widest of all */
+    size_t first = count > PEEL_GAPS ? count - PEEL_GAPS : 0;
+    double least = fmax(2 * PLANE_ROOM, FAIR * widest_gap(heights + first, count - first));
     for (size_t i = count; i-- > 1 && top == -INFINITY;)
-        if (heights[i] - heights[i - 1] > 2 * PLANE_ROOM)
+        if (heights[i] - heights[i - 1] > least)
             top = 0.5 * (heights[i] + heights[i - 1]);
     *found = false;
     if (top == -INFINITY)
