@@ -141,6 +141,19 @@ class Decompose(support.Case):
         self.assertEqual(result["model"]["faces"], faces - 3)
         self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
 
+    def test_self_intersecting(self):
+        """Two tetrahedra that run through one another: closed, but not for tetgen."""
+        lines = TETRAHEDRON.splitlines()
+        moved = [" ".join(f"{float(x) + .1:g}" for x in line.split()) for line in lines[2:6]]
+        faces = lines[6:] + ["3 " + " ".join(str(int(i) + 4) for i in line.split()[1:])
+                             for line in lines[6:]]
+        self.write("two.off", "\n".join(["OFF", "8 8 12"] + lines[2:6] + moved + faces) + "\n")
+        for mode in "strict", "paper":
+            report = self.run_json("decompose", "two.off", "-o", "p.vtk", "--report", "p.json",
+                                   "--mode", mode, "--density", "40", "--time-limit", "3")
+            self.assertEqual(self.agree("p.vtk", "p.json")["surface"], "approximated")
+            self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
+
     def test_surfaces_and_picture(self):
         room = self.sample("l-room")
         report = self.run_json("decompose", room, "-o", "p.vtk", "--mode", "paper", "--density",

@@ -327,6 +327,43 @@ static void test_claims(void **state) {
     test_context_free(context);
 }
 
+/* ---- guards at vertices, on edges and on faces ---- */
+
+/* The first tetrahedron that holds a guard waits for none, wherever the guard stands. */
+static void test_homes(void **state) {
+    (void)state;
+    static const double weights[][4] = {
+        {1, 0, 0, 0}, {0.5, 0.5, 0, 0}, {0.5, 0.25, 0.25, 0}, {0.25, 0.25, 0.25, 0.25}};
+    starg_context *context = test_context(1);
+    size_t tried[4] = {0};
+    for (uint64_t seed = 0; seed < 24; seed++) {
+        starg_rng rng = starg_rng_make(seed, 23, 0);
+        world w;
+        world_create(context, random_tetmesh(context, seed, 30 + seed, true, 1), &w);
+        for (size_t i = 0; i < 200; i++) {
+            double p[3] = {0};
+            uint32_t t = (uint32_t)starg_rng_below(&rng, w.state.mesh->count);
+            for (int k = 0; k < 4; k++)
+                for (int c = 0; c < 3; c++)
+                    p[c] += weights[i % 4][k] * tetmesh_corner(w.state.mesh, t, k)[c];
+            if (!tet_sight_contains(&w.state.sight, p))
+                continue;
+            test_ok(context, views_create(&w.state, &w.all, p, 1, &w.guard));
+            assert_int_not_equal(w.guard.home, PAPER_NONE);
+            assert_int_equal(dependency_seen(&w.state, &w.guard, w.guard.home), 4);
+            for (int k = 0; k < 4; k++)
+                assert_int_equal(dependency_predecessor(&w.state, &w.guard, w.guard.home, k),
+                                 PAPER_NONE);
+            tried[i % 4]++;
+            view_free(&w.state, &w.guard);
+        }
+        world_free(&w);
+    }
+    for (int i = 0; i < 4; i++)
+        assert_true(tried[i] > 10);
+    test_context_free(context);
+}
+
 /* ---- costs ---- */
 
 /* f(t) = 1 + the sum of f(d) / (edges that enter d) over all edges from t to d. */
@@ -374,6 +411,7 @@ static void test_costs(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_claims), cmocka_unit_test(test_costs)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_claims), cmocka_unit_test(test_homes),
+                                       cmocka_unit_test(test_costs)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -87,6 +87,38 @@ static void test_random(void **state) {
     test_context_free(context);
 }
 
+/* Models that differ by a power of two in size are cut the same way. */
+static void test_scales(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    static const double scales[] = {1, 0x1p-320, 0x1p-60, 0x1p60, 0x1p320};
+    for (uint64_t seed = 0; seed < 4; seed++) {
+        starg_decomposition *unit = NULL;
+        for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+            double guards[3 * 6];
+            starg_tetmesh *mesh = random_tetmesh(context, seed, 40, false, scales[i]);
+            starg_decompose_options options = paper_options();
+            starg_decomposition *d = NULL;
+            options.guards = guards;
+            options.guard_count = random_guards(mesh, seed, guards);
+            test_ok(context, starg_decompose_tetmesh(context, mesh, &options, &d));
+            starg_tetmesh_free(mesh);
+            if (i == 0) {
+                unit = d;
+                continue;
+            }
+            assert_int_equal(d->piece_count, unit->piece_count);
+            assert_int_equal(d->strictly_star, unit->strictly_star);
+            assert_memory_equal(d->labels, unit->labels, sizeof *d->labels * d->mesh->count);
+            for (size_t k = 0; k < 3 * d->mesh->vertex_count; k++)
+                assert_true(d->mesh->vertices[k] == scales[i] * unit->mesh->vertices[k]);
+            starg_decomposition_free(context, d);
+        }
+        starg_decomposition_free(context, unit);
+    }
+    test_context_free(context);
+}
+
 /* ---- solids ---- */
 
 static starg_decomposition *cut_sample(int threads, const char *name, const double *guards,
@@ -287,12 +319,10 @@ static void test_memory(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random),
-                                       cmocka_unit_test(test_threads),
-                                       cmocka_unit_test(test_no_guards),
-                                       cmocka_unit_test(test_max_pieces),
-                                       cmocka_unit_test(test_convex_and_parts),
-                                       cmocka_unit_test(test_smoothing),
-                                       cmocka_unit_test(test_memory)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_random),     cmocka_unit_test(test_scales),
+        cmocka_unit_test(test_threads),    cmocka_unit_test(test_no_guards),
+        cmocka_unit_test(test_max_pieces), cmocka_unit_test(test_convex_and_parts),
+        cmocka_unit_test(test_smoothing),  cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

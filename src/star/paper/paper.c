@@ -95,6 +95,7 @@ static starg_status place_guards(paper_state *s, size_t most, bool *time_limited
     if (status == STARG_OK)
         status = starg_guard(s->context, solid, &wanted, &guards);
     if (status == STARG_ERROR_MESH || status == STARG_ERROR_TIME) {
+        *time_limited = status == STARG_ERROR_TIME;
         status = STARG_OK;
         goto done;
     }

@@ -2,7 +2,7 @@
  *
  * A vertex that lies between pieces, and not on the boundary of the solid, moves towards the mean
  * of its neighbours on the border: all the way, or half or a quarter of it. The first of these is
- * taken that does no harm: each tetrahedron around it stays positive (exactly) and keeps a part of
+ * taken that does no harm: each tetrahedron around it stays positive (exactly) and keeps a tenth of
  * its volume; each guard of a piece at the vertex that sees it goes on to do so; each border face
  * that has the guard of its piece strictly on its inner side keeps it there. So neither fewer
  * vertices are seen nor are fewer pieces star-shaped afterwards.
@@ -16,15 +16,16 @@
 
 enum { ROUNDS = 8, STEPS = 3 };
 
-/* No tetrahedron loses more than this part of its volume in one move. */
-static const double LEAST_KEPT = 0.5;
+/* Part of its volume that each tetrahedron keeps, through all moves. */
+static const double LEAST_KEPT = 0.1;
 
 typedef struct smoother {
     paper_state *state;
     int exponent;
     bool *fixed;     /* per vertex: on the boundary of the solid, or between no pieces */
-    double *volumes; /* of the tetrahedra around a vertex, before it moves */
-    bool *facing;    /* four for each of them: a border face that its guard is behind of */
+    double *volumes; /* of all tetrahedra, in units of 2^exponent, before anything moves */
+    bool *facing;    /* four for each tetrahedron around a vertex: a border face that its guard is
+                        behind of, before the vertex moves */
 } smoother;
 
 static bool is_border(const paper_state *s, size_t face) {
@@ -119,7 +120,6 @@ static void note(const smoother *m, uint32_t vertex) {
     size_t count;
     const uint32_t *ring = ring_of(m, vertex, &count);
     for (size_t i = 0; i < count; i++) {
-        m->volumes[i] = tetmesh_scaled_volume(m->state->mesh, ring[i], m->exponent);
         for (size_t k = 0; k < 4; k++)
             m->facing[4 * i + k] =
                 is_border(m->state, 4 * (size_t)ring[i] + k) && faces_guard(m, ring[i], (int)k);
@@ -131,7 +131,7 @@ static bool keeps_tetrahedra(const smoother *m, uint32_t vertex) {
     const uint32_t *ring = ring_of(m, vertex, &count);
     for (size_t i = 0; i < count; i++)
         if (tetmesh_scaled_volume(m->state->mesh, ring[i], m->exponent) <
-                LEAST_KEPT * m->volumes[i] ||
+                LEAST_KEPT * m->volumes[ring[i]] ||
             !is_positive(m, ring[i]))
             return false;
     for (size_t i = 0; i < 4 * count; i++)
@@ -177,9 +177,11 @@ starg_status smooth_borders(paper_state *s) {
     smoother m = {.state = s, .exponent = tetmesh_exponent(s->mesh)};
     size_t widest = widest_ring(s);
     STARG_NEW(s->context, PAPER_STAGE, m.fixed, s->mesh->vertex_count);
-    STARG_NEW(s->context, PAPER_STAGE, m.volumes, widest);
+    STARG_NEW(s->context, PAPER_STAGE, m.volumes, s->mesh->count);
     STARG_NEW(s->context, PAPER_STAGE, m.facing, 4 * widest);
     find_fixed(&m);
+    for (size_t t = 0; t < s->mesh->count; t++)
+        m.volumes[t] = tetmesh_scaled_volume(s->mesh, t, m.exponent);
     for (int round = 0; round < ROUNDS; round++) {
         STARG_TRY(starg_check_cancel(s->context, PAPER_STAGE));
         for (size_t v = 0; v < s->mesh->vertex_count; v++)
