@@ -33,6 +33,10 @@ static const char STAGE[] = "surface samples";
  * point: some thirty times what looking at all of them once takes. */
 enum { MAX_PASSES = 20, MAX_DEPTH = 12, WORK = 1000 };
 
+/* Rounds are given up when so many times the least number of faces ever lost are, or when so many
+ * rounds have not brought fewer: points then only call for more points. */
+enum { SETBACK = 4, PATIENCE = 20 };
+
 /* By its ends, as moves nearby renumber halfedges. */
 typedef struct mesh_edge {
     uint32_t u, v;
@@ -624,6 +628,7 @@ done:
 static starg_status run_rounds(conformer *c) {
     starg_status status = STARG_OK;
     size_t most = 3 * point_count(c) / 2 + 2000, most_work = WORK * point_count(c);
+    size_t least = SIZE_MAX / SETBACK, least_round = 0;
     for (;; c->report->rounds++) {
         size_t flips;
         STARG_TRY(starg_check_cancel(c->context, STAGE));
@@ -637,7 +642,13 @@ static starg_status run_rounds(conformer *c) {
                 break;
         }
         size_t before = point_count(c);
-        c->report->lost = c->lost_faces.count;
+        size_t lost = c->report->lost = c->lost_faces.count;
+        if (lost < least) {
+            least = lost;
+            least_round = c->report->rounds;
+        }
+        if (lost > SETBACK * least || c->report->rounds - least_round > PATIENCE)
+            return STARG_OK;
         STARG_TRY(c->manner == CONFORM_PIERCE ? cut_and_pierce(c) : bisect_lost_faces(c));
         if (point_count(c) == before || point_count(c) > most || c->work > most_work)
             return STARG_OK;

@@ -27,7 +27,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
         assert_int_equal(best->uncovered_count, 0);
 
     options.method = STARG_GUARD_GREEDY;
-    for (int engine = 0; engine < 3; engine++) {
+    for (int engine = 0; engine <= STARG_VISIBILITY_FASTEST; engine++) {
         options.visibility.engine = (starg_visibility_engine)engine;
         starg_guards *greedy = NULL;
         test_ok(context, starg_guard(context, solid, &options, &greedy));
@@ -70,6 +70,34 @@ static void check_folder(const char *folder, size_t *checked) {
     test_context_free(context);
 }
 
+/* Where a surface crosses itself, refinement finds points that see what no candidate saw before:
+ * then as many guards as before are not enough. */
+static void test_refined_crossing(void **state) {
+    (void)state;
+    const char *data = test_shared_data();
+    if (data == NULL)
+        skip();
+    char path[4400];
+    starg_context *context = test_context(2);
+    starg_mesh *mesh = NULL;
+    starg_solid *solid = NULL;
+    starg_guards *guards = NULL;
+    starg_guard_options options;
+    snprintf(path, sizeof path, "%s/poses/cat_08.off", data);
+    test_ok(context, starg_mesh_read(context, path, &mesh));
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    starg_guard_options_default(&options);
+    options.candidates = STARG_CANDIDATES_INTERIOR;
+    options.refine_lines = 1000000;
+    test_ok(context, starg_guard(context, solid, &options, &guards));
+    verify(context, "cat_08, refined", mesh, guards);
+    assert_int_equal(guards->coverable_faces + guards->uncovered_count, guards->face_count);
+    starg_guards_free(context, guards);
+    starg_solid_free(solid);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
 static void test_cad(void **state) {
     size_t checked = 0;
     (void)state;
@@ -86,7 +114,8 @@ static void test_small_solids(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_cad),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_refined_crossing),
+                                       cmocka_unit_test(test_cad),
                                        cmocka_unit_test(test_small_solids)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -104,7 +104,7 @@ static void test_shared_models(void **state) {
     }
 }
 
-/* Ears so thin that samples cannot follow both of their sides: counts are put right, and that is
+/* Ears or fins so thin that samples cannot follow both of their sides: counts are put right, and that is
  * told, as what was cut may have been another loop. */
 static void test_mended_model(void **state) {
     (void)state;
@@ -112,7 +112,7 @@ static void test_mended_model(void **state) {
     if (folder == NULL)
         skip();
     starg_context *context = test_context(0);
-    starg_mesh *mesh = read_model(context, folder, "retrieval_tosca/cat_04.off");
+    starg_mesh *mesh = read_model(context, folder, "solids/chinese_dragon.off");
     starg_solid *solid = NULL;
     starg_skeleton *s = NULL;
     test_ok(context, starg_solid_create(context, mesh, &solid));
