@@ -17,6 +17,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from fractions import Fraction
 
 CELLS = 64  # a side, of the cells that faces are sorted into
 # Any linear map with a positive determinant keeps windings; this one leaves no ray along an axis.
@@ -30,15 +31,15 @@ def run(program, *words):
     return json.loads(done.stdout), ""
 
 
-def turned(v):
-    return tuple(sum(TURN[3 * i + k] * v[k] for k in range(3)) for i in range(3))
+def turned(v, number=float):
+    return tuple(sum(number(TURN[3 * i + k]) * number(v[k]) for k in range(3)) for i in range(3))
 
 
 def read_off(path):
     with open(path, encoding="utf-8") as file:
         words = " ".join(line.split("#")[0] for line in file).replace("OFF", "", 1).split()
     count, faces = int(words[0]), int(words[1])
-    vertices = [turned([float(w) for w in words[3 + 3 * i:6 + 3 * i]]) for i in range(count)]
+    vertices = [[float(w) for w in words[3 + 3 * i:6 + 3 * i]] for i in range(count)]
     corners, at = [], 3 + 3 * count
     for _ in range(faces):
         size = int(words[at])
@@ -55,7 +56,7 @@ def read_graph(path):
         for line in file:
             kind, *words = line.split()
             if kind == "v":
-                nodes.append(turned([float(w) for w in words[:3]]))
+                nodes.append([float(w) for w in words[:3]])
             elif kind == "l":
                 edges.append(tuple(int(w) - 1 for w in words))
     return nodes, edges
@@ -78,7 +79,8 @@ class Windings:
     """How often a surface winds about a point: crossings of the ray to greater x, with signs."""
 
     def __init__(self, vertices, corners):
-        self.vertices = vertices
+        self.given, self.corners = vertices, corners
+        self.vertices = vertices = [turned(v) for v in vertices]
         self.low = [min(v[k] for v in vertices) for k in (1, 2)]
         high = [max(v[k] for v in vertices) for k in (1, 2)]
         self.scale = [CELLS / (h - l) for h, l in zip(high, self.low)]
@@ -95,10 +97,21 @@ class Windings:
     def cell(self, value, k):
         return min(max(math.floor((value - self.low[k]) * self.scale[k]), 0), CELLS - 1)
 
-    def about(self, p):
+    def holds(self, node):
+        """Is the node inside? Next to a wall that takes exact numbers."""
+        p = turned(node)
+        near = self.cells.get((self.cell(p[1], 0), self.cell(p[2], 1)), ())
+        if self.count(p, [[self.vertices[i] for i in face] for face in near]) > 0:
+            return True
+        p = turned(node, Fraction)
+        exact = {i: turned(v, Fraction) for i, v in enumerate(self.given)}
+        return self.count(p, [[exact[i] for i in face] for face in self.corners]) > 0
+
+    @staticmethod
+    def count(p, faces):
         winding = 0
-        for face in self.cells.get((self.cell(p[1], 0), self.cell(p[2], 1)), ()):
-            a, b, c = (tuple(x - y for x, y in zip(self.vertices[i], p)) for i in face)
+        for face in faces:
+            a, b, c = (tuple(x - y for x, y in zip(v, p)) for v in face)
             sides = [u[1] * v[2] - u[2] * v[1] for u, v in ((b, c), (c, a), (a, b))]
             if all(s > 0 for s in sides) or all(s < 0 for s in sides):
                 if (sides[0] * a[0] + sides[1] * b[0] + sides[2] * c[0]) / sum(sides) > 0:
@@ -111,7 +124,7 @@ def describe(told, graph, surface):
     nodes, edges = graph
     parts = count_parts(len(nodes), edges)
     loops = len(edges) - len(nodes) + parts
-    outside = sum(surface.about(p) <= 0 for p in nodes)
+    outside = sum(not surface.holds(p) for p in nodes)
     handlebody = told["embedded"] and told["cavities"] == 0 and told["cuts"] == 0
     right = parts == told["surface"][0] and loops == told["surface"][1]
     words = f"{parts} parts, {loops} loops"
