@@ -30,6 +30,7 @@ typedef struct builder {
     uint32_t *node_of; /* of each tetrahedron, or EDGE_NONE */
     uint8_t *borders;  /* of each node: bit k, the face opposite corner k bounds the region */
     bool *poor;        /* of each node: its tetrahedron is flat */
+    double limit;      /* radius that no ball inside has */
     edge_table edges;
     medial_complex *complex;
 } builder;
@@ -86,6 +87,13 @@ static bool is_flat(const double *const v[4]) {
     return !(fabs(vec3_triple(u[0], u[1], u[2])) > FLAT * longest * longest * longest);
 }
 
+/* A ball inside has no more volume than the solid. Spheres of nearly flat tetrahedra, whose centres
+ * lie far outside, would else pass for the thickest place of all. */
+static double limit_of_radii(const starg_solid *solid) {
+    const double pi = 3.14159265358979323846;
+    return solid->check->embedded ? 1.01 * cbrt(0.75 / pi * solid->check->volume) : INFINITY;
+}
+
 static void place_node(const builder *b, size_t node) {
     medial_complex *c = b->complex;
     const double *v[4];
@@ -93,7 +101,7 @@ static void place_node(const builder *b, size_t node) {
         v[k] = b->points + 3 * (size_t)c->corners[node][k];
     medial_ball ball;
     b->poor[node] = is_flat(v);
-    if (b->poor[node] || !medial_circumscribe(v, &ball) ||
+    if (b->poor[node] || !medial_circumscribe(v, &ball) || ball.radius > b->limit ||
         is_beyond_border(b, node, v, ball.centre)) {
         for (int j = 0; j < 3; j++)
             ball.centre[j] = 0.25 * v[0][j] + 0.25 * v[1][j] + 0.25 * v[2][j] + 0.25 * v[3][j];
@@ -219,7 +227,11 @@ starg_status complex_create(starg_context *context, const starg_solid *solid, co
                             medial_complex **out) {
     starg_status status = STARG_OK;
     medial_complex *complex = NULL;
-    builder b = {.context = context, .solid = solid, .points = points, .tetrahedra = tetrahedra};
+    builder b = {.context = context,
+                 .solid = solid,
+                 .points = points,
+                 .tetrahedra = tetrahedra,
+                 .limit = limit_of_radii(solid)};
     *out = NULL;
     STARG_NEW_ZERO(context, STAGE, complex, 1);
     complex->context = context;

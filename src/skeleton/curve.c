@@ -50,19 +50,22 @@ static uint32_t kept_degree(const curve *c, uint32_t v) {
     return degree;
 }
 
-/* Takes a place from a neighbour that has one inside. */
+/* Takes a place from a neighbour that has one inside. Else the neighbours are to look on: true as
+ * well. */
 static bool borrow_place(curve *c, bool *placed, bool *tried, uint32_t v) {
+    bool spread = false;
     for (uint32_t i = c->graph->first[v]; i < c->graph->first[v + 1]; i++) {
         uint32_t w = c->graph->next[i];
         if (!placed[w])
             placed[w] = !tried[w] && starg_solid_contains(c->solid, c->places[w]);
+        spread = spread || !tried[w];
         tried[w] = true;
         if (placed[w]) {
             vec3_copy(c->places[w], c->places[v]);
             return placed[v] = true;
         }
     }
-    return false;
+    return spread;
 }
 
 /* Whole branches outside, as of surfaces that cross themselves, shrink to a place inside. */
@@ -98,7 +101,7 @@ static starg_status place_kept(curve *c) {
         changed = false;
         for (uint32_t v = 0; v < count; v++)
             if (tried[v] && !placed[v] && borrow_place(c, placed, tried, v)) {
-                missing -= c->pruned->kept[v];
+                missing -= placed[v] && c->pruned->kept[v];
                 changed = true;
             }
     }

@@ -17,7 +17,7 @@ static const char *const MODELS[] = {
     "table2/bunny_998.off",  "table2/beethoven_502.off", "table2/buddha_502.off",
     "cad/bamboo_pen.off",    "cad/letter_p.off",         "cad/three_torus.off",
     "cad/spool.off",         "cad/vase_374_g1.off",      "cad/star.off",
-    "tosca_paper/wolf0.off", "tosca_paper/david0.off",
+    "tosca_paper/wolf0.off", "tosca_paper/david0.off",   "retrieval_shrec07/airplane_076.off",
 };
 
 /* Joins the ends of all pairs until nothing changes, and counts what is left. */
@@ -104,8 +104,8 @@ static void test_shared_models(void **state) {
     }
 }
 
-/* Ears or fins so thin that samples cannot follow both of their sides: counts are put right, and that is
- * told, as what was cut may have been another loop. */
+/* Ears or fins so thin that samples cannot follow both of their sides: counts are put right, and
+ * that is told, as what was cut may have been another loop. */
 static void test_mended_model(void **state) {
     (void)state;
     const char *folder = test_shared_data();
