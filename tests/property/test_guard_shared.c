@@ -90,7 +90,7 @@ static void test_refined_crossing(void **state) {
     options.candidates = STARG_CANDIDATES_INTERIOR;
     options.refine_lines = 1000000;
     test_ok(context, starg_guard(context, solid, &options, &guards));
-    verify(context, "cat_08, refined", mesh, guards);
+    test_verified(context, "cat_08, refined", mesh, guards);
     assert_int_equal(guards->coverable_faces + guards->uncovered_count, guards->face_count);
     starg_guards_free(context, guards);
     starg_solid_free(solid);
