@@ -208,6 +208,11 @@ void decomposition_oracle_check(const starg_decomposition *d) {
     check_contacts(d);
 }
 
+void decomposition_oracle_check_connected(const starg_decomposition *d) {
+    for (size_t i = 0; i < d->piece_count; i++)
+        assert_true(is_connected(d, (int32_t)i));
+}
+
 /* ---- sight ---- */
 
 static size_t collect_outer(const starg_tetmesh *mesh, uint32_t *faces) {

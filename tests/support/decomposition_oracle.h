@@ -10,6 +10,9 @@
  * pieces are star-shaped, and contacts. */
 void decomposition_oracle_check(const starg_decomposition *d);
 
+/* Asserts that the tetrahedra of each piece hang together by faces. */
+void decomposition_oracle_check_connected(const starg_decomposition *d);
+
 /* Asserts the fraction of the vertices that guards see. Takes time vertices x faces. */
 void decomposition_oracle_check_sight(const starg_decomposition *d);
 

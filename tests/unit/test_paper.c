@@ -80,6 +80,7 @@ static void test_random(void **state) {
         assert_int_equal(d->mode, STARG_DECOMPOSE_PAPER);
         decomposition_oracle_check(d);
         decomposition_oracle_check_sight(d);
+        decomposition_oracle_check_connected(d);
         check_mesh(context, mesh, d->mesh);
         starg_decomposition_free(context, d);
         starg_tetmesh_free(mesh);
@@ -142,6 +143,7 @@ static void test_threads(void **state) {
     starg_decomposition *a = cut_sample(1, "torus", NULL, 0, &one);
     starg_decomposition *b = cut_sample(4, "torus", NULL, 0, &four);
     decomposition_oracle_check(a);
+    decomposition_oracle_check_connected(a);
     assert_true(a->visible_vertices > 0.99);
     assert_in_range(a->piece_count, 2, 12);
     assert_int_equal(a->piece_count, b->piece_count);

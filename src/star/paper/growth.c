@@ -3,16 +3,17 @@
  * Problem: give each tetrahedron one colour, so that a tetrahedron of colour c is visible from
  * guard c, and everything that its visibility depends on has colour c before it.
  *
- * A node is merged into a region when all its predecessors in that colour have it: it is then
- * offered that colour, at the cost f(g, n), and among all offers the biggest is taken first, since
- * most depends on it. Each node holds its best offer only.
+ * A node is merged into a region when all its predecessors in that colour have it, and the region
+ * has a face of it: it is then offered that colour, at the cost f(g, n), and among all offers the
+ * biggest is taken first, since most depends on it. Each node holds its best offer only.
  *
  * Relaxed, for what is left: a tetrahedron next to a region is taken when its guard sees some of
  * its vertices. Those of which it sees all come first, then three, then two. Where there may be no
  * more guards, the rest goes to the regions that it touches, the nearest guard first.
  *
- * Invariants: a colour is never changed; offers stay valid, because colours do. Ties go to the
- * lower colour, then to the lower tetrahedron. Cost: O(n log n) for n coloured tetrahedra. */
+ * Invariants: regions hang together by faces; a colour is never changed; offers stay valid, because
+ * colours do. Ties go to the lower colour, then to the lower tetrahedron. Cost: O(n log n) for n
+ * coloured tetrahedra. */
 #include "star/paper/growth.h"
 
 #include <math.h>
@@ -41,9 +42,19 @@ static void offer(paper_state *s, uint32_t tetrahedron, int32_t colour, double k
 
 /* ---- strict ---- */
 
+static bool touches(const paper_state *s, uint32_t tetrahedron, int32_t colour) {
+    for (size_t k = 0; k < 4; k++) {
+        uint32_t next = s->mesh->neighbours[4 * (size_t)tetrahedron + k];
+        if (next != PAPER_NONE && s->labels[next] == colour)
+            return true;
+    }
+    return false;
+}
+
+/* Predecessors may share but a vertex with a tetrahedron; a region hangs together by faces. */
 static bool is_ready(const paper_state *s, const paper_guard *g, uint32_t tetrahedron,
                      int32_t colour) {
-    if (dependency_seen(s, g, tetrahedron) < 4)
+    if (dependency_seen(s, g, tetrahedron) < 4 || !touches(s, tetrahedron, colour))
         return false;
     for (int k = 0; k < 4; k++) {
         uint32_t p = dependency_predecessor(s, g, tetrahedron, k);
