@@ -21,7 +21,8 @@ static const char STAGE[] = "shape-dna";
 
 /* The smallest eigenvalues are right to about one in a hundred at this resolution. */
 enum { ENOUGH_VERTICES = 2000, ENOUGH_FACES = 20 * ENOUGH_VERTICES };
-static const double LEAST_AREA = 1e-10; /* of a triangle, to the square of its longest edge */
+static const double LEAST_AREA = 1e-10;    /* of a triangle, to the square of its longest edge */
+static const double LEAST_EXTENT = 1e-200; /* squared: what is smaller is a point */
 
 typedef struct surface {
     starg_context *context;
@@ -43,7 +44,7 @@ static bool has_extent(const surface *s, const uint32_t f[3]) {
         return false;
     vec3_subtract(s->positions + 3 * (size_t)f[1], s->positions + 3 * (size_t)f[0], u);
     vec3_subtract(s->positions + 3 * (size_t)f[2], s->positions + 3 * (size_t)f[0], v);
-    return vec3_dot(u, u) + vec3_dot(v, v) > 0;
+    return vec3_dot(u, u) + vec3_dot(v, v) > LEAST_EXTENT;
 }
 
 static starg_status copy_surface(const starg_mesh *mesh, surface *s) {

@@ -1,4 +1,5 @@
-#include <math.h>
+/* Signatures of all kinds behind one interface: the table of kinds, and what does not depend on
+ * them. */
 
 #include "core/memory.h"
 #include "core/parallel.h"

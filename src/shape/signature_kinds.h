@@ -6,7 +6,7 @@
 #include "core/context.h"
 #include "starguard/shape.h"
 
-/* Makes the numbers in a new block. */
+/* Makes the numbers in a new block. A failure keeps the model out of a database. */
 typedef starg_status signature_compute(starg_context *context, const starg_mesh *mesh,
                                        double **numbers, size_t *count);
 

@@ -92,6 +92,13 @@ static starg_status order_rows(starg_context *context, const laplacian *l, facto
     return STARG_OK;
 }
 
+static starg_status fail_extreme(starg_context *context) {
+    return starg_fail(
+        context, STARG_ERROR_SOLVER, STAGE,
+        "the spectrum cannot be found: the faces' shapes are too extreme; 'repair' may "
+        "help");
+}
+
 static starg_status factorise(starg_context *context, const laplacian *l, factor *f) {
     starg_status status = STARG_OK;
     double *values = NULL;
@@ -213,8 +220,13 @@ starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_
     for (size_t i = 0; i < n; i++)
         it.roots[i] = sqrt(l->masses[i]);
     STARG_TRY(locked_iterate(context, &it, (a_int)wanted, (a_int)vectors, eigenvalues));
-    for (size_t i = 0; i < wanted; i++)
+    for (size_t i = 0; i < wanted; i++) {
         eigenvalues[i] = 1 / eigenvalues[i] - SHIFT;
+        if (!(isfinite(eigenvalues[i]) && eigenvalues[i] > -0.5 * SHIFT)) {
+            status = fail_extreme(context);
+            goto done;
+        }
+    }
     qsort(eigenvalues, wanted, sizeof *eigenvalues, by_size);
 done:
     starg_release(context, it.roots);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
+#include "adversarial.h"
 #include "core/rng.h"
 #include "models.h"
 #include "shape/laplacian.h"
@@ -424,6 +424,41 @@ static void poor_meshes(void **state) {
     test_context_free(context);
 }
 
+/* Random faces over the nastiest points: a signature that its own check takes, or a clear refusal.
+ */
+static void adversarial_meshes(void **state) {
+    (void)state;
+    enum { POINTS = 9, FACES = 14 };
+    starg_context *context = test_context(1);
+    size_t described = 0, refused = 0;
+    for (int family = 0; family < POINT_FAMILIES; family++) {
+        starg_rng rng = starg_rng_make(21, (uint64_t)family, 0);
+        double points[POINTS][3];
+        uint32_t faces[3 * FACES];
+        starg_mesh *mesh = NULL;
+        adversarial_points(&rng, (point_family)family, points, POINTS);
+        for (size_t i = 0; i < 3 * FACES; i++)
+            faces[i] = (uint32_t)starg_rng_below(&rng, POINTS);
+        test_ok(context, starg_mesh_create(context, points[0], POINTS, faces, FACES, &mesh));
+        for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
+            starg_signature *s = NULL, *again = NULL;
+            starg_status status =
+                starg_signature_create(context, mesh, (starg_signature_kind)kind, &s);
+            described += status == STARG_OK;
+            refused += status == STARG_ERROR_MESH || status == STARG_ERROR_SOLVER;
+            if (status == STARG_OK)
+                test_ok(context, starg_signature_restore(context, s->kind, s->version, s->numbers,
+                                                         s->count, &again));
+            starg_signature_free(context, s);
+            starg_signature_free(context, again);
+        }
+        starg_mesh_free(mesh);
+    }
+    assert_int_equal(described + refused, STARG_SIGNATURE_KINDS * POINT_FAMILIES);
+    assert_true(described > POINT_FAMILIES);
+    test_context_free(context);
+}
+
 static void kinds_and_versions(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -511,6 +546,7 @@ int main(void) {
         cmocka_unit_test(resolution_hardly_counts),
         cmocka_unit_test(same_bytes_on_any_threads),
         cmocka_unit_test(poor_meshes),
+        cmocka_unit_test(adversarial_meshes),
         cmocka_unit_test(kinds_and_versions),
         cmocka_unit_test(memory_may_give_out),
         cmocka_unit_test(cancelled),
