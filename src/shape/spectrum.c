@@ -113,10 +113,7 @@ static starg_status factorise(starg_context *context, const laplacian *l, factor
     if (ldl_l_numeric(f->count, l->starts, l->rows, values, f->starts, f->parents, f->sizes,
                       f->rows, f->values, f->diagonal, f->row, f->pattern, f->flags, f->order,
                       f->inverse) != f->count)
-        status =
-            starg_fail(context, STARG_ERROR_SOLVER, STAGE,
-                       "the Laplacian cannot be factorised: the faces' shapes are too extreme; "
-                       "'repair' may help");
+        status = fail_extreme(context);
 done:
     starg_release(context, values);
     return status;
