@@ -59,7 +59,7 @@ static int by_bytes(const void *a, const void *b) {
 /* How many signatures a model has that need not be made anew. */
 static starg_status prepare_stored(adding *a, sqlite3_stmt **out) {
     starg_status status = STARG_OK;
-    char sql[512] = "SELECT hash FROM model WHERE";
+    char sql[64 + 160 * STARG_SIGNATURE_KINDS] = "SELECT hash FROM model WHERE";
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
         size_t used = strlen(sql);
         snprintf(sql + used, sizeof sql - used,

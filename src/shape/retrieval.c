@@ -40,78 +40,110 @@ static int by_distance(const void *a, const void *b) {
     return (x->model > y->model) - (x->model < y->model);
 }
 
-static size_t rank(const evaluation *e, size_t query, ranked *list) {
-    size_t shown = 0;
-    for (size_t i = 0; i < e->count; i++)
-        if (i != query && e->class_of[i] != STARG_NO_CLASS)
-            list[shown++] = (ranked){e->distances[query * e->count + i], i};
-    qsort(list, shown, sizeof *list, by_distance);
-    return shown;
-}
-
 /* ---- one query ---- */
 
-static double e_measure(size_t found, size_t shown, size_t relevant) {
-    double precision = (double)found / (double)shown, recall = (double)found / (double)relevant;
+/* A ranking: how many relevant models stand at the places up to each, from 1 on. */
+typedef struct ranking {
+    ranked *list;
+    size_t *found;
+    size_t shown, relevant;
+} ranking;
+
+/* Found at the first places, as many as there are. */
+static double found_within(const ranking *r, size_t places) {
+    return (double)r->found[places < r->shown ? places : r->shown];
+}
+
+static double e_measure(const ranking *r) {
+    double found = found_within(r, E_MEASURE_SHOWN);
+    double shown = E_MEASURE_SHOWN < r->shown ? E_MEASURE_SHOWN : (double)r->shown;
+    double precision = found / shown, recall = found / (double)r->relevant;
     return found > 0 ? 2 / (1 / precision + 1 / recall) : 0;
 }
 
-/* The gain of a relevant model at a place, from 1 on. */
+/* The gain of a relevant model at a place. */
 static double gain_at(size_t place) {
     return place == 1 ? 1 : 1 / log2((double)place);
 }
 
-/* `precision` has what holds where each level of recall is first reached; later places may have
- * more. */
-static void interpolate(double precision[STARG_RECALL_LEVELS]) {
+static double discounted_gain(const ranking *r) {
+    double gain = 0, best = 0;
+    for (size_t place = 1; place <= r->shown; place++)
+        if (r->found[place] > r->found[place - 1])
+            gain += gain_at(place);
+    for (size_t place = 1; place <= r->relevant; place++)
+        best += gain_at(place);
+    return gain / best;
+}
+
+/* The precision where each level of recall is reached, or the largest one beyond. */
+static void measure_precision(const ranking *r, double precision[STARG_RECALL_LEVELS]) {
+    size_t level = 0;
+    for (size_t place = 1; place <= r->shown; place++)
+        for (; level < STARG_RECALL_LEVELS &&
+               (level + 1) * r->relevant <= r->found[place] * STARG_RECALL_LEVELS;
+             level++)
+            precision[level] = (double)r->found[place] / (double)place;
     for (size_t i = STARG_RECALL_LEVELS - 1; i-- > 0;)
         precision[i] = fmax(precision[i], precision[i + 1]);
 }
 
-static void measure_query(const evaluation *e, const ranked *list, size_t shown, uint32_t class,
-                          size_t relevant, starg_retrieval *out) {
-    size_t found = 0, level = 0;
-    double gain = 0, best = 0;
-    for (size_t place = 1; place <= shown; place++) {
-        bool hit = e->class_of[list[place - 1].model] == class;
-        if (hit) {
-            found++;
-            gain += gain_at(place);
-            best += gain_at(found);
-            double precision = (double)found / (double)place;
-            for (; level < STARG_RECALL_LEVELS &&
-                   (level + 1) * relevant <= found * STARG_RECALL_LEVELS;
-                 level++)
-                out->precision[level] = precision;
-        }
-        if (place == 1)
-            out->nearest_neighbour = hit;
-        if (place == relevant)
-            out->first_tier = (double)found / (double)relevant;
-        if (place == (2 * relevant < shown ? 2 * relevant : shown))
-            out->second_tier = (double)found / (double)relevant;
-        if (place == (E_MEASURE_SHOWN < shown ? E_MEASURE_SHOWN : shown))
-            out->e_measure = e_measure(found, place, relevant);
-    }
-    out->dcg = gain / best;
+static void measure(const ranking *r, starg_retrieval *out) {
+    double relevant = (double)r->relevant;
     out->queries = 1;
-    interpolate(out->precision);
+    out->nearest_neighbour = found_within(r, 1);
+    out->first_tier = found_within(r, r->relevant) / relevant;
+    out->second_tier = found_within(r, 2 * r->relevant) / relevant;
+    out->e_measure = e_measure(r);
+    out->dcg = discounted_gain(r);
+    measure_precision(r, out->precision);
 }
 
-static starg_status make_list(starg_context *context, void *shared, void **scratch) {
+static void free_ranking(starg_context *context, void *scratch) {
+    ranking *r = scratch;
+    if (r == NULL)
+        return;
+    starg_release(context, r->list);
+    starg_release(context, r->found);
+    starg_release(context, r);
+}
+
+static starg_status make_ranking(starg_context *context, void *shared, void **scratch) {
     const evaluation *e = shared;
-    *scratch = starg_allocate(context, e->count, sizeof(ranked));
-    return *scratch != NULL ? STARG_OK : STARG_ERROR_MEMORY;
+    ranking *r = starg_allocate_zero(context, 1, sizeof *r);
+    if (r == NULL)
+        return STARG_ERROR_MEMORY;
+    r->list = starg_allocate(context, e->count, sizeof *r->list);
+    r->found = starg_allocate(context, e->count + 1, sizeof *r->found);
+    if (r->list == NULL || r->found == NULL) {
+        free_ranking(context, r);
+        return STARG_ERROR_MEMORY;
+    }
+    *scratch = r;
+    return STARG_OK;
+}
+
+static void rank(const evaluation *e, size_t query, ranking *r) {
+    r->shown = 0;
+    for (size_t i = 0; i < e->count; i++)
+        if (i != query && e->class_of[i] != STARG_NO_CLASS)
+            r->list[r->shown++] = (ranked){e->distances[query * e->count + i], i};
+    qsort(r->list, r->shown, sizeof *r->list, by_distance);
+    r->found[0] = 0;
+    for (size_t place = 1; place <= r->shown; place++)
+        r->found[place] =
+            r->found[place - 1] + (e->class_of[r->list[place - 1].model] == e->class_of[query]);
+    r->relevant = r->found[r->shown];
 }
 
 static starg_status run_query(starg_context *context, void *shared, void *scratch, size_t query) {
     const evaluation *e = shared;
-    uint32_t class = e->class_of[query];
+    ranking *r = scratch;
     (void)context;
-    if (class == STARG_NO_CLASS || e->sizes[class] < 2)
+    if (e->class_of[query] == STARG_NO_CLASS || e->sizes[e->class_of[query]] < 2)
         return STARG_OK;
-    size_t shown = rank(e, query, scratch);
-    measure_query(e, scratch, shown, class, e->sizes[class] - 1, &e->queries[query]);
+    rank(e, query, r);
+    measure(r, &e->queries[query]);
     return STARG_OK;
 }
 
@@ -187,8 +219,8 @@ starg_status starg_retrieval_measure(starg_context *context, const double *dista
                                       .count = count,
                                       .shared = &e,
                                       .item = run_query,
-                                      .make_scratch = make_list,
-                                      .free_scratch = starg_release};
+                                      .make_scratch = make_ranking,
+                                      .free_scratch = free_ranking};
     STARG_TRY(starg_parallel_for(context, &loop));
     take_means(&e, class_count, classes, overall);
 done:
