@@ -8,7 +8,7 @@
  * differ by the Euclidean distance of the eigenvalues, each divided by its number, so that the low
  * ones, which tell of the coarse shape, are not drowned by the high ones.
  *
- * Cost: see spectrum.c; a second for about 50,000 vertices. */
+ * Cost: see spectrum.c; about 0.2 s for 5,000 vertices, 8 s for 200,000. */
 #include <math.h>
 
 #include "core/memory.h"
