@@ -7,6 +7,7 @@
 #include "shape/database.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <time.h>
 #include <unistd.h>
@@ -29,6 +30,7 @@ static const char SCHEMA[] =
 starg_status database_fail(starg_database *d) {
     starg_context *context = d->context;
     const char *reason = sqlite3_errmsg(d->handle);
+    int error = sqlite3_system_errno(d->handle);
     switch (sqlite3_errcode(d->handle) & 0xff) {
     case SQLITE_NOMEM:
         return starg_fail_memory(context, DATABASE_STAGE);
@@ -53,7 +55,9 @@ starg_status database_fail(starg_database *d) {
                           "'%s' cannot be changed: %s; it and its folder must be writable", d->path,
                           reason);
     default:
-        return starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE, "'%s': %s", d->path, reason);
+        return starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE,
+                          "'%s' cannot be read or written: %s%s%s", d->path, reason,
+                          error != 0 ? ": " : "", error != 0 ? strerror(error) : "");
     }
 }
 
@@ -116,7 +120,8 @@ const char *database_name(const char *path) {
 
 /* ---- opening ---- */
 
-static starg_status connect(starg_context *context, const char *path, int flags,
+/* Opens `file`; messages call it `path`. */
+static starg_status connect(starg_context *context, const char *file, const char *path,
                             starg_database **out) {
     starg_status status = STARG_OK;
     starg_database *d = NULL;
@@ -127,7 +132,8 @@ static starg_status connect(starg_context *context, const char *path, int flags,
         status = starg_fail_memory(context, DATABASE_STAGE);
         goto done;
     }
-    if (sqlite3_open_v2(path, &d->handle, flags | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK) {
+    if (sqlite3_open_v2(file, &d->handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, NULL) !=
+        SQLITE_OK) {
         status = d->handle == NULL
                      ? starg_fail_memory(context, DATABASE_STAGE)
                      : starg_fail(context, STARG_ERROR_READ, DATABASE_STAGE, "cannot open '%s': %s",
@@ -182,7 +188,7 @@ starg_status starg_database_open(starg_context *context, const char *path, starg
                                 "there is no database '%s'; 'starguard db create' makes one", path)
                    : starg_fail(context, STARG_ERROR_READ, DATABASE_STAGE, "cannot open '%s': %s",
                                 path, strerror(errno));
-    STARG_TRY(connect(context, path, SQLITE_OPEN_READWRITE, &d));
+    STARG_TRY(connect(context, path, path, &d));
     STARG_TRY(check_schema(d));
     STARG_TRY(database_run(d, "PRAGMA foreign_keys = ON"));
     *out = d;
@@ -228,35 +234,45 @@ static starg_status fail_create(starg_context *context, const char *path, int er
 static starg_status put_in_place(starg_context *context, const char *made, const char *path) {
     if (link(made, path) == 0)
         return STARG_OK;
-    if (errno != EEXIST && access(path, F_OK) != 0 && rename(made, path) == 0)
-        return STARG_OK;
-    return fail_create(context, path, access(path, F_OK) == 0 ? EEXIST : errno);
+    int error = errno;
+    if (error == EEXIST || access(path, F_OK) == 0)
+        return fail_create(context, path, EEXIST);
+    return rename(made, path) == 0 ? STARG_OK : fail_create(context, path, error);
+}
+
+/* An empty file, which is an empty database to SQLite; the system says why it cannot be made. */
+static starg_status make_file(starg_context *context, const char *name, const char *path) {
+    int file = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file < 0)
+        return fail_create(context, path, errno);
+    close(file);
+    return STARG_OK;
+}
+
+static starg_status fill_file(starg_context *context, const char *name, const char *path) {
+    starg_database *d = NULL;
+    starg_status status = connect(context, name, path, &d);
+    if (status == STARG_OK)
+        status = write_schema(d);
+    starg_database_close(d);
+    if (status != STARG_OK)
+        unlink(name);
+    return status;
 }
 
 starg_status starg_database_create(starg_context *context, const char *path) {
     starg_status status = STARG_OK;
-    starg_database *d = NULL;
     char *made = NULL;
     size_t size = strlen(path) + 64;
     if (access(path, F_OK) == 0)
         return fail_create(context, path, EEXIST);
     STARG_NEW(context, DATABASE_STAGE, made, size);
     snprintf(made, size, "%s.%ld.tmp", path, (long)getpid());
-    if (connect(context, made, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, &d) != STARG_OK) {
-        int error = errno;
-        status = starg_context_error(context)->status == STARG_ERROR_MEMORY
-                     ? STARG_ERROR_MEMORY
-                     : fail_create(context, path, error != 0 ? error : EIO);
-        goto done;
-    }
-    STARG_TRY(write_schema(d));
-    starg_database_close(d);
-    d = NULL;
-    STARG_TRY(put_in_place(context, made, path));
+    STARG_TRY(make_file(context, made, path));
+    STARG_TRY(fill_file(context, made, path));
+    status = put_in_place(context, made, path);
+    unlink(made);
 done:
-    starg_database_close(d);
-    if (made != NULL)
-        unlink(made);
     starg_release(context, made);
     return status;
 }
