@@ -46,7 +46,7 @@ static double sum_of(const double *numbers, size_t count) {
 static void d2_of_a_sphere(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_mesh *mesh = test_sample_mesh(context, "sphere", 20000);
+    starg_mesh *mesh = test_sample_mesh(context, "sphere", 8000);
     starg_signature *s = describe(context, mesh, STARG_SIGNATURE_D2);
     assert_int_equal(s->count, BINS);
     assert_true(fabs(sum_of(s->numbers, s->count) - 1) < 1e-9);
@@ -259,7 +259,7 @@ static void spectrum_of_graphs(void **state) {
 static void spectrum_of_a_sphere(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *mesh = test_sample_mesh(context, "sphere", 10000);
+    starg_mesh *mesh = test_sample_mesh(context, "sphere", 6000);
     starg_signature *s = describe(context, mesh, STARG_SIGNATURE_SHAPE_DNA);
     size_t i = 0;
     for (int l = 1; l <= 6; l++)
@@ -341,8 +341,8 @@ static void nothing_but_the_shape_counts(void **state) {
         starg_signature *unlike = describe(context, other, kind);
         assert_true(distance(context, first, first) == 0);
         assert_true(distance(context, first, unlike) > 5 * noise[k]);
-        const double scales[] = {1, 1e-40, 1e60};
-        for (size_t i = 0; i < 3; i++) {
+        const double scales[] = {1e-40, 1e60};
+        for (size_t i = 0; i < 2; i++) {
             starg_mesh *hidden = disguise(context, mesh, scales[i]);
             starg_signature *second = describe(context, hidden, kind);
             assert_true(distance(context, first, second) < noise[k]);
@@ -499,7 +499,7 @@ static void memory_may_give_out(void **state) {
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
         size_t before = starg_context_live_blocks(context), failures = 0;
         starg_signature *signature = NULL;
-        for (;; failures++) {
+        for (;; failures += 1 + failures / 16) {
             left = failures;
             starg_status status =
                 starg_signature_create(context, mesh, (starg_signature_kind)kind, &signature);
