@@ -1,0 +1,482 @@
+/* Filling plane loops: areas, edges and turns of the triangles against those of the loops, for
+ * random rings with holes and islands in them, in random planes; and loops that make no sense. */
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/rng.h"
+#include "exact_oracle.h"
+#include "star/strict/cap.h"
+
+enum { POINTS_MOST = 1200, LOOPS_MOST = 90 };
+
+static const double TWO_PI = 6.283185307179586;
+
+/* Loops in a plane: (u, v) along two directions across the normal. */
+typedef struct drawing {
+    double normal[3], along[2][3], origin[3];
+    double points[3 * POINTS_MOST];
+    size_t point_count, loop_count, outlines;
+    uint32_t corners[POINTS_MOST], starts[LOOPS_MOST + 1];
+} drawing;
+
+/* ---- planes ---- */
+
+static void normalize(double a[3]) {
+    double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    for (int k = 0; k < 3; k++)
+        a[k] /= length;
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static drawing random_plane(starg_rng *rng) {
+    drawing d = {.point_count = 0};
+    double other[3];
+    for (int k = 0; k < 3; k++) {
+        d.normal[k] = 2 * starg_rng_unit(rng) - 1;
+        other[k] = 2 * starg_rng_unit(rng) - 1;
+        d.origin[k] = 2 * starg_rng_unit(rng) - 1;
+    }
+    normalize(d.normal);
+    cross(d.normal, other, d.along[0]);
+    normalize(d.along[0]);
+    cross(d.normal, d.along[0], d.along[1]);
+    return d;
+}
+
+/* One of the six sides of a cube: coordinates are as given, exactly. */
+static drawing straight_plane(int side) {
+    drawing d = {.point_count = 0};
+    int axis = side % 3;
+    bool back = side >= 3;
+    d.normal[axis] = back ? -1 : 1;
+    d.along[0][(axis + (back ? 2 : 1)) % 3] = 1;
+    d.along[1][(axis + (back ? 1 : 2)) % 3] = 1;
+    d.origin[axis] = 5;
+    return d;
+}
+
+/* ---- loops ---- */
+
+static void add_point(drawing *d, double u, double v) {
+    assert_true(d->point_count < POINTS_MOST);
+    for (int k = 0; k < 3; k++)
+        d->points[3 * d->point_count + (size_t)k] =
+            d->origin[k] + u * d->along[0][k] + v * d->along[1][k];
+    d->corners[d->point_count] = (uint32_t)d->point_count;
+    d->point_count++;
+}
+
+/* Points since the last loop become one. */
+static void end_loop(drawing *d, bool hole) {
+    assert_true(d->loop_count < LOOPS_MOST);
+    d->starts[++d->loop_count] = (uint32_t)d->point_count;
+    d->outlines += !hole;
+}
+
+/* A loop about (u, v) between the radii 0.7 and 1 times `radius`. */
+static void add_ring(drawing *d, starg_rng *rng, double u, double v, double radius, bool hole) {
+    size_t count = 6 + (size_t)starg_rng_below(rng, 9);
+    double phase = TWO_PI * starg_rng_unit(rng);
+    for (size_t i = 0; i < count; i++) {
+        double at = (double)i + 0.5 * (starg_rng_unit(rng) - 0.5);
+        double angle = phase + (hole ? -1 : 1) * TWO_PI * at / (double)count;
+        double r = radius * (0.7 + 0.3 * starg_rng_unit(rng));
+        add_point(d, u + r * cos(angle), v + r * sin(angle));
+    }
+    end_loop(d, hole);
+}
+
+/* A ring, one to three rings of the other sense in it, and so on. Corners of a ring are less than
+ * 94 degrees apart, so that a disc of 0.7 cos 47 degrees of the radius, at least, is inside. */
+static void add_nested(drawing *d, starg_rng *rng, double u, double v, double radius, int depth) {
+    add_ring(d, rng, u, v, radius, depth % 2 == 1);
+    if (depth == 3 || starg_rng_below(rng, 5) == 0)
+        return;
+    size_t count = 1 + (size_t)starg_rng_below(rng, 3);
+    double inner = 0.47 * radius, phase = TWO_PI * starg_rng_unit(rng);
+    if (count == 1) {
+        add_nested(d, rng, u, v, 0.9 * inner, depth + 1);
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        double angle = phase + TWO_PI * (double)i / (double)count;
+        add_nested(d, rng, u + 0.54 * inner * cos(angle), v + 0.54 * inner * sin(angle),
+                   0.44 * inner, depth + 1);
+    }
+}
+
+/* The order of loops, and where they start, are of no account. */
+static void shuffle_loops(drawing *d, starg_rng *rng) {
+    drawing old = *d;
+    size_t order[LOOPS_MOST];
+    for (size_t i = 0; i < d->loop_count; i++) {
+        size_t j = (size_t)starg_rng_below(rng, i + 1);
+        order[i] = order[j];
+        order[j] = i;
+    }
+    for (size_t i = 0; i < d->loop_count; i++) {
+        uint32_t first = old.starts[order[i]], count = old.starts[order[i] + 1] - first;
+        uint32_t shift = (uint32_t)starg_rng_below(rng, count);
+        for (uint32_t k = 0; k < count; k++)
+            d->corners[d->starts[i] + k] = old.corners[first + (k + shift) % count];
+        d->starts[i + 1] = d->starts[i] + count;
+    }
+}
+
+/* ---- what a filling must be ---- */
+
+/* Twice the area of a, b, c as seen against the normal. */
+static long double area_of(const drawing *d, uint32_t a, uint32_t b, uint32_t c) {
+    const double *p = d->points + 3 * a, *q = d->points + 3 * b, *r = d->points + 3 * c;
+    long double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        int u = (k + 1) % 3, v = (k + 2) % 3;
+        long double n = ((long double)q[u] - p[u]) * ((long double)r[v] - p[v]) -
+                        ((long double)q[v] - p[v]) * ((long double)r[u] - p[u]);
+        sum += d->normal[k] * n;
+    }
+    return sum;
+}
+
+static long double area_inside(const drawing *d) {
+    long double sum = 0;
+    for (size_t l = 0; l < d->loop_count; l++)
+        for (uint32_t i = d->starts[l] + 1; i + 1 < d->starts[l + 1]; i++)
+            sum += area_of(d, d->corners[d->starts[l]], d->corners[i], d->corners[i + 1]);
+    return sum;
+}
+
+/* Every edge of a loop once more the right way than the other; all others as often either way.
+ * `exactly`: no more than that. */
+static void check_edges(const drawing *d, const cap_indices *triangles, bool exactly) {
+    size_t n = d->point_count;
+    uint8_t *edges = calloc(n * n + 1, sizeof *edges);
+    int8_t *loops = calloc(n * n + 1, sizeof *loops);
+    assert_non_null(edges);
+    assert_non_null(loops);
+    for (size_t i = 0; i < triangles->count; i++) {
+        size_t a = triangles->data[i], b = triangles->data[i % 3 == 2 ? i - 2 : i + 1];
+        edges[n * a + b]++;
+    }
+    for (size_t l = 0; l < d->loop_count; l++)
+        for (uint32_t i = d->starts[l]; i < d->starts[l + 1]; i++) {
+            size_t a = d->corners[i];
+            size_t b = d->corners[i + 1 == d->starts[l + 1] ? d->starts[l] : i + 1];
+            loops[n * a + b]++;
+            loops[n * b + a]--;
+        }
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++) {
+            int there = edges[n * a + b], back = edges[n * b + a];
+            assert_int_equal(there - back, loops[n * a + b]);
+            if (exactly)
+                assert_true(there <= 1);
+        }
+    free(edges);
+    free(loops);
+}
+
+static int turn(const drawing *d, uint32_t a, uint32_t b, uint32_t c) {
+    int axis = 0;
+    for (int k = 1; k < 3; k++)
+        axis = fabs(d->normal[k]) > fabs(d->normal[axis]) ? k : axis;
+    int sign = oracle_orient2d(d->points + 3 * a, d->points + 3 * b, d->points + 3 * c,
+                               (axis + 1) % 3, (axis + 2) % 3);
+    return d->normal[axis] < 0 ? -sign : sign;
+}
+
+/* Triangles that all turn the right way and have the loops as their boundary fill what the loops
+ * wind around; the area says how often. */
+static void check_filling(const drawing *d, const cap_indices *triangles) {
+    long double sum = 0, inside = area_inside(d);
+    assert_int_equal(triangles->count % 3, 0);
+    assert_int_equal(triangles->count / 3,
+                     d->point_count + 2 * (d->loop_count - d->outlines) - 2 * d->outlines);
+    for (size_t i = 0; i < triangles->count; i += 3) {
+        const uint32_t *t = triangles->data + i;
+        assert_int_equal(turn(d, t[0], t[1], t[2]), 1);
+        long double area = area_of(d, t[0], t[1], t[2]);
+        assert_true(area > 0);
+        sum += area;
+    }
+    assert_true(inside > 0);
+    assert_true(fabsl(sum - inside) < 1e-12L * inside);
+    check_edges(d, triangles, true);
+}
+
+static bool fill(starg_context *context, const drawing *d, cap_indices *triangles) {
+    bool done = false;
+    test_ok(context, cap_fill(context, d->points, d->normal, d->corners, d->starts, d->loop_count,
+                              triangles, &done));
+    return done;
+}
+
+static void check_drawing(starg_context *context, const drawing *d) {
+    cap_indices triangles = {0};
+    assert_true(fill(context, d, &triangles));
+    check_filling(d, &triangles);
+    STARG_ARRAY_FREE(context, &triangles);
+}
+
+/* ---- tests ---- */
+
+static void test_rings(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t holes = 0, islands = 0;
+    for (uint64_t seed = 0; seed < 200; seed++) {
+        starg_rng rng = starg_rng_make(seed, 61, 0);
+        drawing d = random_plane(&rng);
+        size_t apart = 1 + (size_t)starg_rng_below(&rng, 2);
+        for (size_t i = 0; i < apart; i++)
+            add_nested(&d, &rng, 2.5 * (double)i, 0, 1, 0);
+        shuffle_loops(&d, &rng);
+        holes += d.loop_count - d.outlines;
+        islands += d.outlines - apart;
+        check_drawing(context, &d);
+    }
+    assert_true(holes > 300 && islands > 300);
+    test_context_free(context);
+}
+
+static void add_steps(drawing *d, const int (*steps)[2], size_t count, bool hole) {
+    for (size_t i = 0; i < count; i++)
+        add_point(d, steps[i][0], steps[i][1]);
+    end_loop(d, hole);
+}
+
+/* Teeth whose ends lie on two lines, above a bar with square holes and, in one of them, a square:
+ * many corners on one line, exactly. */
+static void add_comb(drawing *d, int teeth, int hole_at) {
+    static const int square[4][2] = {{0, 0}, {0, 4}, {4, 4}, {4, 0}};
+    int width = 8 * teeth;
+    add_point(d, 0, 0);
+    add_point(d, width - 4, 0);
+    for (int i = teeth - 1; i >= 0; i--) {
+        add_point(d, 8 * i + 4, i == teeth - 1 ? 40 : 8);
+        if (i < teeth - 1)
+            add_point(d, 8 * i + 4, 40);
+        add_point(d, 8 * i, 40);
+        if (i > 0)
+            add_point(d, 8 * i, 8);
+    }
+    end_loop(d, false);
+    for (int h = 0; h + 1 < teeth; h += hole_at) {
+        for (int i = 0; i < 4; i++)
+            add_point(d, 8 * h + 2 + square[i][0], 2 + square[i][1]);
+        end_loop(d, true);
+    }
+    for (int i = 3; i >= 0; i--)
+        add_point(d, 3 + square[i][0] / 2, 3 + square[i][1] / 2);
+    end_loop(d, false);
+}
+
+static void test_combs(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (int side = 0; side < 6; side++)
+        for (int teeth = 2; teeth < 12; teeth++) {
+            starg_rng rng = starg_rng_make((uint64_t)teeth, 62, 0);
+            drawing d = straight_plane(side);
+            add_comb(&d, teeth, 1 + teeth % 2);
+            shuffle_loops(&d, &rng);
+            check_drawing(context, &d);
+        }
+    test_context_free(context);
+}
+
+/* Corners in the middle of straight edges, as splits of facets leave them. */
+static void test_straight_corners(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (int side = 0; side < 6; side++)
+        for (int steps = 1; steps < 8; steps++) {
+            starg_rng rng = starg_rng_make((uint64_t)steps, 63, 0);
+            drawing d = straight_plane(side);
+            for (int hole = 0; hole < 2; hole++) {
+                static const int corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+                double size = hole == 1 ? 2 : 8;
+                for (int i = 0; i < 4; i++)
+                    for (int s = 0; s < steps; s++) {
+                        const int *a = corner[hole ? 3 - i : i];
+                        const int *b = corner[hole ? (6 - i) % 4 : (i + 1) % 4];
+                        add_point(&d, size * (a[0] + (b[0] - a[0]) * s / (double)steps),
+                                  size * (a[1] + (b[1] - a[1]) * s / (double)steps));
+                    }
+                end_loop(&d, hole == 1);
+            }
+            shuffle_loops(&d, &rng);
+            check_drawing(context, &d);
+        }
+    test_context_free(context);
+}
+
+/* A square is cut along its shorter diagonal, wherever the loop starts; a thin kite across. */
+static void test_delaunay(void **state) {
+    (void)state;
+    static const int kite[4][2] = {{0, 0}, {10, -1}, {20, 0}, {10, 1}};
+    starg_context *context = test_context(1);
+    for (int side = 0; side < 6; side++)
+        for (uint32_t shift = 0; shift < 4; shift++) {
+            drawing d = straight_plane(side);
+            cap_indices triangles = {0};
+            add_steps(&d, kite, 4, false);
+            for (uint32_t i = 0; i < 4; i++)
+                d.corners[i] = (i + shift) % 4;
+            assert_true(fill(context, &d, &triangles));
+            check_filling(&d, &triangles);
+            for (size_t t = 0; t < 2; t++) { /* both have the short diagonal's ends */
+                const uint32_t *k = triangles.data + 3 * t;
+                assert_true(k[0] == 1 || k[1] == 1 || k[2] == 1);
+                assert_true(k[0] == 3 || k[1] == 3 || k[2] == 3);
+            }
+            STARG_ARRAY_FREE(context, &triangles);
+        }
+    test_context_free(context);
+}
+
+/* ---- what makes no sense ---- */
+
+static void test_refused(void **state) {
+    (void)state;
+    static const int square[4][2] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+    static const int hole[4][2] = {{1, 1}, {1, 2}, {2, 2}, {2, 1}};
+    static const int away[4][2] = {{9, 1}, {9, 2}, {10, 2}, {10, 1}};
+    static const int bow[4][2] = {{0, 0}, {2, 2}, {2, 0}, {0, 2}};
+    starg_context *context = test_context(1);
+    cap_indices triangles = {0};
+    for (int side = 0; side < 6; side++)
+        for (int kind = 0; kind < 5; kind++) {
+            drawing d = straight_plane(side);
+            if (kind == 0) /* a hole alone */
+                add_steps(&d, hole, 4, true);
+            if (kind == 1 || kind == 2) /* a hole outside of everything */
+                add_steps(&d, square, 4, false);
+            if (kind == 1)
+                add_steps(&d, away, 4, true);
+            if (kind == 2) { /* two corners only */
+                add_steps(&d, hole, 4, true);
+                add_steps(&d, away, 2, true);
+            }
+            if (kind == 3) /* no area */
+                add_steps(&d, bow, 4, false);
+            if (kind == 4) { /* all in one line */
+                for (int i = 0; i < 4; i++)
+                    add_point(&d, i, 0);
+                end_loop(&d, false);
+            }
+            assert_false(fill(context, &d, &triangles));
+        }
+    /* nothing is filled by nothing */
+    drawing none = straight_plane(0);
+    triangles.count = 0;
+    assert_true(fill(context, &none, &triangles));
+    assert_int_equal(triangles.count, 0);
+    STARG_ARRAY_FREE(context, &triangles);
+    test_context_free(context);
+}
+
+/* Any corners in any order, some of them the same, on a lattice or not: refused or filled with
+ * triangles whose boundary is the loops. */
+static void test_senseless(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t filled = 0, refused = 0;
+    for (uint64_t seed = 0; seed < 3000; seed++) {
+        starg_rng rng = starg_rng_make(seed, 64, 0);
+        drawing d = seed % 2 == 0 ? random_plane(&rng) : straight_plane((int)(seed / 2 % 6));
+        size_t loops = 1 + (size_t)starg_rng_below(&rng, 4);
+        for (size_t l = 0; l < loops; l++) {
+            size_t count = 3 + (size_t)starg_rng_below(&rng, 8);
+            double size = 1 + (double)starg_rng_below(&rng, 4);
+            for (size_t i = 0; i < count; i++)
+                if (seed % 3 == 0)
+                    add_point(&d, (double)starg_rng_below(&rng, 5),
+                              (double)starg_rng_below(&rng, 5));
+                else
+                    add_point(&d, size * (starg_rng_unit(&rng) - 0.5),
+                              size * (starg_rng_unit(&rng) - 0.5));
+            end_loop(&d, false);
+        }
+        if (seed % 5 == 0) /* loops that meet in a vertex, or go through one twice */
+            d.corners[starg_rng_below(&rng, d.point_count)] =
+                (uint32_t)starg_rng_below(&rng, d.point_count);
+        cap_indices triangles = {0};
+        bool done = fill(context, &d, &triangles);
+        assert_int_equal(triangles.count % 3, 0);
+        for (size_t i = 0; i < triangles.count; i++)
+            assert_true(triangles.data[i] < d.point_count);
+        if (done)
+            check_edges(&d, &triangles, false);
+        filled += done;
+        refused += !done;
+        STARG_ARRAY_FREE(context, &triangles);
+    }
+    assert_true(filled > 300 && refused > 300);
+    test_context_free(context);
+}
+
+/* Triangles that are there already stay. */
+static void test_appends(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_rng rng = starg_rng_make(1, 65, 0);
+    drawing d = random_plane(&rng);
+    cap_indices once = {0}, twice = {0};
+    add_nested(&d, &rng, 0, 0, 1, 0);
+    assert_true(fill(context, &d, &once));
+    assert_true(fill(context, &d, &twice));
+    assert_true(fill(context, &d, &twice));
+    assert_int_equal(twice.count, 2 * once.count);
+    for (size_t i = 0; i < 2; i++)
+        assert_memory_equal(twice.data + i * once.count, once.data, once.count * sizeof *once.data);
+    STARG_ARRAY_FREE(context, &once);
+    STARG_ARRAY_FREE(context, &twice);
+    test_context_free(context);
+}
+
+static void test_memory(void **state) {
+    (void)state;
+    starg_rng rng = starg_rng_make(3, 66, 0);
+    drawing d = random_plane(&rng);
+    bool done = false;
+    size_t ration = 0;
+    for (starg_status status = STARG_ERROR_MEMORY; status != STARG_OK; ration++) {
+        size_t left = SIZE_MAX;
+        cap_indices triangles = {0};
+        starg_context *context = test_scarce_context(1, &left);
+        d.point_count = d.loop_count = d.outlines = 0;
+        rng = starg_rng_make(3, 66, 1);
+        add_nested(&d, &rng, 0, 0, 1, 0);
+        left = ration;
+        status = cap_fill(context, d.points, d.normal, d.corners, d.starts, d.loop_count,
+                          &triangles, &done);
+        if (status != STARG_OK)
+            assert_int_equal(status, STARG_ERROR_MEMORY);
+        STARG_ARRAY_FREE(context, &triangles);
+        test_context_free(context);
+    }
+    assert_true(done);
+    assert_in_range(ration, 5, 200);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rings),
+        cmocka_unit_test(test_combs),
+        cmocka_unit_test(test_straight_corners),
+        cmocka_unit_test(test_delaunay),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_senseless),
+        cmocka_unit_test(test_appends),
+        cmocka_unit_test(test_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
