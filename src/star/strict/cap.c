@@ -22,7 +22,7 @@
 typedef struct loop {
     uint32_t first, count;
     double area;   /* twice, signed */
-    int32_t owner; /* of a hole: its outline */
+    int32_t owner; /* of a hole: its outline, until a bridge leads to it */
 } loop;
 
 typedef struct filler {
@@ -250,24 +250,41 @@ done:
     return status;
 }
 
+/* Bridges from the polygon to the holes of outline i. A hole that sees nothing but other holes
+ * waits for one of them. */
+static starg_status bridge_holes(filler *f, size_t i, bool *done) {
+    starg_status status = STARG_OK;
+    bool any = true;
+    for (*done = false; any && !*done;) {
+        any = false;
+        *done = true;
+        for (size_t h = 0; h < f->loops.count; h++) {
+            loop *hole = &f->loops.data[h];
+            size_t a = 0, b = 0;
+            if (hole->area >= 0 || hole->owner != (int32_t)i)
+                continue;
+            if (!find_bridge(f, hole, &a, &b)) {
+                *done = false;
+                continue;
+            }
+            STARG_TRY(cross_bridge(f, hole, a, b));
+            hole->owner = -1; /* part of the polygon */
+            any = true;
+        }
+    }
+done:
+    return status;
+}
+
 /* Fills outline i with its holes. */
 static starg_status fill_outline(filler *f, size_t i, bool *done) {
     starg_status status = STARG_OK;
     f->polygon.count = 0;
     for (uint32_t k = 0; k < f->loops.data[i].count; k++)
         STARG_PUSH(f->context, "decompose", &f->polygon, f->corners[f->loops.data[i].first + k]);
-    for (size_t h = 0; h < f->loops.count; h++) {
-        const loop *hole = &f->loops.data[h];
-        size_t a = 0, b = 0;
-        if (hole->area >= 0 || hole->owner != (int32_t)i)
-            continue;
-        if (!find_bridge(f, hole, &a, &b)) {
-            *done = false;
-            goto done;
-        }
-        STARG_TRY(cross_bridge(f, hole, a, b));
-    }
-    STARG_TRY(fill_polygon(f));
+    STARG_TRY(bridge_holes(f, i, done));
+    if (*done)
+        STARG_TRY(fill_polygon(f));
 done:
     return status;
 }
