@@ -292,6 +292,87 @@ static void test_combs(void **state) {
     test_context_free(context);
 }
 
+/* ---- walls ---- */
+
+/* A hall of 40 x 40 with slits in its floor and thin walls that stand free in it. */
+typedef struct hall {
+    int slit_count, slits[10][2]; /* place, height */
+    int wall_count, walls[12][4]; /* x, y, width, height */
+} hall;
+
+static bool is_apart(const int *a, const int *b) {
+    return a[0] > b[0] + b[2] || b[0] > a[0] + a[2] || a[1] > b[1] + b[3] || b[1] > a[1] + a[3];
+}
+
+static void add_wall(hall *h, starg_rng *rng) {
+    int *wall = h->walls[h->wall_count], length = 1 + (int)starg_rng_below(rng, 30);
+    bool upright = starg_rng_below(rng, 2) == 0;
+    wall[2] = upright ? 1 : length;
+    wall[3] = upright ? length : 1;
+    wall[0] = 1 + (int)starg_rng_below(rng, (uint64_t)(39 - wall[2]));
+    wall[1] = 1 + (int)starg_rng_below(rng, (uint64_t)(39 - wall[3]));
+    bool apart = true;
+    for (int i = 0; i < h->wall_count; i++)
+        apart = apart && is_apart(wall, h->walls[i]);
+    for (int i = 0; i < h->slit_count; i++) {
+        const int slit[4] = {h->slits[i][0], 0, 1, h->slits[i][1]};
+        apart = apart && is_apart(wall, slit);
+    }
+    h->wall_count += apart;
+}
+
+static hall random_hall(starg_rng *rng) {
+    hall h = {.slit_count = 0};
+    for (int x = 2; x < 37 && h.slit_count < 10; x += 3 + (int)starg_rng_below(rng, 12)) {
+        h.slits[h.slit_count][0] = x;
+        h.slits[h.slit_count++][1] = 1 + (int)starg_rng_below(rng, 37);
+    }
+    for (int attempt = 0; attempt < 60 && h.wall_count < 12; attempt++)
+        add_wall(&h, rng);
+    return h;
+}
+
+static double shaken(starg_rng *rng, int at, double by) {
+    return at + by * (starg_rng_unit(rng) - 0.5);
+}
+
+static void draw_hall(drawing *d, const hall *h, starg_rng *rng, double by) {
+    static const int corner[4][2] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+    add_point(d, 0, 0);
+    for (int i = 0; i < h->slit_count; i++)
+        for (int k = 0; k < 4; k++)
+            add_point(d, shaken(rng, h->slits[i][0] + corner[k][0], by),
+                      shaken(rng, h->slits[i][1] * corner[k][1], by));
+    add_point(d, 40, 0);
+    add_point(d, 40, 40);
+    add_point(d, 0, 40);
+    end_loop(d, false);
+    for (int i = 0; i < h->wall_count; i++) {
+        for (int k = 0; k < 4; k++)
+            add_point(d, shaken(rng, h->walls[i][0] + h->walls[i][2] * corner[k][0], by),
+                      shaken(rng, h->walls[i][1] + h->walls[i][3] * corner[k][1], by));
+        end_loop(d, true);
+    }
+}
+
+/* The nearest corners do not see one another there; many are in one line, or nearly. */
+static void test_halls(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t walls = 0;
+    for (uint64_t seed = 0; seed < 300; seed++) {
+        starg_rng rng = starg_rng_make(seed, 67, 0);
+        drawing d = seed % 2 == 0 ? random_plane(&rng) : straight_plane((int)(seed / 2 % 6));
+        hall h = random_hall(&rng);
+        draw_hall(&d, &h, &rng, seed % 2 == 0 ? 0.5 : 0);
+        shuffle_loops(&d, &rng);
+        walls += (size_t)h.wall_count;
+        check_drawing(context, &d);
+    }
+    assert_true(walls > 1000);
+    test_context_free(context);
+}
+
 /* Corners in the middle of straight edges, as splits of facets leave them. */
 static void test_straight_corners(void **state) {
     (void)state;
@@ -469,13 +550,10 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rings),
-        cmocka_unit_test(test_combs),
-        cmocka_unit_test(test_straight_corners),
-        cmocka_unit_test(test_delaunay),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_senseless),
-        cmocka_unit_test(test_appends),
+        cmocka_unit_test(test_rings),     cmocka_unit_test(test_combs),
+        cmocka_unit_test(test_halls),     cmocka_unit_test(test_straight_corners),
+        cmocka_unit_test(test_delaunay),  cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_senseless), cmocka_unit_test(test_appends),
         cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
