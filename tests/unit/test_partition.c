@@ -1,0 +1,683 @@
+/* Partitions through what is done to them: built, joined, sliced, tidied up, cut to a plan. After
+ * every step the whole of it is checked by brute force (partition_oracle.h). */
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "exact_oracle.h"
+#include "partition_oracle.h"
+#include "star/strict/apply.h"
+#include "star/strict/improve.h"
+#include "star/strict/slice.h"
+#include "star/strict/tidy.h"
+#include "tetrahedra.h"
+
+enum { CUTS_MOST = 8 };
+
+static double volume_of_all(const partition *p) {
+    double sum = 0;
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        sum += partition_oracle_volume(p, i);
+    return sum;
+}
+
+static double height_of(const partition *p, const partition_plane *plane, uint32_t vertex) {
+    const double *q = partition_unit(p, vertex);
+    return plane->normal[0] * q[0] + plane->normal[1] * q[1] + plane->normal[2] * q[2] -
+           plane->offset;
+}
+
+static void replace(partition *p, partition *by) {
+    partition_free(p);
+    *p = *by;
+}
+
+/* ---- building ---- */
+
+/* Facets are the faces between labels and at the boundary, and nothing else. */
+static void check_facets(const partition *p, const starg_tetmesh *mesh, const uint32_t *labels) {
+    size_t expected = 0;
+    for (size_t slot = 0; slot < 4 * mesh->count; slot++) {
+        uint32_t beyond = mesh->neighbours[slot];
+        if (beyond == STARG_TETMESH_NONE)
+            expected += 2;
+        else
+            expected += labels[slot / 4] != labels[beyond];
+    }
+    assert_int_equal(2 * p->facets.count, expected);
+    assert_int_equal(p->first_points, p->points.count / 3);
+    for (size_t i = 0; i < p->unit.count; i++)
+        assert_true(fabs(p->unit.data[i]) <= 0.5);
+}
+
+static void test_create(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        starg_rng rng = starg_rng_make(seed, 72, 0);
+        starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + seed, seed % 4 == 1, 1);
+        size_t count = seed % 3 == 0 ? mesh->count : 1 + (size_t)starg_rng_below(&rng, mesh->count);
+        uint32_t *labels = calloc(mesh->count, sizeof *labels);
+        double *guards = calloc(3 * count, sizeof *guards);
+        partition p;
+        for (size_t t = 0; t < mesh->count; t++)
+            labels[t] = (uint32_t)(t < count ? t : starg_rng_below(&rng, count));
+        for (size_t i = 0; i < 3 * count; i++)
+            guards[i] = starg_rng_unit(&rng);
+        test_ok(context, partition_create(context, mesh, labels, guards, count, &p));
+        partition_oracle_check(&p);
+        check_facets(&p, mesh, labels);
+        assert_int_equal(p.pieces.count, count);
+        for (uint32_t i = 0; i < count; i++) {
+            assert_memory_equal(p.pieces.data[i].guard, guards + 3 * i, 3 * sizeof *guards);
+            assert_true(fabs(p.pieces.data[i].volume - partition_oracle_volume(&p, i)) < 1e-13);
+        }
+        double scale = ldexp(1, 3 * p.exponent);
+        assert_true(fabs(volume_of_all(&p) * scale - starg_tetmesh_volume(mesh)) < 1e-12 * scale);
+        partition_free(&p);
+        free(labels);
+        free(guards);
+        starg_tetmesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
+static void test_gather(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    partition p = claimed_sample(context, "torus", 1500);
+    partition_oracle_check_guards(&p);
+    for (uint32_t i = 0; i < p.pieces.count; i++) {
+        partition_triangles triangles = {0};
+        test_ok(context, partition_gather(&p, i, &triangles));
+        assert_int_equal(triangles.count, 3 * (p.start.data[i + 1] - p.start.data[i]));
+        double volume = partition_volume(&p, triangles.data, triangles.count / 3);
+        assert_true(volume > 0);
+        assert_true(fabs(volume - partition_oracle_volume(&p, i)) < 1e-13);
+        const double *guard = p.pieces.data[i].guard;
+        assert_true(partition_certify(&p, triangles.data, triangles.count / 3, guard));
+        /* not by a guard behind one of the facets, nor without one of them */
+        double behind[3];
+        for (int k = 0; k < 3; k++)
+            behind[k] = 3 * partition_point(&p, triangles.data[0])[k] - 2 * guard[k];
+        assert_false(partition_certify(&p, triangles.data, triangles.count / 3, behind));
+        STARG_ARRAY_FREE(context, &triangles);
+    }
+    partition_free(&p);
+    test_context_free(context);
+}
+
+/* ---- slicing ---- */
+
+/* Slices a copy; true when that was done. */
+static bool slice(const partition *p, uint32_t low, const partition_plane *plane, partition *out) {
+    bool done = false;
+    piece fresh = {.volume = 0};
+    starg_status status = STARG_OK;
+    *out = partition_oracle_copy(p);
+    STARG_PUSH(p->context, PARTITION_STAGE, &out->pieces, fresh);
+    STARG_TRY(partition_slice(out, low, (uint32_t)out->pieces.count - 1, plane, &done));
+done:
+    test_ok(p->context, status);
+    if (done)
+        test_ok(p->context, partition_build_index(out));
+    else
+        partition_free(out);
+    return done;
+}
+
+/* The two sides of a slice are on their sides, and the facets between them along the plane. */
+static void check_slice(const partition *before, const partition *p, uint32_t low,
+                        const partition_plane *plane) {
+    uint32_t high = (uint32_t)p->pieces.count - 1;
+    double whole = partition_oracle_volume(before, low), parts[2];
+    size_t cap = 0;
+    for (size_t i = 0; i < 2 * p->facets.count; i++) {
+        const facet *f = &p->facets.data[i / 2];
+        uint32_t owner = f->side[i % 2];
+        bool between = f->side[FACET_INNER] == low && f->side[FACET_OUTER] == high;
+        if (owner != low && owner != high)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            double height = height_of(p, plane, f->corners[k]);
+            assert_true(owner == low ? height < 1e-13 : height > -1e-13);
+            if (between)
+                assert_true(fabs(height) < 1e-13);
+        }
+        if (between)
+            assert_memory_equal(&p->planes.data[f->plane], plane, sizeof *plane);
+        cap += between;
+    }
+    /* parts of the piece that did not hang together may be parted without a cut */
+    assert_true(cap > 0 || p->facets.count == before->facets.count);
+    parts[0] = partition_oracle_volume(p, low);
+    parts[1] = partition_oracle_volume(p, high);
+    assert_true(parts[0] > -1e-15 && parts[1] > -1e-15);
+    assert_true(fabs(parts[0] + parts[1] - whole) < 1e-12);
+    for (uint32_t i = 0; i < before->pieces.count; i++)
+        if (i != low)
+            assert_true(fabs(partition_oracle_volume(before, i) - partition_oracle_volume(p, i)) <
+                        1e-13);
+}
+
+/* Many planes one after the other, some through pieces and some through what they have left. */
+static void slice_often(const partition *first, uint64_t seed, size_t planes, size_t least) {
+    starg_rng rng = starg_rng_make(seed, 73, 0);
+    partition p = partition_oracle_copy(first), next;
+    double whole = volume_of_all(first);
+    size_t done = 0;
+    for (size_t i = 0; i < planes; i++) {
+        uint32_t low = (uint32_t)starg_rng_below(&rng, p.pieces.count);
+        partition_plane plane = random_plane_across(&p, low, &rng);
+        if (!slice(&p, low, &plane, &next))
+            continue;
+        partition_oracle_check(&next);
+        check_slice(&p, &next, low, &plane);
+        replace(&p, &next);
+        done++;
+    }
+    assert_true(done >= least);
+    assert_true(fabs(volume_of_all(&p) - whole) < 1e-12);
+    partition_oracle_check_surface(first, &p);
+    partition_free(&p);
+}
+
+static void test_slices_of_samples(void **state) {
+    (void)state;
+    static const char *const names[] = {"horse", "knot", "plate", "shell", "gallery"};
+    starg_context *context = test_context(1);
+    for (uint64_t i = 0; i < sizeof names / sizeof *names; i++) {
+        partition p = claimed_sample(context, names[i], 1500);
+        slice_often(&p, i, 30, 22);
+        /* as one piece, of which planes cut many loops at once */
+        uint32_t *all = calloc(p.pieces.count, sizeof *all);
+        for (uint32_t k = 0; k < p.pieces.count; k++)
+            all[k] = k;
+        partition_join(&p, all, p.pieces.count);
+        p.pieces.count = 1;
+        test_ok(context, partition_build_index(&p));
+        partition_oracle_check(&p);
+        slice_often(&p, i, 30, 26);
+        free(all);
+        partition_free(&p);
+    }
+    test_context_free(context);
+}
+
+static void test_slices_of_hulls(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        partition p = random_hull(context, seed, 5 + 3 * (size_t)seed);
+        slice_often(&p, seed, 40, 38);
+        partition_free(&p);
+    }
+    test_context_free(context);
+}
+
+/* No plane through a vertex, or nearly, and none that passes the piece by. */
+static void test_refused_planes(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    partition p = random_hull(context, 4, 20), next;
+    starg_rng rng = starg_rng_make(1, 74, 0);
+    size_t cut = 0;
+    for (uint32_t v = 0; v < p.points.count / 3; v++) {
+        partition_plane plane = random_plane_across(&p, 0, &rng);
+        plane.offset = 0;
+        double at = height_of(&p, &plane, v), lowest = INFINITY, highest = -INFINITY, gap = 1;
+        for (uint32_t w = 0; w < p.points.count / 3; w++) {
+            double height = height_of(&p, &plane, w);
+            lowest = fmin(lowest, height);
+            highest = fmax(highest, height);
+            gap = w == v ? gap : fmin(gap, fabs(height - at));
+        }
+        static const double near[] = {0, 1e-16, -1e-16, 9e-10, -9e-10};
+        for (size_t i = 0; i < sizeof near / sizeof *near; i++) {
+            plane.offset = at + near[i];
+            assert_false(slice(&p, 0, &plane, &next));
+        }
+        plane.offset = lowest - 0.01;
+        assert_false(slice(&p, 0, &plane, &next));
+        plane.offset = highest + 0.01;
+        assert_false(slice(&p, 0, &plane, &next));
+        plane.offset = at + 1e-8;
+        if (gap < 1e-6 || at == highest)
+            continue;
+        assert_true(slice(&p, 0, &plane, &next));
+        partition_oracle_check(&next);
+        check_slice(&p, &next, 0, &plane);
+        partition_free(&next);
+        cut++;
+    }
+    assert_true(cut > 5);
+    partition_free(&p);
+    test_context_free(context);
+}
+
+/* Two pieces that share an edge only: cutting one splits the facets of both. */
+static void test_edge_contact(void **state) {
+    (void)state;
+    static const double vertices[] = {0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, -1, 0, 0, -1, -1, 0};
+    static const uint32_t tetrahedra[] = {0, 2, 3, 1, 0, 4, 5, 1};
+    static const double guards[] = {0.5, 0.25, 0.25, -0.5, -0.25, 0.25};
+    static const uint32_t labels[] = {0, 1}, both[] = {0, 0};
+    const partition_plane plane = {{0.6, 0, 0.8}, 0.01};
+    starg_context *context = test_context(1);
+    starg_tetmesh *mesh = NULL;
+    partition p, next;
+    test_ok(context, starg_tetmesh_create(context, vertices, 6, tetrahedra, 2, NULL, &mesh));
+    test_ok(context, partition_create(context, mesh, labels, guards, 2, &p));
+    assert_int_equal(p.facets.count, 8);
+    assert_true(slice(&p, 0, &plane, &next));
+    partition_oracle_check(&next);
+    check_slice(&p, &next, 0, &plane);
+    assert_int_equal(next.start.data[2] - next.start.data[1], 6); /* two of four split */
+    partition_free(&next);
+    partition_free(&p);
+    /* as one piece it is no manifold along that edge */
+    test_ok(context, partition_create(context, mesh, both, guards, 1, &p));
+    assert_false(slice(&p, 0, &plane, &next));
+    partition_free(&p);
+    starg_tetmesh_free(mesh);
+    test_context_free(context);
+}
+
+/* ---- joining ---- */
+
+static void test_join(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    partition p = random_crumbs(context, 9, 20);
+    starg_rng rng = starg_rng_make(1, 75, 0);
+    double whole = volume_of_all(&p);
+    while (p.pieces.count > 1) {
+        uint32_t last = (uint32_t)p.pieces.count - 1;
+        uint32_t pair[2] = {(uint32_t)starg_rng_below(&rng, last),
+                            (uint32_t)starg_rng_below(&rng, p.pieces.count)};
+        if (pair[0] == pair[1])
+            continue;
+        double joint = partition_oracle_volume(&p, pair[0]) + partition_oracle_volume(&p, pair[1]);
+        double moved = partition_oracle_volume(&p, last);
+        partition_join(&p, pair, 2);
+        partition_renumber(&p, last, pair[1]);
+        test_ok(context, partition_build_index(&p));
+        partition_oracle_check(&p);
+        assert_true(fabs(partition_oracle_volume(&p, pair[0]) - joint) < 1e-13);
+        if (pair[1] != last)
+            assert_true(partition_oracle_volume(&p, pair[1]) == moved);
+    }
+    assert_true(fabs(volume_of_all(&p) - whole) < 1e-12);
+    for (size_t i = 0; i < p.facets.count; i++)
+        assert_int_equal(p.facets.data[i].side[FACET_OUTER], PARTITION_OUTSIDE);
+    partition_free(&p);
+    test_context_free(context);
+}
+
+/* ---- tidying up ---- */
+
+/* Every piece of a convex solid is convex: the mean of its corners is in its kernel. */
+static void place_guards(partition *p) {
+    for (uint32_t i = 0; i < p->pieces.count; i++) {
+        piece *own = &p->pieces.data[i];
+        double n = 0;
+        *own = (piece){.volume = partition_oracle_volume(p, i), .stamp = ++p->stamps};
+        for (uint32_t k = p->start.data[i]; k < p->start.data[i + 1]; k++, n += 3)
+            for (int c = 0; c < 9; c++)
+                own->guard[c % 3] +=
+                    partition_point(p, p->facets.data[p->index.data[k] / 2].corners[c / 3])[c % 3];
+        for (int k = 0; k < 3; k++)
+            own->guard[k] /= n;
+    }
+}
+
+/* Cut i has parted piece i + 1 from piece lows[i]. */
+static partition sliced_hull(starg_context *context, uint64_t seed, size_t cuts, uint32_t *lows) {
+    starg_rng rng = starg_rng_make(seed, 76, 0);
+    partition p = random_hull(context, seed, 6 + 2 * (size_t)(seed % 10)), next;
+    while (p.pieces.count <= cuts) {
+        uint32_t low = (uint32_t)starg_rng_below(&rng, p.pieces.count);
+        partition_plane plane = random_plane_across(&p, low, &rng);
+        if (!slice(&p, low, &plane, &next))
+            continue;
+        lows[p.pieces.count - 1] = low;
+        replace(&p, &next);
+    }
+    place_guards(&p);
+    return p;
+}
+
+/* Takes the last cut back. */
+static void undo_cut(partition *p, const uint32_t *lows) {
+    uint32_t last = (uint32_t)p->pieces.count - 1;
+    const uint32_t pair[2] = {lows[last - 1], last};
+    partition_join(p, pair, 2);
+    partition_renumber(p, last, last);
+    test_ok(p->context, partition_build_index(p));
+    place_guards(p);
+}
+
+/* Random points, off all facets with probability one, lie in the pieces that they lay in. */
+static void check_same_pieces(const partition *a, const partition *b, starg_rng *rng, int points) {
+    assert_int_equal(a->pieces.count, b->pieces.count);
+    for (uint32_t i = 0; i < a->pieces.count; i++)
+        assert_true(fabs(partition_oracle_volume(a, i) - partition_oracle_volume(b, i)) < 1e-13);
+    for (int i = 0; i < points; i++) {
+        double q[3];
+        for (int k = 0; k < 3; k++)
+            q[k] = starg_rng_unit(rng) - 0.5;
+        assert_int_equal(partition_oracle_locate(a, q), partition_oracle_locate(b, q));
+    }
+}
+
+/* Cut after cut is taken back and tidied up: no more is left than if it had never been. */
+static void undo_all(starg_context *context, uint64_t seed, size_t cuts) {
+    starg_rng rng = starg_rng_make(seed, 77, 0);
+    uint32_t lows[CUTS_MOST];
+    partition first = random_hull(context, seed, 6 + 2 * (size_t)(seed % 10));
+    partition p = sliced_hull(context, seed, cuts, lows);
+    partition_oracle_check_guards(&p);
+    for (size_t left = cuts + 1; left-- > 0;) {
+        partition fresh = sliced_hull(context, seed, left, lows);
+        partition before = partition_oracle_copy(&p);
+        test_ok(context, tidy(&p));
+        partition_oracle_check_guards(&p);
+        partition_oracle_check_surface(&first, &p);
+        check_same_pieces(&before, &p, &rng, 20);
+        check_same_pieces(&fresh, &p, &rng, 20);
+        test_ok(context, tidy(&fresh));
+        assert_int_equal(p.facets.count, fresh.facets.count);
+        assert_int_equal(p.points.count, fresh.points.count);
+        partition_free(&before);
+        partition_free(&fresh);
+        if (left > 0)
+            undo_cut(&p, lows);
+    }
+    assert_int_equal(p.facets.count, first.facets.count);
+    assert_int_equal(p.points.count, first.points.count);
+    assert_memory_equal(p.points.data, first.points.data, p.points.count * sizeof(double));
+    partition_free(&first);
+    partition_free(&p);
+}
+
+static void test_tidy_undoes_cuts(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t seed = 0; seed < 30; seed++)
+        undo_all(context, seed, 1 + (size_t)(seed % CUTS_MOST));
+    test_context_free(context);
+}
+
+/* Once is enough. */
+static void test_tidy_twice(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        uint32_t lows[CUTS_MOST];
+        partition p = sliced_hull(context, seed, CUTS_MOST, lows), once;
+        test_ok(context, tidy(&p));
+        once = partition_oracle_copy(&p);
+        test_ok(context, tidy(&p));
+        assert_int_equal(p.facets.count, once.facets.count);
+        assert_int_equal(p.points.count, once.points.count);
+        partition_free(&once);
+        partition_free(&p);
+    }
+    test_context_free(context);
+}
+
+/* A guard that does not see its piece: nothing is changed. */
+static void test_tidy_refuses(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    uint32_t lows[CUTS_MOST];
+    partition p = sliced_hull(context, 3, 3, lows);
+    undo_cut(&p, lows);
+    p.pieces.data[0].guard[0] += 100;
+    partition before = partition_oracle_copy(&p);
+    test_ok(context, tidy(&p));
+    assert_true(partition_oracle_same(&before, &p));
+    partition_free(&before);
+    /* with its own guard something would have been */
+    place_guards(&p);
+    size_t facets = p.facets.count;
+    test_ok(context, tidy(&p));
+    assert_true(p.facets.count < facets);
+    partition_free(&p);
+    test_context_free(context);
+}
+
+/* Partitions as the search leaves them. */
+static void test_tidy_after_search(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    uint64_t joins = 0, recuts = 0, moves = 0;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        starg_rng rng = starg_rng_make(seed, 78, 0);
+        partition first = random_crumbs(context, seed, 30);
+        partition p = partition_oracle_copy(&first);
+        const improve_options options = {.trials = 320, .enough = 1};
+        improve_report report;
+        test_ok(context, improve(&p, &options, &report));
+        assert_int_equal(p.pieces.count, first.pieces.count - report.joins - report.recuts);
+        joins += report.joins, recuts += report.recuts, moves += report.moves;
+        partition_oracle_check_guards(&p);
+        partition before = partition_oracle_copy(&p);
+        test_ok(context, tidy(&p));
+        partition_oracle_check_guards(&p);
+        partition_oracle_check_surface(&first, &p);
+        check_same_pieces(&before, &p, &rng, 20);
+        assert_true(p.facets.count <= before.facets.count);
+        partition_free(&before);
+        partition_free(&first);
+        partition_free(&p);
+    }
+    assert_true(joins > 100 && recuts > 0 && moves > 0);
+    test_context_free(context);
+}
+
+/* ---- plans ---- */
+
+/* A random piece and pieces next to it. */
+static size_t choose(const partition *p, starg_rng *rng, uint32_t pieces[APPLY_MOST]) {
+    size_t count = 1, wanted = 2 + (size_t)starg_rng_below(rng, APPLY_MOST - 1);
+    pieces[0] = (uint32_t)starg_rng_below(rng, p->pieces.count);
+    for (int attempt = 0; attempt < 200 && count < wanted; attempt++) {
+        const facet *f = &p->facets.data[starg_rng_below(rng, p->facets.count)];
+        for (size_t i = 0; i < count; i++)
+            for (int side = 0; side < 2; side++) {
+                uint32_t other = f->side[1 - side];
+                bool known = other == PARTITION_OUTSIDE;
+                for (size_t k = 0; k < count; k++)
+                    known = known || pieces[k] == other;
+                if (f->side[side] == pieces[i] && !known && count < wanted)
+                    pieces[count++] = other;
+            }
+    }
+    return count;
+}
+
+/* Pieces that the plan does not name are as they were, whatever their number is now. */
+static void check_others(const partition *before, const partition *p, const uint32_t *pieces,
+                         size_t count, const apply_effect *effect) {
+    for (uint32_t i = 0; i < before->pieces.count; i++) {
+        uint32_t at = i;
+        bool named = false;
+        for (size_t k = 0; k < count; k++)
+            named = named || pieces[k] == i;
+        if (named)
+            continue;
+        for (size_t k = 0; k < effect->move_count; k++)
+            if (effect->moves[k].from == at)
+                at = effect->moves[k].to;
+        assert_memory_equal(&p->pieces.data[at], &before->pieces.data[i], sizeof(piece));
+        assert_true(fabs(partition_oracle_volume(p, at) - partition_oracle_volume(before, i)) <
+                    1e-13);
+    }
+}
+
+static void check_applied(const partition *before, const partition *p, const uint32_t *pieces,
+                          size_t count, int parts, const apply_effect *effect) {
+    partition_oracle_check_guards(p);
+    assert_int_equal(p->pieces.count, before->pieces.count - count + (size_t)parts);
+    check_others(before, p, pieces, count, effect);
+    size_t fresh = 0;
+    for (size_t i = 0; i < p->pieces.count; i++)
+        if (p->pieces.data[i].stamp > before->stamps) {
+            assert_true(p->pieces.data[i].radius >= 4e-6);
+            fresh++;
+        }
+    assert_int_equal(fresh, parts);
+    assert_true(fabs(volume_of_all(p) - volume_of_all(before)) < 1e-12);
+}
+
+/* Plans of planes at random, which seldom do, and those that the search finds. */
+static void test_plans(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    region_scratch scratch = {.context = context};
+    region r = {.vertices = {0}};
+    size_t done[2] = {0}, refused = 0, uneven = 0;
+    for (uint64_t n = 0; n < 8; n++) {
+        starg_rng rng = starg_rng_make(n, 79, 0);
+        partition first = random_crumbs(context, n, 25);
+        partition p = partition_oracle_copy(&first);
+        for (int trial = 0; trial < 60 && p.pieces.count > 2; trial++) {
+            uint32_t pieces[APPLY_MOST];
+            recut_plan plan = {.cuts = 0};
+            apply_effect effect;
+            size_t count = choose(&p, &rng, pieces);
+            if (count < 2)
+                continue;
+            bool found = trial % 3 == 0, same = starg_rng_below(&rng, 4) == 0;
+            int parts = count == 2 || same ? 2 : (int)count - 1;
+            if (found) {
+                plan.cuts = parts - 1;
+                for (int i = 0; i < plan.cuts; i++)
+                    plan.planes[i] = random_plane_across(&p, pieces[i], &rng);
+            } else {
+                const recut_options options = {1e-5, 24, 16, same};
+                test_ok(context, region_gather(&p, pieces, count, &scratch, &r));
+                test_ok(context, recut_find(&r, parts, &options, &rng, &scratch, &plan, &found));
+            }
+            if (!found)
+                continue;
+            assert_int_equal(plan.cuts, parts - 1);
+            partition before = partition_oracle_copy(&p);
+            /* first with a bound that no new pieces reach */
+            test_ok(context, apply_plan(&p, pieces, count, &plan, 4e-6, 1, &scratch, &effect));
+            assert_false(effect.done);
+            assert_true(partition_oracle_same(&before, &p));
+            uneven++;
+            test_ok(context, apply_plan(&p, pieces, count, &plan, 4e-6, -1, &scratch, &effect));
+            if (effect.done)
+                check_applied(&before, &p, pieces, count, parts, &effect);
+            else
+                assert_true(partition_oracle_same(&before, &p));
+            done[trial % 3 != 0] += effect.done;
+            refused += !effect.done;
+            partition_free(&before);
+        }
+        partition_oracle_check_surface(&first, &p);
+        partition_free(&first);
+        partition_free(&p);
+    }
+    assert_true(done[0] > 20 && done[1] > 60 && refused > 30 && uneven > 100);
+    region_free(context, &r);
+    region_scratch_free(&scratch);
+    test_context_free(context);
+}
+
+/* Any two neighbours are one piece again exactly if they have a kernel. */
+static void test_joins(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    region_scratch scratch = {.context = context};
+    size_t joined = 0, refused = 0;
+    for (uint64_t n = 0; n < 6; n++) {
+        partition p = random_crumbs(context, n, 20 + 4 * (size_t)n);
+        for (size_t i = 0; i < p.facets.count; i++) {
+            uint32_t a = p.facets.data[i].side[i % 2], b = p.facets.data[i].side[1 - i % 2];
+            bool done = true;
+            if (a == PARTITION_OUTSIDE || b == PARTITION_OUTSIDE)
+                continue;
+            partition before = partition_oracle_copy(&p);
+            test_ok(context, apply_join(&p, a, b, 4e-6, &scratch, &done));
+            if (done) {
+                uint32_t last = (uint32_t)before.pieces.count - 1;
+                const apply_effect effect = {true, 1, {{last, b}}};
+                const uint32_t pair[2] = {a, b};
+                check_applied(&before, &p, pair, 2, 1, &effect);
+                joined++;
+            } else {
+                assert_true(partition_oracle_same(&before, &p));
+                refused++;
+            }
+            partition_free(&before);
+        }
+        partition_free(&p);
+    }
+    assert_true(joined > 100 && refused > 50);
+    region_scratch_free(&scratch);
+    test_context_free(context);
+}
+
+/* ---- memory ---- */
+
+/* Everything in one go on a small hull; true when the ration was enough. */
+static bool run_rationed(size_t ration) {
+    size_t left = SIZE_MAX;
+    starg_context *context = test_scarce_context(1, &left);
+    uint32_t lows[CUTS_MOST];
+    partition p = sliced_hull(context, 2, 3, lows);
+    region_scratch scratch = {.context = context};
+    starg_rng rng = starg_rng_make(1, 80, 0);
+    uint32_t pieces[APPLY_MOST];
+    size_t count = choose(&p, &rng, pieces);
+    const recut_plan plan = {.cuts = 1, .planes = {random_plane_across(&p, pieces[0], &rng)}};
+    apply_effect effect = {.done = false};
+    bool done = false;
+    left = ration;
+    starg_status status = apply_plan(&p, pieces, count, &plan, 4e-6, -1, &scratch, &effect);
+    if (status == STARG_OK)
+        status = tidy(&p);
+    if (status == STARG_OK)
+        status = apply_join(&p, 0, 1, 4e-6, &scratch, &done);
+    left = SIZE_MAX;
+    if (status != STARG_OK)
+        assert_int_equal(status, STARG_ERROR_MEMORY);
+    region_scratch_free(&scratch);
+    partition_free(&p);
+    test_context_free(context);
+    return status == STARG_OK && effect.done;
+}
+
+static void test_memory(void **state) {
+    (void)state;
+    size_t ration = 0;
+    while (ration < 1000 && !run_rationed(ration))
+        ration++;
+    assert_in_range(ration, 30, 999);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_create),
+        cmocka_unit_test(test_gather),
+        cmocka_unit_test(test_slices_of_samples),
+        cmocka_unit_test(test_slices_of_hulls),
+        cmocka_unit_test(test_refused_planes),
+        cmocka_unit_test(test_edge_contact),
+        cmocka_unit_test(test_join),
+        cmocka_unit_test(test_tidy_undoes_cuts),
+        cmocka_unit_test(test_tidy_twice),
+        cmocka_unit_test(test_tidy_refuses),
+        cmocka_unit_test(test_tidy_after_search),
+        cmocka_unit_test(test_plans),
+        cmocka_unit_test(test_joins),
+        cmocka_unit_test(test_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
