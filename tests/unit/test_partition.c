@@ -109,6 +109,42 @@ static void test_gather(void **state) {
     test_context_free(context);
 }
 
+/* Inside is not enough, nor is to see all of it when that is there twice. */
+static void test_certify(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t certified = 0, others = 0;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        partition p = random_crumbs(context, seed, 5 + (size_t)seed);
+        partition_triangles triangles = {0};
+        uint32_t all[200];
+        for (uint32_t i = 0; i < p.pieces.count; i++)
+            all[i] = i;
+        partition_join(&p, all, p.pieces.count);
+        test_ok(context, partition_build_index(&p));
+        test_ok(context, partition_gather(&p, 0, &triangles));
+        size_t count = triangles.count / 3;
+        test_ok(context, partition_gather(&p, 0, &triangles));
+        for (size_t i = 0; i < p.pieces.count; i++) {
+            const double *guard = p.pieces.data[i].guard;
+            bool sees = true;
+            for (size_t t = 0; t < count; t++)
+                sees = sees &&
+                       oracle_orient3d(partition_point(&p, triangles.data[3 * t]),
+                                       partition_point(&p, triangles.data[3 * t + 1]),
+                                       partition_point(&p, triangles.data[3 * t + 2]), guard) == 1;
+            assert_int_equal(partition_certify(&p, triangles.data, count, guard), sees);
+            assert_false(partition_certify(&p, triangles.data, 2 * count, guard));
+            certified += sees;
+            others += !sees;
+        }
+        STARG_ARRAY_FREE(context, &triangles);
+        partition_free(&p);
+    }
+    assert_true(certified > 5 && others > 5);
+    test_context_free(context);
+}
+
 /* ---- slicing ---- */
 
 /* Slices a copy; true when that was done. */
@@ -257,28 +293,51 @@ static void test_refused_planes(void **state) {
     test_context_free(context);
 }
 
-/* Two pieces that share an edge only: cutting one splits the facets of both. */
+/* Two cubes of six tetrahedra each that share an edge only. */
+static starg_tetmesh *touching_cubes(starg_context *context) {
+    static const int steps[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+                                    {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    static const uint32_t stride[3] = {1, 3, 9};
+    double vertices[54];
+    uint32_t tetrahedra[48];
+    starg_tetmesh *mesh = NULL;
+    for (size_t v = 0; v < 18; v++) {
+        vertices[3 * v] = (double)(v % 3);
+        vertices[3 * v + 1] = (double)(v / 3 % 3);
+        vertices[3 * v + 2] = (double)(v / 9);
+    }
+    for (size_t t = 0; t < 12; t++) {
+        uint32_t at = t < 6 ? 0 : stride[0] + stride[1];
+        for (size_t k = 0; k < 4; k++) {
+            tetrahedra[4 * t + k] = at;
+            at += k < 3 ? stride[steps[t % 6][k]] : 0;
+        }
+    }
+    test_ok(context, starg_tetmesh_create(context, vertices, 18, tetrahedra, 12, NULL, &mesh));
+    return mesh;
+}
+
+/* Cutting one piece splits facets of the other where they share an edge; where a piece touches
+ * itself in an edge it is not cut. */
 static void test_edge_contact(void **state) {
     (void)state;
-    static const double vertices[] = {0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, -1, 0, 0, -1, -1, 0};
-    static const uint32_t tetrahedra[] = {0, 2, 3, 1, 0, 4, 5, 1};
-    static const double guards[] = {0.5, 0.25, 0.25, -0.5, -0.25, 0.25};
-    static const uint32_t labels[] = {0, 1}, both[] = {0, 0};
+    static const double guards[] = {0.5, 0.5, 0.5, 1.5, 1.5, 0.5};
+    static const uint32_t labels[] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1}, one[12] = {0};
     const partition_plane plane = {{0.6, 0, 0.8}, 0.01};
     starg_context *context = test_context(1);
-    starg_tetmesh *mesh = NULL;
+    starg_tetmesh *mesh = touching_cubes(context);
     partition p, next;
-    test_ok(context, starg_tetmesh_create(context, vertices, 6, tetrahedra, 2, NULL, &mesh));
     test_ok(context, partition_create(context, mesh, labels, guards, 2, &p));
-    assert_int_equal(p.facets.count, 8);
-    assert_true(slice(&p, 0, &plane, &next));
-    partition_oracle_check(&next);
-    check_slice(&p, &next, 0, &plane);
-    assert_int_equal(next.start.data[2] - next.start.data[1], 6); /* two of four split */
-    partition_free(&next);
+    assert_int_equal(p.facets.count, 24);
+    for (uint32_t i = 0; i < 2; i++) {
+        assert_true(slice(&p, i, &plane, &next));
+        partition_oracle_check(&next);
+        check_slice(&p, &next, i, &plane);
+        assert_int_equal(next.start.data[2 - i] - next.start.data[1 - i], 14); /* two more */
+        partition_free(&next);
+    }
     partition_free(&p);
-    /* as one piece it is no manifold along that edge */
-    test_ok(context, partition_create(context, mesh, both, guards, 1, &p));
+    test_ok(context, partition_create(context, mesh, one, guards, 1, &p));
     assert_false(slice(&p, 0, &plane, &next));
     partition_free(&p);
     starg_tetmesh_free(mesh);
@@ -571,6 +630,10 @@ static void test_plans(void **state) {
             assert_false(effect.done);
             assert_true(partition_oracle_same(&before, &p));
             uneven++;
+            /* then with more room than there is anywhere */
+            test_ok(context, apply_plan(&p, pieces, count, &plan, 1, -1, &scratch, &effect));
+            assert_false(effect.done);
+            assert_true(partition_oracle_same(&before, &p));
             test_ok(context, apply_plan(&p, pieces, count, &plan, 4e-6, -1, &scratch, &effect));
             if (effect.done)
                 check_applied(&before, &p, pieces, count, parts, &effect);
@@ -586,6 +649,63 @@ static void test_plans(void **state) {
     }
     assert_true(done[0] > 20 && done[1] > 60 && refused > 30 && uneven > 100);
     region_free(context, &r);
+    region_scratch_free(&scratch);
+    test_context_free(context);
+}
+
+/* Is the guard strictly on the inner side of all of its piece's facets? */
+static bool sees_all(const partition *p, uint32_t number, const double guard[3]) {
+    bool sees = true;
+    for (uint32_t i = p->start.data[number]; i < p->start.data[number + 1]; i++) {
+        uint32_t k[3];
+        facet_outward(&p->facets.data[p->index.data[i] / 2], (int)(p->index.data[i] % 2), k);
+        sees = sees && oracle_orient3d(partition_point(p, k[0]), partition_point(p, k[1]),
+                                       partition_point(p, k[2]), guard) == 1;
+    }
+    return sees;
+}
+
+/* Moves a guard so near to the middle of a facet's edge that doubles can hardly tell. */
+static void move_guard(partition *p, uint32_t number, starg_rng *rng) {
+    uint32_t first = p->start.data[number], count = p->start.data[number + 1] - first;
+    const facet *f = &p->facets.data[p->index.data[first + starg_rng_below(rng, count)] / 2];
+    const double *a = partition_point(p, f->corners[0]), *b = partition_point(p, f->corners[1]);
+    for (double share = 0.5; share > 1e-17; share /= 2) {
+        double *guard = p->pieces.data[number].guard, next[3];
+        for (int k = 0; k < 3; k++)
+            next[k] = guard[k] + 0.5 * (0.5 * a[k] + 0.5 * b[k] - guard[k]);
+        if (!sees_all(p, number, next))
+            return;
+        memcpy(guard, next, sizeof next);
+    }
+}
+
+/* A split of a facet turns its parts by a rounding: a guard of another piece that is too near to it
+ * does not see them any more, and the plan is refused. */
+static void test_near_guards(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    region_scratch scratch = {.context = context};
+    size_t done = 0;
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        starg_rng rng = starg_rng_make(seed, 86, 0);
+        partition p = random_crumbs(context, seed, 10);
+        for (int trial = 0; trial < 20; trial++) {
+            uint32_t pieces[APPLY_MOST];
+            apply_effect effect;
+            choose(&p, &rng, pieces);
+            const recut_plan plan = {.cuts = 1,
+                                     .planes = {random_plane_across(&p, pieces[0], &rng)}};
+            for (uint32_t i = 0; i < p.pieces.count; i++)
+                move_guard(&p, i, &rng);
+            test_ok(context, apply_plan(&p, pieces, 2, &plan, 4e-6, -1, &scratch, &effect));
+            for (uint32_t i = 0; i < p.pieces.count; i++)
+                assert_true(sees_all(&p, i, p.pieces.data[i].guard));
+            done += effect.done;
+        }
+        partition_free(&p);
+    }
+    assert_true(done > 10);
     region_scratch_free(&scratch);
     test_context_free(context);
 }
@@ -666,6 +786,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create),
         cmocka_unit_test(test_gather),
+        cmocka_unit_test(test_certify),
         cmocka_unit_test(test_slices_of_samples),
         cmocka_unit_test(test_slices_of_hulls),
         cmocka_unit_test(test_refused_planes),
@@ -676,6 +797,7 @@ int main(void) {
         cmocka_unit_test(test_tidy_refuses),
         cmocka_unit_test(test_tidy_after_search),
         cmocka_unit_test(test_plans),
+        cmocka_unit_test(test_near_guards),
         cmocka_unit_test(test_joins),
         cmocka_unit_test(test_memory),
     };
