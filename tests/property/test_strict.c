@@ -77,6 +77,7 @@ static void check_verified(starg_context *context, const char *name, const starg
     assert_int_equal(d->strictly_star, d->piece_count);
     assert_true(d->visible_vertices == 1);
     assert_false(d->time_limited);
+    assert_int_equal(starg_tetmesh_turned(d->mesh), 0);
     for (size_t i = 0; i < d->piece_count; i++)
         assert_true(d->pieces[i].star && d->pieces[i].radius > 0);
 }

@@ -23,10 +23,13 @@ static double volume_of_all(const partition *p) {
     return sum;
 }
 
-static double height_of(const partition *p, const partition_plane *plane, uint32_t vertex) {
-    const double *q = partition_unit(p, vertex);
+static double height_at(const partition_plane *plane, const double q[3]) {
     return plane->normal[0] * q[0] + plane->normal[1] * q[1] + plane->normal[2] * q[2] -
            plane->offset;
+}
+
+static double height_of(const partition *p, const partition_plane *plane, uint32_t vertex) {
+    return height_at(plane, partition_unit(p, vertex));
 }
 
 static void replace(partition *p, partition *by) {
@@ -338,7 +341,23 @@ static void test_edge_contact(void **state) {
     }
     partition_free(&p);
     test_ok(context, partition_create(context, mesh, one, guards, 1, &p));
-    assert_false(slice(&p, 0, &plane, &next));
+    starg_rng rng = starg_rng_make(1, 87, 0);
+    size_t across = 0;
+    for (int trial = 0; trial < 60; trial++) {
+        static const double ends[2][3] = {{1, 1, 0}, {1, 1, 1}};
+        const partition_plane other = random_plane_across(&p, 0, &rng);
+        double heights[2];
+        for (int i = 0; i < 2; i++) {
+            double unit[3];
+            partition_to_unit(&p, ends[i], unit);
+            heights[i] = height_at(&other, unit);
+        }
+        if (heights[0] * heights[1] >= 0)
+            continue;
+        assert_false(slice(&p, 0, &other, &next));
+        across++;
+    }
+    assert_true(across > 10);
     partition_free(&p);
     starg_tetmesh_free(mesh);
     test_context_free(context);
