@@ -231,10 +231,14 @@ static void test_options(void **state) {
     }
     assert_true(last < first);
     starg_decompose_options options = small_effort(1024);
-    options.max_pieces = (first + last + 1) / 2;
+    options.max_pieces = first;
     starg_decomposition *d = decompose(context, solid, &options);
     check_verified(context, "max_pieces", starg_solid_mesh(solid), NULL, d);
-    assert_in_range(d->piece_count, last, options.max_pieces);
+    assert_int_equal(d->piece_count, first); /* no more is done than needed */
+    starg_decomposition_free(context, d);
+    options.max_pieces = last;
+    d = decompose(context, solid, &options);
+    assert_int_equal(d->piece_count, last);
     double hints[3 * 64];
     size_t count = 0;
     for (; count < d->piece_count && count < 64; count++)
@@ -246,6 +250,26 @@ static void test_options(void **state) {
     d = decompose(context, solid, &options);
     check_verified(context, "hints", starg_solid_mesh(solid), NULL, d);
     starg_decomposition_free(context, d);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* With no time at all the first division is the result, and says so, also where it has no more
+ * pieces than wanted: what could be joined is not. */
+static void test_time(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = test_sample(context, "labyrinth", 500);
+    for (size_t most = 0; most <= 1000; most += 1000) {
+        starg_decompose_options options = small_effort(64);
+        options.max_pieces = most;
+        starg_context_set_time_limit(context, 1e-9);
+        starg_decomposition *d = decompose(context, solid, &options);
+        assert_true(d->time_limited);
+        assert_int_equal(d->strictly_star, d->piece_count);
+        starg_decomposition_free(context, d);
+        starg_context_set_time_limit(context, 0);
+    }
     starg_solid_free(solid);
     test_context_free(context);
 }
@@ -355,6 +379,7 @@ int main(void) {
         cmocka_unit_test(test_shapes),
         cmocka_unit_test(test_scales),
         cmocka_unit_test(test_options),
+        cmocka_unit_test(test_time),
         cmocka_unit_test(test_random_tetrahedra),
         cmocka_unit_test(test_shared_tetrahedra),
         cmocka_unit_test(test_cancelled),
