@@ -294,16 +294,16 @@ static void tell_progress(const improver *m, const improve_options *options, uin
 static starg_status search(improver *m, const improve_options *options) {
     starg_status status = STARG_OK;
     improve_report *report = m->report;
-    while (m->p->pieces.count > options->enough && report->trials < options->trials) {
+    report->time_limited = m->p->pieces.count > 1 && starg_time_is_over(m->p->context);
+    while (!report->time_limited && m->p->pieces.count > options->enough &&
+           report->trials < options->trials) {
         uint64_t patience = PATIENCE * m->p->pieces.count + PATIENCE_LEAST;
         if (m->stalled >= patience)
-            break;
-        report->time_limited = starg_time_is_over(m->p->context);
-        if (report->time_limited)
             break;
         STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
         STARG_TRY(run_batch(m));
         tell_progress(m, options, patience);
+        report->time_limited = starg_time_is_over(m->p->context);
     }
 done:
     return status;
