@@ -87,7 +87,8 @@ STARG_API starg_status starg_decompose(starg_context *context, const starg_solid
                                        starg_decomposition **out);
 
 /* Cuts what a tetrahedral mesh fills. STRICT gives tetrahedra of its own in return, whose boundary
- * is that of the mesh, possibly subdivided; PAPER labels those of the mesh (a copy). */
+ * is that of the mesh, possibly subdivided; PAPER labels those of the mesh (a copy). Errors: as of
+ * starg_decompose, and MESH (STRICT: a tetrahedron so thin that no point is found in it). */
 STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
                                                const starg_decompose_options *options,
                                                starg_decomposition **out);

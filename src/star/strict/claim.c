@@ -353,11 +353,21 @@ static starg_status claim_from(claimer *c, uint32_t t, grower *grow, claims *out
         STARG_TRY(add_piece(out, c, best->guard, grow->set.data, grow->set.count));
         goto done;
     }
-    /* centroids rounded out of slivers: the kernel of one tetrahedron at least is known */
+    /* centroids rounded out of slivers: a point of one tetrahedron, if doubles name any */
     c->region[t] = ++c->regions;
     c->members.data[0] = t;
     c->members.count = 1;
     STARG_TRY(find_kernel(c, &kernel));
+    if (kernel.verdict != STARG_KERNEL_INTERIOR) {
+        const uint64_t number = t;
+        status = starg_fail_at(c->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
+                               &number, 1,
+                               "no point is found strictly inside of tetrahedron %u, which is as "
+                               "thin as its coordinates are precise; remove it or make the mesh "
+                               "again",
+                               (unsigned)t);
+        goto done;
+    }
     STARG_TRY(add_piece(out, c, kernel.guard, &t, 1));
 done:
     return status;
