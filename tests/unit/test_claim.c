@@ -194,6 +194,31 @@ static void test_hints(void **state) {
 
 /* ---- failures ---- */
 
+/* No double lies between one coordinate and the next: a tetrahedron without a point for a guard. */
+static void test_too_thin(void **state) {
+    (void)state;
+    static const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    static const uint32_t tetrahedron[] = {0, 1, 2, 3};
+    static const double steps[] = {5e-324, 0x1p-52}, origins[] = {0, 1};
+    starg_context *context = test_context(1);
+    for (int i = 0; i < 2; i++) {
+        double vertices[12];
+        starg_tetmesh *mesh = NULL;
+        claims c;
+        for (int k = 0; k < 12; k++)
+            vertices[k] = origins[i] + steps[i] * corners[k];
+        test_ok(context, starg_tetmesh_create(context, vertices, 4, tetrahedron, 1, NULL, &mesh));
+        assert_int_equal(claim_all(context, mesh, NULL, 0, &c), STARG_ERROR_MESH);
+        assert_null(c.labels);
+        const starg_error *error = starg_context_error(context);
+        assert_int_equal(error->element, STARG_ELEMENT_TETRAHEDRON);
+        assert_int_equal(error->index_count, 1);
+        assert_int_equal(error->indices[0], 0);
+        starg_tetmesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
 static void test_cancelled(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -230,9 +255,10 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random),    cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_whole),     cmocka_unit_test(test_hints),
-        cmocka_unit_test(test_cancelled), cmocka_unit_test(test_memory),
+        cmocka_unit_test(test_random),   cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_whole),    cmocka_unit_test(test_hints),
+        cmocka_unit_test(test_too_thin), cmocka_unit_test(test_cancelled),
+        cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
