@@ -12,6 +12,8 @@ const cli_command *const cli_commands[] = {
     &cli_command_guard,
     &cli_command_decompose,
     &cli_command_verify,
+    &cli_command_map,
+    &cli_command_morph,
     &cli_command_db,
     NULL,
 };

@@ -48,6 +48,8 @@ extern const cli_command cli_command_kernel;
 extern const cli_command cli_command_guard;
 extern const cli_command cli_command_decompose;
 extern const cli_command cli_command_verify;
+extern const cli_command cli_command_map;
+extern const cli_command cli_command_morph;
 extern const cli_command cli_command_db;
 extern const cli_command cli_command_db_create;
 extern const cli_command cli_command_db_add;

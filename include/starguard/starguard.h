@@ -11,6 +11,7 @@
 #include "guard.h"
 #include "kernel.h"
 #include "mesh.h"
+#include "morph.h"
 #include "picture.h"
 #include "repair.h"
 #include "sample.h"

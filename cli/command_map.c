@@ -1,0 +1,91 @@
+/* starguard map: where each vertex of one surface lies on another one. */
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/morph.h"
+
+typedef struct values {
+    const char *output, *landmarks;
+} values;
+
+static const cli_option options[] = {
+    CLI_OUTPUT_OPTION("MAP.json", "Where to write the map (docs/formats.md); '-' writes to "
+                                  "standard output."),
+    CLI_TEXT_OPTION("landmarks", landmarks, "FILE",
+                    "Vertices that shall meet: a pair a line, as two vertex numbers (from 0), a of "
+                    "A and one of B, or as six coordinates, of which the nearest vertices are "
+                    "taken."),
+};
+
+static starg_status prepare(cli_session *session, void *data) {
+    const values *v = data;
+    return cli_announce_needed(session, v->output, "MAP.json");
+}
+
+static void say_map(cli_session *session, const starg_map *map) {
+    static const char *const kinds[] = {"the same faces: vertex to vertex", "by the sphere",
+                                        "given"};
+    cli_say(session, "map           %s\n", kinds[map->kind]);
+    cli_say(session, "vertices      %zu\n", map->vertex_count);
+    cli_say(session, "landmarks     %zu (all met)\n", map->landmark_count);
+    cli_say(session, "stretch       %.4g (1 is best)\n", map->mean_stretch);
+    cli_say(session, "angles        %.4g (1 is best)\n", map->mean_conformal);
+}
+
+static void report_map(cli_session *session, const starg_map *map, const values *v) {
+    static const char *const kinds[] = {"same", "sphere", "given"};
+    json_t *report = session->report;
+    cli_put(session, report, "output", cli_json_text(v->output));
+    cli_put(session, report, "kind", json_string(kinds[map->kind]));
+    cli_put(session, report, "target", cli_json_text(session->operands[1]));
+    cli_put(session, report, "landmarks", json_integer((json_int_t)map->landmark_count));
+    cli_put(session, report, "mean_stretch", cli_json_real(map->mean_stretch));
+    cli_put(session, report, "mean_conformal", cli_json_real(map->mean_conformal));
+    cli_put(session, report, "collapsed", json_integer((json_int_t)map->collapsed));
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    starg_mesh *target = NULL;
+    starg_map *map = NULL;
+    uint32_t *pairs = NULL;
+    starg_map_options wanted;
+    starg_map_options_default(&wanted);
+    CLI_TRY(starg_mesh_read(session->context, session->operands[1], &target));
+    if (v->landmarks != NULL)
+        CLI_TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, target, &pairs,
+                                     &wanted.landmark_count));
+    wanted.landmarks = pairs;
+    CLI_TRY(starg_map_create(session->context, session->mesh, target, &wanted, &map));
+    CLI_TRY(
+        starg_map_write(session->context, map, cli_outputs_place(&session->outputs, v->output)));
+    say_map(session, map);
+    if (session->report != NULL)
+        report_map(session, map, v);
+done:
+    starg_map_free(session->context, map);
+    starg_landmarks_free(session->context, pairs);
+    starg_mesh_free(target);
+    return status;
+}
+
+const cli_command cli_command_map = {
+    .name = "map",
+    .usage = "A B [--landmarks FILE] -o MAP.json",
+    .summary = "a bijection between two surfaces, by landmarks or by their shapes",
+    .description =
+        "Finds for each vertex of A its place on B: a face and barycentric coordinates. Surfaces "
+        "with the same faces, as poses of one model have them, are mapped vertex to vertex. Others "
+        "must be closed, in one part and of genus 0: both are spread over the sphere, laid on one "
+        "another, and warped until the landmarks are met exactly. Without landmarks the surfaces' "
+        "principal axes decide, which can lay a head on a tail; a few landmarks help much.",
+    .examples = "# two poses, then two animals with landmarks\n"
+                "starguard map horse_0.off horse_1.off -o poses.json\n"
+                "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json",
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(2, 2),
+    .input = CLI_INPUT_MESH,
+    .prepare = prepare,
+    .run = run,
+};

@@ -1,0 +1,248 @@
+/* starguard morph: the shapes between two surfaces. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/morph.h"
+
+typedef struct values {
+    const char *output, *map, *landmarks;
+    uint64_t frames, candidates;
+    int method;
+} values;
+
+/* In the order of starg_morph_method. */
+static const char *const methods[] = {"star", "arap", "linear", "spherical", NULL};
+
+static const cli_option options[] = {
+    CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off and so on; it is made if it is not there."),
+    CLI_COUNT_OPTION("frames", frames, "N", 2, 10000,
+                     "Number of frames with both ends, evenly in time. Default 21."),
+    CLI_CHOICE_OPTION(
+        "method", method, methods, "star|arap|linear|spherical",
+        "star (default): pieces about guards that correspond; arap: as rigid as "
+        "possible without guards; linear: each vertex on a line; spherical: spherical "
+        "coordinates about the guards."),
+    CLI_TEXT_OPTION("map", map, "FILE",
+                    "A map of 'starguard map'; by default one is made, as that command does."),
+    CLI_TEXT_OPTION("landmarks", landmarks, "FILE", "Landmarks for a map that is made."),
+    CLI_COUNT_OPTION("candidates", candidates, "N", 1, 100000,
+                     "About how many places are tried for guards. Default 1,000."),
+};
+
+static void set_defaults(void *data) {
+    starg_morph_options library;
+    starg_morph_options_default(&library);
+    *(values *)data =
+        (values){.frames = 21, .candidates = library.candidates, .method = (int)library.method};
+}
+
+static starg_status prepare(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    if (v->output == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "name a folder for the frames: -o DIR");
+    if (strcmp(v->output, "-") == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "the frames are several files: -o must name a folder");
+    if (v->map != NULL && v->landmarks != NULL)
+        return cli_fail(
+            session, STARG_ERROR_ARGUMENT,
+            "--landmarks are for a map that is made, --map gives one; name one of them");
+    CLI_TRY(cli_announce_folder(session, v->output));
+done:
+    return status;
+}
+
+/* ---- both ends ---- */
+
+/* What is morphed. */
+typedef struct subject {
+    starg_mesh *target;
+    starg_map *map;
+    double *images;
+} subject;
+
+static void subject_free(cli_session *session, subject *s) {
+    starg_mesh_free(s->target);
+    starg_map_free(session->context, s->map);
+    free(s->images);
+}
+
+static starg_status make_map(cli_session *session, const values *v, subject *s) {
+    starg_status status = STARG_OK;
+    starg_map_options wanted;
+    uint32_t *pairs = NULL;
+    starg_map_options_default(&wanted);
+    if (v->map != NULL)
+        return starg_map_read(session->context, v->map, session->mesh, s->target, &s->map);
+    if (v->landmarks != NULL)
+        CLI_TRY(starg_landmarks_read(session->context, v->landmarks, session->mesh, s->target,
+                                     &pairs, &wanted.landmark_count));
+    wanted.landmarks = pairs;
+    CLI_TRY(starg_map_create(session->context, session->mesh, s->target, &wanted, &s->map));
+done:
+    starg_landmarks_free(session->context, pairs);
+    return status;
+}
+
+static starg_status read_subject(cli_session *session, const values *v, subject *s) {
+    starg_status status = STARG_OK;
+    CLI_TRY(starg_mesh_read(session->context, session->operands[1], &s->target));
+    CLI_TRY(make_map(session, v, s));
+    s->images = malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *s->images);
+    if (s->images == NULL)
+        return cli_fail_memory(session);
+    starg_map_positions(s->map, s->target, s->images);
+done:
+    return status;
+}
+
+/* ---- frames ---- */
+
+/* Sums over the frames for the text. */
+typedef struct totals {
+    size_t intersections, most_intersections, inverted;
+    double drift;
+} totals;
+
+static json_t *frame_json(cli_session *session, double t, const starg_frame_measures *f) {
+    json_t *item = json_object();
+    cli_put(session, item, "t", cli_json_real(t));
+    cli_put(session, item, "intersections", json_integer((json_int_t)f->intersections));
+    cli_put(session, item, "inverted", json_integer((json_int_t)f->inverted));
+    cli_put(session, item, "collapsed", json_integer((json_int_t)f->collapsed));
+    cli_put(session, item, "volume", cli_json_real(f->volume));
+    cli_put(session, item, "area", cli_json_real(f->area));
+    cli_put(session, item, "volume_drift", cli_json_real(f->volume_drift));
+    cli_put(session, item, "area_drift", cli_json_real(f->area_drift));
+    return item;
+}
+
+static starg_status write_frame(cli_session *session, const double *positions, const char *name) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(session->mesh),
+                              starg_mesh_faces(session->mesh), starg_mesh_face_count(session->mesh),
+                              &mesh));
+    CLI_TRY(cli_announce(session, name));
+    CLI_TRY(cli_mesh_write(session, mesh, STARG_MESH_OFF, NULL, name));
+done:
+    starg_mesh_free(mesh);
+    return status;
+}
+
+static starg_status write_frames(cli_session *session, const values *v, const starg_morph *morph,
+                                 json_t *list, totals *sum) {
+    starg_status status = STARG_OK;
+    size_t size = strlen(v->output) + 64;
+    char *name = malloc(size);
+    double *positions =
+        malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *positions);
+    if (name == NULL || positions == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (uint64_t i = 0; i < v->frames; i++) {
+        double t = (double)i / (double)(v->frames - 1);
+        starg_frame_measures measures;
+        CLI_TRY(starg_morph_frame(morph, t, positions));
+        CLI_TRY(starg_morph_measure(morph, t, positions, &measures));
+        snprintf(name, size, "%s/frame_%04llu.off", v->output, (unsigned long long)i);
+        CLI_TRY(write_frame(session, positions, name));
+        cli_append(session, list, frame_json(session, t, &measures));
+        sum->intersections += measures.intersections;
+        sum->inverted += measures.inverted;
+        if (measures.intersections > sum->most_intersections)
+            sum->most_intersections = measures.intersections;
+        double drift = measures.volume_drift < 0 ? -measures.volume_drift : measures.volume_drift;
+        if (drift > sum->drift)
+            sum->drift = drift;
+    }
+done:
+    free(name);
+    free(positions);
+    return status;
+}
+
+/* ---- what was made ---- */
+
+static json_t *guards_json(cli_session *session, const starg_morph *morph, int end) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < starg_morph_guard_count(morph); i++)
+        cli_append(session, list, cli_json_point(starg_morph_guards(morph, end) + 3 * i));
+    return list;
+}
+
+static void report_morph(cli_session *session, const values *v, const starg_morph *morph,
+                         json_t *frames) {
+    json_t *report = session->report;
+    cli_put(session, report, "output", cli_json_text(v->output));
+    cli_put(session, report, "target", cli_json_text(session->operands[1]));
+    cli_put(session, report, "method", json_string(methods[v->method]));
+    cli_put(session, report, "guards", guards_json(session, morph, 0));
+    cli_put(session, report, "counterparts", guards_json(session, morph, 1));
+    cli_put(session, report, "unguarded_faces",
+            json_integer((json_int_t)starg_morph_unguarded(morph)));
+    cli_put(session, report, "frames", json_incref(frames));
+}
+
+static void say_morph(cli_session *session, const values *v, const starg_morph *morph,
+                      const totals *sum) {
+    cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
+    if (starg_morph_guard_count(morph) > 0)
+        cli_say(session, "guards        %zu in each shape\n", starg_morph_guard_count(morph));
+    cli_say(session, "intersecting  %zu pairs of faces, at most %zu in a frame\n",
+            sum->intersections, sum->most_intersections);
+    cli_say(session, "folded        %zu faces\n", sum->inverted);
+    cli_say(session, "volume drift  at most %.3g %%\n", 100 * sum->drift);
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    subject s = {0};
+    starg_morph *morph = NULL;
+    totals sum = {0};
+    const starg_morph_options wanted = {.method = (starg_morph_method)v->method,
+                                        .candidates = (size_t)v->candidates};
+    json_t *frames = json_array();
+    CLI_TRY(read_subject(session, v, &s));
+    CLI_TRY(starg_morph_create(session->context, session->mesh, s.images, &wanted, &morph));
+    CLI_TRY(write_frames(session, v, morph, frames, &sum));
+    say_morph(session, v, morph, &sum);
+    if (session->report != NULL)
+        report_morph(session, v, morph, frames);
+done:
+    json_decref(frames);
+    starg_morph_free(morph);
+    subject_free(session, &s);
+    return status;
+}
+
+const cli_command cli_command_morph = {
+    .name = "morph",
+    .usage = "A B [--map FILE] --frames N -o DIR [options]",
+    .summary = "the shapes between two surfaces, by pieces about corresponding guards",
+    .description =
+        "Writes frames that lead from A to B in A's connectivity: the first is A, the last one B. "
+        "With the method star, guards are placed in both shapes so that each pair of them sees "
+        "corresponding pieces; pieces turn and stretch about their guards, and what rigid motion "
+        "cannot explain is added evenly. For each frame the faces that pass through one another "
+        "and the drift of the volume are told.",
+    .examples = "# two poses of one model\n"
+                "starguard morph horse_0.off horse_1.off --frames 21 -o frames\n"
+                "# two animals by a map of landmarks, and the plain method to compare with\n"
+                "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json\n"
+                "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o frames\n"
+                "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o plain \\\n"
+                "    --method linear",
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(2, 2),
+    .defaults = set_defaults,
+    .input = CLI_INPUT_MESH,
+    .prepare = prepare,
+    .run = run,
+};

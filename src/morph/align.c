@@ -1,0 +1,217 @@
+/* Alignment of two spread surfaces by a rotation of the sphere.
+ *
+ * Stages: principal axes of both surfaces in space; the 24 ways to lay the axes of one on those of
+ * the other without mirroring (with three landmarks or more, only the way that fits these best);
+ * for each way, every sample of the first surface is paired with the nearest sample of the second
+ * in space, and the rotation of the sphere that brings the paired directions together best is found
+ * [Kabsch 1976]; landmarks count as much as all samples. The rotation wins under which the points
+ * that lie on one another on the sphere are the nearest in space, in the mean of squares.
+ *
+ * Cost: 24 x SAMPLES^2 distances and 24 x SAMPLES locations. */
+#include "morph/align.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geometry/vec3.h"
+#include "morph/rotation.h"
+
+static const char STAGE[] = "align";
+enum { SAMPLES = 600, WAYS = 24 };
+
+typedef struct axes {
+    double center[3], frame[9]; /* columns: principal axes */
+    double size;                /* root of the mean square distance from the center */
+} axes;
+
+/* By the vertices' shares of the area. */
+static void add_moments(const starg_mesh *mesh, const double center[3], double moments[9],
+                        double mean[3], double *total) {
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        const uint32_t *c = mesh->faces + 3 * f;
+        const double *p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = mesh->vertices + 3 * (size_t)c[k];
+        double area = vec3_triangle_area(p[0], p[1], p[2]);
+        for (int k = 0; k < 3; k++) {
+            double d[3];
+            vec3_subtract(p[k], center, d);
+            vec3_along(mean, area / 3, d, mean);
+            for (int i = 0; i < 9; i++)
+                moments[i] += area / 3 * d[i / 3] * d[i % 3];
+        }
+        *total += area;
+    }
+}
+
+static axes principal_axes(const starg_mesh *mesh) {
+    axes a = {0};
+    double moments[9] = {0}, mean[3] = {0}, values[3], total = 0;
+    add_moments(mesh, a.center, moments, mean, &total);
+    for (int k = 0; k < 3; k++)
+        a.center[k] = mean[k] / total;
+    memset(moments, 0, sizeof moments);
+    add_moments(mesh, a.center, moments, mean, &total);
+    symmetric_eigen(moments, values, a.frame);
+    a.size = sqrt(2 * (values[0] + values[1] + values[2]) / total);
+    return a;
+}
+
+/* The proper rotation number `way` of the 24 that permute the axes and turn them over. */
+static void signed_permutation(int way, double out[9]) {
+    static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+                                     {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
+    const int *order = orders[way / 4];
+    double odd = way / 4 < 3 ? 1 : -1, first = way & 1 ? -1 : 1, second = way & 2 ? -1 : 1;
+    const double signs[3] = {first, second, odd * first * second};
+    memset(out, 0, 9 * sizeof *out);
+    for (int i = 0; i < 3; i++)
+        out[3 * i + order[i]] = signs[i];
+}
+
+/* In space, from the first surface to the second. */
+typedef struct motion {
+    double rotation[9], scale;
+    const axes *from, *to;
+} motion;
+
+static void move(const motion *m, const double p[3], double out[3]) {
+    double d[3];
+    vec3_subtract(p, m->from->center, d);
+    matrix_apply(m->rotation, d, d);
+    vec3_along(m->to->center, m->scale, d, out);
+}
+
+static void motion_of_way(const axes *from, const axes *to, int way, motion *m) {
+    double turn[9], right[9], transposed[9];
+    signed_permutation(way, turn);
+    for (int i = 0; i < 9; i++)
+        transposed[i] = from->frame[3 * (i % 3) + i / 3];
+    matrix_multiply(turn, transposed, right);
+    matrix_multiply(to->frame, right, m->rotation);
+    m->scale = from->size > 0 ? to->size / from->size : 1;
+    m->from = from;
+    m->to = to;
+}
+
+/* The rotation that fits the landmarks best in space, about the surfaces' centers. */
+static void motion_of_landmarks(const sphere *from, const sphere *to, const landmark_list *marks,
+                                motion *m) {
+    double sum[9] = {0};
+    for (size_t i = 0; i < marks->count; i++) {
+        double p[3], q[3];
+        vec3_subtract(from->mesh->vertices + 3 * (size_t)marks->from[i], m->from->center, p);
+        vec3_subtract(to->mesh->vertices + 3 * (size_t)marks->to[i], m->to->center, q);
+        for (int k = 0; k < 9; k++)
+            sum[k] += q[k / 3] * p[k % 3];
+    }
+    polar_rotation(sum, m->rotation);
+}
+
+typedef struct aligner {
+    sphere *from;
+    const locator *to;
+    const landmark_list *landmarks;
+} aligner;
+
+static size_t stride_of(const sphere *s) {
+    return s->mesh->vertex_count / SAMPLES + 1;
+}
+
+static size_t nearest_sample(const sphere *s, const double p[3]) {
+    size_t best = 0;
+    double least = INFINITY;
+    for (size_t v = 0; v < s->mesh->vertex_count; v += stride_of(s)) {
+        double d = vec3_distance_squared(p, s->mesh->vertices + 3 * v);
+        if (d < least) {
+            least = d;
+            best = v;
+        }
+    }
+    return best;
+}
+
+static void add_pair(const double x[3], const double y[3], double weight, double sum[9]) {
+    for (int k = 0; k < 9; k++)
+        sum[k] += weight * y[k / 3] * x[k % 3];
+}
+
+static void rotation_for(const aligner *a, const motion *m, double rotation[9]) {
+    const sphere *from = a->from, *to = a->to->sphere;
+    double sum[9] = {0};
+    for (size_t v = 0; v < from->mesh->vertex_count; v += stride_of(from)) {
+        double p[3];
+        move(m, from->mesh->vertices + 3 * v, p);
+        add_pair(from->directions + 3 * v, to->directions + 3 * nearest_sample(to, p), 1, sum);
+    }
+    for (size_t i = 0; i < a->landmarks->count; i++)
+        add_pair(from->directions + 3 * (size_t)a->landmarks->from[i],
+                 to->directions + 3 * (size_t)a->landmarks->to[i],
+                 (double)SAMPLES / (double)a->landmarks->count, sum);
+    polar_rotation(sum, rotation);
+}
+
+static void map_point(const locator *to, uint32_t face, const double coordinates[3],
+                      double out[3]) {
+    const starg_mesh *mesh = to->sphere->mesh;
+    out[0] = out[1] = out[2] = 0;
+    for (size_t k = 0; k < 3; k++)
+        vec3_along(out, coordinates[k],
+                   mesh->vertices + 3 * (size_t)mesh->faces[3 * (size_t)face + k], out);
+}
+
+static double misfit(const aligner *a, const motion *m, const double rotation[9]) {
+    const sphere *from = a->from;
+    double sum = 0, coordinates[3];
+    uint32_t face = 0;
+    for (size_t v = 0; v < from->mesh->vertex_count; v += stride_of(from)) {
+        double x[3], p[3], q[3];
+        matrix_apply(rotation, from->directions + 3 * v, x);
+        face = locate(a->to, x, face, coordinates);
+        map_point(a->to, face, coordinates, q);
+        move(m, from->mesh->vertices + 3 * v, p);
+        sum += vec3_distance_squared(p, q);
+    }
+    return sum;
+}
+
+/* Rounding can turn over a triangle that is nearly flat: then the surface stays as it is. */
+static starg_status turn(sphere *s, const double rotation[9]) {
+    starg_status status = STARG_OK;
+    double *before = NULL;
+    size_t size = 3 * s->mesh->vertex_count;
+    STARG_NEW(s->context, STAGE, before, size);
+    memcpy(before, s->directions, size * sizeof *before);
+    for (size_t v = 0; v < s->mesh->vertex_count; v++)
+        matrix_apply(rotation, before + 3 * v, s->directions + 3 * v);
+    if (!sphere_is_positive(s))
+        memcpy(s->directions, before, size * sizeof *before);
+done:
+    starg_release(s->context, before);
+    return status;
+}
+
+starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks) {
+    starg_status status = STARG_OK;
+    const aligner a = {from, to, landmarks};
+    const axes axes_from = principal_axes(from->mesh), axes_to = principal_axes(to->sphere->mesh);
+    double best[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, least = INFINITY;
+    bool guided = landmarks->count >= 3;
+    for (int way = 0; way < (guided ? 1 : WAYS); way++) {
+        motion m;
+        double rotation[9];
+        STARG_TRY(starg_check_cancel(from->context, STAGE));
+        motion_of_way(&axes_from, &axes_to, way, &m);
+        if (guided)
+            motion_of_landmarks(from, to->sphere, landmarks, &m);
+        rotation_for(&a, &m, rotation);
+        double own = misfit(&a, &m, rotation);
+        if (own < least) {
+            least = own;
+            memcpy(best, rotation, sizeof best);
+        }
+    }
+    STARG_TRY(turn(from, best));
+done:
+    return status;
+}

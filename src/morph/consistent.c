@@ -1,0 +1,291 @@
+/* Consistent guarding [YL11, section 5.2]: guards of A and counterparts in B, and pieces of the
+ * surface that each pair of them sees.
+ *
+ * Stages: candidates are the nodes of A's curve skeleton; the counterpart of a node follows the map
+ * of the surface vertices that it stands for, by the similar motion that fits them best, or is the
+ * middle of their images where that is not inside of B; candidates without a counterpart strictly
+ * inside of B are dropped. A face is simultaneously visible to a candidate when A shows it to the
+ * candidate and B shows its image to the counterpart: a matrix of bits, of which the fewest rows
+ * are chosen by the cover machinery. Each face goes to the nearest of the guards that see it (by
+ * the sum of both distances). Faces that no candidate sees simultaneously take the guard of a
+ * neighbour, and are counted.
+ *
+ * All visibility is exact; B may intersect itself, then a guard still sees only what no face hides.
+ * Cost: that of one skeleton, two visibility matrices and a set cover. */
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/topology.h"
+#include "morph/morph.h"
+#include "morph/rotation.h"
+#include "starguard/cover.h"
+#include "starguard/skeleton.h"
+#include "starguard/solid.h"
+#include "starguard/visibility.h"
+
+static const char STAGE[] = "consistent guards";
+enum { COVER_NODES = 2000 };
+
+typedef struct guarding {
+    starg_morph *morph;
+    starg_solid *solids[2];
+    starg_skeleton *skeleton;
+    size_t count;      /* candidates */
+    double *places[2]; /* count x 3, in the inputs' coordinates */
+    starg_bits *seen;  /* count x faces, by both */
+    starg_cover *cover;
+} guarding;
+
+/* ---- ends ---- */
+
+static starg_status make_solids(guarding *g) {
+    starg_status status = STARG_OK;
+    starg_morph *m = g->morph;
+    for (int end = 0; end < 2; end++) {
+        starg_mesh *mesh = NULL;
+        status = starg_mesh_create(m->context, end ? m->target : m->source, m->mesh->vertex_count,
+                                   m->mesh->faces, m->mesh->face_count, &mesh);
+        if (status == STARG_OK)
+            status = starg_solid_create(m->context, mesh, &g->solids[end]);
+        starg_mesh_free(mesh);
+        if (status != STARG_OK)
+            break;
+    }
+    return status;
+}
+
+/* ---- counterparts ---- */
+
+/* Sums over the vertices of a node: what a similar motion is fitted to. */
+typedef struct moments {
+    double mean[2][3], cross[9], spread[2];
+    double count;
+} moments;
+
+static void add_means(const guarding *g, moments *sums) {
+    const starg_morph *m = g->morph;
+    for (size_t v = 0; v < m->mesh->vertex_count; v++) {
+        moments *own = &sums[g->skeleton->vertex_nodes[v]];
+        for (size_t k = 0; k < 3; k++) {
+            own->mean[0][k] += m->mesh->vertices[3 * v + k];
+            own->mean[1][k] += m->images[3 * v + k];
+        }
+        own->count++;
+    }
+    for (size_t i = 0; i < g->skeleton->node_count; i++)
+        for (int k = 0; k < 6 && sums[i].count > 0; k++)
+            sums[i].mean[k / 3][k % 3] /= sums[i].count;
+}
+
+static void add_spreads(const guarding *g, moments *sums) {
+    const starg_morph *m = g->morph;
+    for (size_t v = 0; v < m->mesh->vertex_count; v++) {
+        moments *own = &sums[g->skeleton->vertex_nodes[v]];
+        double p[3], q[3];
+        vec3_subtract(m->mesh->vertices + 3 * v, own->mean[0], p);
+        vec3_subtract(m->images + 3 * v, own->mean[1], q);
+        own->spread[0] += vec3_dot(p, p);
+        own->spread[1] += vec3_dot(q, q);
+        for (int k = 0; k < 9; k++)
+            own->cross[k] += q[k / 3] * p[k % 3];
+    }
+}
+
+/* From scaled coordinates to those of an input, and back. */
+static void unscale(const starg_morph *m, int end, const double p[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = m->centers[end][k] + m->size * p[k];
+}
+
+static void scale(const starg_morph *m, int end, const double p[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = (p[k] - m->centers[end][k]) / m->size;
+}
+
+/* False when no counterpart is inside of B. */
+static bool counterpart(const guarding *g, const moments *own, const double node[3],
+                        double out[3]) {
+    double rotation[9], offset[3], place[3];
+    if (!(own->count > 0))
+        return false;
+    scale(g->morph, 0, node, offset);
+    vec3_subtract(offset, own->mean[0], offset);
+    polar_rotation(own->cross, rotation);
+    matrix_apply(rotation, offset, offset);
+    double factor = own->spread[0] > 0 ? sqrt(own->spread[1] / own->spread[0]) : 1;
+    vec3_along(own->mean[1], factor, offset, place);
+    unscale(g->morph, 1, place, out);
+    if (starg_solid_contains(g->solids[1], out))
+        return true;
+    unscale(g->morph, 1, own->mean[1], out);
+    return starg_solid_contains(g->solids[1], out);
+}
+
+static starg_status find_candidates(guarding *g, size_t wanted) {
+    starg_status status = STARG_OK;
+    starg_context *context = g->morph->context;
+    starg_skeleton_options options;
+    moments *sums = NULL;
+    starg_skeleton_options_default(&options);
+    options.node_count = wanted;
+    STARG_TRY(starg_skeleton_create(context, g->solids[0], &options, &g->skeleton));
+    size_t nodes = g->skeleton->node_count;
+    STARG_NEW_ZERO(context, STAGE, sums, nodes);
+    STARG_NEW(context, STAGE, g->places[0], 3 * nodes);
+    STARG_NEW(context, STAGE, g->places[1], 3 * nodes);
+    add_means(g, sums);
+    add_spreads(g, sums);
+    for (size_t i = 0; i < nodes; i++) {
+        const double *node = g->skeleton->positions + 3 * i;
+        if (!counterpart(g, &sums[i], node, g->places[1] + 3 * g->count))
+            continue;
+        vec3_copy(node, g->places[0] + 3 * g->count++);
+    }
+    if (g->count == 0)
+        status = starg_fail(context, STARG_ERROR_MESH, STAGE,
+                            "no node of A's skeleton has a counterpart inside of B; the map may be "
+                            "too distorted. --method arap needs no guards");
+done:
+    starg_release(context, sums);
+    return status;
+}
+
+/* ---- cover ---- */
+
+static starg_status see(guarding *g) {
+    starg_status status = STARG_OK;
+    starg_context *context = g->morph->context;
+    starg_bits *seen[2] = {NULL, NULL};
+    for (int end = 0; end < 2; end++)
+        STARG_TRY(
+            starg_visibility(context, g->solids[end], g->places[end], g->count, NULL, &seen[end]));
+    STARG_TRY(starg_bits_create(context, g->count, g->morph->mesh->face_count, &g->seen));
+    for (size_t i = 0; i < g->count; i++)
+        for (size_t f = 0; f < g->morph->mesh->face_count; f++)
+            if (starg_bits_test(seen[0], i, f) && starg_bits_test(seen[1], i, f))
+                starg_bits_set(g->seen, i, f);
+done:
+    starg_bits_free(seen[0]);
+    starg_bits_free(seen[1]);
+    return status;
+}
+
+static starg_status choose(guarding *g) {
+    starg_status status = STARG_OK;
+    starg_morph *m = g->morph;
+    starg_cover_problem problem;
+    starg_cover_options options;
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    problem.rows = g->seen;
+    options.max_nodes = COVER_NODES;
+    STARG_TRY(starg_cover_solve(m->context, &problem, &options, &g->cover));
+    m->guard_count = g->cover->count;
+    if (m->guard_count == 0)
+        return starg_fail(m->context, STARG_ERROR_MESH, STAGE,
+                          "no candidate sees a face of A and its image in B; the map may be too "
+                          "distorted. --method arap needs no guards");
+    for (int end = 0; end < 2; end++) {
+        STARG_NEW(m->context, STAGE, m->guards[end], 3 * m->guard_count);
+        STARG_NEW(m->context, STAGE, m->places[end], 3 * m->guard_count);
+        for (size_t i = 0; i < m->guard_count; i++) {
+            const double *from = g->places[end] + 3 * (size_t)g->cover->rows[i];
+            vec3_copy(from, m->guards[end] + 3 * i);
+            scale(m, end, from, m->places[end] + 3 * i);
+        }
+    }
+done:
+    return status;
+}
+
+/* ---- pieces ---- */
+
+static void middle_of(const double *positions, const uint32_t corner[3], double out[3]) {
+    for (size_t k = 0; k < 3; k++)
+        out[k] = (positions[3 * (size_t)corner[0] + k] + positions[3 * (size_t)corner[1] + k] +
+                  positions[3 * (size_t)corner[2] + k]) /
+                 3;
+}
+
+/* The nearest guard that sees the face at both ends; UINT32_MAX if none does. */
+static uint32_t nearest_viewer(const guarding *g, size_t face) {
+    const starg_morph *m = g->morph;
+    const uint32_t *corner = m->mesh->faces + 3 * face;
+    double a[3], b[3], least = INFINITY;
+    uint32_t best = UINT32_MAX;
+    middle_of(m->mesh->vertices, corner, a);
+    middle_of(m->images, corner, b);
+    for (uint32_t i = 0; i < m->guard_count; i++) {
+        if (!starg_bits_test(g->seen, g->cover->rows[i], face))
+            continue;
+        double d = vec3_distance(a, m->places[0] + 3 * (size_t)i) +
+                   vec3_distance(b, m->places[1] + 3 * (size_t)i);
+        if (d < least) {
+            least = d;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Faces without a guard take that of a neighbour, in rings about those that have one. */
+static starg_status spread_pieces(starg_morph *m) {
+    starg_status status = STARG_OK;
+    mesh_topology *topology = NULL;
+    uint32_t *queue = NULL;
+    size_t count = 0;
+    STARG_TRY(topology_create(m->context, m->mesh, &topology));
+    STARG_NEW(m->context, STAGE, queue, m->mesh->face_count);
+    for (uint32_t f = 0; f < m->mesh->face_count; f++)
+        if (m->pieces[f] != UINT32_MAX)
+            queue[count++] = f;
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t h = 3 * queue[i]; h < 3 * queue[i] + 3; h++) {
+            uint32_t other = topology->twin[h] / 3;
+            if (m->pieces[other] != UINT32_MAX)
+                continue;
+            m->pieces[other] = m->pieces[queue[i]];
+            queue[count++] = other;
+        }
+    for (size_t f = 0; f < m->mesh->face_count; f++) /* a shell that nothing sees */
+        if (m->pieces[f] == UINT32_MAX)
+            m->pieces[f] = 0;
+done:
+    topology_free(topology);
+    starg_release(m->context, queue);
+    return status;
+}
+
+static starg_status cut(guarding *g) {
+    starg_status status = STARG_OK;
+    starg_morph *m = g->morph;
+    STARG_NEW(m->context, STAGE, m->pieces, m->mesh->face_count);
+    for (size_t f = 0; f < m->mesh->face_count; f++) {
+        m->pieces[f] = nearest_viewer(g, f);
+        m->unguarded += m->pieces[f] == UINT32_MAX;
+    }
+    STARG_TRY(spread_pieces(m));
+done:
+    return status;
+}
+
+starg_status morph_guard(starg_morph *m, size_t candidates) {
+    starg_status status = STARG_OK;
+    guarding g = {.morph = m};
+    STARG_TRY(make_solids(&g));
+    STARG_TRY(find_candidates(&g, candidates));
+    STARG_TRY(see(&g));
+    STARG_TRY(choose(&g));
+    STARG_TRY(cut(&g));
+done:
+    starg_solid_free(g.solids[0]);
+    starg_solid_free(g.solids[1]);
+    starg_skeleton_free(m->context, g.skeleton);
+    starg_release(m->context, g.places[0]);
+    starg_release(m->context, g.places[1]);
+    starg_bits_free(g.seen);
+    starg_cover_free(g.cover);
+    return status;
+}

@@ -1,0 +1,159 @@
+/* How the guards go from A to B: along the guarding graph.
+ *
+ * Guards whose pieces share an edge are neighbours. A spanning tree of short links (Prim) is rooted
+ * at the guard of the largest piece. Each guard is placed from its parent by an offset that turns
+ * with the mean of the two pieces' rotations and gains the rest of its change in proportion to t;
+ * then all are moved so that their mean, weighted by the pieces' areas, goes straight. A limb
+ * that bends at a joint takes its guards along an arc, as it does its faces.
+ *
+ * Cost: O(guards^2 + faces). */
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/topology.h"
+#include "morph/morph.h"
+#include "morph/rotation.h"
+#include "starguard/bits.h"
+
+static const char STAGE[] = "consistent guards";
+static const double APART = 1e3; /* added to the length of links between pieces that do not meet */
+
+static void add_pieces(starg_morph *m) {
+    double total = 0;
+    for (size_t f = 0; f < m->mesh->face_count; f++) {
+        const uint32_t *c = m->mesh->faces + 3 * f;
+        const double *v = m->mesh->vertices;
+        guard_path *own = &m->guard_paths[m->pieces[f]];
+        double area =
+            vec3_triangle_area(v + 3 * (size_t)c[0], v + 3 * (size_t)c[1], v + 3 * (size_t)c[2]);
+        vec3_along(own->rotation, area, m->faces[f].rotation, own->rotation);
+        own->weight += area;
+        total += area;
+    }
+    for (size_t i = 0; i < m->guard_count; i++) {
+        guard_path *own = &m->guard_paths[i];
+        for (int k = 0; k < 3 && own->weight > 0; k++)
+            own->rotation[k] /= own->weight;
+        own->weight /= total;
+    }
+}
+
+static starg_status find_neighbours(const starg_morph *m, starg_bits **out) {
+    starg_status status = STARG_OK;
+    mesh_topology *topology = NULL;
+    STARG_TRY(topology_create(m->context, m->mesh, &topology));
+    STARG_TRY(starg_bits_create(m->context, m->guard_count, m->guard_count, out));
+    for (size_t h = 0; h < 3 * m->mesh->face_count; h++)
+        if (topology->twin[h] != TOPOLOGY_NONE)
+            starg_bits_set(*out, m->pieces[h / 3], m->pieces[topology->twin[h] / 3]);
+done:
+    topology_free(topology);
+    return status;
+}
+
+/* Offset and change of a guard from its parent. */
+static void link_guard(starg_morph *m, uint32_t guard, uint32_t parent) {
+    guard_path *own = &m->guard_paths[guard], *above = &m->guard_paths[parent];
+    double mean[3], local[9], whole[9], rotation[9], target[3];
+    own->parent = parent;
+    for (int k = 0; k < 3; k++)
+        mean[k] = 0.5 * (own->rotation[k] + above->rotation[k]);
+    rotation_from_vector(mean, local);
+    rotation_from_vector(m->turn, whole);
+    matrix_multiply(whole, local, rotation);
+    vec3_subtract(m->places[0] + 3 * (size_t)guard, m->places[0] + 3 * (size_t)parent, own->offset);
+    vec3_subtract(m->places[1] + 3 * (size_t)guard, m->places[1] + 3 * (size_t)parent, target);
+    for (int k = 0; k < 3; k++)
+        own->change[k] = rotation[k] * target[0] + rotation[3 + k] * target[1] +
+                         rotation[6 + k] * target[2] - own->offset[k];
+}
+
+static uint32_t largest_piece(const starg_morph *m) {
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < m->guard_count; i++)
+        if (m->guard_paths[i].weight > m->guard_paths[best].weight)
+            best = i;
+    return best;
+}
+
+static starg_status grow_tree(starg_morph *m, const starg_bits *neighbours) {
+    starg_status status = STARG_OK;
+    double *least = NULL;
+    uint32_t *above = NULL, last = largest_piece(m);
+    STARG_NEW(m->context, STAGE, least, m->guard_count);
+    STARG_NEW(m->context, STAGE, above, m->guard_count);
+    for (size_t i = 0; i < m->guard_count; i++)
+        least[i] = INFINITY;
+    m->guard_paths[last].parent = last;
+    for (size_t placed = 0;; placed++) {
+        m->guard_order[placed] = last;
+        least[last] = -1;
+        if (placed + 1 == m->guard_count)
+            break;
+        uint32_t next = UINT32_MAX;
+        for (uint32_t i = 0; i < m->guard_count; i++) {
+            double length =
+                vec3_distance(m->places[0] + 3 * (size_t)i, m->places[0] + 3 * (size_t)last) +
+                (starg_bits_test(neighbours, last, i) ? 0 : APART);
+            if (least[i] < 0)
+                continue;
+            if (length < least[i]) {
+                least[i] = length;
+                above[i] = last;
+            }
+            if (next == UINT32_MAX || least[i] < least[next])
+                next = i;
+        }
+        link_guard(m, next, above[next]);
+        last = next;
+    }
+done:
+    starg_release(m->context, least);
+    starg_release(m->context, above);
+    return status;
+}
+
+starg_status morph_prepare_guards(starg_morph *m) {
+    starg_status status = STARG_OK;
+    starg_bits *neighbours = NULL;
+    STARG_NEW_ZERO(m->context, STAGE, m->guard_paths, m->guard_count);
+    STARG_NEW(m->context, STAGE, m->guard_order, m->guard_count);
+    add_pieces(m);
+    STARG_TRY(find_neighbours(m, &neighbours));
+    STARG_TRY(grow_tree(m, neighbours));
+done:
+    starg_bits_free(neighbours);
+    return status;
+}
+
+/* From the parent's place. */
+static void place_guard(const starg_morph *m, uint32_t guard, const double whole[9], double t,
+                        double *out) {
+    const guard_path *own = &m->guard_paths[guard], *above = &m->guard_paths[own->parent];
+    double w[3], local[9], d[3];
+    for (int k = 0; k < 3; k++)
+        w[k] = 0.5 * t * (own->rotation[k] + above->rotation[k]);
+    rotation_from_vector(w, local);
+    vec3_along(own->offset, t, own->change, d);
+    matrix_apply(local, d, d);
+    matrix_apply(whole, d, d);
+    vec3_along(out + 3 * (size_t)own->parent, 1, d, out + 3 * (size_t)guard);
+}
+
+void morph_guards_at(const starg_morph *m, double t, double *out) {
+    double w[3], whole[9], shift[3] = {0};
+    for (int k = 0; k < 3; k++)
+        w[k] = t * m->turn[k];
+    rotation_from_vector(w, whole);
+    for (int k = 0; k < 3; k++)
+        out[3 * (size_t)m->guard_order[0] + (size_t)k] = 0;
+    for (size_t i = 1; i < m->guard_count; i++)
+        place_guard(m, m->guard_order[i], whole, t, out);
+    for (size_t i = 0; i < m->guard_count; i++)
+        for (size_t k = 0; k < 3; k++)
+            shift[k] += m->guard_paths[i].weight * ((1 - t) * m->places[0][3 * i + k] +
+                                                    t * m->places[1][3 * i + k] - out[3 * i + k]);
+    for (size_t i = 0; i < m->guard_count; i++)
+        vec3_along(out + 3 * i, 1, shift, out + 3 * i);
+}

@@ -1,0 +1,215 @@
+/* A spread surface is warped until its landmarks are met.
+ *
+ * Stages, repeated: the tangent field that moves every landmark towards its counterpart, between
+ * them as smooth as radial functions of Matern's kind (1 + r) e^-r make it; all vertices go along
+ * the field by at most STEP, less while any triangle would turn over; where a triangle blocks even
+ * a short step, each vertex goes as far as its own triangles allow; then some sweeps of relaxation
+ * with the landmarks held. A diffeomorphism of the sphere can bring any points to any others; what
+ * landmarks contradict is only the relaxation's limits of resolution, so that the search gives up
+ * after ROUNDS.
+ *
+ * Invariant: the embedding is valid at all times, by the exact predicate.
+ * Cost: for each round O(landmarks^3 + landmarks n). */
+#include "morph/landmarks.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geometry/vec3.h"
+#include "morph/relax.h"
+
+static const char STAGE[] = "landmarks";
+enum { ROUNDS = 400, PATIENCE = 12, SWEEPS = 3, FINAL_SWEEPS = 30, HALVINGS = 5 };
+static const double STEP = 0.12; /* radians */
+static const double WIDTH = 0.5; /* of the radial functions */
+
+typedef struct warp {
+    starg_context *context;
+    sphere *from;
+    const sphere *to;
+    const landmark_list *marks;
+    double *matrix; /* count x (count + 3): the radial functions, then displacements, weights */
+    double *before; /* directions before a step */
+    uint8_t *pinned;
+} warp;
+
+static double *mark_of(const warp *w, size_t i) {
+    return w->from->directions + 3 * (size_t)w->marks->from[i];
+}
+
+static const double *goal_of(const warp *w, size_t i) {
+    return w->to->directions + 3 * (size_t)w->marks->to[i];
+}
+
+static double radial(const double x[3], const double y[3]) {
+    double r = vec3_distance(x, y) / WIDTH;
+    return (1 + r) * exp(-r);
+}
+
+/* The tangent vector at x towards y whose length is the angle between them. */
+static void towards(const double x[3], const double y[3], double out[3]) {
+    double n[3];
+    vec3_along(y, -vec3_dot(x, y), x, out);
+    vec3_cross(x, y, n);
+    double length = vec3_length(out), angle = atan2(vec3_length(n), vec3_dot(x, y));
+    for (int k = 0; k < 3; k++)
+        out[k] = length > 0 ? out[k] * angle / length : 0;
+}
+
+/* Gauss's elimination with row pivots; false for a matrix without an inverse. */
+static bool eliminate(double *m, size_t n, size_t columns) {
+    for (size_t j = 0; j < n; j++) {
+        size_t pivot = j;
+        for (size_t i = j + 1; i < n; i++)
+            if (fabs(m[i * columns + j]) > fabs(m[pivot * columns + j]))
+                pivot = i;
+        if (!(fabs(m[pivot * columns + j]) > 1e-14))
+            return false;
+        for (size_t k = 0; k < columns; k++) {
+            double swap = m[j * columns + k];
+            m[j * columns + k] = m[pivot * columns + k];
+            m[pivot * columns + k] = swap;
+        }
+        for (size_t i = 0; i < n; i++) {
+            double factor = i == j ? 0 : m[i * columns + j] / m[j * columns + j];
+            for (size_t k = j; factor != 0 && k < columns; k++)
+                m[i * columns + k] -= factor * m[j * columns + k];
+        }
+    }
+    for (size_t j = 0; j < n; j++)
+        for (size_t k = n; k < columns; k++)
+            m[j * columns + k] /= m[j * columns + j];
+    return true;
+}
+
+/* Finds the field's weights; the longest displacement, or -1 when two landmarks are in one place.
+ */
+static double make_field(const warp *w) {
+    size_t n = w->marks->count, columns = n + 3;
+    double longest = 0;
+    for (size_t i = 0; i < n; i++) {
+        double *row = w->matrix + i * columns;
+        for (size_t j = 0; j < n; j++)
+            row[j] = radial(mark_of(w, i), mark_of(w, j));
+        towards(mark_of(w, i), goal_of(w, i), row + n);
+        longest = fmax(longest, vec3_length(row + n));
+    }
+    return eliminate(w->matrix, n, columns) ? longest : -1;
+}
+
+/* Where the field brings a place by a step. */
+static void advance(const warp *w, const double x[3], double step, double out[3]) {
+    size_t n = w->marks->count, columns = n + 3;
+    double field[3] = {0};
+    for (size_t i = 0; i < n; i++)
+        vec3_along(field, radial(x, w->before + 3 * (size_t)w->marks->from[i]),
+                   w->matrix + i * columns + n, field);
+    vec3_along(field, -vec3_dot(field, x), x, field);
+    vec3_along(x, step, field, out);
+    double length = vec3_length(out);
+    for (int k = 0; k < 3; k++)
+        out[k] /= length;
+}
+
+/* All vertices by the same step; a whole step ends exactly at the goals. */
+static bool step_all(warp *w, double step) {
+    size_t count = w->from->mesh->vertex_count;
+    for (size_t v = 0; v < count; v++)
+        advance(w, w->before + 3 * v, step, w->from->directions + 3 * v);
+    for (size_t i = 0; step == 1 && i < w->marks->count; i++)
+        vec3_copy(goal_of(w, i), mark_of(w, i));
+    if (sphere_is_positive(w->from))
+        return true;
+    memcpy(w->from->directions, w->before, 3 * count * sizeof *w->before);
+    return false;
+}
+
+/* Each vertex as far as its own triangles allow. */
+static bool step_each(warp *w, double step) {
+    bool moved = false;
+    for (size_t v = 0; v < w->from->mesh->vertex_count; v++) {
+        double part = step, at[3];
+        for (int i = 0; i < HALVINGS; i++, part *= 0.5) {
+            advance(w, w->before + 3 * v, part, at);
+            if (!relax_is_positive(&w->from->rings->of[v], w->from->directions, at))
+                continue;
+            vec3_copy(at, w->from->directions + 3 * v);
+            moved = moved || w->pinned[v] != 0;
+            break;
+        }
+    }
+    return moved;
+}
+
+static void relax(warp *w, int sweeps) {
+    const relaxation r = {.rings = w->from->rings,
+                          .directions = w->from->directions,
+                          .alive = w->from->alive,
+                          .alive_count = w->from->mesh->vertex_count,
+                          .pinned = w->pinned,
+                          .floor = w->from->floor};
+    for (int i = 0; i < sweeps; i++)
+        relax_sweep(&r);
+}
+
+/* One round; false when nothing could move. */
+static bool advance_round(warp *w, double longest) {
+    size_t size = 3 * w->from->mesh->vertex_count * sizeof *w->before;
+    double step = fmin(1, STEP / longest);
+    memcpy(w->before, w->from->directions, size);
+    bool moved = false;
+    for (int i = 0; i < HALVINGS && !moved; i++, step *= 0.5)
+        moved = step_all(w, step);
+    if (!moved)
+        moved = step_each(w, step);
+    relax(w, SWEEPS);
+    return moved;
+}
+
+static starg_status approach(warp *w) {
+    starg_status status = STARG_OK;
+    int stuck = 0;
+    for (int round = 0; round < ROUNDS && stuck < PATIENCE; round++) {
+        STARG_TRY(starg_check_cancel(w->context, STAGE));
+        double longest = make_field(w);
+        if (longest < 0)
+            break;
+        if (longest == 0)
+            return STARG_OK;
+        stuck = advance_round(w, longest) ? 0 : stuck + 1;
+    }
+    size_t worst = 0;
+    for (size_t i = 1; i < w->marks->count; i++)
+        if (vec3_distance(mark_of(w, i), goal_of(w, i)) >
+            vec3_distance(mark_of(w, worst), goal_of(w, worst)))
+            worst = i;
+    uint64_t vertex = w->marks->from[worst];
+    status = starg_fail_at(w->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, &vertex, 1,
+                           "the landmarks cannot all be met without folding the surface; the worst "
+                           "is pair %zu (vertices %u and %u). They may contradict one another, or "
+                           "mirror the model: check their order, or leave that pair out",
+                           worst, w->marks->from[worst], w->marks->to[worst]);
+done:
+    return status;
+}
+
+starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list *landmarks) {
+    starg_context *context = from->context;
+    starg_status status = STARG_OK;
+    warp w = {.context = context, .from = from, .to = to, .marks = landmarks};
+    size_t n = landmarks->count, count = from->mesh->vertex_count;
+    if (n == 0)
+        return STARG_OK;
+    STARG_NEW(context, STAGE, w.matrix, n * (n + 3));
+    STARG_NEW(context, STAGE, w.before, 3 * count);
+    STARG_NEW_ZERO(context, STAGE, w.pinned, count);
+    for (size_t i = 0; i < n; i++)
+        w.pinned[landmarks->from[i]] = 1;
+    STARG_TRY(approach(&w));
+    relax(&w, FINAL_SWEEPS);
+done:
+    starg_release(context, w.matrix);
+    starg_release(context, w.before);
+    starg_release(context, w.pinned);
+    return status;
+}

@@ -1,0 +1,22 @@
+/* Where on a spread surface is a direction? */
+#ifndef STARG_MORPH_LOCATE_H
+#define STARG_MORPH_LOCATE_H
+
+#include "mesh/topology.h"
+#include "morph/sphere.h"
+
+typedef struct locator {
+    const sphere *sphere; /* borrowed */
+    mesh_topology *topology;
+} locator;
+
+/* Errors: MEMORY. */
+starg_status locator_create(starg_context *context, const sphere *s, locator *out);
+void locator_free(locator *l);
+
+/* The face whose spherical triangle holds the direction, exactly (one of them on an edge), and the
+ * barycentric coordinates of its central projection into the flat triangle. `start` is a face to
+ * begin at. */
+uint32_t locate(const locator *l, const double direction[3], uint32_t start, double coordinates[3]);
+
+#endif

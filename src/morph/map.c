@@ -1,0 +1,299 @@
+/* Maps between surfaces, the first of the steps of section 5.2 of [YL11].
+ *
+ * Stages for surfaces of genus 0 with different faces: check both; spread both over the sphere
+ * (sphere.c); turn one onto the other (align.c); warp it until the landmarks are met (landmarks.c);
+ * find the vertices of the one among the faces of the other (locate.c). The composition of the
+ * spread of A and the inverse of that of B is a bijection of the surfaces. */
+#include "morph/map.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
+#include "morph/landmarks.h"
+#include "starguard/solid.h"
+
+static const char STAGE[] = "map";
+
+void starg_map_options_default(starg_map_options *options) {
+    *options = (starg_map_options){0};
+}
+
+/* ---- parts that reading a map shares ---- */
+
+starg_status map_make(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                      starg_map_kind kind, starg_map **out) {
+    starg_status status = STARG_OK;
+    starg_map *map = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, map, 1);
+    map->kind = kind;
+    map->vertex_count = a->vertex_count;
+    map->target_vertices = b->vertex_count;
+    map->target_faces = b->face_count;
+    STARG_NEW(context, STAGE, map->faces, a->vertex_count);
+    STARG_NEW(context, STAGE, map->coordinates, 3 * a->vertex_count);
+    *out = map;
+    map = NULL;
+done:
+    starg_map_free(context, map);
+    return status;
+}
+
+void starg_map_free(starg_context *context, starg_map *map) {
+    if (map == NULL)
+        return;
+    starg_release(context, map->faces);
+    starg_release(context, map->coordinates);
+    starg_release(context, map);
+}
+
+bool map_same_faces(const starg_mesh *a, const starg_mesh *b) {
+    return a->vertex_count == b->vertex_count && a->face_count == b->face_count &&
+           (a->face_count == 0 ||
+            memcmp(a->faces, b->faces, 3 * a->face_count * sizeof *a->faces) == 0);
+}
+
+starg_status map_identity(starg_context *context, const starg_mesh *b, starg_map *map) {
+    memset(map->faces, 0xff, map->vertex_count * sizeof *map->faces);
+    memset(map->coordinates, 0, 3 * map->vertex_count * sizeof *map->coordinates);
+    for (size_t i = 0; i < 3 * b->face_count; i++) {
+        uint32_t v = b->faces[i];
+        if (map->faces[v] != UINT32_MAX)
+            continue;
+        map->faces[v] = (uint32_t)(i / 3);
+        map->coordinates[3 * (size_t)v + i % 3] = 1;
+    }
+    for (size_t v = 0; v < map->vertex_count; v++) {
+        uint64_t vertex = v;
+        if (map->faces[v] == UINT32_MAX)
+            return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, &vertex, 1,
+                                 "vertex %zu is of no face, so it lies nowhere on the surface; "
+                                 "'starguard repair' takes it out",
+                                 v);
+    }
+    return STARG_OK;
+}
+
+starg_status map_unit_copy(starg_context *context, const starg_mesh *mesh, starg_mesh **out) {
+    starg_status status = STARG_OK;
+    double *vertices = NULL, lower[3], upper[3];
+    starg_mesh_bounds(mesh, lower, upper);
+    double extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, upper[k] - lower[k]);
+    *out = NULL;
+    if (!(extent > 0))
+        return starg_fail(context, STARG_ERROR_MESH, STAGE, "a mesh has no extent");
+    STARG_NEW(context, STAGE, vertices, 3 * mesh->vertex_count);
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        vertices[i] = (mesh->vertices[i] - lower[i % 3]) / extent -
+                      0.5 * (upper[i % 3] - lower[i % 3]) / extent;
+    STARG_TRY(starg_mesh_create(context, vertices, mesh->vertex_count, mesh->faces,
+                                mesh->face_count, out));
+done:
+    starg_release(context, vertices);
+    return status;
+}
+
+void starg_map_positions(const starg_map *map, const starg_mesh *b, double *positions) {
+    for (size_t v = 0; v < map->vertex_count; v++) {
+        const uint32_t *corner = b->faces + 3 * (size_t)map->faces[v];
+        const double *w = map->coordinates + 3 * v;
+        for (size_t k = 0; k < 3; k++)
+            positions[3 * v + k] = w[0] * b->vertices[3 * (size_t)corner[0] + k] +
+                                   w[1] * b->vertices[3 * (size_t)corner[1] + k] +
+                                   w[2] * b->vertices[3 * (size_t)corner[2] + k];
+    }
+}
+
+/* ---- checks ---- */
+
+static starg_status check_surface(starg_context *context, const starg_check *check,
+                                  const char *name) {
+    const starg_finding *isolated = &check->findings[STARG_FINDING_ISOLATED_VERTEX];
+    if (isolated->count > 0)
+        return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX,
+                             isolated->first, isolated->shown,
+                             "surface %s has %zu vertices of no face; 'starguard repair' takes "
+                             "them out",
+                             name, isolated->count);
+    if (check->components != 1)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "surface %s has %zu parts; surfaces with different faces can be mapped "
+                          "only in one part. Give a map with --map, or map the parts singly",
+                          name, check->components);
+    if (check->genus != 0)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "surface %s has genus %lld; surfaces with different faces are mapped by "
+                          "way of the sphere, which needs genus 0. Give a map with --map",
+                          name, (long long)check->genus);
+    return STARG_OK;
+}
+
+static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
+                                    const starg_mesh *b, const starg_map_options *options) {
+    const uint32_t *pairs = options->landmarks;
+    if (options->landmark_count > STARG_LANDMARKS_MOST)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu landmarks are too many; at most %d", options->landmark_count,
+                          STARG_LANDMARKS_MOST);
+    for (size_t i = 0; i < options->landmark_count; i++) {
+        const uint32_t *own = pairs + 2 * i;
+        if (own[0] >= a->vertex_count || own[1] >= b->vertex_count)
+            return starg_fail(
+                context, STARG_ERROR_MESH, STAGE,
+                "landmark %zu pairs vertices %u and %u, but the surfaces have %zu and "
+                "%zu vertices (numbered from 0)",
+                i, own[0], own[1], a->vertex_count, b->vertex_count);
+        for (size_t j = 0; j < i; j++)
+            if (pairs[2 * j] == own[0] || pairs[2 * j + 1] == own[1])
+                return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                                  "landmarks %zu and %zu name the same vertex; each may stand in "
+                                  "one pair only",
+                                  j, i);
+    }
+    return STARG_OK;
+}
+
+/* ---- the identity ---- */
+
+static starg_status map_same(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                             const starg_map_options *options, starg_map **out) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < options->landmark_count; i++)
+        if (options->landmarks[2 * i] != options->landmarks[2 * i + 1])
+            return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                              "the surfaces have the same faces, so that vertex i goes to vertex "
+                              "i, but landmark %zu pairs %u with %u",
+                              i, options->landmarks[2 * i], options->landmarks[2 * i + 1]);
+    STARG_TRY(map_make(context, a, b, STARG_MAP_SAME, out));
+    STARG_TRY(map_identity(context, b, *out));
+done:
+    return status;
+}
+
+/* ---- by the sphere ---- */
+
+typedef struct spread {
+    starg_mesh *unit;
+    sphere *sphere;
+} spread;
+
+static starg_status spread_surface(starg_context *context, const starg_mesh *mesh, const char *name,
+                                   spread *out) {
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    STARG_TRY(starg_solid_create(context, mesh, &solid));
+    STARG_TRY(check_surface(context, starg_solid_check(solid), name));
+    STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
+    STARG_TRY(sphere_create(context, out->unit, &out->sphere));
+done:
+    starg_solid_free(solid);
+    return status;
+}
+
+static void spread_free(spread *s) {
+    sphere_free(s->sphere);
+    starg_mesh_free(s->unit);
+}
+
+/* A face with that vertex as a corner. */
+static void at_vertex(const starg_mesh *b, uint32_t vertex, uint32_t *face, double coordinates[3]) {
+    uint32_t corner = 0;
+    while (b->faces[corner] != vertex)
+        corner++;
+    *face = corner / 3;
+    for (uint32_t k = 0; k < 3; k++)
+        coordinates[k] = k == corner % 3;
+}
+
+/* Coordinates found for the corners of a face of the solid, as corners of the same face of B. */
+static void reorder(const starg_mesh *solid, const starg_mesh *b, uint32_t face,
+                    double coordinates[3]) {
+    double found[3];
+    vec3_copy(coordinates, found);
+    for (size_t k = 0; k < 3; k++)
+        for (size_t j = 0; j < 3; j++)
+            if (solid->faces[3 * (size_t)face + k] == b->faces[3 * (size_t)face + j])
+                coordinates[j] = found[k];
+}
+
+static starg_status place_vertices(const sphere *from, const locator *to, const starg_mesh *b,
+                                   const landmark_list *marks, starg_map *map) {
+    starg_status status = STARG_OK;
+    uint32_t face = 0;
+    for (size_t v = 0; v < map->vertex_count; v++) {
+        double *coordinates = map->coordinates + 3 * v;
+        STARG_TRY(starg_check_cancel(from->context, STAGE));
+        face = locate(to, from->directions + 3 * v, face, coordinates);
+        map->faces[v] = face;
+        reorder(to->sphere->mesh, b, face, coordinates);
+    }
+    for (size_t i = 0; i < marks->count; i++) {
+        size_t v = marks->from[i];
+        at_vertex(b, marks->to[i], &map->faces[v], map->coordinates + 3 * v);
+    }
+    map->landmark_count = marks->count;
+done:
+    return status;
+}
+
+/* The pairs as two lists. */
+static starg_status split_landmarks(starg_context *context, const starg_map_options *options,
+                                    uint32_t **lists, landmark_list *out) {
+    starg_status status = STARG_OK;
+    size_t count = options->landmark_count;
+    STARG_NEW(context, STAGE, *lists, 2 * count);
+    for (size_t i = 0; i < 2 * count; i++)
+        (*lists)[i % 2 * count + i / 2] = options->landmarks[i];
+    *out = (landmark_list){*lists, *lists + count, count};
+done:
+    return status;
+}
+
+static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                  const starg_map_options *options, starg_map **out) {
+    starg_status status = STARG_OK;
+    spread from = {0}, to = {0};
+    locator where = {0};
+    uint32_t *lists = NULL;
+    landmark_list marks;
+    STARG_TRY(split_landmarks(context, options, &lists, &marks));
+    STARG_TRY(spread_surface(context, a, "A", &from));
+    STARG_TRY(spread_surface(context, b, "B", &to));
+    STARG_TRY(locator_create(context, to.sphere, &where));
+    STARG_TRY(align_spheres(from.sphere, &where, &marks));
+    STARG_TRY(landmarks_meet(from.sphere, to.sphere, &marks));
+    STARG_TRY(map_make(context, a, b, STARG_MAP_SPHERE, out));
+    STARG_TRY(place_vertices(from.sphere, &where, b, &marks, *out));
+done:
+    starg_release(context, lists);
+    locator_free(&where);
+    spread_free(&from);
+    spread_free(&to);
+    return status;
+}
+
+starg_status starg_map_create(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                              const starg_map_options *options, starg_map **out) {
+    starg_status status = STARG_OK;
+    const starg_map_options none = {0};
+    starg_map *map = NULL;
+    if (options == NULL)
+        options = &none;
+    *out = NULL;
+    STARG_TRY(check_landmarks(context, a, b, options));
+    if (map_same_faces(a, b))
+        STARG_TRY(map_same(context, a, b, options, &map));
+    else
+        STARG_TRY(map_by_sphere(context, a, b, options, &map));
+    STARG_TRY(map_measure(context, a, b, map));
+    *out = map;
+    map = NULL;
+done:
+    starg_map_free(context, map);
+    return status;
+}

@@ -1,0 +1,63 @@
+/* How much a map distorts: the singular values of the linear maps between faces and their images.
+ */
+#include "morph/map.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
+
+static const char STAGE[] = "map";
+static const double WORST_CONFORMAL = 1000;
+
+/* Area and first fundamental form of the triangle in the basis of its first two edges. */
+typedef struct form {
+    double e, f, g, area;
+} form;
+
+static form form_of(const double *vertices, const uint32_t corner[3]) {
+    const double *p = vertices + 3 * (size_t)corner[0];
+    double u[3], v[3], n[3];
+    vec3_subtract(vertices + 3 * (size_t)corner[1], p, u);
+    vec3_subtract(vertices + 3 * (size_t)corner[2], p, v);
+    vec3_cross(u, v, n);
+    return (form){vec3_dot(u, u), vec3_dot(u, v), vec3_dot(v, v), 0.5 * vec3_length(n)};
+}
+
+/* s^2 + r^2, the trace of the image's form in an orthonormal basis of the face. */
+static double trace_of(const form *a, const form *b) {
+    return (a->g * b->e - 2 * a->f * b->f + a->e * b->g) / (4 * a->area * a->area);
+}
+
+starg_status map_measure(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                         starg_map *map) {
+    starg_status status = STARG_OK;
+    starg_mesh *from = NULL, *to = NULL; /* of unit size: squares do not overflow */
+    double *images = NULL, area = 0, image_area = 0, stretch = 0, conformal = 0;
+    STARG_TRY(map_unit_copy(context, a, &from));
+    STARG_TRY(map_unit_copy(context, b, &to));
+    STARG_NEW(context, STAGE, images, 3 * map->vertex_count);
+    starg_map_positions(map, to, images);
+    for (size_t f = 0; f < from->face_count; f++) {
+        form own = form_of(from->vertices, from->faces + 3 * f);
+        form image = form_of(images, from->faces + 3 * f);
+        image_area += image.area;
+        map->collapsed += !(image.area > 0);
+        if (!(own.area > 0))
+            continue;
+        double trace = trace_of(&own, &image), ratio = trace / 2 * own.area / image.area;
+        area += own.area;
+        stretch += own.area * trace / 2;
+        conformal += own.area * (ratio < WORST_CONFORMAL ? ratio : WORST_CONFORMAL);
+    }
+    if (area > 0 && image_area > 0) {
+        map->mean_stretch = sqrt(stretch / image_area);
+        map->mean_conformal = conformal / area;
+    }
+done:
+    starg_mesh_free(from);
+    starg_mesh_free(to);
+    starg_release(context, images);
+    return status;
+}

@@ -1,0 +1,177 @@
+/* Morphs: from A to the images of its vertices by one of several methods [YL11, section 5.2].
+ *
+ * Stages: check and scale both ends; for methods with guards, choose guards and pieces
+ * (consistent.c); for the rigid ones, the paths of the faces (face_paths.c) and guards
+ * (guard_paths.c), and the factorised system (rigid.c). Every frame is then independent of others.
+ *
+ * All work is done about the middle of each end's box and over the larger extent, so that models of
+ * any size are alike; the middle itself goes straight. */
+#include "morph/morph.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+
+static const char STAGE[] = "morph";
+enum { CANDIDATES = 1000, CANDIDATES_MOST = 100000 };
+
+void starg_morph_options_default(starg_morph_options *options) {
+    *options = (starg_morph_options){.method = STARG_MORPH_STAR, .candidates = CANDIDATES};
+}
+
+static starg_status check_input(starg_context *context, const starg_mesh *a, const double *images,
+                                const starg_morph_options *options) {
+    if (options->method < STARG_MORPH_STAR || options->method > STARG_MORPH_SPHERICAL)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no method %d",
+                          (int)options->method);
+    if (options->candidates < 1 || options->candidates > CANDIDATES_MOST)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu candidates; there must be 1 to %d", options->candidates,
+                          CANDIDATES_MOST);
+    if (a->face_count == 0)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no faces");
+    for (size_t i = 0; i < 3 * a->vertex_count; i++) {
+        uint64_t vertex = i / 3;
+        if (!(fabs(images[i]) < STARG_COORDINATE_LIMIT))
+            return starg_fail_at(context, STARG_ERROR_RANGE, STAGE, STARG_ELEMENT_VERTEX, &vertex,
+                                 1, "the image of vertex %zu is not finite and below 1e100", i / 3);
+    }
+    return STARG_OK;
+}
+
+/* The middle of a box and its largest side. */
+static double box_of(const double *positions, size_t count, double center[3]) {
+    double extent = 0;
+    for (size_t k = 0; k < 3; k++) {
+        double lower = positions[k], upper = positions[k];
+        for (size_t v = 1; v < count; v++) {
+            lower = fmin(lower, positions[3 * v + k]);
+            upper = fmax(upper, positions[3 * v + k]);
+        }
+        center[k] = 0.5 * lower + 0.5 * upper;
+        extent = fmax(extent, upper - lower);
+    }
+    return extent;
+}
+
+static starg_status take_ends(starg_morph *m, const starg_mesh *a, const double *images) {
+    starg_status status = STARG_OK;
+    starg_context *context = m->context;
+    size_t count = 3 * a->vertex_count;
+    double *scaled = NULL;
+    STARG_NEW(context, STAGE, m->source, count);
+    STARG_NEW(context, STAGE, m->target, count);
+    STARG_NEW(context, STAGE, m->images, count);
+    STARG_NEW(context, STAGE, scaled, count);
+    memcpy(m->source, a->vertices, count * sizeof *m->source);
+    memcpy(m->target, images, count * sizeof *m->target);
+    double own = box_of(m->source, a->vertex_count, m->centers[0]);
+    double other = box_of(m->target, a->vertex_count, m->centers[1]);
+    m->size = fmax(own, other);
+    if (!(own > 0 && other > 0)) {
+        status =
+            starg_fail(context, STARG_ERROR_MESH, STAGE, "one of the two shapes is a single point");
+        goto done;
+    }
+    for (size_t i = 0; i < count; i++) {
+        scaled[i] = (m->source[i] - m->centers[0][i % 3]) / m->size;
+        m->images[i] = (m->target[i] - m->centers[1][i % 3]) / m->size;
+    }
+    STARG_TRY(
+        starg_mesh_create(context, scaled, a->vertex_count, a->faces, a->face_count, &m->mesh));
+done:
+    starg_release(context, scaled);
+    return status;
+}
+
+starg_status starg_morph_create(starg_context *context, const starg_mesh *a, const double *images,
+                                const starg_morph_options *options, starg_morph **out) {
+    starg_status status = STARG_OK;
+    starg_morph_options defaults;
+    starg_morph *m = NULL;
+    starg_morph_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_input(context, a, images, options));
+    STARG_NEW_ZERO(context, STAGE, m, 1);
+    m->context = context;
+    m->method = options->method;
+    STARG_TRY(take_ends(m, a, images));
+    if (morph_has_guards(m))
+        STARG_TRY(morph_guard(m, options->candidates));
+    if (m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_ARAP)
+        STARG_TRY(morph_prepare_faces(m));
+    if (m->method == STARG_MORPH_STAR)
+        STARG_TRY(morph_prepare_guards(m));
+    if (m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_ARAP)
+        STARG_TRY(morph_prepare_rigid(m));
+    *out = m;
+    m = NULL;
+done:
+    starg_morph_free(m);
+    return status;
+}
+
+void starg_morph_free(starg_morph *m) {
+    if (m == NULL)
+        return;
+    void *const blocks[] = {m->source,    m->target,      m->images,     m->faces,
+                            m->weights,   m->loose,       m->component,  m->remainder,
+                            m->guards[0], m->guards[1],   m->places[0],  m->places[1],
+                            m->pieces,    m->guard_paths, m->guard_order};
+    starg_mesh_free(m->mesh);
+    cholesky_free(m->system);
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+        starg_release(m->context, blocks[i]);
+    starg_release(m->context, m);
+}
+
+/* ---- frames ---- */
+
+static void unscale(const starg_morph *m, double t, double *positions) {
+    for (size_t i = 0; i < 3 * m->mesh->vertex_count; i++)
+        positions[i] =
+            (1 - t) * m->centers[0][i % 3] + t * m->centers[1][i % 3] + m->size * positions[i];
+}
+
+starg_status starg_morph_frame(const starg_morph *m, double t, double *positions) {
+    starg_status status = STARG_OK;
+    size_t count = 3 * m->mesh->vertex_count;
+    if (!(t >= 0 && t <= 1))
+        return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE, "time %g; it must lie in [0, 1]",
+                          t);
+    STARG_TRY(starg_check_cancel(m->context, STAGE));
+    if (t == 0 || t == 1) {
+        memcpy(positions, t == 0 ? m->source : m->target, count * sizeof *positions);
+        return STARG_OK;
+    }
+    if (m->method == STARG_MORPH_LINEAR) {
+        for (size_t i = 0; i < count; i++)
+            positions[i] = (1 - t) * m->source[i] + t * m->target[i];
+        return STARG_OK;
+    }
+    STARG_TRY(m->method == STARG_MORPH_SPHERICAL ? morph_frame_spherical(m, t, positions)
+                                                 : morph_frame_rigid(m, t, positions));
+    unscale(m, t, positions);
+done:
+    return status;
+}
+
+size_t starg_morph_guard_count(const starg_morph *m) {
+    return m->guard_count;
+}
+
+const double *starg_morph_guards(const starg_morph *m, int end) {
+    return m->guards[end != 0];
+}
+
+const uint32_t *starg_morph_pieces(const starg_morph *m) {
+    return m->pieces;
+}
+
+size_t starg_morph_unguarded(const starg_morph *m) {
+    return m->unguarded;
+}

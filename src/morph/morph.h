@@ -1,0 +1,72 @@
+/* Inside of a morph. */
+#ifndef STARG_MORPH_MORPH_H
+#define STARG_MORPH_MORPH_H
+
+#include "mesh/mesh.h"
+#include "morph/cholesky.h"
+#include "starguard/morph.h"
+
+/* How a face gets from A to B about a reference: A(t) = R0(t) R(t) ((1 - t) I + t S), with
+ * R0(t) = exp(t w0) for all faces and R(t) = exp(t w). */
+typedef struct face_path {
+    double rotation[3]; /* w */
+    double stretch[9];  /* S */
+} face_path;
+
+/* One guard of a piece: where it is at both ends and how it gets there, relative to its parent in
+ * the tree of guards. */
+typedef struct guard_path {
+    uint32_t parent;    /* itself for the root; parents come first in the order */
+    double rotation[3]; /* of the piece, w */
+    double offset[3];   /* from the parent's place in A */
+    double change[3];   /* what the offset gains on the way, in A's frame */
+    double weight;      /* share of the area */
+} guard_path;
+
+struct starg_morph {
+    starg_context *context;
+    starg_morph_method method;
+    starg_mesh *mesh;        /* A about its center, over the size                 */
+    double centers[2][3];    /* of the boxes of A and of the images               */
+    double size;             /* the larger extent                                 */
+    double *source, *target; /* vertex_count x 3, the inputs as they are          */
+    double *images;          /* vertex_count x 3, about their center, over the size  */
+    double turn[3];          /* w0                                                   */
+    face_path *faces;        /* per face                                             */
+    double *weights;         /* per face: cotangents at its corners, anchor's weight */
+    uint8_t *loose;          /* per vertex: no face holds it                         */
+    uint32_t *component;     /* per vertex a name of its connected part              */
+    cholesky *system;
+    double *remainder; /* vertex_count x 3: what the least squares leave at 1  */
+
+    size_t guard_count, unguarded;
+    double *guards[2]; /* guard_count x 3, as the inputs  */
+    double *places[2]; /* the same, scaled as the mesh    */
+    uint32_t *pieces;  /* per face                        */
+    guard_path *guard_paths;
+    uint32_t *guard_order;
+};
+
+/* Chooses guards and pieces that correspond (consistent.c). */
+starg_status morph_guard(starg_morph *m, size_t candidates);
+
+/* Finds the whole's and the faces' paths (face_paths.c). */
+starg_status morph_prepare_faces(starg_morph *m);
+
+/* Factorises the system and finds the remainder; shapes at t, scaled (rigid.c). */
+starg_status morph_prepare_rigid(starg_morph *m);
+starg_status morph_frame_rigid(const starg_morph *m, double t, double *out);
+
+/* Finds the guards' paths from those of the faces, which come first (guard_paths.c). */
+starg_status morph_prepare_guards(starg_morph *m);
+/* Where the guards are at t: guard_count x 3. */
+void morph_guards_at(const starg_morph *m, double t, double *out);
+
+/* Spherical coordinates about the guards (spherical.c). */
+starg_status morph_frame_spherical(const starg_morph *m, double t, double *out);
+
+static inline bool morph_has_guards(const starg_morph *m) {
+    return m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_SPHERICAL;
+}
+
+#endif

@@ -1,0 +1,123 @@
+/* Relaxation of spherical triangulations by stretch.
+ *
+ * Problem: a valid embedding in the sphere squeezes limbs to almost nothing; give every part of the
+ * surface its share of the sphere.
+ * Source: the stretch of a parameterisation, as minimised coarse to fine by E. Praun, H. Hoppe,
+ * Spherical parametrization and remeshing, 2003.
+ *
+ * Energy of a triangle a b c on the sphere with the squared lengths l of the surface's edges: the
+ * Dirichlet energy of the map from the sphere to the surface, sum of l_k cot(angle k), with
+ * det(a, b, c) in place of twice the area. It is infinite where a triangle turns over, also for the
+ * large ones of coarse levels, so that descent keeps away from there. A small length is added to
+ * all edges, lest needles of the surface lose all their area.
+ *
+ * A vertex goes down the gradient in its tangent plane, by the longest of some halved steps that
+ * lowers the energy of its triangles. No rounding decides validity: the triangles about the new
+ * place must pass the exact predicate. Cost: O(edges) a sweep. */
+#include "morph/relax.h"
+
+#include <math.h>
+
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+
+enum { HALVINGS = 8 };
+static const double FIRST_STEP = 0.5; /* of the distance to the nearest neighbour */
+
+static const double ORIGIN[3];
+
+bool relax_is_positive(const ring *around, const double *directions, const double at[3]) {
+    for (size_t i = 0; i < around->count; i++) {
+        const double *p = directions + 3 * (size_t)around->data[i];
+        const double *q = directions + 3 * (size_t)around->data[(i + 1) % around->count];
+        if (orient3d(at, p, q, ORIGIN) != 1)
+            return false;
+    }
+    return true;
+}
+
+/* A triangle about the vertex that moves. */
+typedef struct corner {
+    const double *p, *q;
+    double opposite, to_p, to_q; /* squared lengths of the surface's edges */
+} corner;
+
+static corner corner_of(const relaxation *r, uint32_t v, size_t i) {
+    const ring *around = &r->rings->of[v];
+    uint32_t p = around->data[i], q = around->data[(i + 1) % around->count];
+    const double *surface = r->rings->positions, *own = surface + 3 * (size_t)v;
+    const double *at_p = surface + 3 * (size_t)p, *at_q = surface + 3 * (size_t)q;
+    return (corner){.p = r->directions + 3 * (size_t)p,
+                    .q = r->directions + 3 * (size_t)q,
+                    .opposite = vec3_distance_squared(at_p, at_q) + r->floor,
+                    .to_p = vec3_distance_squared(own, at_p) + r->floor,
+                    .to_q = vec3_distance_squared(own, at_q) + r->floor};
+}
+
+/* Energy of one triangle with its vertex at x; adds the gradient unless that is NULL. */
+static double corner_energy(const corner *c, const double x[3], double *gradient) {
+    double n[3], xp[3], xq[3], pq[3];
+    vec3_cross(c->p, c->q, n);
+    vec3_subtract(c->p, x, xp);
+    vec3_subtract(c->q, x, xq);
+    vec3_subtract(c->q, c->p, pq);
+    double volume = vec3_dot(x, n);
+    if (!(volume > 0))
+        return INFINITY;
+    double sum =
+        c->opposite * vec3_dot(xp, xq) - c->to_q * vec3_dot(xp, pq) + c->to_p * vec3_dot(xq, pq);
+    for (int k = 0; gradient != NULL && k < 3; k++) {
+        double slope = -c->opposite * (xp[k] + xq[k]) + (c->to_q - c->to_p) * pq[k];
+        gradient[k] += (slope - sum * n[k] / volume) / volume;
+    }
+    return sum / volume;
+}
+
+static double energy_at(const relaxation *r, uint32_t v, const double x[3], double *gradient) {
+    double sum = 0;
+    for (size_t i = 0; i < r->rings->of[v].count; i++) {
+        corner c = corner_of(r, v, i);
+        sum += corner_energy(&c, x, gradient);
+    }
+    return sum;
+}
+
+static double nearest(const relaxation *r, uint32_t v) {
+    const ring *around = &r->rings->of[v];
+    double least = INFINITY;
+    for (size_t i = 0; i < around->count; i++)
+        least = fmin(least, vec3_distance(r->directions + 3 * (size_t)v,
+                                          r->directions + 3 * (size_t)around->data[i]));
+    return least;
+}
+
+/* Returns how far the vertex has gone. */
+static double relax_vertex(const relaxation *r, uint32_t v) {
+    double *x = r->directions + 3 * (size_t)v, gradient[3] = {0};
+    double before = energy_at(r, v, x, gradient);
+    vec3_along(gradient, -vec3_dot(gradient, x), x, gradient);
+    double slope = vec3_length(gradient), step = FIRST_STEP * nearest(r, v);
+    if (!(slope > 0 && slope < INFINITY))
+        return 0;
+    for (int i = 0; i < HALVINGS; i++, step *= 0.5) {
+        double y[3];
+        vec3_along(x, -step / slope, gradient, y);
+        double length = vec3_length(y);
+        for (int k = 0; k < 3; k++)
+            y[k] /= length;
+        if (energy_at(r, v, y, NULL) < before &&
+            relax_is_positive(&r->rings->of[v], r->directions, y)) {
+            vec3_copy(y, x);
+            return step;
+        }
+    }
+    return 0;
+}
+
+double relax_sweep(const relaxation *r) {
+    double longest = 0;
+    for (size_t i = 0; i < r->alive_count; i++)
+        if (r->pinned == NULL || r->pinned[r->alive[i]] == 0)
+            longest = fmax(longest, relax_vertex(r, r->alive[i]));
+    return longest;
+}

@@ -1,0 +1,23 @@
+/* Evens out an embedding of a triangulated sphere in the unit sphere. */
+#ifndef STARG_MORPH_RELAX_H
+#define STARG_MORPH_RELAX_H
+
+#include "morph/rings.h"
+
+typedef struct relaxation {
+    const rings *rings;
+    double *directions;    /* vertex_count x 3, of length about 1; changed in place      */
+    const uint32_t *alive; /* the vertices that may move, in the order in which they do  */
+    size_t alive_count;
+    const uint8_t *pinned; /* per vertex: must not move; NULL: none                      */
+    double floor;          /* squared length that is added to every edge of the surface  */
+} relaxation;
+
+/* Moves each vertex downhill once. Every triangle about it stays positive, exactly. Returns the
+ * longest move. */
+double relax_sweep(const relaxation *relaxation);
+
+/* Is every triangle about a vertex positively oriented as seen from outside? Exact. */
+bool relax_is_positive(const ring *around, const double *directions, const double at[3]);
+
+#endif

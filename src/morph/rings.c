@@ -1,0 +1,232 @@
+/* Removal and return of the vertices of a triangulated sphere [Hop96].
+ *
+ * Each vertex keeps the cycle of its neighbours. To remove b is to merge it into a neighbour a: the
+ * hole that its faces leave is filled by the fan from a. That gives a triangulated sphere again
+ * exactly if a and b have no common neighbours but the two that they must have. Outside of b's
+ * faces the edges between its neighbours are chords of a disk that do not cross; so one neighbour
+ * has none, and every vertex can be removed while more than four are left. Vertices of more than
+ * DEGREE neighbours wait: those of at most five are never missing [Euler].
+ *
+ * Order: the shortest merge first, so that what sticks out stays for long.
+ * Cost: O(degree^2) for each removal with its neighbourhood, O(log n) for the queue. */
+#include "morph/rings.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geometry/vec3.h"
+#include "mesh/heap.h"
+#include "mesh/topology.h"
+
+static const char STAGE[] = "sphere";
+enum { DEGREE = 24, BASE = 4 };
+
+static size_t ring_find(const ring *r, uint32_t vertex) {
+    size_t i = 0;
+    while (i < r->count && r->data[i] != vertex)
+        i++;
+    return i;
+}
+
+/* ---- make ---- */
+
+static starg_status ring_from(rings *r, const starg_mesh *mesh, const uint32_t *twin,
+                              uint32_t first) {
+    starg_status status = STARG_OK;
+    ring *own = &r->of[mesh->faces[first]];
+    uint32_t h = first;
+    do {
+        STARG_PUSH(r->context, STAGE, own, mesh->faces[corner_next(h)]);
+        h = twin[corner_previous(h)];
+    } while (h != first);
+done:
+    return status;
+}
+
+starg_status rings_create(starg_context *context, const starg_mesh *mesh, rings **out) {
+    starg_status status = STARG_OK;
+    rings *r = NULL;
+    mesh_topology *topology = NULL;
+    *out = NULL;
+    STARG_TRY(topology_create(context, mesh, &topology));
+    STARG_NEW_ZERO(context, STAGE, r, 1);
+    r->context = context;
+    r->positions = mesh->vertices;
+    r->vertex_count = r->left = mesh->vertex_count;
+    STARG_NEW_ZERO(context, STAGE, r->of, r->vertex_count);
+    STARG_NEW_ZERO(context, STAGE, r->mark, r->vertex_count);
+    for (uint32_t h = 0; h < 3 * mesh->face_count; h++)
+        if (r->of[mesh->faces[h]].count == 0)
+            STARG_TRY(ring_from(r, mesh, topology->twin, h));
+    *out = r;
+    r = NULL;
+done:
+    topology_free(topology);
+    rings_free(r);
+    return status;
+}
+
+void rings_free(rings *r) {
+    if (r == NULL)
+        return;
+    for (size_t v = 0; r->of != NULL && v < r->vertex_count; v++)
+        STARG_ARRAY_FREE(r->context, &r->of[v]);
+    starg_release(r->context, r->of);
+    starg_release(r->context, r->mark);
+    STARG_ARRAY_FREE(r->context, &r->removed);
+    STARG_ARRAY_FREE(r->context, &r->removals);
+    starg_release(r->context, r);
+}
+
+/* ---- remove ---- */
+
+static void set_marks(rings *r, const ring *of, uint32_t value) {
+    for (size_t i = 0; i < of->count; i++)
+        r->mark[of->data[i]] = value;
+}
+
+/* Number of neighbours of `a` that are marked. */
+static size_t count_marked(const rings *r, uint32_t a) {
+    size_t count = 0;
+    for (size_t i = 0; i < r->of[a].count; i++)
+        count += r->mark[r->of[a].data[i]];
+    return count;
+}
+
+/* The best neighbour to merge b into and its cost; infinite when b must wait. */
+static double choose_target(rings *r, uint32_t b, uint32_t *target) {
+    const ring *own = &r->of[b];
+    double least = INFINITY;
+    *target = b;
+    if (own->count > DEGREE)
+        return least;
+    set_marks(r, own, 1);
+    for (size_t i = 0; i < own->count; i++) {
+        uint32_t a = own->data[i];
+        double cost = vec3_distance(r->positions + 3 * (size_t)a, r->positions + 3 * (size_t)b);
+        double degree = (double)(r->of[a].count + own->count - 4);
+        cost *= fmax(1, degree / 8); /* round neighbourhoods are easier to embed */
+        if (cost < least && count_marked(r, a) == 2) {
+            least = cost;
+            *target = a;
+        }
+    }
+    set_marks(r, own, 0);
+    return least;
+}
+
+/* Takes out `count` cyclic entries from `first` on. */
+static void ring_drop(ring *r, size_t first, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        size_t at = first < r->count ? first : 0;
+        memmove(r->data + at, r->data + at + 1, (r->count - at - 1) * sizeof *r->data);
+        r->count--;
+    }
+}
+
+static starg_status ring_insert(starg_context *context, ring *r, size_t at, uint32_t vertex) {
+    starg_status status = STARG_OK;
+    STARG_PUSH(context, STAGE, r, vertex);
+    memmove(r->data + at + 1, r->data + at, (r->count - at - 1) * sizeof *r->data);
+    r->data[at] = vertex;
+done:
+    return status;
+}
+
+/* Keeps b and its neighbours, from a on. */
+static starg_status record(rings *r, uint32_t b, uint32_t a) {
+    starg_status status = STARG_OK;
+    const ring *own = &r->of[b];
+    size_t first = ring_find(own, a);
+    ring_removal removal = {b, (uint32_t)own->count, r->removed.count};
+    for (size_t i = 0; i < own->count; i++)
+        STARG_PUSH(r->context, STAGE, &r->removed, own->data[(first + i) % own->count]);
+    STARG_PUSH(r->context, STAGE, &r->removals, removal);
+done:
+    return status;
+}
+
+/* With the neighbours p0 = a, p1, ..., of b: p1 and the last lose b, those between see a instead,
+ * and a sees them where it saw b. */
+static starg_status merge(rings *r, uint32_t b, uint32_t a) {
+    starg_status status = STARG_OK;
+    STARG_TRY(record(r, b, a));
+    const ring_removal *last = &r->removals.data[r->removals.count - 1];
+    const uint32_t *p = r->removed.data + last->ring;
+    size_t count = last->count, at;
+    for (size_t i = 1; i < count; i++) {
+        ring *of = &r->of[p[i]];
+        at = ring_find(of, b);
+        if (i == 1 || i + 1 == count)
+            ring_drop(of, at, 1);
+        else
+            of->data[at] = a;
+    }
+    at = ring_find(&r->of[a], b);
+    ring_drop(&r->of[a], at, 1);
+    for (size_t i = 2; i + 1 < count; i++)
+        STARG_TRY(ring_insert(r->context, &r->of[a], at + i - 2, p[i]));
+    r->of[b].count = 0;
+    r->left--;
+done:
+    return status;
+}
+
+static void enqueue(rings *r, mesh_heap *heap, uint32_t vertex) {
+    uint32_t target;
+    double cost = choose_target(r, vertex, &target);
+    if (cost < INFINITY)
+        heap_set(heap, vertex, cost);
+    else
+        heap_remove(heap, vertex);
+}
+
+starg_status rings_reduce(rings *r) {
+    starg_status status = STARG_OK;
+    mesh_heap *heap = NULL;
+    uint32_t b, a;
+    STARG_TRY(heap_create(r->context, r->vertex_count, &heap));
+    for (uint32_t v = 0; v < r->vertex_count; v++)
+        enqueue(r, heap, v);
+    while (r->left > BASE && heap_pop(heap, &b)) {
+        STARG_TRY(starg_check_cancel(r->context, STAGE));
+        if (choose_target(r, b, &a) == INFINITY)
+            continue;
+        STARG_TRY(merge(r, b, a));
+        const ring_removal *last = &r->removals.data[r->removals.count - 1];
+        for (size_t i = 0; i < last->count; i++)
+            enqueue(r, heap, r->removed.data[last->ring + i]);
+    }
+done:
+    heap_free(heap);
+    return status;
+}
+
+/* ---- restore ---- */
+
+starg_status rings_restore(rings *r) {
+    starg_status status = STARG_OK;
+    ring_removal last = r->removals.data[r->removals.count - 1];
+    const uint32_t *p = r->removed.data + last.ring;
+    uint32_t a = p[0], b = last.vertex;
+    size_t count = last.count;
+    for (size_t i = 0; i < count; i++)
+        STARG_PUSH(r->context, STAGE, &r->of[b], p[i]);
+    for (size_t i = 1; i < count; i++) {
+        ring *of = &r->of[p[i]];
+        if (i == 1) /* the next one counter-clockwise after p2 is b, then a */
+            STARG_TRY(ring_insert(r->context, of, ring_find(of, a), b));
+        else if (i + 1 == count)
+            STARG_TRY(ring_insert(r->context, of, ring_find(of, a) + 1, b));
+        else
+            of->data[ring_find(of, a)] = b;
+    }
+    ring *center = &r->of[a];
+    if (count > 3)
+        ring_drop(center, ring_find(center, p[2]), count - 3);
+    STARG_TRY(ring_insert(r->context, center, ring_find(center, p[1]) + 1, b));
+    r->removals.count--;
+    r->left++;
+done:
+    return status;
+}

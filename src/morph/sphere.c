@@ -1,0 +1,223 @@
+/* Spherical embedding of a surface of genus 0, coarse to fine.
+ *
+ * Source: E. Praun, H. Hoppe, Spherical parametrization and remeshing, 2003, on progressive
+ * removals [Hop96].
+ *
+ * Stages: remove vertices until a tetrahedron is left; put that on the sphere; put the vertices
+ * back in reverse order, each into the kernel of the spherical polygon of its neighbours; whenever
+ * the number of vertices has grown by a fifth, relax all; relax the whole at the end.
+ *
+ * Invariants: all triangles are positive, by the exact predicate. A polygon that was a fan of
+ * positive triangles about one of its corners has a kernel with an interior near that corner. The
+ * middle of the kernel, the point farthest from the great circles of the polygon's sides, is a
+ * linear program in four variables. Degree one: a tetrahedron about the centre covers the sphere
+ * once, and moving or adding a vertex within the kernel changes no more than its polygon.
+ *
+ * Cost: O(n log n + sweeps n); each level costs a sixth more than the next coarser one. */
+#include "morph/sphere.h"
+
+#include <math.h>
+
+#include "geometry/linear_program.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "morph/relax.h"
+
+static const char STAGE[] = "sphere";
+enum { LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40 };
+static const double GROWTH = 1.2;
+static const double FLOOR = 0.02; /* of the mean area of a face, added to squared edges */
+
+/* Memory that grows with the largest polygon. */
+typedef struct workspace {
+    STARG_ARRAY(double) rows;
+    STARG_ARRAY(uint32_t) order;
+} workspace;
+
+/* ---- base ---- */
+
+/* Any three neighbours of a corner follow one another counter-clockwise. */
+static void place_base(sphere *s) {
+    static const double corners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+    uint32_t top = 0;
+    while (s->rings->of[top].count == 0)
+        top++;
+    const uint32_t *around = s->rings->of[top].data;
+    for (int k = 0; k < 3; k++) {
+        double scale = sqrt(1.0 / 3);
+        s->directions[3 * (size_t)top + (size_t)k] = scale * corners[0][k];
+        for (size_t i = 0; i < 3; i++)
+            s->directions[3 * (size_t)around[i] + (size_t)k] = scale * corners[i + 1][k];
+    }
+    s->alive[0] = top;
+    for (size_t i = 0; i < 3; i++)
+        s->alive[i + 1] = around[i];
+}
+
+/* ---- insertion ---- */
+
+/* The side p q as a row of the program: x on its inner side by at least the fourth variable. */
+static void side_row(const double p[3], const double q[3], double row[5]) {
+    vec3_cross(p, q, row);
+    double length = vec3_length(row);
+    for (int k = 0; k < 3; k++)
+        row[k] = length > 0 ? -row[k] / length : 0;
+    row[3] = 1;
+    row[4] = 0;
+}
+
+static starg_status kernel_middle(const sphere *s, workspace *work, const ring *around,
+                                  double out[3]) {
+    starg_status status = STARG_OK;
+    linear_solution solution;
+    work->rows.count = work->order.count = 0;
+    for (size_t i = 0; i < around->count; i++) {
+        double row[5];
+        side_row(s->directions + 3 * (size_t)around->data[i],
+                 s->directions + 3 * (size_t)around->data[(i + 1) % around->count], row);
+        for (int k = 0; k < 5; k++)
+            STARG_PUSH(s->context, STAGE, &work->rows, row[k]);
+        STARG_PUSH(s->context, STAGE, &work->order, 0);
+    }
+    const linear_program program = {.dimension = 4,
+                                    .rows = work->rows.data,
+                                    .count = around->count,
+                                    .objective = {0, 0, 0, 1},
+                                    .radius = 1,
+                                    .seed = s->context->seed};
+    linear_program_solve(&program, work->order.data, NULL, &solution);
+    double length = vec3_length(solution.point);
+    for (int k = 0; k < 3; k++)
+        out[k] = solution.feasible && length > 0 ? solution.point[k] / length : 0;
+done:
+    return status;
+}
+
+/* A place next to the vertex that b had been merged into, by halving: near enough to it the kernel
+ * is met where the middle of the kernel is too small for the program. */
+static bool place_near(const sphere *s, const ring *around, double out[3]) {
+    const double *a = s->directions + 3 * (size_t)around->data[0];
+    double middle[3] = {0};
+    for (size_t i = 1; i < around->count; i++)
+        vec3_along(middle, 1.0 / (double)around->count, s->directions + 3 * (size_t)around->data[i],
+                   middle);
+    for (double step = 0.5; step > 1e-12; step *= 0.5) {
+        double d[3];
+        vec3_subtract(middle, a, d);
+        vec3_along(a, step, d, out);
+        if (relax_is_positive(around, s->directions, out))
+            return true;
+    }
+    return false;
+}
+
+static starg_status insert(sphere *s, workspace *work) {
+    starg_status status = STARG_OK;
+    uint32_t b = s->rings->removals.data[s->rings->removals.count - 1].vertex;
+    double *x = s->directions + 3 * (size_t)b;
+    STARG_TRY(rings_restore(s->rings));
+    const ring *around = &s->rings->of[b];
+    STARG_TRY(kernel_middle(s, work, around, x));
+    if (!relax_is_positive(around, s->directions, x) && !place_near(s, around, x)) {
+        uint64_t vertex = b;
+        return starg_fail_at(s->context, STARG_ERROR_SOLVER, STAGE, STARG_ELEMENT_VERTEX, &vertex,
+                             1,
+                             "vertex %u finds no room on the sphere in double precision; "
+                             "'starguard repair' or a more even triangulation may help",
+                             b);
+    }
+    s->alive[s->rings->left - 1] = b;
+done:
+    return status;
+}
+
+/* ---- levels ---- */
+
+static relaxation relaxation_of(const sphere *s, size_t sweep_vertices) {
+    return (relaxation){.rings = s->rings,
+                        .directions = s->directions,
+                        .alive = s->alive,
+                        .alive_count = sweep_vertices,
+                        .floor =
+                            s->floor * (double)s->rings->vertex_count / (double)sweep_vertices};
+}
+
+static starg_status relax(sphere *s, int sweeps) {
+    starg_status status = STARG_OK;
+    relaxation r = relaxation_of(s, s->rings->left);
+    for (int i = 0; i < sweeps; i++) {
+        STARG_TRY(starg_check_cancel(s->context, STAGE));
+        relax_sweep(&r);
+    }
+done:
+    return status;
+}
+
+static starg_status refine(sphere *s, workspace *work) {
+    starg_status status = STARG_OK;
+    double next = 4;
+    starg_progress_begin(s->context, STAGE);
+    while (s->rings->removals.count > 0) {
+        STARG_TRY(insert(s, work));
+        if ((double)s->rings->left >= next) {
+            STARG_TRY(relax(s, LEVEL_SWEEPS));
+            next = GROWTH * (double)s->rings->left;
+        }
+        starg_progress_step(s->context, s->rings->left, s->rings->vertex_count);
+    }
+    STARG_TRY(relax(s, FINAL_SWEEPS));
+    for (size_t v = 0; v < s->rings->vertex_count; v++)
+        s->alive[v] = (uint32_t)v;
+done:
+    starg_progress_end(s->context);
+    return status;
+}
+
+bool sphere_is_positive(const sphere *s) {
+    static const double origin[3];
+    for (size_t f = 0; f < s->mesh->face_count; f++) {
+        const uint32_t *corner = s->mesh->faces + 3 * f;
+        if (orient3d(s->directions + 3 * (size_t)corner[0], s->directions + 3 * (size_t)corner[1],
+                     s->directions + 3 * (size_t)corner[2], origin) != 1)
+            return false;
+    }
+    return true;
+}
+
+starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out) {
+    starg_status status = STARG_OK;
+    sphere *s = NULL;
+    workspace work = {0};
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, s, 1);
+    s->context = context;
+    s->mesh = mesh;
+    s->floor = FLOOR * starg_mesh_area(mesh) / (double)mesh->face_count;
+    STARG_NEW_ZERO(context, STAGE, s->directions, 3 * mesh->vertex_count);
+    STARG_NEW(context, STAGE, s->alive, mesh->vertex_count);
+    STARG_TRY(rings_create(context, mesh, &s->rings));
+    STARG_TRY(rings_reduce(s->rings));
+    place_base(s);
+    STARG_TRY(refine(s, &work));
+    if (!sphere_is_positive(s)) {
+        status = starg_fail(context, STARG_ERROR_SOLVER, STAGE,
+                            "the surface cannot be spread over the sphere in double precision");
+        goto done;
+    }
+    *out = s;
+    s = NULL;
+done:
+    STARG_ARRAY_FREE(context, &work.rows);
+    STARG_ARRAY_FREE(context, &work.order);
+    sphere_free(s);
+    return status;
+}
+
+void sphere_free(sphere *s) {
+    if (s == NULL)
+        return;
+    rings_free(s->rings);
+    starg_release(s->context, s->alive);
+    starg_release(s->context, s->directions);
+    starg_release(s->context, s);
+}
