@@ -28,8 +28,8 @@ static void say_map(cli_session *session, const starg_map *map) {
     cli_say(session, "map           %s\n", kinds[map->kind]);
     cli_say(session, "vertices      %zu\n", map->vertex_count);
     cli_say(session, "landmarks     %zu (all met)\n", map->landmark_count);
-    cli_say(session, "stretch       %.4g (1 is best)\n", map->mean_stretch);
-    cli_say(session, "angles        %.4g (1 is best)\n", map->mean_conformal);
+    cli_say(session, "angles        %.4g (1 is best)\n", map->mean_angle_distortion);
+    cli_say(session, "areas         %.4g (1 is best)\n", map->mean_area_distortion);
 }
 
 static void report_map(cli_session *session, const starg_map *map, const values *v) {
@@ -39,8 +39,8 @@ static void report_map(cli_session *session, const starg_map *map, const values 
     cli_put(session, report, "kind", json_string(kinds[map->kind]));
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
     cli_put(session, report, "landmarks", json_integer((json_int_t)map->landmark_count));
-    cli_put(session, report, "mean_stretch", cli_json_real(map->mean_stretch));
-    cli_put(session, report, "mean_conformal", cli_json_real(map->mean_conformal));
+    cli_put(session, report, "mean_angle_distortion", cli_json_real(map->mean_angle_distortion));
+    cli_put(session, report, "mean_area_distortion", cli_json_real(map->mean_area_distortion));
     cli_put(session, report, "collapsed", json_integer((json_int_t)map->collapsed));
 }
 

@@ -33,18 +33,19 @@ typedef enum starg_map_kind {
 } starg_map_kind;
 
 /* Where each vertex of A lies on B. How much the map distorts: for a face of A and its image the
- * singular values s >= r of the linear map between them, all scaled to surfaces of equal area. */
+ * singular values s >= r of the linear map between them, all scaled to surfaces of equal area; in
+ * the mean over A's area. */
 typedef struct starg_map {
     starg_map_kind kind;
-    size_t vertex_count;    /* of A                                                       */
-    size_t target_vertices; /* of B                                                       */
-    size_t target_faces;    /* of B                                                       */
-    uint32_t *faces;        /* per vertex of A a face of B                                */
-    double *coordinates;    /* vertex_count x 3, barycentric in that face, sum 1          */
-    size_t landmark_count;  /* that it meets                                              */
-    double mean_stretch;    /* root of the mean over A's area of (s^2 + r^2) / 2; 1 is best */
-    double mean_conformal;  /* mean over A's area of (s/r + r/s) / 2, each at most 1000   */
-    size_t collapsed;       /* faces of A whose image has no area                         */
+    size_t vertex_count;          /* of A                                                       */
+    size_t target_vertices;       /* of B                                                       */
+    size_t target_faces;          /* of B                                                       */
+    uint32_t *faces;              /* per vertex of A a face of B                                */
+    double *coordinates;          /* vertex_count x 3, barycentric in that face, sum 1          */
+    size_t landmark_count;        /* that it meets                                              */
+    double mean_angle_distortion; /* (s/r + r/s) / 2, each at most 1000; 1 is best          */
+    double mean_area_distortion;  /* (sr + 1/(sr)) / 2, each at most 1000; 1 is best        */
+    size_t collapsed;             /* faces of A whose image has no area                         */
 } starg_map;
 
 /* Maps A onto B. With the same faces in the same order the map is the identity. Otherwise both must

@@ -126,16 +126,35 @@ static void whole_rotation(const starg_morph *m, double out[9]) {
 
 /* ---- faces ---- */
 
-static void decompose(const starg_morph *m, const double whole[9], size_t face, face_path *path) {
-    double j[9], local[9], r[9];
-    if (!jacobian(m, face, j)) {
-        *path = (face_path){.stretch = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-        return;
+/* From the guard to the face's middle at one end. */
+static void offset_of(const starg_morph *m, size_t face, int end, double out[3]) {
+    const double *positions = end ? m->images : m->mesh->vertices;
+    const double *guard = m->places[end] + 3 * (size_t)m->pieces[face];
+    for (size_t k = 0; k < 3; k++) {
+        double sum = 0;
+        for (size_t j = 0; j < 3; j++)
+            sum += positions[3 * (size_t)m->mesh->faces[3 * face + j] + k];
+        out[k] = sum / 3 - guard[k];
     }
-    matrix_multiply_transposed(whole, j, local);
-    polar_rotation(local, r);
-    matrix_multiply_transposed(r, local, path->stretch);
-    rotation_to_vector(r, path->rotation);
+}
+
+static void decompose(const starg_morph *m, const double whole[9], size_t face, face_path *path) {
+    double j[9], local[9], r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, turn[9], back[9];
+    *path = (face_path){.stretch = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    if (jacobian(m, face, j)) {
+        matrix_multiply_transposed(whole, j, local);
+        polar_rotation(local, r);
+        matrix_multiply_transposed(r, local, path->stretch);
+        rotation_to_vector(r, path->rotation);
+    }
+    if (m->guard_count == 0)
+        return;
+    offset_of(m, face, 0, path->anchor[0]);
+    offset_of(m, face, 1, path->anchor[1]);
+    matrix_multiply(whole, r, turn);
+    for (int k = 0; k < 9; k++)
+        back[k] = turn[3 * (k % 3) + k / 3];
+    matrix_apply(back, path->anchor[1], path->anchor[1]);
 }
 
 /* The angle between two faces' rotations. */

@@ -1,10 +1,10 @@
 /* How the guards go from A to B: along the guarding graph.
  *
  * Guards whose pieces share an edge are neighbours. A spanning tree of short links (Prim) is rooted
- * at the guard of the largest piece. Each guard is placed from its parent by an offset that turns
- * with the mean of the two pieces' rotations and gains the rest of its change in proportion to t;
- * then all are moved so that their mean, weighted by the pieces' areas, goes straight. A limb
- * that bends at a joint takes its guards along an arc, as it does its faces.
+ * at the guard of the largest piece. Each guard's offset from its parent wants to turn with the
+ * mean of the two pieces' rotations and to gain the rest of its change in proportion to t. Where
+ * guards come to be is found together with the vertices (rigid.c), so that neither pulls the other
+ * off.
  *
  * Cost: O(guards^2 + faces). */
 #include <math.h>
@@ -55,11 +55,11 @@ done:
 /* Offset and change of a guard from its parent. */
 static void link_guard(starg_morph *m, uint32_t guard, uint32_t parent) {
     guard_path *own = &m->guard_paths[guard], *above = &m->guard_paths[parent];
-    double mean[3], local[9], whole[9], rotation[9], target[3];
+    double local[9], whole[9], rotation[9], target[3];
     own->parent = parent;
     for (int k = 0; k < 3; k++)
-        mean[k] = 0.5 * (own->rotation[k] + above->rotation[k]);
-    rotation_from_vector(mean, local);
+        own->link[k] = 0.5 * (own->rotation[k] + above->rotation[k]);
+    rotation_from_vector(own->link, local);
     rotation_from_vector(m->turn, whole);
     matrix_multiply(whole, local, rotation);
     vec3_subtract(m->places[0] + 3 * (size_t)guard, m->places[0] + 3 * (size_t)parent, own->offset);
@@ -86,11 +86,8 @@ static starg_status grow_tree(starg_morph *m, const starg_bits *neighbours) {
     for (size_t i = 0; i < m->guard_count; i++)
         least[i] = INFINITY;
     m->guard_paths[last].parent = last;
-    for (size_t placed = 0;; placed++) {
-        m->guard_order[placed] = last;
+    for (size_t placed = 1; placed < m->guard_count; placed++) {
         least[last] = -1;
-        if (placed + 1 == m->guard_count)
-            break;
         uint32_t next = UINT32_MAX;
         for (uint32_t i = 0; i < m->guard_count; i++) {
             double length =
@@ -118,42 +115,10 @@ starg_status morph_prepare_guards(starg_morph *m) {
     starg_status status = STARG_OK;
     starg_bits *neighbours = NULL;
     STARG_NEW_ZERO(m->context, STAGE, m->guard_paths, m->guard_count);
-    STARG_NEW(m->context, STAGE, m->guard_order, m->guard_count);
     add_pieces(m);
     STARG_TRY(find_neighbours(m, &neighbours));
     STARG_TRY(grow_tree(m, neighbours));
 done:
     starg_bits_free(neighbours);
     return status;
-}
-
-/* From the parent's place. */
-static void place_guard(const starg_morph *m, uint32_t guard, const double whole[9], double t,
-                        double *out) {
-    const guard_path *own = &m->guard_paths[guard], *above = &m->guard_paths[own->parent];
-    double w[3], local[9], d[3];
-    for (int k = 0; k < 3; k++)
-        w[k] = 0.5 * t * (own->rotation[k] + above->rotation[k]);
-    rotation_from_vector(w, local);
-    vec3_along(own->offset, t, own->change, d);
-    matrix_apply(local, d, d);
-    matrix_apply(whole, d, d);
-    vec3_along(out + 3 * (size_t)own->parent, 1, d, out + 3 * (size_t)guard);
-}
-
-void morph_guards_at(const starg_morph *m, double t, double *out) {
-    double w[3], whole[9], shift[3] = {0};
-    for (int k = 0; k < 3; k++)
-        w[k] = t * m->turn[k];
-    rotation_from_vector(w, whole);
-    for (int k = 0; k < 3; k++)
-        out[3 * (size_t)m->guard_order[0] + (size_t)k] = 0;
-    for (size_t i = 1; i < m->guard_count; i++)
-        place_guard(m, m->guard_order[i], whole, t, out);
-    for (size_t i = 0; i < m->guard_count; i++)
-        for (size_t k = 0; k < 3; k++)
-            shift[k] += m->guard_paths[i].weight * ((1 - t) * m->places[0][3 * i + k] +
-                                                    t * m->places[1][3 * i + k] - out[3 * i + k]);
-    for (size_t i = 0; i < m->guard_count; i++)
-        vec3_along(out + 3 * i, 1, shift, out + 3 * i);
 }

@@ -17,11 +17,12 @@ static const double SUM_ERROR = 1e-6; /* of three coordinates that should sum to
 /* ---- write ---- */
 
 static json_t *head_json(const starg_map *map) {
-    return json_pack(
-        "{s:s, s:I, s:I, s:I, s:f, s:f, s:I}", "kind", KINDS[map->kind], "vertices",
-        (json_int_t)map->vertex_count, "target_vertices", (json_int_t)map->target_vertices,
-        "target_faces", (json_int_t)map->target_faces, "mean_stretch", map->mean_stretch,
-        "mean_conformal", map->mean_conformal, "landmarks", (json_int_t)map->landmark_count);
+    return json_pack("{s:s, s:I, s:I, s:I, s:f, s:f, s:I}", "kind", KINDS[map->kind], "vertices",
+                     (json_int_t)map->vertex_count, "target_vertices",
+                     (json_int_t)map->target_vertices, "target_faces",
+                     (json_int_t)map->target_faces, "mean_angle_distortion",
+                     map->mean_angle_distortion, "mean_area_distortion", map->mean_area_distortion,
+                     "landmarks", (json_int_t)map->landmark_count);
 }
 
 static bool put_points(FILE *stream, const starg_map *map) {

@@ -9,7 +9,7 @@
 #include "mesh/mesh.h"
 
 static const char STAGE[] = "map";
-static const double WORST_CONFORMAL = 1000;
+static const double WORST = 1000; /* of one face */
 
 /* Area and first fundamental form of the triangle in the basis of its first two edges. */
 typedef struct form {
@@ -30,31 +30,33 @@ static double trace_of(const form *a, const form *b) {
     return (a->g * b->e - 2 * a->f * b->f + a->e * b->g) / (4 * a->area * a->area);
 }
 
+/* No number counts as the worst. */
+static double capped(double x) {
+    return x < WORST ? x : WORST;
+}
+
 starg_status map_measure(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                          starg_map *map) {
     starg_status status = STARG_OK;
     starg_mesh *from = NULL, *to = NULL; /* of unit size: squares do not overflow */
-    double *images = NULL, area = 0, image_area = 0, stretch = 0, conformal = 0;
+    double *images = NULL, angles = 0, areas = 0;
     STARG_TRY(map_unit_copy(context, a, &from));
     STARG_TRY(map_unit_copy(context, b, &to));
     STARG_NEW(context, STAGE, images, 3 * map->vertex_count);
     starg_map_positions(map, to, images);
+    double area = starg_mesh_area(from), scale = area / starg_mesh_area(to);
     for (size_t f = 0; f < from->face_count; f++) {
         form own = form_of(from->vertices, from->faces + 3 * f);
         form image = form_of(images, from->faces + 3 * f);
-        image_area += image.area;
         map->collapsed += !(image.area > 0);
         if (!(own.area > 0))
             continue;
-        double trace = trace_of(&own, &image), ratio = trace / 2 * own.area / image.area;
-        area += own.area;
-        stretch += own.area * trace / 2;
-        conformal += own.area * (ratio < WORST_CONFORMAL ? ratio : WORST_CONFORMAL);
+        double grown = scale * image.area / own.area;
+        angles += own.area * capped(trace_of(&own, &image) / 2 * own.area / image.area);
+        areas += own.area * capped((grown + 1 / grown) / 2);
     }
-    if (area > 0 && image_area > 0) {
-        map->mean_stretch = sqrt(stretch / image_area);
-        map->mean_conformal = conformal / area;
-    }
+    map->mean_angle_distortion = area > 0 ? angles / area : 0;
+    map->mean_area_distortion = area > 0 ? areas / area : 0;
 done:
     starg_mesh_free(from);
     starg_mesh_free(to);

@@ -9,15 +9,16 @@
 /* How a face gets from A to B about a reference: A(t) = R0(t) R(t) ((1 - t) I + t S), with
  * R0(t) = exp(t w0) for all faces and R(t) = exp(t w). */
 typedef struct face_path {
-    double rotation[3]; /* w */
-    double stretch[9];  /* S */
+    double rotation[3];  /* w */
+    double stretch[9];   /* S */
+    double anchor[2][3]; /* from its guard to its middle: in A, and in B turned back to A */
 } face_path;
 
-/* One guard of a piece: where it is at both ends and how it gets there, relative to its parent in
- * the tree of guards. */
+/* How a guard gets from A to B, relative to its parent in the tree of guards. */
 typedef struct guard_path {
-    uint32_t parent;    /* itself for the root; parents come first in the order */
+    uint32_t parent;    /* itself for the root */
     double rotation[3]; /* of the piece, w */
+    double link[3];     /* of the offset: the mean of both pieces' */
     double offset[3];   /* from the parent's place in A */
     double change[3];   /* what the offset gains on the way, in A's frame */
     double weight;      /* share of the area */
@@ -35,7 +36,9 @@ struct starg_morph {
     face_path *faces;        /* per face                                             */
     double *weights;         /* per face: cotangents at its corners, anchor's weight */
     uint8_t *loose;          /* per vertex: no face holds it                         */
-    uint32_t *component;     /* per vertex a name of its connected part              */
+    size_t linked;           /* guards that are unknowns: all for star, else none    */
+    size_t unknowns;         /* vertices, then guards                                */
+    uint32_t *component;     /* per unknown a name of its connected part             */
     cholesky *system;
     double *remainder; /* vertex_count x 3: what the least squares leave at 1  */
 
@@ -44,7 +47,6 @@ struct starg_morph {
     double *places[2]; /* the same, scaled as the mesh    */
     uint32_t *pieces;  /* per face                        */
     guard_path *guard_paths;
-    uint32_t *guard_order;
 };
 
 /* Chooses guards and pieces that correspond (consistent.c). */
@@ -59,9 +61,6 @@ starg_status morph_frame_rigid(const starg_morph *m, double t, double *out);
 
 /* Finds the guards' paths from those of the faces, which come first (guard_paths.c). */
 starg_status morph_prepare_guards(starg_morph *m);
-/* Where the guards are at t: guard_count x 3. */
-void morph_guards_at(const starg_morph *m, double t, double *out);
-
 /* Spherical coordinates about the guards (spherical.c). */
 starg_status morph_frame_spherical(const starg_morph *m, double t, double *out);
 

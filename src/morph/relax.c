@@ -5,11 +5,12 @@
  * Source: the stretch of a parameterisation, as minimised coarse to fine by E. Praun, H. Hoppe,
  * Spherical parametrization and remeshing, 2003.
  *
- * Energy of a triangle a b c on the sphere with the squared lengths l of the surface's edges: the
- * Dirichlet energy of the map from the sphere to the surface, sum of l_k cot(angle k), with
- * det(a, b, c) in place of twice the area. It is infinite where a triangle turns over, also for the
- * large ones of coarse levels, so that descent keeps away from there. A small length is added to
- * all edges, lest needles of the surface lose all their area.
+ * Energy of a triangle a b c on the sphere with the squared lengths l of the surface's edges and
+ * their area S: S times the mean square stretch of the map from the sphere to the surface, which
+ * is S sum of l_k cot(angle k) / D^2, with det(a, b, c) as D in place of twice the area, and the
+ * cotangents over it as well. It is infinite where a triangle turns over, also for the large ones
+ * of coarse levels, and where its share of the sphere goes to nothing: descent keeps away from
+ * both. A small length is added to all edges, lest needles of the surface lose all their share.
  *
  * A vertex goes down the gradient in its tangent plane, by the longest of some halved steps that
  * lowers the energy of its triangles. No rounding decides validity: the triangles about the new
@@ -40,6 +41,7 @@ bool relax_is_positive(const ring *around, const double *directions, const doubl
 typedef struct corner {
     const double *p, *q;
     double opposite, to_p, to_q; /* squared lengths of the surface's edges */
+    double area;                 /* of the triangle with these, times 4    */
 } corner;
 
 static corner corner_of(const relaxation *r, uint32_t v, size_t i) {
@@ -47,11 +49,15 @@ static corner corner_of(const relaxation *r, uint32_t v, size_t i) {
     uint32_t p = around->data[i], q = around->data[(i + 1) % around->count];
     const double *surface = r->rings->positions, *own = surface + 3 * (size_t)v;
     const double *at_p = surface + 3 * (size_t)p, *at_q = surface + 3 * (size_t)q;
+    double x = vec3_distance_squared(at_p, at_q) + r->floor;
+    double y = vec3_distance_squared(own, at_p) + r->floor;
+    double z = vec3_distance_squared(own, at_q) + r->floor;
     return (corner){.p = r->directions + 3 * (size_t)p,
                     .q = r->directions + 3 * (size_t)q,
-                    .opposite = vec3_distance_squared(at_p, at_q) + r->floor,
-                    .to_p = vec3_distance_squared(own, at_p) + r->floor,
-                    .to_q = vec3_distance_squared(own, at_q) + r->floor};
+                    .opposite = x,
+                    .to_p = y,
+                    .to_q = z,
+                    .area = sqrt(fmax(0, 2 * (x * y + y * z + z * x) - x * x - y * y - z * z))};
 }
 
 /* Energy of one triangle with its vertex at x; adds the gradient unless that is NULL. */
@@ -68,9 +74,9 @@ static double corner_energy(const corner *c, const double x[3], double *gradient
         c->opposite * vec3_dot(xp, xq) - c->to_q * vec3_dot(xp, pq) + c->to_p * vec3_dot(xq, pq);
     for (int k = 0; gradient != NULL && k < 3; k++) {
         double slope = -c->opposite * (xp[k] + xq[k]) + (c->to_q - c->to_p) * pq[k];
-        gradient[k] += (slope - sum * n[k] / volume) / volume;
+        gradient[k] += c->area * (slope - 2 * sum * n[k] / volume) / (volume * volume);
     }
-    return sum / volume;
+    return c->area * sum / (volume * volume);
 }
 
 static double energy_at(const relaxation *r, uint32_t v, const double x[3], double *gradient) {

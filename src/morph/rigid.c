@@ -3,11 +3,12 @@
  * Energy: for each face with the wanted Jacobian A(t), its cotangents times the squared errors of
  * its three edges, which is the error of its Jacobian within its plane, weighted by area; with
  * guards also the error along the direction from the guard to the face's middle c, weighted by the
- * face's area over the square of that distance: the middle shall be at g(t) + A(t) (c - g), with
- * which the piece holds on to its guard.
+ * face's area over the square of that distance: the middle less the guard shall be A(t) (c - g).
+ * Guards are unknowns as vertices are; links of the guarding graph want their offsets (see
+ * guard_paths.c), each with the weight of one cotangent.
  *
- * The matrix does not depend on t: it is factorised once. Without guards it knows differences
- * only; a vertex of each part is held, and the part is then moved so that its mean goes straight.
+ * The matrix does not depend on t: it is factorised once. It knows differences only; one unknown of
+ * each connected part is held, and the part is then moved so that its mean goes straight.
  * What is missing to B at t = 1 is added in proportion to t: the non-rigid part of [YL11].
  *
  * Cost of a frame: O(faces) and three solutions with the factor. */
@@ -22,7 +23,8 @@
 
 static const char STAGE[] = "morph";
 static const double LEAST_AREA = 1e-10; /* of a face, to the square of its longest edge */
-enum { FACE_ENTRIES = 9, WEIGHTS = 4 };
+static const double LINK = 1;           /* weight of a link of two guards */
+enum { LINK_ENTRIES = 4, FACE_ENTRIES = 3 * LINK_ENTRIES + 16, WEIGHTS = 4 };
 
 /* ---- system ---- */
 
@@ -58,39 +60,58 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[WEIGHTS
     weights[3] = area / fmax(d, area);
 }
 
-static void put_face(const uint32_t corner[3], const double weights[WEIGHTS],
-                     matrix_entry *entries) {
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            double value = weights[3] / 9;
-            value += i == j ? weights[(i + 1) % 3] + weights[(i + 2) % 3] : -weights[3 - i - j];
-            *entries++ = (matrix_entry){corner[i], corner[j], value};
-        }
+/* The quadratic form of w (x_a - x_b)^2. */
+static matrix_entry *put_link(uint32_t a, uint32_t b, double w, matrix_entry *next) {
+    *next++ = (matrix_entry){a, a, w};
+    *next++ = (matrix_entry){b, b, w};
+    *next++ = (matrix_entry){a, b, -w};
+    *next++ = (matrix_entry){b, a, -w};
+    return next;
 }
 
-/* One vertex of each connected part, and all that no weight holds, stay where they are put. */
-static void hold_parts(const starg_morph *m, matrix_entry *entries) {
-    bool free_parts = m->method != STARG_MORPH_STAR;
-    for (uint32_t v = 0; v < m->mesh->vertex_count; v++) {
-        bool held = m->loose[v] || (free_parts && m->component[v] == v);
-        entries[v] = (matrix_entry){v, v, held ? 1 : 0};
-    }
+/* That of w (x_0 / 3 + x_1 / 3 + x_2 / 3 - x_3)^2. */
+static matrix_entry *put_anchor(const uint32_t unknowns[4], double w, matrix_entry *next) {
+    static const double factors[4] = {1.0 / 3, 1.0 / 3, 1.0 / 3, -1};
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            *next++ = (matrix_entry){unknowns[i], unknowns[j], w * factors[i] * factors[j]};
+    return next;
 }
 
-static starg_status name_parts(starg_morph *m) {
+/* Guards come behind the vertices. */
+static uint32_t guard_unknown(const starg_morph *m, uint32_t guard) {
+    return (uint32_t)m->mesh->vertex_count + guard;
+}
+
+static matrix_entry *put_face(const starg_morph *m, size_t face, matrix_entry *next) {
+    const uint32_t *corner = m->mesh->faces + 3 * face;
+    const double *weights = m->weights + WEIGHTS * face;
+    for (size_t k = 0; k < 3; k++)
+        next = put_link(corner[(k + 1) % 3], corner[(k + 2) % 3], weights[k], next);
+    if (m->method != STARG_MORPH_STAR)
+        return next;
+    const uint32_t unknowns[4] = {corner[0], corner[1], corner[2],
+                                  guard_unknown(m, m->pieces[face])};
+    return put_anchor(unknowns, weights[3], next);
+}
+
+static matrix_entry *put_guards(const starg_morph *m, matrix_entry *next) {
+    for (uint32_t i = 0; i < m->linked; i++)
+        if (m->guard_paths[i].parent != i)
+            next = put_link(guard_unknown(m, i), guard_unknown(m, m->guard_paths[i].parent), LINK,
+                            next);
+    return next;
+}
+
+/* Parts are named by their least unknown; that one is held, and so is what no weight holds. */
+static starg_status name_parts(starg_morph *m, const matrix_entry *entries, size_t count) {
     starg_status status = STARG_OK;
-    size_t count = m->mesh->vertex_count;
-    STARG_NEW(m->context, STAGE, m->component, count);
-    sets_make(m->component, count);
-    for (size_t f = 0; f < m->mesh->face_count; f++) {
-        if (m->weights[WEIGHTS * f] == 0 && m->weights[WEIGHTS * f + 1] == 0 &&
-            m->weights[WEIGHTS * f + 2] == 0)
-            continue;
-        const uint32_t *corner = m->mesh->faces + 3 * f;
-        sets_join(m->component, corner[0], corner[1]);
-        sets_join(m->component, corner[1], corner[2]);
-    }
-    for (uint32_t v = 0; v < count; v++)
+    STARG_NEW(m->context, STAGE, m->component, m->unknowns);
+    sets_make(m->component, m->unknowns);
+    for (size_t i = 0; i < count; i++)
+        if (entries[i].value != 0)
+            sets_join(m->component, entries[i].row, entries[i].column);
+    for (uint32_t v = 0; v < m->unknowns; v++)
         m->component[v] = sets_find(m->component, v);
 done:
     return status;
@@ -98,23 +119,24 @@ done:
 
 static starg_status make_system(starg_morph *m) {
     starg_status status = STARG_OK;
-    size_t faces = m->mesh->face_count, vertices = m->mesh->vertex_count;
-    matrix_entry *entries = NULL;
+    size_t faces = m->mesh->face_count, most;
+    matrix_entry *entries = NULL, *next;
+    m->linked = m->method == STARG_MORPH_STAR ? m->guard_count : 0;
+    m->unknowns = m->mesh->vertex_count + m->linked;
+    most = FACE_ENTRIES * faces + LINK_ENTRIES * m->linked + m->unknowns;
     STARG_NEW(m->context, STAGE, m->weights, WEIGHTS * faces);
-    STARG_NEW(m->context, STAGE, entries, FACE_ENTRIES * faces + vertices);
-    STARG_NEW(m->context, STAGE, m->loose, vertices);
-    memset(m->loose, 1, vertices);
+    STARG_NEW(m->context, STAGE, entries, most);
+    next = entries;
     for (size_t f = 0; f < faces; f++) {
         weigh_face(m, f, m->weights + WEIGHTS * f);
-        put_face(m->mesh->faces + 3 * f, m->weights + WEIGHTS * f, entries + FACE_ENTRIES * f);
-        for (size_t k = 0; k < 3; k++)
-            if (entries[FACE_ENTRIES * f + 4 * k].value > 0)
-                m->loose[m->mesh->faces[3 * f + k]] = 0;
+        next = put_face(m, f, next);
     }
-    STARG_TRY(name_parts(m));
-    hold_parts(m, entries + FACE_ENTRIES * faces);
-    STARG_TRY(cholesky_create(m->context, vertices, entries, FACE_ENTRIES * faces + vertices,
-                              &m->system));
+    next = put_guards(m, next);
+    STARG_TRY(name_parts(m, entries, (size_t)(next - entries)));
+    for (uint32_t v = 0; v < m->unknowns; v++)
+        *next++ = (matrix_entry){v, v, m->component[v] == v ? 1 : 0};
+    STARG_TRY(
+        cholesky_create(m->context, m->unknowns, entries, (size_t)(next - entries), &m->system));
 done:
     starg_release(m->context, entries);
     return status;
@@ -122,110 +144,115 @@ done:
 
 /* ---- frames ---- */
 
-/* A(t) = R0(t) R(t) ((1 - t) I + t S) */
-static void wanted_jacobian(const face_path *path, const double whole[9], double t, double out[9]) {
-    double w[3], r[9], stretch[9], local[9];
-    for (int k = 0; k < 3; k++)
-        w[k] = t * path->rotation[k];
-    rotation_from_vector(w, r);
-    for (int k = 0; k < 9; k++)
-        stretch[k] = t * path->stretch[k] + (k % 4 == 0 ? 1 - t : 0);
-    matrix_multiply(r, stretch, local);
+/* Right-hand sides, one behind the other. */
+typedef struct sides {
+    double *values;
+    size_t count;
+} sides;
+
+static void add(const sides *s, uint32_t unknown, double factor, const double d[3]) {
+    for (size_t c = 0; c < 3; c++)
+        s->values[c * s->count + unknown] += factor * d[c];
+}
+
+static void rotation_at(const double vector[3], double t, double out[9]) {
+    const double w[3] = {t * vector[0], t * vector[1], t * vector[2]};
+    rotation_from_vector(w, out);
+}
+
+/* R0(t) R(t) */
+static void turn_at(const double vector[3], const double whole[9], double t, double out[9]) {
+    double local[9];
+    rotation_at(vector, t, local);
     matrix_multiply(whole, local, out);
 }
 
-/* `sides` holds the three right-hand sides one behind the other. */
-static void add_face(const starg_morph *m, size_t face, const double jacobian[9],
-                     const double *guards, double *sides) {
+/* The wanted edges R0(t) R(t) ((1 - t) I + t S) e and the wanted offset from the guard. */
+static void add_face(const starg_morph *m, size_t face, const double whole[9], double t,
+                     const sides *s) {
+    const face_path *path = &m->faces[face];
     const uint32_t *corner = m->mesh->faces + 3 * face;
     const double *weights = m->weights + WEIGHTS * face;
-    size_t count = m->mesh->vertex_count;
+    double turn[9], d[3];
+    turn_at(path->rotation, whole, t, turn);
     for (int k = 0; k < 3; k++) {
         uint32_t a = corner[(k + 1) % 3], b = corner[(k + 2) % 3];
-        double edge[3];
+        double edge[3], stretched[3];
         vec3_subtract(m->mesh->vertices + 3 * (size_t)a, m->mesh->vertices + 3 * (size_t)b, edge);
-        matrix_apply(jacobian, edge, edge);
-        for (size_t c = 0; c < 3; c++) {
-            sides[c * count + a] += weights[k] * edge[c];
-            sides[c * count + b] -= weights[k] * edge[c];
-        }
+        matrix_apply(path->stretch, edge, stretched);
+        for (int c = 0; c < 3; c++)
+            d[c] = (1 - t) * edge[c] + t * stretched[c];
+        matrix_apply(turn, d, d);
+        add(s, a, weights[k], d);
+        add(s, b, -weights[k], d);
     }
-    if (guards == NULL)
+    if (m->method != STARG_MORPH_STAR)
         return;
-    double place[3];
-    size_t guard = m->pieces[face];
-    middle_of(m->mesh->vertices, corner, place);
-    vec3_subtract(place, m->places[0] + 3 * guard, place);
-    matrix_apply(jacobian, place, place);
-    vec3_along(guards + 3 * guard, 1, place, place);
-    for (size_t k = 0; k < 3; k++)
-        for (size_t c = 0; c < 3; c++)
-            sides[c * count + corner[k]] += weights[3] / 3 * place[c];
+    for (int c = 0; c < 3; c++)
+        d[c] = (1 - t) * path->anchor[0][c] + t * path->anchor[1][c];
+    matrix_apply(turn, d, d);
+    for (int k = 0; k < 3; k++)
+        add(s, corner[k], weights[3] / 3, d);
+    add(s, guard_unknown(m, m->pieces[face]), -weights[3], d);
 }
 
-/* Moves every part so that the mean of its vertices goes straight from A to B. */
-static starg_status center_parts(const starg_morph *m, double t, double *out) {
+static void add_guards(const starg_morph *m, const double whole[9], double t, const sides *s) {
+    for (uint32_t i = 0; i < m->linked; i++) {
+        const guard_path *own = &m->guard_paths[i];
+        double turn[9], d[3];
+        if (own->parent == i)
+            continue;
+        turn_at(own->link, whole, t, turn);
+        vec3_along(own->offset, t, own->change, d);
+        matrix_apply(turn, d, d);
+        add(s, guard_unknown(m, i), LINK, d);
+        add(s, guard_unknown(m, own->parent), -LINK, d);
+    }
+}
+
+/* Moves every part so that the mean of its unknowns goes straight from A to B. */
+static starg_status center_parts(const starg_morph *m, double t, const sides *s) {
     starg_status status = STARG_OK;
     size_t count = m->mesh->vertex_count;
     double *sums = NULL;
-    STARG_NEW_ZERO(m->context, STAGE, sums, 4 * count);
-    for (size_t v = 0; v < count; v++) {
+    STARG_NEW_ZERO(m->context, STAGE, sums, 4 * m->unknowns);
+    for (size_t v = 0; v < m->unknowns; v++) {
+        const double *p = v < count ? m->mesh->vertices + 3 * v : m->places[0] + 3 * (v - count);
+        const double *q = v < count ? m->images + 3 * v : m->places[1] + 3 * (v - count);
         double *sum = sums + 4 * (size_t)m->component[v];
-        for (size_t k = 0; k < 3; k++)
-            sum[k] +=
-                (1 - t) * m->mesh->vertices[3 * v + k] + t * m->images[3 * v + k] - out[3 * v + k];
+        for (size_t c = 0; c < 3; c++)
+            sum[c] += (1 - t) * p[c] + t * q[c] - s->values[c * s->count + v];
         sum[3]++;
     }
-    for (size_t v = 0; v < count; v++) {
+    for (uint32_t v = 0; v < m->unknowns; v++) {
         const double *sum = sums + 4 * (size_t)m->component[v];
-        vec3_along(out + 3 * v, 1 / sum[3], sum, out + 3 * v);
+        add(s, v, 1 / sum[3], sum);
     }
 done:
     starg_release(m->context, sums);
     return status;
 }
 
-static starg_status solve(const starg_morph *m, double t, const double *guards, double *out) {
-    starg_status status = STARG_OK;
-    size_t count = m->mesh->vertex_count;
-    double *sides = NULL, *work = NULL, w[3], whole[9];
-    STARG_NEW_ZERO(m->context, STAGE, sides, 3 * count);
-    STARG_NEW(m->context, STAGE, work, count);
-    for (int k = 0; k < 3; k++)
-        w[k] = t * m->turn[k];
-    rotation_from_vector(w, whole);
-    for (size_t f = 0; f < m->mesh->face_count; f++) {
-        double jacobian[9];
-        wanted_jacobian(&m->faces[f], whole, t, jacobian);
-        add_face(m, f, jacobian, guards, sides);
-    }
-    for (size_t v = 0; v < count; v++)
-        for (size_t c = 0; c < 3 && m->loose[v]; c++)
-            sides[c * count + v] =
-                (1 - t) * m->mesh->vertices[3 * v + c] + t * m->images[3 * v + c];
-    for (size_t c = 0; c < 3; c++) {
-        cholesky_solve(m->system, sides + c * count, work);
-        for (size_t v = 0; v < count; v++)
-            out[3 * v + c] = sides[c * count + v];
-    }
-done:
-    starg_release(m->context, sides);
-    starg_release(m->context, work);
-    return status;
-}
-
+/* All unknowns at t; `out` takes the vertices. */
 static starg_status rigid_part(const starg_morph *m, double t, double *out) {
     starg_status status = STARG_OK;
-    double *guards = NULL;
-    if (m->method == STARG_MORPH_STAR) {
-        STARG_NEW(m->context, STAGE, guards, 3 * m->guard_count);
-        morph_guards_at(m, t, guards);
-    }
-    STARG_TRY(solve(m, t, guards, out));
-    if (m->method != STARG_MORPH_STAR)
-        STARG_TRY(center_parts(m, t, out));
+    sides s = {.count = m->unknowns};
+    double *work = NULL, whole[9];
+    STARG_NEW_ZERO(m->context, STAGE, s.values, 3 * s.count);
+    STARG_NEW(m->context, STAGE, work, s.count);
+    rotation_at(m->turn, t, whole);
+    for (size_t f = 0; f < m->mesh->face_count; f++)
+        add_face(m, f, whole, t, &s);
+    add_guards(m, whole, t, &s);
+    for (size_t c = 0; c < 3; c++)
+        cholesky_solve(m->system, s.values + c * s.count, work);
+    STARG_TRY(center_parts(m, t, &s));
+    for (size_t v = 0; v < m->mesh->vertex_count; v++)
+        for (size_t c = 0; c < 3; c++)
+            out[3 * v + c] = s.values[c * s.count + v];
 done:
-    starg_release(m->context, guards);
+    starg_release(m->context, s.values);
+    starg_release(m->context, work);
     return status;
 }
 
