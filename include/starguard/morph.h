@@ -48,7 +48,8 @@ typedef struct starg_map {
     size_t collapsed;             /* faces of A whose image has no area                         */
 } starg_map;
 
-/* Maps A onto B. With the same faces in the same order the map is the identity. Otherwise both must
+/* Maps A onto B. With the same faces in the same order, up to one in twenty (poses of a model that
+ * were cleaned singly, with a notice), vertex i goes to vertex i. Otherwise both must
  * be closed surfaces of genus 0 in one part: they are spread over the sphere, laid on one another
  * by the landmarks or, where these leave freedom, by their shapes, and A's vertices are found in B.
  * The map between the surfaces is then a bijection and meets the landmarks exactly. Landmarks of a

@@ -23,7 +23,7 @@
 #include "morph/rotation.h"
 
 static const char STAGE[] = "morph";
-static const double GRAZING = 0.1; /* least sine of the angle at which a guard sees a face */
+static const double GRAZING = 0.3; /* least sine of the angle at which a guard sees a face */
 
 /* ---- Jacobians ---- */
 

@@ -16,6 +16,7 @@
 #include "starguard/solid.h"
 
 static const char STAGE[] = "map";
+enum { SAME_SHARE = 20 }; /* one face in so many may differ between poses */
 
 void starg_map_options_default(starg_map_options *options) {
     *options = (starg_map_options){0};
@@ -50,10 +51,13 @@ void starg_map_free(starg_context *context, starg_map *map) {
     starg_release(context, map);
 }
 
-bool map_same_faces(const starg_mesh *a, const starg_mesh *b) {
-    return a->vertex_count == b->vertex_count && a->face_count == b->face_count &&
-           (a->face_count == 0 ||
-            memcmp(a->faces, b->faces, 3 * a->face_count * sizeof *a->faces) == 0);
+size_t map_different_faces(const starg_mesh *a, const starg_mesh *b) {
+    size_t count = 0;
+    if (a->vertex_count != b->vertex_count || a->face_count != b->face_count)
+        return SIZE_MAX;
+    for (size_t f = 0; f < a->face_count; f++)
+        count += memcmp(a->faces + 3 * f, b->faces + 3 * f, 3 * sizeof *a->faces) != 0;
+    return count;
 }
 
 starg_status map_identity(starg_context *context, const starg_mesh *b, starg_map *map) {
@@ -161,8 +165,14 @@ static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
 /* ---- the identity ---- */
 
 static starg_status map_same(starg_context *context, const starg_mesh *a, const starg_mesh *b,
-                             const starg_map_options *options, starg_map **out) {
+                             size_t different, const starg_map_options *options, starg_map **out) {
     starg_status status = STARG_OK;
+    if (different > 0)
+        starg_log(
+            context, STARG_LOG_NOTICE,
+            "%zu of %zu faces differ; the surfaces are taken as poses of one model, vertex by "
+            "vertex",
+            different, a->face_count);
     for (size_t i = 0; i < options->landmark_count; i++)
         if (options->landmarks[2 * i] != options->landmarks[2 * i + 1])
             return starg_fail(context, STARG_ERROR_MESH, STAGE,
@@ -286,8 +296,9 @@ starg_status starg_map_create(starg_context *context, const starg_mesh *a, const
         options = &none;
     *out = NULL;
     STARG_TRY(check_landmarks(context, a, b, options));
-    if (map_same_faces(a, b))
-        STARG_TRY(map_same(context, a, b, options, &map));
+    size_t different = map_different_faces(a, b);
+    if (different <= a->face_count / SAME_SHARE)
+        STARG_TRY(map_same(context, a, b, different, options, &map));
     else
         STARG_TRY(map_by_sphere(context, a, b, options, &map));
     STARG_TRY(map_measure(context, a, b, map));

@@ -12,10 +12,10 @@ starg_status map_make(starg_context *context, const starg_mesh *a, const starg_m
 starg_status map_measure(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                          starg_map *map);
 
-/* Are the faces the same? */
-bool map_same_faces(const starg_mesh *a, const starg_mesh *b);
+/* Number of faces that are not the same at the same place; SIZE_MAX when counts differ. */
+size_t map_different_faces(const starg_mesh *a, const starg_mesh *b);
 
-/* Every vertex to the vertex of its number; B has A's faces. Errors: MESH, MEMORY. */
+/* Every vertex to the vertex of its number. Errors: MESH, MEMORY. */
 starg_status map_identity(starg_context *context, const starg_mesh *b, starg_map *map);
 
 /* A copy within a unit cube about the origin. Errors: MESH (no extent), MEMORY. */
