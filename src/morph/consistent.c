@@ -2,13 +2,13 @@
  * surface that each pair of them sees.
  *
  * Stages: candidates are the nodes of A's curve skeleton; the counterpart of a node follows the map
- * of the surface vertices that it stands for, by the similar motion that fits them best, or is the
- * middle of their images where that is not inside of B; candidates without a counterpart strictly
- * inside of B are dropped. A face is simultaneously visible to a candidate when A shows it to the
- * candidate and B shows its image to the counterpart: a matrix of bits, of which the fewest rows
- * are chosen by the cover machinery. Each face goes to the nearest of the guards that see it (by
- * the sum of both distances). Faces that no candidate sees simultaneously take the guard of a
- * neighbour, and are counted.
+ * of the surface vertices that it and its neighbours stand for, by the similar motion that fits
+ * them best, or is the middle of their images where that is not inside of B; candidates without a
+ * counterpart strictly inside of B are dropped. A face is simultaneously visible to a candidate
+ * when A shows it to the candidate and B shows its image to the counterpart: a matrix of bits, of
+ * which the fewest rows are chosen by the cover machinery. Each face goes to the nearest of the
+ * guards that see it (by the sum of both distances). Faces that no candidate sees simultaneously
+ * take the guard of a neighbour, and are counted.
  *
  * All visibility is exact; B may intersect itself, then a guard still sees only what no face hides.
  * Cost: that of one skeleton, two visibility matrices and a set cover. */
@@ -27,6 +27,7 @@
 
 static const char STAGE[] = "consistent guards";
 enum { COVER_NODES = 2000 };
+static const double WHOLE = 1e-3; /* share of the whole's motion in a counterpart's */
 
 typedef struct guarding {
     starg_morph *morph;
@@ -58,39 +59,61 @@ static starg_status make_solids(guarding *g) {
 
 /* ---- counterparts ---- */
 
-/* Sums over the vertices of a node: what a similar motion is fitted to. */
+/* Sums over surface vertices p and their images q: what a similar motion is fitted to. */
 typedef struct moments {
-    double mean[2][3], cross[9], spread[2];
-    double count;
+    double p[3], q[3], cross[9], pp, qq, count;
 } moments;
 
-static void add_means(const guarding *g, moments *sums) {
-    const starg_morph *m = g->morph;
-    for (size_t v = 0; v < m->mesh->vertex_count; v++) {
-        moments *own = &sums[g->skeleton->vertex_nodes[v]];
-        for (size_t k = 0; k < 3; k++) {
-            own->mean[0][k] += m->mesh->vertices[3 * v + k];
-            own->mean[1][k] += m->images[3 * v + k];
-        }
-        own->count++;
-    }
-    for (size_t i = 0; i < g->skeleton->node_count; i++)
-        for (int k = 0; k < 6 && sums[i].count > 0; k++)
-            sums[i].mean[k / 3][k % 3] /= sums[i].count;
+static void add_vertex(moments *sum, const double p[3], const double q[3]) {
+    vec3_along(sum->p, 1, p, sum->p);
+    vec3_along(sum->q, 1, q, sum->q);
+    for (int k = 0; k < 9; k++)
+        sum->cross[k] += q[k / 3] * p[k % 3];
+    sum->pp += vec3_dot(p, p);
+    sum->qq += vec3_dot(q, q);
+    sum->count++;
 }
 
-static void add_spreads(const guarding *g, moments *sums) {
-    const starg_morph *m = g->morph;
-    for (size_t v = 0; v < m->mesh->vertex_count; v++) {
-        moments *own = &sums[g->skeleton->vertex_nodes[v]];
-        double p[3], q[3];
-        vec3_subtract(m->mesh->vertices + 3 * v, own->mean[0], p);
-        vec3_subtract(m->images + 3 * v, own->mean[1], q);
-        own->spread[0] += vec3_dot(p, p);
-        own->spread[1] += vec3_dot(q, q);
-        for (int k = 0; k < 9; k++)
-            own->cross[k] += q[k / 3] * p[k % 3];
+static void add_moments(moments *sum, const moments *other) {
+    vec3_along(sum->p, 1, other->p, sum->p);
+    vec3_along(sum->q, 1, other->q, sum->q);
+    for (int k = 0; k < 9; k++)
+        sum->cross[k] += other->cross[k];
+    sum->pp += other->pp;
+    sum->qq += other->qq;
+    sum->count += other->count;
+}
+
+/* Makes means of the sums, and the rest relative to them. */
+static void center_moments(moments *m) {
+    for (int k = 0; k < 3; k++) {
+        m->p[k] /= m->count;
+        m->q[k] /= m->count;
     }
+    for (int k = 0; k < 9; k++)
+        m->cross[k] -= m->count * m->q[k / 3] * m->p[k % 3];
+    m->pp -= m->count * vec3_dot(m->p, m->p);
+    m->qq -= m->count * vec3_dot(m->q, m->q);
+}
+
+/* Of the vertices of each node and its neighbours; `own` is working memory. The last entry is that
+ * of the whole. */
+static void gather_moments(const guarding *g, moments *own, moments *all) {
+    const starg_morph *m = g->morph;
+    const starg_skeleton *s = g->skeleton;
+    for (size_t v = 0; v < m->mesh->vertex_count; v++)
+        add_vertex(&own[s->vertex_nodes[v]], m->mesh->vertices + 3 * v, m->images + 3 * v);
+    for (size_t i = 0; i < s->node_count; i++) {
+        add_moments(&all[i], &own[i]);
+        add_moments(&all[s->node_count], &own[i]);
+    }
+    for (size_t e = 0; e < s->edge_count; e++) {
+        add_moments(&all[s->edges[2 * e]], &own[s->edges[2 * e + 1]]);
+        add_moments(&all[s->edges[2 * e + 1]], &own[s->edges[2 * e]]);
+    }
+    for (size_t i = 0; i <= s->node_count; i++)
+        if (all[i].count > 0)
+            center_moments(&all[i]);
 }
 
 /* From scaled coordinates to those of an input, and back. */
@@ -104,22 +127,33 @@ static void scale(const starg_morph *m, int end, const double p[3], double out[3
         out[k] = (p[k] - m->centers[end][k]) / m->size;
 }
 
+/* The similar motion of the node's surroundings; a little of that of the whole is mixed in, which
+ * decides where these are too few or flat to fix it. */
+static void follow_map(const moments *own, const moments *whole, const double p[3], double out[3]) {
+    double share = WHOLE * (own->pp > 0 ? own->pp / whole->pp : 1), cross[9], rotation[9];
+    double offset[3];
+    for (int k = 0; k < 9; k++)
+        cross[k] = own->cross[k] + share * whole->cross[k];
+    polar_rotation(cross, rotation);
+    double scale_by =
+        sqrt((fmax(0, own->qq) + share * whole->qq) / (fmax(0, own->pp) + share * whole->pp));
+    vec3_subtract(p, own->p, offset);
+    matrix_apply(rotation, offset, offset);
+    vec3_along(own->q, scale_by, offset, out);
+}
+
 /* False when no counterpart is inside of B. */
-static bool counterpart(const guarding *g, const moments *own, const double node[3],
-                        double out[3]) {
-    double rotation[9], offset[3], place[3];
+static bool counterpart(const guarding *g, const moments *own, const moments *whole,
+                        const double node[3], double out[3]) {
+    double place[3];
     if (!(own->count > 0))
         return false;
-    scale(g->morph, 0, node, offset);
-    vec3_subtract(offset, own->mean[0], offset);
-    polar_rotation(own->cross, rotation);
-    matrix_apply(rotation, offset, offset);
-    double factor = own->spread[0] > 0 ? sqrt(own->spread[1] / own->spread[0]) : 1;
-    vec3_along(own->mean[1], factor, offset, place);
+    scale(g->morph, 0, node, place);
+    follow_map(own, whole, place, place);
     unscale(g->morph, 1, place, out);
     if (starg_solid_contains(g->solids[1], out))
         return true;
-    unscale(g->morph, 1, own->mean[1], out);
+    unscale(g->morph, 1, own->q, out);
     return starg_solid_contains(g->solids[1], out);
 }
 
@@ -127,19 +161,19 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
     starg_status status = STARG_OK;
     starg_context *context = g->morph->context;
     starg_skeleton_options options;
-    moments *sums = NULL;
+    moments *own = NULL, *all = NULL;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
     STARG_TRY(starg_skeleton_create(context, g->solids[0], &options, &g->skeleton));
     size_t nodes = g->skeleton->node_count;
-    STARG_NEW_ZERO(context, STAGE, sums, nodes);
+    STARG_NEW_ZERO(context, STAGE, own, nodes);
+    STARG_NEW_ZERO(context, STAGE, all, nodes + 1);
     STARG_NEW(context, STAGE, g->places[0], 3 * nodes);
     STARG_NEW(context, STAGE, g->places[1], 3 * nodes);
-    add_means(g, sums);
-    add_spreads(g, sums);
+    gather_moments(g, own, all);
     for (size_t i = 0; i < nodes; i++) {
         const double *node = g->skeleton->positions + 3 * i;
-        if (!counterpart(g, &sums[i], node, g->places[1] + 3 * g->count))
+        if (!counterpart(g, &all[i], &all[nodes], node, g->places[1] + 3 * g->count))
             continue;
         vec3_copy(node, g->places[0] + 3 * g->count++);
     }
@@ -148,7 +182,8 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
                             "no node of A's skeleton has a counterpart inside of B; the map may be "
                             "too distorted. --method arap needs no guards");
 done:
-    starg_release(context, sums);
+    starg_release(context, own);
+    starg_release(context, all);
     return status;
 }
 
