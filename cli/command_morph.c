@@ -5,13 +5,18 @@
 #include "commands.h"
 #include "model.h"
 #include "report.h"
+#include "starguard/animation.h"
 #include "starguard/morph.h"
+#include "starguard/picture.h"
 
 typedef struct values {
-    const char *output, *map, *landmarks;
+    const char *output, *map, *landmarks, *glb, *picture;
     uint64_t frames, candidates;
     int method;
 } values;
+
+enum { SHEET_COLUMNS = 5, TILE_WIDTH = 480, TILE_HEIGHT = 360 };
+static const double SECONDS = 2; /* of an animation */
 
 /* In the order of starg_morph_method. */
 static const char *const methods[] = {"star", "arap", "linear", "spherical", NULL};
@@ -28,6 +33,10 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION("map", map, "FILE",
                     "A map of 'starguard map'; by default one is made, as that command does."),
     CLI_TEXT_OPTION("landmarks", landmarks, "FILE", "Landmarks for a map that is made."),
+    CLI_TEXT_OPTION("glb", glb, "FILE.glb",
+                    "The frames as one animation of two seconds (glTF, morph targets)."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png",
+                    "Draw five moments by the methods star, arap and linear, a row each."),
     CLI_COUNT_OPTION("candidates", candidates, "N", 1, 100000,
                      "About how many places are tried for guards. Default 1,000."),
 };
@@ -51,6 +60,11 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(
             session, STARG_ERROR_ARGUMENT,
             "--landmarks are for a map that is made, --map gives one; name one of them");
+    CLI_TRY(cli_announce_with_ending(session, "--glb", v->glb, ".glb"));
+    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "--glb takes at most %d frames",
+                        STARG_ANIMATION_FRAMES);
     CLI_TRY(cli_announce_folder(session, v->output));
 done:
     return status;
@@ -167,6 +181,79 @@ done:
     return status;
 }
 
+/* ---- animation ---- */
+
+static starg_status write_animation(cli_session *session, const values *v,
+                                    const starg_morph *morph) {
+    starg_status status = STARG_OK;
+    size_t size = 3 * starg_mesh_vertex_count(session->mesh), count = (size_t)v->frames;
+    const double **frames = calloc(count, sizeof *frames);
+    double *positions =
+        size <= SIZE_MAX / sizeof(double) / count ? malloc(size * count * sizeof *positions) : NULL;
+    if (frames == NULL || positions == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (size_t i = 0; i < count; i++) {
+        CLI_TRY(starg_morph_frame(morph, (double)i / (double)(count - 1), positions + i * size));
+        frames[i] = positions + i * size;
+    }
+    CLI_TRY(starg_animation_write(session->context, session->mesh, frames, count, SECONDS,
+                                  cli_outputs_place(&session->outputs, v->glb)));
+done:
+    free(positions);
+    free(frames);
+    return status;
+}
+
+/* ---- picture ---- */
+
+static starg_status draw_row(cli_session *session, const subject *s, starg_morph_options wanted,
+                             double *positions, starg_mesh **meshes) {
+    starg_status status = STARG_OK;
+    starg_morph *morph = NULL;
+    CLI_TRY(starg_morph_create(session->context, session->mesh, s->images, &wanted, &morph));
+    for (size_t i = 0; i < SHEET_COLUMNS; i++) {
+        CLI_TRY(starg_morph_frame(morph, (double)i / (SHEET_COLUMNS - 1), positions));
+        CLI_TRY(starg_mesh_create(
+            session->context, positions, starg_mesh_vertex_count(session->mesh),
+            starg_mesh_faces(session->mesh), starg_mesh_face_count(session->mesh), &meshes[i]));
+    }
+done:
+    starg_morph_free(morph);
+    return status;
+}
+
+static starg_status write_picture(cli_session *session, const values *v, const subject *s) {
+    static const starg_morph_method rows[] = {STARG_MORPH_STAR, STARG_MORPH_ARAP,
+                                              STARG_MORPH_LINEAR};
+    enum { ROWS = sizeof rows / sizeof *rows };
+    starg_status status = STARG_OK;
+    starg_mesh *meshes[ROWS * SHEET_COLUMNS] = {NULL};
+    const starg_mesh *shown[ROWS * SHEET_COLUMNS];
+    starg_picture_options picture;
+    double *positions =
+        malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *positions);
+    if (positions == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < ROWS; i++)
+        CLI_TRY(draw_row(session, s, (starg_morph_options){rows[i], (size_t)v->candidates},
+                         positions, meshes + i * SHEET_COLUMNS));
+    starg_picture_options_default(&picture);
+    picture.width = TILE_WIDTH;
+    picture.height = TILE_HEIGHT;
+    picture.opacity = 1;
+    for (size_t i = 0; i < ROWS * SHEET_COLUMNS; i++)
+        shown[i] = meshes[i];
+    CLI_TRY(starg_picture_sheet_write(session->context, shown, ROWS, SHEET_COLUMNS, &picture,
+                                      cli_outputs_place(&session->outputs, v->picture)));
+done:
+    for (size_t i = 0; i < ROWS * SHEET_COLUMNS; i++)
+        starg_mesh_free(meshes[i]);
+    free(positions);
+    return status;
+}
+
 /* ---- what was made ---- */
 
 static json_t *guards_json(cli_session *session, const starg_morph *morph, int end) {
@@ -212,6 +299,10 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(read_subject(session, v, &s));
     CLI_TRY(starg_morph_create(session->context, session->mesh, s.images, &wanted, &morph));
     CLI_TRY(write_frames(session, v, morph, frames, &sum));
+    if (v->glb != NULL)
+        CLI_TRY(write_animation(session, v, morph));
+    if (v->picture != NULL)
+        CLI_TRY(write_picture(session, v, &s));
     say_morph(session, v, morph, &sum);
     if (session->report != NULL)
         report_morph(session, v, morph, frames);

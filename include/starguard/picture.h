@@ -34,6 +34,14 @@ STARG_API void starg_picture_options_default(starg_picture_options *options);
 STARG_API starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
                                            const starg_picture_options *options, const char *path);
 
+/* Draws rows x columns meshes, row by row, each as starg_picture_write does, side by side into one
+ * PNG of at most 16384 pixels a side. Errors: ARGUMENT, WRITE, MEMORY, CANCELLED. */
+STARG_API starg_status starg_picture_sheet_write(starg_context *context,
+                                                 const starg_mesh *const *meshes, size_t rows,
+                                                 size_t columns,
+                                                 const starg_picture_options *options,
+                                                 const char *path);
+
 /* The i-th of a sequence of colours that are easy to tell apart; used for guards and pieces. */
 STARG_API void starg_distinct_color(size_t index, uint8_t rgb[3]);
 

@@ -2,6 +2,7 @@
 #ifndef STARGUARD_STARGUARD_H
 #define STARGUARD_STARGUARD_H
 
+#include "animation.h"
 #include "bits.h"
 #include "check.h"
 #include "context.h"

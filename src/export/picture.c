@@ -6,6 +6,7 @@
 #include "starguard/picture.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "export/features.h"
@@ -17,7 +18,7 @@
 static const char STAGE[] = "picture";
 static const double DEGREE = 0.01745329251994329577;
 
-enum { MIN_SIZE = 16, MAX_SIZE = 8192 };
+enum { MIN_SIZE = 16, MAX_SIZE = 8192, MAX_SIDE = 16384 };
 
 void starg_picture_options_default(starg_picture_options *options) {
     *options = (starg_picture_options){.width = 1200,
@@ -155,22 +156,17 @@ static void make_balls(const starg_picture_options *o, const double *centers,
     }
 }
 
-starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
-                                 const starg_picture_options *options, const char *path) {
+/* Draws into height rows of width x 3 bytes. */
+static starg_status draw(starg_context *context, const starg_mesh *mesh,
+                         const starg_picture_options *o, uint8_t *rgb) {
     starg_status status = STARG_OK;
-    starg_picture_options defaults;
     starg_features features = {0};
     double *positions = NULL, *centers = NULL;
     starg_raster_ball *balls = NULL;
-    uint8_t *rgb = NULL;
     camera c;
-    starg_picture_options_default(&defaults);
-    const starg_picture_options *o = options ? options : &defaults;
-    STARG_TRY(check_options(context, o));
     STARG_NEW(context, STAGE, positions, 3 * mesh->vertex_count);
     STARG_NEW(context, STAGE, centers, 3 * o->point_count);
     STARG_NEW(context, STAGE, balls, o->point_count);
-    STARG_NEW(context, STAGE, rgb, 3 * o->width * o->height);
 
     aim_camera(mesh, o, &c);
     look(&c, mesh->vertices, mesh->vertex_count, positions);
@@ -198,12 +194,52 @@ starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
                                 .ball_count = o->point_count,
                                 .ball_radius = o->point_radius * f.scale};
     STARG_TRY(starg_raster_draw(context, &scene, rgb));
-    STARG_TRY(starg_png_write(context, path, rgb, o->width, o->height));
 done:
     starg_features_free(context, &features);
     starg_release(context, positions);
     starg_release(context, centers);
     starg_release(context, balls);
-    starg_release(context, rgb);
+    return status;
+}
+
+starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
+                                 const starg_picture_options *options, const char *path) {
+    return starg_picture_sheet_write(context, &mesh, 1, 1, options, path);
+}
+
+static starg_status check_sheet(starg_context *context, size_t rows, size_t columns,
+                                const starg_picture_options *o) {
+    if (rows >= 1 && columns >= 1 && rows <= MAX_SIDE / o->height && columns <= MAX_SIDE / o->width)
+        return STARG_OK;
+    return starg_fail(
+        context, STARG_ERROR_ARGUMENT, STAGE,
+        "a sheet of %zu x %zu pictures; there must be one at least, and each side may "
+        "have at most %d pixels",
+        columns, rows, MAX_SIDE);
+}
+
+starg_status starg_picture_sheet_write(starg_context *context, const starg_mesh *const *meshes,
+                                       size_t rows, size_t columns,
+                                       const starg_picture_options *options, const char *path) {
+    starg_status status = STARG_OK;
+    starg_picture_options defaults;
+    uint8_t *tile = NULL, *sheet = NULL;
+    starg_picture_options_default(&defaults);
+    const starg_picture_options *o = options ? options : &defaults;
+    STARG_TRY(check_options(context, o));
+    STARG_TRY(check_sheet(context, rows, columns, o));
+    size_t line = 3 * o->width, stride = line * columns;
+    STARG_NEW(context, STAGE, tile, line * o->height);
+    STARG_NEW(context, STAGE, sheet, stride * o->height * rows);
+    for (size_t i = 0; i < rows * columns; i++) {
+        uint8_t *corner = sheet + i / columns * o->height * stride + i % columns * line;
+        STARG_TRY(draw(context, meshes[i], o, tile));
+        for (size_t y = 0; y < o->height; y++)
+            memcpy(corner + y * stride, tile + y * line, line);
+    }
+    STARG_TRY(starg_png_write(context, path, sheet, columns * o->width, rows * o->height));
+done:
+    starg_release(context, tile);
+    starg_release(context, sheet);
     return status;
 }

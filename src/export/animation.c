@@ -1,0 +1,222 @@
+/* Animations as binary glTF 2.0: a header of 12 bytes, a chunk of JSON, a chunk of numbers.
+ *
+ * The numbers, all of four bytes and in this order: vertex indices of the faces; positions of the
+ * first frame; for each other frame the displacements from the first; the times of the frames; the
+ * weights of the targets at each time, one of them 1 and the others 0. Each is a view and an
+ * accessor of its own. Little endian, as the format demands, on any machine. */
+#include "starguard/animation.h"
+
+#include <math.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+
+static const char STAGE[] = "animation";
+enum { GL_FLOAT = 5126, GL_UNSIGNED_INT = 5125, HEADER = 12, CHUNK_HEADER = 8 };
+static const double SINGLE_LIMIT = 1e38;
+
+typedef struct animation {
+    const starg_mesh *mesh;
+    const double *const *frames;
+    size_t count, vertices, indices;
+    double seconds, center[3];
+    float lower[3], upper[3]; /* of the first frame, as written */
+} animation;
+
+/* ---- checks ---- */
+
+static starg_status check(starg_context *context, animation *a) {
+    double lower[3], upper[3];
+    if (a->count < 2 || a->count > STARG_ANIMATION_FRAMES || !(a->seconds > 0 && a->seconds < 1e6))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu frames in %g seconds; there must be 2 to %d frames, and the time "
+                          "must be positive and below 1e6",
+                          a->count, a->seconds, STARG_ANIMATION_FRAMES);
+    if (a->indices == 0 || a->count * a->vertices * 12 + a->indices * 4 > UINT32_MAX / 2)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "%zu frames of %zu vertices are none, or too many for the format",
+                          a->count, a->vertices);
+    starg_mesh_bounds(a->mesh, lower, upper);
+    for (int k = 0; k < 3; k++)
+        a->center[k] = 0.5 * lower[k] + 0.5 * upper[k];
+    for (size_t f = 0; f < a->count; f++)
+        for (size_t i = 0; i < 3 * a->vertices; i++)
+            if (!(fabs(a->frames[f][i] - a->center[i % 3]) < SINGLE_LIMIT))
+                return starg_fail(context, STARG_ERROR_RANGE, STAGE,
+                                  "frame %zu has a coordinate that single precision cannot hold",
+                                  f);
+    return STARG_OK;
+}
+
+static float first_position(const animation *a, size_t i) {
+    return (float)(a->frames[0][i] - a->center[i % 3]);
+}
+
+static void find_box(animation *a) {
+    for (size_t i = 0; i < 3 * a->vertices; i++) {
+        float x = first_position(a, i);
+        if (i < 3 || x < a->lower[i % 3])
+            a->lower[i % 3] = x;
+        if (i < 3 || x > a->upper[i % 3])
+            a->upper[i % 3] = x;
+    }
+}
+
+/* ---- description ---- */
+
+/* Values in accessor `index`. Accessors: indices, positions, targets, times, weights. */
+static size_t accessor_count(const animation *a, size_t index) {
+    if (index == 0)
+        return a->indices;
+    if (index <= a->count)
+        return a->vertices;
+    return index == a->count + 1 ? a->count : a->count * (a->count - 1);
+}
+
+static size_t accessor_bytes(const animation *a, size_t index) {
+    bool vectors = index >= 1 && index <= a->count;
+    return accessor_count(a, index) * (vectors ? 12 : 4);
+}
+
+static size_t binary_bytes(const animation *a) {
+    size_t sum = 0;
+    for (size_t i = 0; i < a->count + 3; i++)
+        sum += accessor_bytes(a, i);
+    return sum;
+}
+
+static json_t *accessor_json(const animation *a, size_t index) {
+    bool vectors = index >= 1 && index <= a->count;
+    json_t *json =
+        json_pack("{s:I, s:I, s:I, s:s}", "bufferView", (json_int_t)index, "componentType",
+                  (json_int_t)(index == 0 ? GL_UNSIGNED_INT : GL_FLOAT), "count",
+                  (json_int_t)accessor_count(a, index), "type", vectors ? "VEC3" : "SCALAR");
+    int failed = 0;
+    if (index == 1)
+        failed = json_object_set_new(json, "min",
+                                     json_pack("[f, f, f]", (double)a->lower[0],
+                                               (double)a->lower[1], (double)a->lower[2])) |
+                 json_object_set_new(json, "max",
+                                     json_pack("[f, f, f]", (double)a->upper[0],
+                                               (double)a->upper[1], (double)a->upper[2]));
+    if (index == a->count + 1)
+        failed = json_object_set_new(json, "min", json_pack("[f]", 0.0)) |
+                 json_object_set_new(json, "max", json_pack("[f]", (double)(float)a->seconds));
+    if (failed == 0)
+        return json;
+    json_decref(json);
+    return NULL;
+}
+
+/* Appends to each list; false when memory is out. */
+static bool describe_numbers(const animation *a, json_t *accessors, json_t *views,
+                             json_t *targets) {
+    size_t offset = 0;
+    int failed = 0;
+    for (size_t i = 0; i < a->count + 3; i++) {
+        failed |= json_array_append_new(accessors, accessor_json(a, i));
+        failed |= json_array_append_new(
+            views, json_pack("{s:i, s:I, s:I}", "buffer", 0, "byteOffset", (json_int_t)offset,
+                             "byteLength", (json_int_t)accessor_bytes(a, i)));
+        if (i >= 2 && i <= a->count)
+            failed |= json_array_append_new(targets, json_pack("{s:I}", "POSITION", (json_int_t)i));
+        offset += accessor_bytes(a, i);
+    }
+    return failed == 0;
+}
+
+static json_t *describe(const animation *a) {
+    json_t *accessors = json_array(), *views = json_array(), *targets = json_array();
+    if (!describe_numbers(a, accessors, views, targets)) {
+        json_decref(accessors);
+        json_decref(views);
+        json_decref(targets);
+        return NULL;
+    }
+    return json_pack("{s:{s:s}, s:i, s:[{s:[i]}], s:[{s:i, s:[f, f, f]}],"
+                     " s:[{s:[{s:{s:i}, s:i, s:o}]}], s:[{s:[{s:i, s:{s:i, s:s}}],"
+                     " s:[{s:I, s:I, s:s}]}], s:o, s:o, s:[{s:I}]}",
+                     "asset", "version", "2.0", "scene", 0, "scenes", "nodes", 0, "nodes", "mesh",
+                     0, "translation", a->center[0], a->center[1], a->center[2], "meshes",
+                     "primitives", "attributes", "POSITION", 1, "indices", 0, "targets", targets,
+                     "animations", "channels", "sampler", 0, "target", "node", 0, "path", "weights",
+                     "samplers", "input", (json_int_t)(a->count + 1), "output",
+                     (json_int_t)(a->count + 2), "interpolation", "LINEAR", "accessors", accessors,
+                     "bufferViews", views, "buffers", "byteLength", (json_int_t)binary_bytes(a));
+}
+
+/* ---- bytes ---- */
+
+static void put_word(FILE *stream, uint32_t x) {
+    for (int shift = 0; shift < 32; shift += 8)
+        fputc((int)(x >> shift & 0xff), stream);
+}
+
+static void put_float(FILE *stream, float x) {
+    uint32_t word;
+    memcpy(&word, &x, sizeof word);
+    put_word(stream, word);
+}
+
+static void put_numbers(FILE *stream, const animation *a) {
+    for (size_t i = 0; i < a->indices; i++)
+        put_word(stream, starg_mesh_faces(a->mesh)[i]);
+    for (size_t i = 0; i < 3 * a->vertices; i++)
+        put_float(stream, first_position(a, i));
+    for (size_t f = 1; f < a->count; f++)
+        for (size_t i = 0; i < 3 * a->vertices; i++)
+            put_float(stream, (float)(a->frames[f][i] - a->frames[0][i]));
+    for (size_t f = 0; f < a->count; f++)
+        put_float(stream, (float)(a->seconds * (double)f / (double)(a->count - 1)));
+    for (size_t f = 0; f < a->count; f++)
+        for (size_t target = 1; target < a->count; target++)
+            put_float(stream, target == f ? 1 : 0);
+}
+
+static void put_file(FILE *stream, const animation *a, const char *text, size_t length) {
+    size_t padded = (length + 3) / 4 * 4, bytes = binary_bytes(a);
+    fwrite("glTF", 1, 4, stream);
+    put_word(stream, 2);
+    put_word(stream, (uint32_t)(HEADER + 2 * CHUNK_HEADER + padded + bytes));
+    put_word(stream, (uint32_t)padded);
+    fwrite("JSON", 1, 4, stream);
+    fwrite(text, 1, length, stream);
+    for (size_t i = length; i < padded; i++)
+        fputc(' ', stream);
+    put_word(stream, (uint32_t)bytes);
+    fwrite("BIN", 1, 4, stream);
+    put_numbers(stream, a);
+}
+
+starg_status starg_animation_write(starg_context *context, const starg_mesh *mesh,
+                                   const double *const *frames, size_t frame_count, double seconds,
+                                   const char *path) {
+    starg_status status = STARG_OK;
+    starg_output output;
+    json_t *json = NULL;
+    char *text = NULL;
+    animation a = {.mesh = mesh,
+                   .frames = frames,
+                   .count = frame_count,
+                   .vertices = starg_mesh_vertex_count(mesh),
+                   .indices = 3 * starg_mesh_face_count(mesh),
+                   .seconds = seconds};
+    STARG_TRY(check(context, &a));
+    find_box(&a);
+    json = describe(&a);
+    size_t length = json != NULL ? json_dumpb(json, NULL, 0, JSON_COMPACT) : 0;
+    if (length == 0) {
+        status = starg_fail_memory(context, STAGE);
+        goto done;
+    }
+    STARG_NEW(context, STAGE, text, length);
+    json_dumpb(json, text, length, JSON_COMPACT);
+    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    put_file(output.stream, &a, text, length);
+    STARG_TRY(starg_output_commit(&output));
+done:
+    json_decref(json);
+    starg_release(context, text);
+    return status;
+}
