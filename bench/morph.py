@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""Measures morphs: a row for each pair and method, and the means at the end.
+
+usage: morph.py STARGUARD [--shared FOLDER] [--frames N] [--samples-only]
+
+Pairs are the samples in two poses, and poses of the shared data where it is there. Told are pairs of
+faces that intersect on the way (those of both ends are no fault of a method, so frames between them
+are counted, and the one at t = 0.5), folded faces, and the largest and mean drift of the volume.
+"""
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+METHODS = ["star", "arap", "linear", "spherical"]
+SAMPLES = ["horse", "dog", "cat", "giraffe", "dinosaur", "bird", "human", "octopus"]
+POSES = [("tosca_wolf0", "tosca_wolf2"), ("camel_0", "camel_1"), ("cat_reference", "cat_01"),
+         ("cat_reference", "cat_05"), ("lion_reference", "lion_01"), ("lion_reference", "lion_05")]
+
+
+def run(program, *words):
+    done = subprocess.run([program, *words, "--json"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(words)}: {done.stderr.strip() or done.stdout.strip()}")
+    return json.loads(done.stdout)
+
+
+def pairs(arguments, folder):
+    for name in SAMPLES:
+        files = [os.path.join(folder, f"{name}_{pose}.off") for pose in (0, 1)]
+        for pose, file in enumerate(files):
+            run(arguments.starguard, "sample", name, "--pose", str(pose), "-o", file)
+        yield name, *files
+    poses = os.path.join(arguments.shared, "data", "poses")
+    if not arguments.samples_only and os.path.isdir(poses):
+        for a, b in POSES:
+            yield f"{a} {b}", *(os.path.join(poses, f + ".off") for f in (a, b))
+
+
+def measure(arguments, folder, a, b, method):
+    report = run(arguments.starguard, "morph", a, b, "--frames", str(arguments.frames), "--method",
+                 method, "-o", os.path.join(folder, "frames"))
+    between = report["frames"][1:-1]
+    drifts = [abs(f["volume_drift"]) for f in between]
+    return {"guards": len(report["guards"]),
+            "intersections": sum(f["intersections"] for f in between),
+            "half": between[len(between) // 2]["intersections"],
+            "folded": sum(f["inverted"] for f in between),
+            "drift": max(drifts), "mean": sum(drifts) / len(drifts)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("starguard")
+    parser.add_argument("--shared", default="../shared")
+    parser.add_argument("--frames", type=int, default=11)
+    parser.add_argument("--samples-only", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.frames < 3 or arguments.frames % 2 == 0:
+        parser.error("--frames must be odd and 3 or more, so that t = 0.5 is one of them")
+    rows = []
+    print("| pair | method | guards | intersections | at t = 0.5 | folded | volume drift | mean |")
+    print("|---|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, a, b in pairs(arguments, folder):
+            for method in METHODS:
+                row = measure(arguments, folder, a, b, method)
+                rows.append((method, row))
+                print(f"| {name} | {method} | {row['guards'] or ''} | {row['intersections']} | "
+                      f"{row['half']} | {row['folded']} | {100 * row['drift']:.2f} % | "
+                      f"{100 * row['mean']:.2f} % |", flush=True)
+    for method in METHODS:
+        own = [row for m, row in rows if m == method]
+        means = {key: sum(row[key] for row in own) / len(own) for key in own[0]}
+        print(f"| mean | {method} |  | {means['intersections']:.1f} | {means['half']:.1f} | "
+              f"{means['folded']:.1f} | {100 * means['drift']:.2f} % | {100 * means['mean']:.2f} % |")
+
+
+if __name__ == "__main__":
+    main()
