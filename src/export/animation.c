@@ -134,6 +134,7 @@ static json_t *describe(const animation *a) {
         json_decref(targets);
         return NULL;
     }
+    size_t times = a->count + 1; /* accessor */
     return json_pack("{s:{s:s}, s:i, s:[{s:[i]}], s:[{s:i, s:[f, f, f]}],"
                      " s:[{s:[{s:{s:i}, s:i, s:o}]}], s:[{s:[{s:i, s:{s:i, s:s}}],"
                      " s:[{s:I, s:I, s:s}]}], s:o, s:o, s:[{s:I}]}",
@@ -141,9 +142,9 @@ static json_t *describe(const animation *a) {
                      0, "translation", a->center[0], a->center[1], a->center[2], "meshes",
                      "primitives", "attributes", "POSITION", 1, "indices", 0, "targets", targets,
                      "animations", "channels", "sampler", 0, "target", "node", 0, "path", "weights",
-                     "samplers", "input", (json_int_t)(a->count + 1), "output",
-                     (json_int_t)(a->count + 2), "interpolation", "LINEAR", "accessors", accessors,
-                     "bufferViews", views, "buffers", "byteLength", (json_int_t)binary_bytes(a));
+                     "samplers", "input", (json_int_t)times, "output", (json_int_t)times + 1,
+                     "interpolation", "LINEAR", "accessors", accessors, "bufferViews", views,
+                     "buffers", "byteLength", (json_int_t)binary_bytes(a));
 }
 
 /* ---- bytes ---- */

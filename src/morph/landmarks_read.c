@@ -85,7 +85,7 @@ starg_status starg_landmarks_read(starg_context *context, const char *path, cons
     if (memchr(bytes, '\0', size) != NULL)
         STARG_TRY(fail_line(context, path, 1, "is not text"));
     for (char *line = bytes, *next; line != NULL; line = next) {
-        double values[VALUES_MOST];
+        double values[VALUES_MOST] = {0};
         uint32_t pair[2] = {0, 0};
         next = strchr(line, '\n');
         if (next != NULL)

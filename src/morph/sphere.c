@@ -24,7 +24,7 @@
 #include "morph/relax.h"
 
 static const char STAGE[] = "sphere";
-enum { LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40 };
+enum { LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40, HALVINGS = 40 };
 static const double GROWTH = 1.2;
 static const double FLOOR = 0.02; /* of the mean area of a face, added to squared edges */
 
@@ -101,8 +101,10 @@ static bool place_near(const sphere *s, const ring *around, double out[3]) {
     for (size_t i = 1; i < around->count; i++)
         vec3_along(middle, 1.0 / (double)around->count, s->directions + 3 * (size_t)around->data[i],
                    middle);
-    for (double step = 0.5; step > 1e-12; step *= 0.5) {
+    double step = 1;
+    for (int i = 0; i < HALVINGS; i++) {
         double d[3];
+        step *= 0.5;
         vec3_subtract(middle, a, d);
         vec3_along(a, step, d, out);
         if (relax_is_positive(around, s->directions, out))
