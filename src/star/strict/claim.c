@@ -218,7 +218,7 @@ static starg_status climb(starg_context *context, void *shared, void *scratch, s
     STARG_TRY(claim(c, grow, best.at, best.guard, &best.volume));
     double reach_out = cbrt(c->running[c->members.count - 1]);
     for (size_t step = 0; step < steps_for(c); step++) {
-        climber next;
+        climber next = {.volume = 0};
         for (int k = 0; k < 3; k++)
             next.guard[k] = best.guard[k] + reach_out * (starg_rng_unit(&rng) - 0.5);
         next.at = walk(c, best.at, next.guard);
