@@ -6,15 +6,14 @@ starguard=${1:-build/starguard}
 sheet=${2:-docs/pictures/pieces.png}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-pictures=
+set --
 for name in horse dog cat giraffe dinosaur bird human octopus knot plate l-room labyrinth; do
     "$starguard" sample "$name" -o "$work/$name.off" --vertices 2000 --quiet
     "$starguard" decompose "$work/$name.off" -o "$work/$name.vtk" --time-limit 20 \
         --picture "$work/$name.png" --json >"$work/$name.json"
     pieces=$(python3 -c 'import json, sys; print(len(json.load(sys.stdin)["pieces"]))' \
         <"$work/$name.json")
-    pictures="$pictures -label ${name}:_$pieces $work/$name.png"
+    set -- "$@" -label "$name: $pieces" "$work/$name.png"
 done
-# shellcheck disable=SC2086
-montage $pictures -trim +repage -resize 400x300 -tile 4x -geometry 400x300+6+6 -background white \
+montage "$@" -trim +repage -resize 400x300 -tile 4x -geometry 400x300+6+6 -background white \
     -pointsize 20 -colors 200 "PNG8:$sheet"

@@ -25,8 +25,8 @@ typedef struct apply_effect {
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, const recut_plan *plan,
                         double margin, double least, region_scratch *scratch, apply_effect *effect);
 
-/* Makes pieces a and b one, with number a, if it has a kernel with such a margin (certified); the
- * last piece takes the number b. Errors: MEMORY. */
+/* Makes pieces a and b one, with number a (or b, if a is the last piece), if it has a kernel with
+ * such a margin (certified); the last piece takes the number b. Errors: MEMORY. */
 starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
                         region_scratch *scratch, bool *done);
 

@@ -10,7 +10,8 @@
  *
  * Invariants: the triangles' boundary is the loops, whatever happens; rounding of the vertices off
  * their plane may at worst leave a triangle that turns the wrong way, which the certificate of the
- * pieces rejects. Cost: quadratic in the vertices of a region with its holes. */
+ * pieces rejects. Cost: quadratic in the vertices of a region, cubic where it has
+ * holes. */
 #include "star/strict/cap.h"
 
 #include <math.h>

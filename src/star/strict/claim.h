@@ -14,8 +14,8 @@ typedef struct claims {
 
 /* Every set is connected and strictly star-shaped, with its guard strictly inside its kernel:
  * proven by exact signs. `hints` are points (hint_count x 3, any) that are tried as guards. Errors:
- * MESH (a tetrahedron so thin that no point is found in it), MEMORY, CANCELLED; TIME when the limit
- * strikes before all is claimed. */
+ * MESH (a tetrahedron so thin that no point is found in it), MEMORY, CANCELLED. When the time
+ * limit has passed, guards no longer climb. */
 starg_status claim_all(starg_context *context, const starg_tetmesh *mesh, const double *hints,
                        size_t hint_count, claims *out);
 void claims_free(starg_context *context, claims *claimed);

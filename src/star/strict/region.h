@@ -54,7 +54,8 @@ starg_status region_clip(starg_context *context, const region *from, const doubl
 /* Volume of a part that region_clip has made with that plane. */
 double region_volume_above(const region *part, const double normal[3], double height);
 
-/* The highest that a star-shaped low side reaches along `normal` whose guard is inside by `margin`;
+/* The highest that a star-shaped low side reaches along `normal` whose guard is inside by about
+ * `margin` (half of it at least);
  * and, unless `down` is NULL, the same for the high side along the opposite direction (its height
  * is minus the lowest place of the plane), if the low side reaches anywhere. Errors: MEMORY. */
 starg_status region_find_reach(const region *r, const double normal[3], double margin,

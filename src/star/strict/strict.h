@@ -5,7 +5,7 @@
 #include "core/context.h"
 #include "starguard/decompose.h"
 
-/* Errors: MESH, MEMORY, CANCELLED, TIME. */
+/* Errors: MESH, MEMORY, CANCELLED. */
 starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
                               const starg_decompose_options *options, starg_decomposition **out);
 
