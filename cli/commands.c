@@ -11,6 +11,8 @@ const cli_command *const cli_commands[] = {
     &cli_command_kernel,
     &cli_command_guard,
     &cli_command_decompose,
+    &cli_command_describe,
+    &cli_command_match,
     &cli_command_verify,
     &cli_command_map,
     &cli_command_morph,

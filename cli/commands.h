@@ -47,6 +47,8 @@ extern const cli_command cli_command_visible;
 extern const cli_command cli_command_kernel;
 extern const cli_command cli_command_guard;
 extern const cli_command cli_command_decompose;
+extern const cli_command cli_command_describe;
+extern const cli_command cli_command_match;
 extern const cli_command cli_command_verify;
 extern const cli_command cli_command_map;
 extern const cli_command cli_command_morph;

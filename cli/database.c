@@ -5,6 +5,8 @@
 const char *const cli_distance_words[] = {
     [STARG_SIGNATURE_D2] = "d2",
     [STARG_SIGNATURE_SHAPE_DNA] = "shape-dna",
+    [STARG_SIGNATURE_STAR] = "star",
+    [STARG_SIGNATURE_PAPER] = "paper",
     [STARG_SIGNATURE_KINDS] = NULL,
 };
 

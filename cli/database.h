@@ -11,9 +11,10 @@ extern const char *const cli_distance_words[];
 
 #define CLI_DISTANCE_OPTION                                                                        \
     CLI_CHOICE_OPTION(                                                                             \
-        "distance", distance, cli_distance_words, "shape-dna|d2",                                  \
-        "What models are compared by: shape-dna (default), the spectrum of the "                   \
-        "surface, which bending hardly changes; or d2, the distances between points "              \
+        "distance", distance, cli_distance_words, "star|paper|shape-dna|d2",                       \
+        "What models are compared by: star (default), what guards see and the ways between them, " \
+        "which bending hardly changes; paper, the deformation of one guarding graph into the "     \
+        "other; shape-dna, the spectrum of the surface; or d2, the distances between points "      \
         "of the surface.")
 
 /* Opens the database that the first operand names. */

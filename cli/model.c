@@ -94,6 +94,29 @@ starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh *
     return status;
 }
 
+starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
+                                starg_descriptor **descriptor) {
+    starg_status status = STARG_OK;
+    bool whole = strcmp(file, "-") == 0;
+    const char *name = whole ? "standard input" : file;
+    size_t size;
+    char *bytes = read_bytes(file, &size);
+    bool described = bytes != NULL && starg_descriptor_recognized(bytes, size);
+    *mesh = NULL;
+    *descriptor = NULL;
+    if (whole && bytes == NULL)
+        status = cli_fail_memory(session);
+    else if (described)
+        status = whole
+                     ? starg_descriptor_read_memory(session->context, bytes, size, name, descriptor)
+                     : starg_descriptor_read(session->context, file, descriptor);
+    else
+        status = whole ? starg_mesh_read_memory(session->context, bytes, size, name, mesh)
+                       : starg_mesh_read(session->context, file, mesh);
+    free(bytes);
+    return status;
+}
+
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format) {
     static const struct {
         const char *ending;

@@ -4,6 +4,7 @@
 
 #include "session.h"
 #include "starguard/bits.h"
+#include "starguard/descriptor.h"
 #include "starguard/mesh.h"
 #include "starguard/solid.h"
 #include "starguard/tetra.h"
@@ -14,6 +15,10 @@ starg_status cli_input_read(cli_session *session);
 /* Reads a surface or a tetrahedral mesh, told apart by the content; the other one is NULL. */
 starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
                             starg_tetmesh **tetmesh);
+
+/* Reads a model or a descriptor of one, told apart by the content; the other one is NULL. */
+starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
+                                starg_descriptor **descriptor);
 
 /* The format for an output mesh by its name's ending; OFF for "-". Errors: ARGUMENT. */
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);

@@ -17,11 +17,13 @@ extern "C" {
 /* ---- signatures ---- */
 
 typedef enum starg_signature_kind {
-    STARG_SIGNATURE_D2 = 0,       /* distribution of distances between points of the surface */
-    STARG_SIGNATURE_SHAPE_DNA = 1 /* eigenvalues of the surface's Laplacian                  */
+    STARG_SIGNATURE_D2 = 0,        /* distribution of distances between points of the surface */
+    STARG_SIGNATURE_SHAPE_DNA = 1, /* eigenvalues of the surface's Laplacian                 */
+    STARG_SIGNATURE_STAR = 2,      /* guards, what they see, and ways between them           */
+    STARG_SIGNATURE_PAPER = 3      /* the guarding graph and histograms of [YL11]            */
 } starg_signature_kind;
 
-enum { STARG_SIGNATURE_KINDS = 2, STARG_SIGNATURE_DEFAULT = STARG_SIGNATURE_SHAPE_DNA };
+enum { STARG_SIGNATURE_KINDS = 4, STARG_SIGNATURE_DEFAULT = STARG_SIGNATURE_STAR };
 
 /* What a model is compared by. Signatures compare with those of the same kind and version only; a
  * version changes whenever the numbers do. */
@@ -43,6 +45,13 @@ STARG_API int starg_signature_version(starg_signature_kind kind);
  * Errors: ARGUMENT (unknown kind), MESH (no area), SOLVER, MEMORY, CANCELLED. */
 STARG_API starg_status starg_signature_create(starg_context *context, const starg_mesh *mesh,
                                               starg_signature_kind kind, starg_signature **out);
+
+/* The signatures of all kinds, for which a descriptor is made once. */
+STARG_API starg_status starg_signature_create_all(starg_context *context, const starg_mesh *mesh,
+                                                  starg_signature *out[STARG_SIGNATURE_KINDS]);
+
+/* Is a kind made of a descriptor (starguard/descriptor.h)? */
+STARG_API bool starg_signature_needs_descriptor(starg_signature_kind kind);
 STARG_API void starg_signature_free(starg_context *context, starg_signature *signature);
 
 /* A signature of numbers that were stored. Errors: ARGUMENT (unknown kind), FORMAT (not what the

@@ -9,6 +9,7 @@
 #include "cover.h"
 #include "database.h"
 #include "decompose.h"
+#include "descriptor.h"
 #include "guard.h"
 #include "kernel.h"
 #include "mesh.h"

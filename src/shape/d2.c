@@ -145,12 +145,14 @@ static bool check(const double *numbers, size_t count) {
     return count == BINS;
 }
 
-static double compare(const double *a, size_t a_count, const double *b, size_t b_count) {
+static starg_status compare(starg_context *context, const double *a, size_t a_count,
+                            const double *b, size_t b_count, double *out) {
     double sum = 0;
-    (void)b_count;
+    (void)context, (void)b_count;
     for (size_t i = 0; i < a_count; i++)
         sum += fabs(a[i] - b[i]);
-    return sum;
+    *out = sum;
+    return STARG_OK;
 }
 
 const signature_method signature_d2 = {

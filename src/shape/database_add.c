@@ -147,17 +147,15 @@ done:
 static starg_status describe_mesh(starg_context *context, starg_context *worker,
                                   const starg_mesh *mesh, description *d) {
     starg_status status = STARG_OK;
-    starg_signature *signature = NULL;
+    starg_signature *signatures[STARG_SIGNATURE_KINDS] = {NULL};
     d->vertices = starg_mesh_vertex_count(mesh);
     d->faces = starg_mesh_face_count(mesh);
-    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
-        STARG_TRY(starg_signature_create(worker, mesh, (starg_signature_kind)kind, &signature));
-        STARG_TRY(keep_numbers(context, signature, d));
-        starg_signature_free(worker, signature);
-        signature = NULL;
-    }
+    STARG_TRY(starg_signature_create_all(worker, mesh, signatures));
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
+        STARG_TRY(keep_numbers(context, signatures[kind], d));
 done:
-    starg_signature_free(worker, signature);
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
+        starg_signature_free(worker, signatures[kind]);
     return status;
 }
 

@@ -11,6 +11,8 @@ static const char STAGE[] = "signature";
 static const signature_method *const methods[STARG_SIGNATURE_KINDS] = {
     [STARG_SIGNATURE_D2] = &signature_d2,
     [STARG_SIGNATURE_SHAPE_DNA] = &signature_shape_dna,
+    [STARG_SIGNATURE_STAR] = &signature_star,
+    [STARG_SIGNATURE_PAPER] = &signature_paper,
 };
 
 static const signature_method *method_of(starg_signature_kind kind) {
@@ -47,16 +49,68 @@ done:
     return status;
 }
 
-starg_status starg_signature_create(starg_context *context, const starg_mesh *mesh,
-                                    starg_signature_kind kind, starg_signature **out) {
+bool starg_signature_needs_descriptor(starg_signature_kind kind) {
     const signature_method *method = method_of(kind);
+    return method != NULL && method->derive != NULL;
+}
+
+starg_status starg_signature_of_descriptor(starg_context *context,
+                                           const starg_descriptor *descriptor,
+                                           starg_signature_kind kind, starg_signature **out) {
     double *numbers = NULL;
     size_t count = 0;
     *out = NULL;
-    if (method == NULL)
-        return fail_kind(context, kind);
-    starg_status status = method->compute(context, mesh, &numbers, &count);
+    if (!starg_signature_needs_descriptor(kind))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "signatures of kind %d are not made of descriptors but of models",
+                          (int)kind);
+    starg_status status = methods[kind]->derive(context, descriptor, &numbers, &count);
     return status == STARG_OK ? wrap(context, kind, numbers, count, out) : status;
+}
+
+/* Of the descriptor where the kind wants one. */
+static starg_status create(starg_context *context, const starg_mesh *mesh,
+                           const starg_descriptor *descriptor, starg_signature_kind kind,
+                           starg_signature **out) {
+    double *numbers = NULL;
+    size_t count = 0;
+    if (starg_signature_needs_descriptor(kind))
+        return starg_signature_of_descriptor(context, descriptor, kind, out);
+    starg_status status = methods[kind]->compute(context, mesh, &numbers, &count);
+    return status == STARG_OK ? wrap(context, kind, numbers, count, out) : status;
+}
+
+starg_status starg_signature_create(starg_context *context, const starg_mesh *mesh,
+                                    starg_signature_kind kind, starg_signature **out) {
+    starg_status status = STARG_OK;
+    starg_descriptor *descriptor = NULL;
+    *out = NULL;
+    if (method_of(kind) == NULL)
+        return fail_kind(context, kind);
+    if (starg_signature_needs_descriptor(kind))
+        STARG_TRY(starg_descriptor_create(context, mesh, NULL, &descriptor));
+    STARG_TRY(create(context, mesh, descriptor, kind, out));
+done:
+    starg_descriptor_free(context, descriptor);
+    return status;
+}
+
+starg_status starg_signature_create_all(starg_context *context, const starg_mesh *mesh,
+                                        starg_signature *out[STARG_SIGNATURE_KINDS]) {
+    starg_status status = STARG_OK;
+    starg_descriptor *descriptor = NULL;
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
+        out[kind] = NULL;
+    STARG_TRY(starg_descriptor_create(context, mesh, NULL, &descriptor));
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
+        STARG_TRY(create(context, mesh, descriptor, (starg_signature_kind)kind, &out[kind]));
+done:
+    starg_descriptor_free(context, descriptor);
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS && status != STARG_OK; kind++) {
+        starg_signature_free(context, out[kind]);
+        out[kind] = NULL;
+    }
+    return status;
 }
 
 starg_status starg_signature_restore(starg_context *context, starg_signature_kind kind, int version,
@@ -101,8 +155,9 @@ static starg_status fail_comparison(starg_context *context) {
                       "only signatures of the same kind and of its present version compare");
 }
 
-static double distance(const starg_signature *a, const starg_signature *b) {
-    return methods[a->kind]->compare(a->numbers, a->count, b->numbers, b->count);
+static starg_status distance(starg_context *context, const starg_signature *a,
+                             const starg_signature *b, double *out) {
+    return methods[a->kind]->compare(context, a->numbers, a->count, b->numbers, b->count, out);
 }
 
 starg_status starg_signature_distance(starg_context *context, const starg_signature *a,
@@ -110,8 +165,7 @@ starg_status starg_signature_distance(starg_context *context, const starg_signat
     *out = 0;
     if (!comparable(a, b))
         return fail_comparison(context);
-    *out = distance(a, b);
-    return STARG_OK;
+    return distance(context, a, b, out);
 }
 
 typedef struct table {
@@ -123,14 +177,17 @@ typedef struct table {
 /* The part of a row right of the diagonal, and its mirror image. */
 static starg_status fill_row(starg_context *context, void *shared, void *scratch, size_t row) {
     const table *t = shared;
-    (void)context, (void)scratch;
+    starg_status status = STARG_OK;
+    (void)scratch;
     t->distances[row * t->count + row] = 0;
     for (size_t i = row + 1; i < t->count; i++) {
-        double d = distance(t->signatures[row], t->signatures[i]);
+        double d = 0;
+        STARG_TRY(distance(context, t->signatures[row], t->signatures[i], &d));
         t->distances[row * t->count + i] = d;
         t->distances[i * t->count + row] = d;
     }
-    return STARG_OK;
+done:
+    return status;
 }
 
 starg_status starg_signature_distances(starg_context *context, starg_signature *const *signatures,

@@ -4,27 +4,35 @@
 #define STARG_SHAPE_SIGNATURE_KINDS_H
 
 #include "core/context.h"
+#include "starguard/descriptor.h"
 #include "starguard/shape.h"
 
 /* Makes the numbers in a new block. A failure keeps the model out of a database. */
 typedef starg_status signature_compute(starg_context *context, const starg_mesh *mesh,
                                        double **numbers, size_t *count);
+typedef starg_status signature_derive(starg_context *context, const starg_descriptor *descriptor,
+                                      double **numbers, size_t *count);
 
 /* Are these numbers of the kind? They may come from a damaged file. */
 typedef bool signature_check(const double *numbers, size_t count);
 
-/* Symmetric, not negative, 0 for equal numbers; both have passed the check. */
-typedef double signature_compare(const double *a, size_t a_count, const double *b, size_t b_count);
+/* Symmetric, not negative, 0 for equal numbers; both have passed the check. Errors: MEMORY. */
+typedef starg_status signature_compare(starg_context *context, const double *a, size_t a_count,
+                                       const double *b, size_t b_count, double *out);
 
+/* One of `compute` and `derive` makes the numbers; the other is NULL. */
 typedef struct signature_method {
     const char *name;
     int version;
     signature_compute *compute;
+    signature_derive *derive;
     signature_check *check;
     signature_compare *compare;
 } signature_method;
 
 extern const signature_method signature_d2;
 extern const signature_method signature_shape_dna;
+extern const signature_method signature_star;
+extern const signature_method signature_paper;
 
 #endif

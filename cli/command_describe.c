@@ -1,0 +1,159 @@
+/* starguard describe: a shape by its guards and what they see. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "model.h"
+#include "report.h"
+#include "starguard/descriptor.h"
+#include "starguard/picture.h"
+
+typedef struct values {
+    const char *output, *reconstruct, *picture;
+    uint64_t directions, effort;
+} values;
+
+static const cli_option options[] = {
+    CLI_OUTPUT_OPTION("FILE.json", "Where to write the descriptor (docs/formats.md); '-' writes "
+                                   "to standard output."),
+    CLI_COUNT_OPTION("directions", directions, "N", 12, 65536,
+                     "In how many directions each guard looks, evenly spread. Default 256."),
+    CLI_COUNT_OPTION("effort", effort, "N", 1, INT64_MAX,
+                     "Trials of the star decomposition that places the guards. Default 200: a "
+                     "quick one; more give fewer guards."),
+    CLI_TEXT_OPTION("reconstruct", reconstruct, "FILE.ply",
+                    "Write the boundary as the descriptor knows it: a point where each look ends."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the model and its guards."),
+};
+
+static void set_defaults(void *data) {
+    starg_descriptor_options library;
+    starg_descriptor_options_default(&library);
+    *(values *)data = (values){.directions = library.direction_count, .effort = library.effort};
+}
+
+static starg_status prepare(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_announce_needed(session, v->output, "FILE.json"));
+    CLI_TRY(cli_announce_with_ending(session, "--reconstruct", v->reconstruct, ".ply"));
+    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+done:
+    return status;
+}
+
+/* ---- what was found ---- */
+
+static void tell(cli_session *session, const starg_descriptor *d, const starg_reconstruction *r) {
+    cli_say(session, "guards        %zu, joined by %zu edges\n", d->guard_count, d->edge_count);
+    cli_say(session, "directions    %zu\n", d->direction_count);
+    cli_say(session,
+            "points        within %.3g %% of the diagonal of the surface, %.3g %% on average\n",
+            100 * r->to_largest, 100 * r->to_mean);
+    cli_say(session,
+            "surface       within %.3g %% of the diagonal of a point, %.3g %% on average\n",
+            100 * r->from_largest, 100 * r->from_mean);
+    if (d->time_limited)
+        cli_say(session, "time limit    reached; another run may differ\n");
+}
+
+static void report(cli_session *session, const starg_descriptor *d, const starg_reconstruction *r,
+                   const values *v) {
+    json_t *json = session->report;
+    cli_report_head(session, "starguard-describe", session->operands[0], session->mesh);
+    cli_put(session, json, "output", cli_json_text(v->output));
+    cli_put(session, json, "guards", json_integer((json_int_t)d->guard_count));
+    cli_put(session, json, "edges", json_integer((json_int_t)d->edge_count));
+    cli_put(session, json, "directions", json_integer((json_int_t)d->direction_count));
+    cli_put(session, json, "effort", json_integer((json_int_t)d->effort));
+    cli_put(session, json, "time_limited", json_boolean(d->time_limited));
+    cli_put(session, json, "reconstruction",
+            json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "points", (json_int_t)r->points, "samples",
+                      (json_int_t)r->samples, "to_mean", r->to_mean, "to_largest", r->to_largest,
+                      "from_mean", r->from_mean, "from_largest", r->from_largest));
+}
+
+/* ---- files ---- */
+
+static starg_status write_points(cli_session *session, const starg_descriptor *d,
+                                 const char *name) {
+    starg_status status = STARG_OK;
+    starg_context *context = session->context;
+    double *points = NULL;
+    starg_mesh *cloud = NULL;
+    CLI_TRY(starg_descriptor_points(context, d, &points));
+    CLI_TRY(
+        starg_mesh_create(context, points, d->guard_count * d->direction_count, NULL, 0, &cloud));
+    CLI_TRY(cli_mesh_write(session, cloud, STARG_MESH_PLY_BINARY, NULL, name));
+done:
+    starg_mesh_free(cloud);
+    starg_descriptor_points_free(context, points);
+    return status;
+}
+
+static starg_status draw(cli_session *session, const starg_descriptor *d, const char *name) {
+    starg_picture_options picture;
+    starg_picture_options_default(&picture);
+    double *guards = malloc(3 * d->guard_count * sizeof *guards);
+    if (guards == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < d->guard_count; i++)
+        memcpy(guards + 3 * i, d->guards[i].position, 3 * sizeof *guards);
+    picture.points = guards;
+    picture.point_count = d->guard_count;
+    starg_status status = starg_picture_write(session->context, session->mesh, &picture,
+                                              cli_outputs_place(&session->outputs, name));
+    free(guards);
+    return status;
+}
+
+static starg_status write_files(cli_session *session, const starg_descriptor *d, const values *v) {
+    starg_status status = STARG_OK;
+    if (v->reconstruct != NULL)
+        CLI_TRY(write_points(session, d, v->reconstruct));
+    if (v->picture != NULL)
+        CLI_TRY(draw(session, d, v->picture));
+    CLI_TRY(starg_descriptor_write(session->context, d, session->operands[0],
+                                   cli_outputs_place(&session->outputs, v->output)));
+done:
+    return status;
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_context *context = session->context;
+    starg_status status = STARG_OK;
+    starg_descriptor *descriptor = NULL;
+    starg_reconstruction reconstruction;
+    const starg_descriptor_options wanted = {.direction_count = v->directions, .effort = v->effort};
+    CLI_TRY(starg_descriptor_create(context, session->mesh, &wanted, &descriptor));
+    CLI_TRY(starg_descriptor_reconstruct(context, descriptor, session->mesh, &reconstruction));
+    CLI_TRY(write_files(session, descriptor, v));
+    tell(session, descriptor, &reconstruction);
+    if (session->report != NULL)
+        report(session, descriptor, &reconstruction, v);
+done:
+    starg_descriptor_free(context, descriptor);
+    return status;
+}
+
+const cli_command cli_command_describe = {
+    .name = "describe",
+    .usage = "MODEL -o FILE.json [options]",
+    .summary = "describe a shape by its guards and what they see",
+    .description =
+        "Parts the solid into star-shaped pieces, quickly, and writes down their guards, which of "
+        "the pieces touch, and how far it is from each guard to the boundary in all directions. "
+        "That is what 'starguard match' compares. The surface can be had back of it: how far the "
+        "points that guards see are from the surface, and the surface from them, is told.",
+    .examples = "# a descriptor, and what it knows of the surface\n"
+                "starguard describe model.off -o model.json --reconstruct points.ply\n"
+                "# a finer one\n"
+                "starguard describe model.off -o model.json --directions 2048 --effort 2000",
+    .input = CLI_INPUT_MESH,
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(1, 1),
+    .defaults = set_defaults,
+    .prepare = prepare,
+    .run = run,
+};

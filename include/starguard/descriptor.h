@@ -1,0 +1,117 @@
+/* The descriptor of a shape by its guards [YL11, section 5.1]: a graph of guards, and from each of
+ * them the distances to the boundary in all directions. */
+#ifndef STARGUARD_DESCRIPTOR_H
+#define STARGUARD_DESCRIPTOR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "context.h"
+#include "mesh.h"
+#include "shape.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A guard of a star-shaped piece of the solid. */
+typedef struct starg_descriptor_guard {
+    double position[3];
+    double volume; /* of its piece */
+} starg_descriptor_guard;
+
+/* Two guards whose pieces share faces. */
+typedef struct starg_descriptor_edge {
+    uint32_t first, second; /* first < second; edges ascend           */
+    double area;            /* of the shared faces                    */
+    double gate[3];         /* their centroid: the way between guards */
+} starg_descriptor_edge;
+
+typedef struct starg_descriptor {
+    char *file; /* as given to the writer; NULL if there is none */
+    size_t model_vertices, model_faces;
+    double diagonal;   /* of the model's bounding box             */
+    uint64_t effort;   /* trials that the decomposition was given */
+    bool time_limited; /* the time limit cut it short             */
+    size_t guard_count;
+    starg_descriptor_guard *guards;
+    size_t edge_count;
+    starg_descriptor_edge *edges;
+    size_t direction_count;
+    double *distances; /* guard_count x direction_count: to the first point of the boundary */
+} starg_descriptor;
+
+enum { STARG_DESCRIPTOR_DIRECTIONS = 256, STARG_DESCRIPTOR_EFFORT = 200 };
+
+typedef struct starg_descriptor_options {
+    size_t direction_count; /* 12 to 65536                                        */
+    uint64_t effort;        /* trials of the strict decomposition, 1 or more: more give fewer
+                               guards, and take longer */
+} starg_descriptor_options;
+
+STARG_API void starg_descriptor_options_default(starg_descriptor_options *options);
+
+/* Direction `index` of `count` that cover the sphere evenly: points of a Fibonacci lattice. */
+STARG_API void starg_descriptor_direction(size_t count, size_t index, double out[3]);
+
+/* Describes a model. A mesh with holes is filled with what it winds around, as starg_decompose
+ * does. `options` may be NULL. Errors: ARGUMENT, MESH (encloses nothing), SOLVER, MEMORY,
+ * CANCELLED, TIME. */
+STARG_API starg_status starg_descriptor_create(starg_context *context, const starg_mesh *mesh,
+                                               const starg_descriptor_options *options,
+                                               starg_descriptor **out);
+STARG_API void starg_descriptor_free(starg_context *context, starg_descriptor *descriptor);
+
+/* Writes DESCRIPTOR.json (docs/formats.md); `model_file` is stored as the model's path, NULL
+ * leaves it empty. "-" is standard output. Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_descriptor_write(starg_context *context,
+                                              const starg_descriptor *descriptor,
+                                              const char *model_file, const char *path);
+
+/* Reads it back. Errors: READ, FORMAT, MEMORY. */
+STARG_API starg_status starg_descriptor_read(starg_context *context, const char *path,
+                                             starg_descriptor **out);
+/* The same from memory; `name` is used in messages. */
+STARG_API starg_status starg_descriptor_read_memory(starg_context *context, const void *bytes,
+                                                    size_t size, const char *name,
+                                                    starg_descriptor **out);
+
+/* Is it a descriptor that these bytes begin: a JSON object? No model begins like that. */
+STARG_API bool starg_descriptor_recognized(const void *bytes, size_t size);
+
+/* ---- reconstruction ---- */
+
+/* The boundary as the descriptor knows it: a point for each guard and direction, guard_count x
+ * direction_count x 3 numbers, to be freed with starg_descriptor_points_free. Errors: MEMORY. */
+STARG_API starg_status starg_descriptor_points(starg_context *context,
+                                               const starg_descriptor *descriptor, double **out);
+STARG_API void starg_descriptor_points_free(starg_context *context, double *points);
+
+/* How close these points come to a model; all as fractions of the diagonal of its bounding box. */
+typedef struct starg_reconstruction {
+    size_t points, samples;     /* of the descriptor; of the surface, uniform in area          */
+    double to_mean, to_largest; /* from the points to the surface                      */
+    double from_mean, from_largest; /* from the samples to the nearest point               */
+} starg_reconstruction;
+
+/* Measures it. Errors: MESH (no area), MEMORY, CANCELLED. */
+STARG_API starg_status starg_descriptor_reconstruct(starg_context *context,
+                                                    const starg_descriptor *descriptor,
+                                                    const starg_mesh *mesh,
+                                                    starg_reconstruction *out);
+
+/* ---- signatures ---- */
+
+/* A signature of a kind that is made of descriptors (STAR, PAPER). Errors: ARGUMENT (another kind),
+ * MEMORY. */
+STARG_API starg_status starg_signature_of_descriptor(starg_context *context,
+                                                     const starg_descriptor *descriptor,
+                                                     starg_signature_kind kind,
+                                                     starg_signature **out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

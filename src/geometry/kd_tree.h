@@ -1,0 +1,28 @@
+/* A k-d tree over points of up to four coordinates: which one is nearest? */
+#ifndef STARG_GEOMETRY_KD_TREE_H
+#define STARG_GEOMETRY_KD_TREE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "core/context.h"
+
+enum { KD_TREE_MOST_DIMENSIONS = 4 };
+
+typedef struct kd_tree {
+    const double *points; /* count x dimension, borrowed; finite */
+    size_t count;
+    int dimension;
+    uint32_t *order; /* of each range the middle one splits it, along the axis of its depth */
+} kd_tree;
+
+/* Errors: MEMORY. */
+starg_status kd_tree_create(starg_context *context, const double *points, size_t count,
+                            int dimension, kd_tree *out);
+void kd_tree_free(starg_context *context, kd_tree *tree);
+
+/* The point nearest to p, of equal ones that of the lowest index; `squared` receives the square of
+ * its rounded distance. The tree must not be empty. */
+size_t kd_tree_nearest(const kd_tree *tree, const double *p, double *squared);
+
+#endif

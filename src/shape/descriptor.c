@@ -1,0 +1,282 @@
+/* The descriptor of a shape [YL11, section 5.1]: what its guards see, and how they are joined.
+ *
+ * Stages: a strict star decomposition within a budget of trials; its guards with the volumes of
+ * their pieces; an edge for each two pieces that touch, with the centroid of what they share; from
+ * each guard the distance to the boundary in directions that cover the sphere evenly.
+ *
+ * The paper's graph follows the curve skeleton on which its guards lie. Here guards lie anywhere in
+ * the kernels of their pieces and the edges are the contacts of pieces, so that the graph has a
+ * component for each component of the solid, whatever the skeleton.
+ *
+ * Invariants: rays are cast against the boundary of the tetrahedra, which is closed and has each
+ * guard strictly inside; which triangles a ray meets is decided exactly, so that none slips through
+ * between two of them. Only the length is rounded.
+ *
+ * Cost: that of the decomposition, and O(log n) a ray. */
+#include "starguard/descriptor.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "geometry/intersect.h"
+#include "geometry/vec3.h"
+#include "star/piece_faces.h"
+#include "star/sight.h"
+#include "starguard/decompose.h"
+#include "starguard/solid.h"
+
+static const char STAGE[] = "descriptor";
+
+enum { LEAST_DIRECTIONS = 12, MOST_DIRECTIONS = 65536, FIRST_STEP = -5, LAST_STEP = 1 };
+
+void starg_descriptor_options_default(starg_descriptor_options *options) {
+    *options = (starg_descriptor_options){.direction_count = STARG_DESCRIPTOR_DIRECTIONS,
+                                          .effort = STARG_DESCRIPTOR_EFFORT};
+}
+
+/* Equal steps in height give equal areas; the golden angle keeps neighbours apart. */
+void starg_descriptor_direction(size_t count, size_t index, double out[3]) {
+    const double golden_angle = 2.39996322972865332;
+    double z = 1 - (2 * (double)index + 1) / (double)count, radius = sqrt(fmax(0, 1 - z * z));
+    double longitude = golden_angle * (double)index;
+    out[0] = radius * cos(longitude);
+    out[1] = radius * sin(longitude);
+    out[2] = z;
+}
+
+/* ---- guards ---- */
+
+/* A mesh that encloses no solid by itself is filled with what it winds around. */
+static starg_status decompose(starg_context *context, const starg_mesh *mesh,
+                              const starg_descriptor_options *options, starg_decomposition **out) {
+    starg_decompose_options wanted;
+    starg_solid *solid = NULL;
+    starg_decompose_options_default(&wanted);
+    wanted.effort = options->effort;
+    starg_status status = starg_solid_create(context, mesh, &solid);
+    if (status == STARG_ERROR_MESH)
+        return starg_decompose_open_mesh(context, mesh, &wanted, out);
+    if (status == STARG_OK)
+        status = starg_decompose(context, solid, &wanted, out);
+    starg_solid_free(solid);
+    return status;
+}
+
+static starg_status add_guards(starg_context *context, const starg_decomposition *pieces,
+                               starg_descriptor *d) {
+    starg_status status = STARG_OK;
+    STARG_NEW_ZERO(context, STAGE, d->guards, pieces->piece_count);
+    d->guard_count = pieces->piece_count;
+    for (size_t i = 0; i < d->guard_count; i++) {
+        vec3_copy(pieces->pieces[i].guard, d->guards[i].position);
+        d->guards[i].volume = pieces->pieces[i].volume;
+    }
+done:
+    return status;
+}
+
+/* ---- edges ---- */
+
+static starg_descriptor_edge *find_edge(const starg_descriptor *d, uint32_t first,
+                                        uint32_t second) {
+    size_t low = 0, high = d->edge_count - 1;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        const starg_descriptor_edge *e = &d->edges[middle];
+        if (e->first < first || (e->first == first && e->second < second))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return &d->edges[low];
+}
+
+/* Adds a face to the sums of its edge: area times centroid in `gate`, both by the extent. */
+static void add_face(const starg_tetmesh *mesh, size_t face, double scale, double *area,
+                     starg_descriptor_edge *edge) {
+    uint32_t corners[3];
+    double p[3][3];
+    piece_face_corners(mesh, face, corners);
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 3; k++)
+            p[c][k] =
+                (mesh->vertices[3 * (size_t)corners[c] + (size_t)k] - mesh->vertices[k]) * scale;
+    double part = vec3_triangle_area(p[0], p[1], p[2]);
+    *area += part;
+    for (int k = 0; k < 3; k++)
+        edge->gate[k] += part * (p[0][k] + p[1][k] + p[2][k]) / 3;
+}
+
+static starg_status add_edges(starg_context *context, const starg_decomposition *pieces,
+                              starg_descriptor *d) {
+    starg_status status = STARG_OK;
+    const starg_tetmesh *mesh = pieces->mesh;
+    double *areas = NULL, scale = ldexp(1, -tetmesh_exponent(mesh));
+    STARG_NEW_ZERO(context, STAGE, d->edges, pieces->contact_count);
+    STARG_NEW_ZERO(context, STAGE, areas, pieces->contact_count);
+    d->edge_count = pieces->contact_count;
+    for (size_t i = 0; i < d->edge_count; i++)
+        d->edges[i] = (starg_descriptor_edge){.first = pieces->contacts[i].first,
+                                              .second = pieces->contacts[i].second,
+                                              .area = pieces->contacts[i].area};
+    for (size_t f = 0; f < 4 * mesh->count; f++) {
+        uint32_t other = mesh->neighbours[f];
+        if (other == STARG_TETMESH_NONE || pieces->labels[f / 4] >= pieces->labels[other])
+            continue;
+        starg_descriptor_edge *edge =
+            find_edge(d, (uint32_t)pieces->labels[f / 4], (uint32_t)pieces->labels[other]);
+        add_face(mesh, f, scale, &areas[edge - d->edges], edge);
+    }
+    for (size_t i = 0; i < d->edge_count; i++)
+        for (int k = 0; k < 3; k++)
+            d->edges[i].gate[k] = /* a contact so small that its area vanishes leads to nowhere */
+                areas[i] > 0 ? mesh->vertices[k] + d->edges[i].gate[k] / areas[i] / scale
+                             : d->guards[d->edges[i].first].position[k];
+done:
+    starg_release(context, areas);
+    return status;
+}
+
+/* ---- rays ---- */
+
+typedef struct caster {
+    const bvh *tree;
+    double length; /* beyond the boundary from anywhere inside */
+    double scale;  /* differences times it are at most 1       */
+    starg_descriptor *result;
+} caster;
+
+typedef struct ray {
+    const caster *c;
+    const double *from;
+    double to[3], direction[3];
+    double nearest; /* of the boundary met so far */
+} ray;
+
+/* How far along the ray is a triangle that it meets? Where the ray lies in its plane, its nearest
+ * corner stands for it. */
+static double reach(const ray *r, const double *const corner[3]) {
+    double p[3][3], normal[3], least = INFINITY;
+    for (int c = 0; c < 3; c++) {
+        vec3_subtract(corner[c], r->from, p[c]);
+        for (int k = 0; k < 3; k++)
+            p[c][k] *= r->c->scale;
+        least = fmin(least, vec3_dot(p[c], r->direction));
+    }
+    vec3_triangle_normal(p[0], p[1], p[2], normal);
+    double along = vec3_dot(normal, r->direction), t = vec3_dot(normal, p[0]) / along;
+    return fmax(0, isfinite(t) && t > least ? t : least) / r->c->scale;
+}
+
+static bool meet(void *user, size_t rank) {
+    ray *r = user;
+    const bvh *tree = r->c->tree;
+    const uint32_t *face = tree->faces + 3 * (size_t)tree->order[rank];
+    const double *corner[3];
+    for (int k = 0; k < 3; k++)
+        corner[k] = tree->vertices + 3 * (size_t)face[k];
+    if (segment_meets_triangle(r->from, r->to, corner[0], corner[1], corner[2]))
+        r->nearest = fmin(r->nearest, reach(r, corner));
+    return true;
+}
+
+/* The boundary is mostly near: short segments first. */
+static double cast(const caster *c, const double from[3], const double direction[3]) {
+    ray r = {.c = c, .from = from, .nearest = INFINITY};
+    vec3_copy(direction, r.direction);
+    for (int step = FIRST_STEP; step <= LAST_STEP && r.nearest > c->length; step++) {
+        vec3_along(from, ldexp(c->length, step), direction, r.to);
+        bvh_query_segment(c->tree, from, r.to, meet, &r);
+    }
+    return fmin(r.nearest, c->length);
+}
+
+static starg_status cast_from_guard(starg_context *context, void *shared, void *scratch,
+                                    size_t guard) {
+    const caster *c = shared;
+    starg_descriptor *d = c->result;
+    (void)context, (void)scratch;
+    for (size_t i = 0; i < d->direction_count; i++) {
+        double direction[3];
+        starg_descriptor_direction(d->direction_count, i, direction);
+        d->distances[guard * d->direction_count + i] =
+            cast(c, d->guards[guard].position, direction);
+    }
+    return STARG_OK;
+}
+
+static starg_status add_distances(starg_context *context, const starg_tetmesh *mesh,
+                                  starg_descriptor *d) {
+    starg_status status = STARG_OK;
+    tet_sight sight = {0};
+    STARG_TRY(tet_sight_create(context, mesh, &sight));
+    STARG_NEW_ZERO(context, STAGE, d->distances, d->guard_count * d->direction_count);
+    const bvh_box *box = &sight.tree->nodes[0].box;
+    caster c = {.tree = sight.tree,
+                .length = vec3_distance(box->lower, box->upper),
+                .scale = ldexp(1, -tetmesh_exponent(mesh)),
+                .result = d};
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = d->guard_count, .shared = &c, .item = cast_from_guard};
+    STARG_TRY(starg_parallel_for(context, &loop));
+done:
+    tet_sight_free(context, &sight);
+    return status;
+}
+
+/* ---- all of it ---- */
+
+static starg_status check_options(starg_context *context, const starg_descriptor_options *o) {
+    if (o->direction_count < LEAST_DIRECTIONS || o->direction_count > MOST_DIRECTIONS)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu directions were asked for; choose %d to %d", o->direction_count,
+                          LEAST_DIRECTIONS, MOST_DIRECTIONS);
+    if (o->effort == 0)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the effort must be 1 or more trials");
+    return STARG_OK;
+}
+
+starg_status starg_descriptor_create(starg_context *context, const starg_mesh *mesh,
+                                     const starg_descriptor_options *options,
+                                     starg_descriptor **out) {
+    starg_status status = STARG_OK;
+    starg_descriptor_options defaults;
+    starg_decomposition *pieces = NULL;
+    starg_descriptor *d = NULL;
+    double lower[3], upper[3];
+    starg_descriptor_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    STARG_TRY(decompose(context, mesh, options, &pieces));
+    STARG_NEW_ZERO(context, STAGE, d, 1);
+    starg_mesh_bounds(mesh, lower, upper);
+    d->model_vertices = starg_mesh_vertex_count(mesh);
+    d->model_faces = starg_mesh_face_count(mesh);
+    d->diagonal = vec3_distance(lower, upper);
+    d->effort = options->effort;
+    d->time_limited = pieces->time_limited;
+    d->direction_count = options->direction_count;
+    STARG_TRY(add_guards(context, pieces, d));
+    STARG_TRY(add_edges(context, pieces, d));
+    STARG_TRY(add_distances(context, pieces->mesh, d));
+    *out = d;
+done:
+    starg_decomposition_free(context, pieces);
+    if (status != STARG_OK)
+        starg_descriptor_free(context, d);
+    return status;
+}
+
+void starg_descriptor_free(starg_context *context, starg_descriptor *descriptor) {
+    if (descriptor == NULL)
+        return;
+    starg_release(context, descriptor->file);
+    starg_release(context, descriptor->guards);
+    starg_release(context, descriptor->edges);
+    starg_release(context, descriptor->distances);
+    starg_release(context, descriptor);
+}

@@ -1,0 +1,369 @@
+/* The distance of [YL11, section 5.1]: how hard is it to deform one guarding graph into another,
+ * and how unlike are the histograms of the guards that come together?
+ *
+ * Numbers: the graph in its own frame (paper_pose.h), in units of the shape's size. A guard is
+ * (x, y, z, valence / 10): an edge more or less counts as much as a tenth of the size. Its
+ * histogram is what the paper stores, the distances by direction, here in 64 directions of that
+ * frame.
+ *
+ * The paper sums over guards and edges; here all terms are means, so that shapes of many guards do
+ * not stand farther from everything than shapes of few. With g a guard, c its nearest one of the
+ * other graph (by a k-d tree over four coordinates), phi an affine map for each guard:
+ *   E_M = mean |phi(g) - c|^2,  E_S = mean |phi_i - phi_j|,  E_L = mean (|e'| - |e|)^2,
+ *   E_H = mean root mean square of the difference of two histograms,
+ *   E = 0.1 E_M + E_S + E_L + 0.5 E_H, and the distance is the mean of both directions.
+ *
+ * What is minimised: the sum of the first three, over all maps, from the identity. E_S is a sum of
+ * norms and E_L is not convex. Each round replaces the energy by a quadratic one that is nowhere
+ * below and equal at the present maps: nearest guards stay (E_M), a norm is bounded by its square
+ * (E_S), the length of an edge by the distance to its present direction (E_L). A few steps of
+ * conjugate gradients from the present maps lower that; coordinates are independent of each other.
+ * So the energy never rises, whatever the graph: a guard alone is pulled by E_M only, components
+ * move on their own, and directions that no term holds stay as they are. A guard's histogram is
+ * compared with that of the nearest guard at the end.
+ *
+ * Cost: rounds times steps times (guards + edges): a few milliseconds for 70 guards. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "geometry/kd_tree.h"
+#include "geometry/vec3.h"
+#include "shape/paper_pose.h"
+#include "shape/signature_kinds.h"
+
+static const char STAGE[] = "paper distance";
+
+enum { HEAD = 2, PLACE = 4, BINS = 64, GUARD = PLACE + BINS, ROUNDS = 8, STEPS = 24 };
+static const double MATCH = 0.1, SMOOTH = 1, LENGTH = 1, HISTOGRAM = 0.5;
+static const double VALENCE = 0.1;
+static const double KINK = 1e-3; /* norms of E_S below are smoothed while it is minimised */
+
+/* ---- the numbers: guards, edges; x, y, z, valence and histogram of each guard; both ends of each
+ * edge ---- */
+
+typedef struct graph {
+    size_t guards, edges;
+    const double *guard; /* guards x GUARD */
+    const double *edge;  /* edges x 2      */
+} graph;
+
+static graph graph_of(const double *numbers) {
+    graph g = {.guards = (size_t)numbers[0], .edges = (size_t)numbers[1]};
+    g.guard = numbers + HEAD;
+    g.edge = g.guard + GUARD * g.guards;
+    return g;
+}
+
+static size_t end_of(const graph *g, size_t edge, size_t k) {
+    return (size_t)g->edge[2 * edge + k];
+}
+
+/* For each direction of the frame the nearest one of the descriptor. */
+static void turn_directions(const starg_descriptor *d, const paper_pose *pose, size_t nearest[]) {
+    for (size_t b = 0; b < BINS; b++) {
+        double wanted[3], best = -2;
+        starg_descriptor_direction(BINS, b, wanted);
+        for (size_t i = 0; i < d->direction_count; i++) {
+            double direction[3], cosine = 0;
+            starg_descriptor_direction(d->direction_count, i, direction);
+            for (int k = 0; k < 3; k++)
+                cosine += wanted[k] * vec3_dot(pose->axes[k], direction);
+            if (cosine > best) {
+                best = cosine;
+                nearest[b] = i;
+            }
+        }
+    }
+}
+
+static starg_status derive(starg_context *context, const starg_descriptor *d, double **numbers,
+                           size_t *count) {
+    starg_status status = STARG_OK;
+    double *all = NULL;
+    size_t nearest[BINS] = {0};
+    const paper_pose pose = paper_pose_of(d);
+    double unit = pose.size > 0 ? pose.size : 1;
+    *count = HEAD + GUARD * d->guard_count + 2 * d->edge_count;
+    STARG_NEW_ZERO(context, STAGE, all, *count);
+    all[0] = (double)d->guard_count;
+    all[1] = (double)d->edge_count;
+    turn_directions(d, &pose, nearest);
+    for (size_t i = 0; i < d->guard_count; i++) {
+        double *guard = all + HEAD + GUARD * i;
+        paper_pose_apply(&pose, d->guards[i].position, guard);
+        for (size_t b = 0; b < BINS; b++)
+            guard[PLACE + b] = d->distances[i * d->direction_count + nearest[b]] / unit;
+    }
+    double *ends = all + HEAD + GUARD * d->guard_count;
+    for (size_t e = 0; e < d->edge_count; e++) {
+        ends[2 * e] = d->edges[e].first;
+        ends[2 * e + 1] = d->edges[e].second;
+        all[HEAD + GUARD * (size_t)d->edges[e].first + 3] += VALENCE;
+        all[HEAD + GUARD * (size_t)d->edges[e].second + 3] += VALENCE;
+    }
+    *numbers = all;
+done:
+    return status;
+}
+
+static bool check(const double *numbers, size_t count) {
+    if (count < HEAD + GUARD || !(numbers[0] >= 1 && numbers[0] < (double)count) ||
+        !(numbers[1] >= 0 && numbers[1] < (double)count))
+        return false;
+    const graph g = graph_of(numbers);
+    if (numbers[0] != (double)g.guards || numbers[1] != (double)g.edges ||
+        count != HEAD + GUARD * g.guards + 2 * g.edges)
+        return false;
+    for (size_t i = 0; i < GUARD * g.guards; i++)
+        if (!(fabs(g.guard[i]) < 1e6))
+            return false;
+    for (size_t i = 0; i < 2 * g.edges; i++)
+        if (!(g.edge[i] >= 0 && g.edge[i] < numbers[0] && g.edge[i] == floor(g.edge[i])))
+            return false;
+    return true;
+}
+
+/* ---- the energy ---- */
+
+enum { MAP = 4 }; /* a row of an affine map: it takes (x, y, z, 1) to one coordinate */
+
+typedef struct fitting {
+    graph from, to;
+    double *places;                          /* of the other graph: guards x PLACE             */
+    kd_tree tree;                            /* of them                                        */
+    double *maps;                            /* guards x 3 rows x MAP                          */
+    double *moved;                           /* guards x 3                                     */
+    size_t *match;                           /* guards: the nearest one of the other graph     */
+    double *weight;                          /* edges: of the square that bounds the norm      */
+    double *target;                          /* edges x 3: the edge as E_L would like it       */
+    double *right, *residual, *step, *image; /* guards x MAP, scratch */
+} fitting;
+
+static double apply_row(const double *row, const double *place) {
+    return row[0] * place[0] + row[1] * place[1] + row[2] * place[2] + row[3];
+}
+
+static const double *place_of(const fitting *f, size_t guard) {
+    return f->from.guard + GUARD * guard;
+}
+
+static double length_before(const fitting *f, size_t edge) {
+    return vec3_distance(place_of(f, end_of(&f->from, edge, 0)),
+                         place_of(f, end_of(&f->from, edge, 1)));
+}
+
+static double map_difference(const fitting *f, size_t edge) {
+    const double *a = f->maps + 3 * MAP * end_of(&f->from, edge, 0);
+    const double *b = f->maps + 3 * MAP * end_of(&f->from, edge, 1);
+    double sum = 0;
+    for (int k = 0; k < 3 * MAP; k++)
+        sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sqrt(sum);
+}
+
+/* Moves the guards by their maps, finds their matches; the energy without histograms. */
+static double move(fitting *f) {
+    double match = 0, smooth = 0, length = 0;
+    for (size_t i = 0; i < f->from.guards; i++) {
+        double *q = f->moved + 3 * i, squared;
+        double place[PLACE];
+        for (size_t k = 0; k < 3; k++)
+            place[k] = q[k] = apply_row(f->maps + MAP * (3 * i + k), place_of(f, i));
+        place[3] = place_of(f, i)[3];
+        f->match[i] = kd_tree_nearest(&f->tree, place, &squared);
+        match += squared;
+    }
+    for (size_t e = 0; e < f->from.edges; e++) {
+        double d = vec3_distance(f->moved + 3 * end_of(&f->from, e, 0),
+                                 f->moved + 3 * end_of(&f->from, e, 1)) -
+                   length_before(f, e);
+        smooth += map_difference(f, e);
+        length += d * d;
+    }
+    double edges = fmax(1, (double)f->from.edges);
+    return MATCH * match / (double)f->from.guards + (SMOOTH * smooth + LENGTH * length) / edges;
+}
+
+/* ---- the quadratic bound ---- */
+
+static void bound(fitting *f) {
+    for (size_t e = 0; e < f->from.edges; e++) {
+        size_t a = end_of(&f->from, e, 0), b = end_of(&f->from, e, 1);
+        double way[3], before = length_before(f, e), norm = map_difference(f, e);
+        vec3_subtract(f->moved + 3 * a, f->moved + 3 * b, way);
+        double now = vec3_length(way);
+        f->weight[e] = 0.5 * SMOOTH / hypot(norm, KINK);
+        for (size_t k = 0; k < 3; k++)
+            f->target[3 * e + k] = now > 0 ? way[k] * (before / now) : 0;
+    }
+}
+
+/* Adds t (place, 1) to a row. */
+static void add_row(double *row, double t, const double *place) {
+    for (int k = 0; k < 3; k++)
+        row[k] += t * place[k];
+    row[3] += t;
+}
+
+/* out = the quadratic form's matrix times x, for one coordinate */
+static void multiply(const fitting *f, const double *x, double *out) {
+    double guards = (double)f->from.guards, edges = (double)f->from.edges;
+    memset(out, 0, MAP * f->from.guards * sizeof *out);
+    for (size_t i = 0; i < f->from.guards; i++)
+        add_row(out + MAP * i, MATCH / guards * apply_row(x + MAP * i, place_of(f, i)),
+                place_of(f, i));
+    for (size_t e = 0; e < f->from.edges; e++) {
+        size_t a = end_of(&f->from, e, 0), b = end_of(&f->from, e, 1);
+        const double *p = place_of(f, a), *q = place_of(f, b);
+        double stretch = LENGTH / edges * (apply_row(x + MAP * a, p) - apply_row(x + MAP * b, q));
+        add_row(out + MAP * a, stretch, p);
+        add_row(out + MAP * b, -stretch, q);
+        for (size_t k = 0; k < MAP; k++) {
+            double d = f->weight[e] / edges * (x[MAP * a + k] - x[MAP * b + k]);
+            out[MAP * a + k] += d;
+            out[MAP * b + k] -= d;
+        }
+    }
+}
+
+static void make_right(const fitting *f, size_t axis) {
+    double guards = (double)f->from.guards, edges = (double)f->from.edges;
+    memset(f->right, 0, MAP * f->from.guards * sizeof *f->right);
+    for (size_t i = 0; i < f->from.guards; i++)
+        add_row(f->right + MAP * i, MATCH / guards * f->to.guard[GUARD * f->match[i] + axis],
+                place_of(f, i));
+    for (size_t e = 0; e < f->from.edges; e++) {
+        size_t a = end_of(&f->from, e, 0), b = end_of(&f->from, e, 1);
+        double t = LENGTH / edges * f->target[3 * e + axis];
+        add_row(f->right + MAP * a, t, place_of(f, a));
+        add_row(f->right + MAP * b, -t, place_of(f, b));
+    }
+}
+
+static double dot(const double *a, const double *b, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* Conjugate gradients from x: the quadratic form falls with each step. */
+static void descend(const fitting *f, double *x) {
+    size_t count = MAP * f->from.guards;
+    multiply(f, x, f->image);
+    for (size_t i = 0; i < count; i++)
+        f->step[i] = f->residual[i] = f->right[i] - f->image[i];
+    double now = dot(f->residual, f->residual, count), enough = 1e-20 * now;
+    for (int round = 0; round < STEPS && now > enough; round++) {
+        multiply(f, f->step, f->image);
+        double curvature = dot(f->step, f->image, count);
+        if (!(curvature > 0))
+            return;
+        double t = now / curvature, before = now;
+        for (size_t i = 0; i < count; i++) {
+            x[i] += t * f->step[i];
+            f->residual[i] -= t * f->image[i];
+        }
+        now = dot(f->residual, f->residual, count);
+        for (size_t i = 0; i < count; i++)
+            f->step[i] = f->residual[i] + now / before * f->step[i];
+    }
+}
+
+/* A row of all maps at a time; `moved` has not been needed since the bound, and holds nothing of
+ * the row, so that x can be gathered and put back. */
+static void improve(fitting *f, double *x) {
+    bound(f);
+    for (size_t axis = 0; axis < 3; axis++) {
+        make_right(f, axis);
+        for (size_t i = 0; i < f->from.guards; i++)
+            memcpy(x + MAP * i, f->maps + MAP * (3 * i + axis), MAP * sizeof *x);
+        descend(f, x);
+        for (size_t i = 0; i < f->from.guards; i++)
+            memcpy(f->maps + MAP * (3 * i + axis), x + MAP * i, MAP * sizeof *x);
+    }
+}
+
+/* ---- the distance ---- */
+
+static double histogram_error(const fitting *f) {
+    double sum = 0;
+    for (size_t i = 0; i < f->from.guards; i++) {
+        const double *a = place_of(f, i) + PLACE, *b = f->to.guard + GUARD * f->match[i] + PLACE;
+        double squares = 0;
+        for (int k = 0; k < BINS; k++)
+            squares += (a[k] - b[k]) * (a[k] - b[k]);
+        sum += sqrt(squares / BINS);
+    }
+    return sum / (double)f->from.guards;
+}
+
+static starg_status prepare(starg_context *context, fitting *f) {
+    starg_status status = STARG_OK;
+    size_t guards = f->from.guards, edges = f->from.edges;
+    STARG_NEW(context, STAGE, f->places, PLACE * f->to.guards);
+    for (size_t i = 0; i < f->to.guards; i++)
+        memcpy(f->places + PLACE * i, f->to.guard + GUARD * i, PLACE * sizeof *f->places);
+    STARG_TRY(kd_tree_create(context, f->places, f->to.guards, PLACE, &f->tree));
+    STARG_NEW_ZERO(context, STAGE, f->maps, 3 * MAP * guards);
+    for (size_t i = 0; i < 3 * guards; i++)
+        f->maps[MAP * i + i % 3] = 1;
+    STARG_NEW(context, STAGE, f->moved, 3 * guards);
+    STARG_NEW(context, STAGE, f->match, guards);
+    STARG_NEW(context, STAGE, f->weight, edges);
+    STARG_NEW(context, STAGE, f->target, 3 * edges);
+    STARG_NEW(context, STAGE, f->right, MAP * guards);
+    STARG_NEW(context, STAGE, f->residual, MAP * guards);
+    STARG_NEW(context, STAGE, f->step, MAP * guards);
+    STARG_NEW(context, STAGE, f->image, MAP * guards);
+done:
+    return status;
+}
+
+static void free_fitting(starg_context *context, fitting *f) {
+    kd_tree_free(context, &f->tree);
+    starg_release(context, f->places);
+    starg_release(context, f->maps);
+    starg_release(context, f->moved);
+    starg_release(context, f->match);
+    starg_release(context, f->weight);
+    starg_release(context, f->target);
+    starg_release(context, f->right);
+    starg_release(context, f->residual);
+    starg_release(context, f->step);
+    starg_release(context, f->image);
+}
+
+/* One way. */
+static starg_status fit(starg_context *context, const double *a, const double *b, double *out) {
+    starg_status status = STARG_OK;
+    fitting f = {.from = graph_of(a), .to = graph_of(b)};
+    double *x = NULL;
+    STARG_TRY(prepare(context, &f));
+    STARG_NEW(context, STAGE, x, MAP * f.from.guards);
+    double energy = move(&f);
+    for (int round = 0; round < ROUNDS && energy > 0; round++) {
+        improve(&f, x);
+        energy = move(&f);
+    }
+    *out = energy + HISTOGRAM * histogram_error(&f);
+done:
+    free_fitting(context, &f);
+    starg_release(context, x);
+    return status;
+}
+
+static starg_status compare(starg_context *context, const double *a, size_t a_count,
+                            const double *b, size_t b_count, double *out) {
+    starg_status status = STARG_OK;
+    double there = 0, back = 0;
+    (void)a_count, (void)b_count;
+    STARG_TRY(fit(context, a, b, &there));
+    STARG_TRY(fit(context, b, a, &back));
+    *out = (there + back) / 2;
+done:
+    return status;
+}
+
+const signature_method signature_paper = {
+    .name = "paper", .version = 1, .derive = derive, .check = check, .compare = compare};

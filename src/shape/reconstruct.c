@@ -1,0 +1,164 @@
+/* How completely does a descriptor hold the shape? [YL11, section 5.1] says: completely.
+ *
+ * Stages: the points of the boundary that it holds; their distances to the model's surface; random
+ * points of the surface, uniform in area, and their distances to the nearest one of these points.
+ *
+ * The first distances are rounding where the model's surface was kept by its tetrahedra, and how
+ * far those are from it elsewhere. The second ones tell how densely the guards have looked: they
+ * fall as directions grow in number, and stay large where no guard looks closely.
+ *
+ * Cost: O(log n) a point and a sample. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "geometry/bvh.h"
+#include "geometry/kd_tree.h"
+#include "geometry/vec3.h"
+#include "starguard/descriptor.h"
+
+static const char STAGE[] = "reconstruct";
+
+enum { SAMPLES = 16384, CHUNK = 256 };
+static const uint64_t RANDOM = 0x7265636f;
+
+starg_status starg_descriptor_points(starg_context *context, const starg_descriptor *d,
+                                     double **out) {
+    starg_status status = STARG_OK;
+    size_t width = d->direction_count;
+    double *points = NULL;
+    *out = NULL;
+    STARG_NEW(context, STAGE, points, 3 * d->guard_count * width);
+    for (size_t i = 0; i < width; i++) {
+        double direction[3];
+        starg_descriptor_direction(width, i, direction);
+        for (size_t g = 0; g < d->guard_count; g++)
+            vec3_along(d->guards[g].position, d->distances[g * width + i], direction,
+                       points + 3 * (g * width + i));
+    }
+    *out = points;
+done:
+    return status;
+}
+
+void starg_descriptor_points_free(starg_context *context, double *points) {
+    starg_release(context, points);
+}
+
+typedef struct comparison {
+    const starg_mesh *mesh;
+    uint64_t seed;
+    double *points;
+    size_t count;
+    bvh *surface;
+    kd_tree tree;      /* of the points                       */
+    double extent;     /* lengths are by it                   */
+    double *sums;      /* of the areas of the faces up to each */
+    double *to, *from; /* a distance for each point; sample */
+} comparison;
+
+static const double *corner(const comparison *c, size_t face, size_t k) {
+    return starg_mesh_vertices(c->mesh) + 3 * (size_t)starg_mesh_faces(c->mesh)[3 * face + k];
+}
+
+static starg_status sum_areas(starg_context *context, comparison *c) {
+    starg_status status = STARG_OK;
+    size_t count = starg_mesh_face_count(c->mesh);
+    double lower[3], upper[3], sum = 0;
+    starg_mesh_bounds(c->mesh, lower, upper);
+    c->extent = vec3_distance(lower, upper);
+    STARG_NEW(context, STAGE, c->sums, count);
+    for (size_t f = 0; c->extent > 0 && f < count; f++) {
+        double p[3][3];
+        for (size_t k = 0; k < 3; k++)
+            for (size_t a = 0; a < 3; a++)
+                p[k][a] = (corner(c, f, k)[a] - lower[a]) / c->extent;
+        c->sums[f] = sum += vec3_triangle_area(p[0], p[1], p[2]);
+    }
+    if (!(sum > 0))
+        status = starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
+done:
+    return status;
+}
+
+/* The square root spreads points evenly towards the edge opposite to the first corner. */
+static void sample(const comparison *c, size_t index, double out[3]) {
+    starg_rng rng = starg_rng_make(c->seed, RANDOM, index);
+    size_t low = 0, high = starg_mesh_face_count(c->mesh) - 1;
+    double goal = c->sums[high] * starg_rng_unit(&rng);
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (c->sums[middle] > goal)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    double far = sqrt(starg_rng_unit(&rng)), along = starg_rng_unit(&rng);
+    for (int k = 0; k < 3; k++)
+        out[k] = (1 - far) * corner(c, low, 0)[k] +
+                 far * ((1 - along) * corner(c, low, 1)[k] + along * corner(c, low, 2)[k]);
+}
+
+static starg_status measure_chunk(starg_context *context, void *shared, void *scratch,
+                                  size_t chunk) {
+    const comparison *c = shared;
+    size_t first = chunk * CHUNK, past = first + CHUNK;
+    double p[3], squared;
+    (void)context, (void)scratch;
+    for (size_t i = first; i < past && i < c->count; i++)
+        c->to[i] = bvh_distance(c->surface, c->points + 3 * i) / c->extent;
+    for (size_t i = first; i < past && i < SAMPLES; i++) {
+        sample(c, i, p);
+        size_t nearest = kd_tree_nearest(&c->tree, p, &squared);
+        c->from[i] = vec3_distance(p, c->points + 3 * nearest) / c->extent;
+    }
+    return STARG_OK;
+}
+
+static void summarise(const double *values, size_t count, double *mean, double *largest) {
+    *mean = *largest = 0;
+    for (size_t i = 0; i < count; i++) {
+        *mean += values[i] / (double)count;
+        *largest = fmax(*largest, values[i]);
+    }
+}
+
+static starg_status measure(starg_context *context, comparison *c, starg_reconstruction *out) {
+    starg_status status = STARG_OK;
+    size_t most = c->count > SAMPLES ? c->count : SAMPLES;
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = (most + CHUNK - 1) / CHUNK, .shared = c, .item = measure_chunk};
+    STARG_NEW(context, STAGE, c->to, c->count);
+    STARG_NEW(context, STAGE, c->from, SAMPLES);
+    STARG_TRY(starg_parallel_for(context, &loop));
+    *out = (starg_reconstruction){.points = c->count, .samples = SAMPLES};
+    summarise(c->to, c->count, &out->to_mean, &out->to_largest);
+    summarise(c->from, SAMPLES, &out->from_mean, &out->from_largest);
+done:
+    return status;
+}
+
+starg_status starg_descriptor_reconstruct(starg_context *context,
+                                          const starg_descriptor *descriptor,
+                                          const starg_mesh *mesh, starg_reconstruction *out) {
+    starg_status status = STARG_OK;
+    comparison c = {.mesh = mesh,
+                    .seed = context->seed,
+                    .count = descriptor->guard_count * descriptor->direction_count};
+    *out = (starg_reconstruction){0};
+    STARG_TRY(sum_areas(context, &c));
+    STARG_TRY(starg_descriptor_points(context, descriptor, &c.points));
+    STARG_TRY(bvh_create(context, starg_mesh_vertices(mesh), starg_mesh_faces(mesh),
+                         starg_mesh_face_count(mesh), &c.surface));
+    STARG_TRY(kd_tree_create(context, c.points, c.count, 3, &c.tree));
+    STARG_TRY(measure(context, &c, out));
+done:
+    starg_release(context, c.points);
+    bvh_free(c.surface);
+    kd_tree_free(context, &c.tree);
+    starg_release(context, c.sums);
+    starg_release(context, c.to);
+    starg_release(context, c.from);
+    return status;
+}
