@@ -8,10 +8,14 @@ typedef struct values {
     int distance;
 } values;
 
-static const cli_option options[] = {CLI_DISTANCE_OPTION};
+static const cli_option options[] = {CLI_CHOICE_OPTION(
+    "distance", distance, cli_distance_words, "star|paper|shape-dna|d2",
+    "star (default): what guards see, whatever the pose. paper: the deformation of one guarding "
+    "graph into the other. shape-dna: the spectrum of the surface. d2: the distances between "
+    "points of the surface.")};
 
 static void set_defaults(void *data) {
-    *(values *)data = (values){.distance = STARG_SIGNATURE_DEFAULT};
+    *(values *)data = (values){.distance = STARG_SIGNATURE_STAR};
 }
 
 static starg_status make_signature(cli_session *session, const char *file,

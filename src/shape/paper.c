@@ -13,11 +13,14 @@
  *   E_H = mean root mean square of the difference of two histograms,
  *   E = 0.1 E_M + E_S + E_L + 0.5 E_H, and the distance is the mean of both directions.
  *
+ * Norms in E_S are rounded off near 0, where they have no gradient.
+ *
  * What is minimised: the sum of the first three, over all maps, from the identity. E_S is a sum of
  * norms and E_L is not convex. Each round replaces the energy by a quadratic one that is nowhere
  * below and equal at the present maps: nearest guards stay (E_M), a norm is bounded by its square
- * (E_S), the length of an edge by the distance to its present direction (E_L). A few steps of
- * conjugate gradients from the present maps lower that; coordinates are independent of each other.
+ * (E_S), the length of an edge by the distance to its present direction (E_L). The best change of
+ * all maps by the same, and then a few steps of conjugate gradients for each, lower that;
+ * coordinates are independent of each other.
  * So the energy never rises, whatever the graph: a guard alone is pulled by E_M only, components
  * move on their own, and directions that no term holds stay as they are. A guard's histogram is
  * compared with that of the nearest guard at the end.
@@ -36,7 +39,7 @@ static const char STAGE[] = "paper distance";
 enum { HEAD = 2, PLACE = 4, BINS = 64, GUARD = PLACE + BINS, ROUNDS = 8, STEPS = 24 };
 static const double MATCH = 0.1, SMOOTH = 1, LENGTH = 1, HISTOGRAM = 0.5;
 static const double VALENCE = 0.1;
-static const double KINK = 1e-3; /* norms of E_S below are smoothed while it is minimised */
+static const double KINK = 1e-3; /* norms n of E_S are taken as hypot(n, KINK) - KINK */
 
 /* ---- the numbers: guards, edges; x, y, z, valence and histogram of each guard; both ends of each
  * edge ---- */
@@ -177,7 +180,7 @@ static double move(fitting *f) {
         double d = vec3_distance(f->moved + 3 * end_of(&f->from, e, 0),
                                  f->moved + 3 * end_of(&f->from, e, 1)) -
                    length_before(f, e);
-        smooth += map_difference(f, e);
+        smooth += hypot(map_difference(f, e), KINK) - KINK;
         length += d * d;
     }
     double edges = fmax(1, (double)f->from.edges);
@@ -247,13 +250,56 @@ static double dot(const double *a, const double *b, size_t count) {
     return sum;
 }
 
+/* A residual whose square is below that is rounding. To go on from there would follow directions
+ * that no term holds, of which a guard that nothing joins has three for each coordinate. */
+static double negligible(const fitting *f) {
+    return 1e-24 * dot(f->right, f->right, MAP * f->from.guards);
+}
+
+/* The best change of all rows by the same: norms of E_S do not see it, so that a graph moves as a
+ * whole at once however stiff they are. Conjugate gradients in four dimensions. */
+static void descend_together(fitting *f, double *x) {
+    double guards = (double)f->from.guards, edges = (double)f->from.edges;
+    double residual[MAP] = {0}, step[MAP], change[MAP] = {0};
+    multiply(f, x, f->image);
+    for (size_t i = 0; i < MAP * f->from.guards; i++)
+        residual[i % MAP] += f->right[i] - f->image[i];
+    memcpy(step, residual, sizeof step);
+    double now = dot(residual, residual, MAP), enough = negligible(f);
+    for (int round = 0; round < 2 * MAP && now > enough; round++) {
+        double image[MAP] = {0};
+        for (size_t i = 0; i < f->from.guards; i++)
+            add_row(image, MATCH / guards * apply_row(step, place_of(f, i)), place_of(f, i));
+        for (size_t e = 0; e < f->from.edges; e++) {
+            double way[3];
+            vec3_subtract(place_of(f, end_of(&f->from, e, 0)), place_of(f, end_of(&f->from, e, 1)),
+                          way);
+            double t = LENGTH / edges * vec3_dot(step, way);
+            for (size_t k = 0; k < 3; k++)
+                image[k] += t * way[k];
+        }
+        double curvature = dot(step, image, MAP), before = now;
+        if (!(curvature > 0))
+            break;
+        for (size_t k = 0; k < MAP; k++) {
+            change[k] += now / curvature * step[k];
+            residual[k] -= now / curvature * image[k];
+        }
+        now = dot(residual, residual, MAP);
+        for (size_t k = 0; k < MAP; k++)
+            step[k] = residual[k] + now / before * step[k];
+    }
+    for (size_t i = 0; i < MAP * f->from.guards; i++)
+        x[i] += change[i % MAP];
+}
+
 /* Conjugate gradients from x: the quadratic form falls with each step. */
 static void descend(const fitting *f, double *x) {
     size_t count = MAP * f->from.guards;
     multiply(f, x, f->image);
     for (size_t i = 0; i < count; i++)
         f->step[i] = f->residual[i] = f->right[i] - f->image[i];
-    double now = dot(f->residual, f->residual, count), enough = 1e-20 * now;
+    double now = dot(f->residual, f->residual, count), enough = negligible(f);
     for (int round = 0; round < STEPS && now > enough; round++) {
         multiply(f, f->step, f->image);
         double curvature = dot(f->step, f->image, count);
@@ -278,6 +324,7 @@ static void improve(fitting *f, double *x) {
         make_right(f, axis);
         for (size_t i = 0; i < f->from.guards; i++)
             memcpy(x + MAP * i, f->maps + MAP * (3 * i + axis), MAP * sizeof *x);
+        descend_together(f, x);
         descend(f, x);
         for (size_t i = 0; i < f->from.guards; i++)
             memcpy(f->maps + MAP * (3 * i + axis), x + MAP * i, MAP * sizeof *x);

@@ -2,7 +2,8 @@
  *
  * Here: centre, size and principal axes of the points of the boundary that the guards see, each
  * guard counting by the volume of its piece. An axis points to where the third moment is positive;
- * the last one makes the frame right-handed, so that a shape and its mirror image differ.
+ * the one whose third moment is the least makes the frame right-handed, so that a shape that is its
+ * own mirror image, for which that moment is but noise, has one frame all the same.
  * Eigenvectors by Jacobi's rotations, which are well conditioned for any symmetric matrix; where
  * two moments are equal the axes are as good as arbitrary, but a pure function of the numbers.
  *
@@ -19,7 +20,7 @@ enum { SWEEPS = 16 };
 /* Sums over the points that guards see, relative to the first guard and by the diagonal. */
 typedef struct moments {
     const starg_descriptor *d;
-    double unit, weight;
+    double unit, largest, weight;
 } moments;
 
 static void seen_point(const moments *m, size_t guard, size_t i, double out[3]) {
@@ -32,18 +33,15 @@ static void seen_point(const moments *m, size_t guard, size_t i, double out[3]) 
 }
 
 /* By the largest, so that no sum over- or underflows; equal where there is no volume at all. */
-static double weigh(const starg_descriptor *d, size_t guard) {
-    double largest = 0;
-    for (size_t i = 0; i < d->guard_count; i++)
-        largest = fmax(largest, d->guards[i].volume);
-    return largest > 0 ? d->guards[guard].volume / largest : 1;
+static double weigh(const moments *m, size_t guard) {
+    return m->largest > 0 ? m->d->guards[guard].volume / m->largest : 1;
 }
 
 static void find_centre(moments *m, double centre[3]) {
     const starg_descriptor *d = m->d;
     memset(centre, 0, 3 * sizeof *centre);
     for (size_t g = 0; g < d->guard_count; g++) {
-        double w = weigh(d, g), p[3];
+        double w = weigh(m, g), p[3];
         for (size_t i = 0; i < d->direction_count; i++) {
             seen_point(m, g, i, p);
             vec3_along(centre, w, p, centre);
@@ -58,7 +56,7 @@ static void find_spread(const moments *m, const double centre[3], double spread[
     const starg_descriptor *d = m->d;
     memset(spread, 0, 9 * sizeof(double));
     for (size_t g = 0; g < d->guard_count; g++) {
-        double w = weigh(d, g) / m->weight, p[3];
+        double w = weigh(m, g) / m->weight, p[3];
         for (size_t i = 0; i < d->direction_count; i++) {
             seen_point(m, g, i, p);
             vec3_subtract(p, centre, p);
@@ -118,18 +116,24 @@ static void find_axes(double a[3][3], double axes[3][3]) {
 
 static void turn_axes(const moments *m, const double centre[3], double axes[3][3]) {
     const starg_descriptor *d = m->d;
-    double third[2] = {0, 0}, p[3];
-    for (size_t g = 0; g < d->guard_count; g++)
+    double third[3] = {0, 0, 0}, p[3];
+    for (size_t g = 0; g < d->guard_count; g++) {
+        double w = weigh(m, g);
         for (size_t i = 0; i < d->direction_count; i++) {
             seen_point(m, g, i, p);
             vec3_subtract(p, centre, p);
-            for (int k = 0; k < 2; k++)
-                third[k] += weigh(d, g) * pow(vec3_dot(p, axes[k]), 3);
+            for (int k = 0; k < 3; k++)
+                third[k] += w * pow(vec3_dot(p, axes[k]), 3);
         }
-    for (int k = 0; k < 2; k++)
+    }
+    int least = 0;
+    for (int k = 0; k < 3; k++) {
+        if (fabs(third[k]) < fabs(third[least]))
+            least = k;
         for (int c = 0; third[k] < 0 && c < 3; c++)
             axes[k][c] = -axes[k][c];
-    vec3_cross(axes[0], axes[1], axes[2]);
+    }
+    vec3_cross(axes[(least + 1) % 3], axes[(least + 2) % 3], axes[least]);
 }
 
 paper_pose paper_pose_of(const starg_descriptor *descriptor) {
@@ -138,6 +142,8 @@ paper_pose paper_pose_of(const starg_descriptor *descriptor) {
     moments m = {.d = descriptor, .unit = descriptor->diagonal};
     if (!(m.unit > 0))
         m.unit = 1;
+    for (size_t i = 0; i < descriptor->guard_count; i++)
+        m.largest = fmax(m.largest, descriptor->guards[i].volume);
     find_centre(&m, pose.centre);
     find_spread(&m, pose.centre, spread);
     pose.size = m.unit * sqrt(fmax(0, spread[0][0] + spread[1][1] + spread[2][2]));
