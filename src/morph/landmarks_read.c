@@ -94,6 +94,8 @@ starg_status starg_landmarks_read(starg_context *context, const char *path, cons
         size_t found = parse_line(line, values);
         if (found == 0)
             continue;
+        if (list.count == 2 * (size_t)STARG_LANDMARKS_MOST)
+            STARG_TRY(fail_line(context, path, number, "is one landmark too many"));
         if (found != 2 && found != VALUES_MOST)
             STARG_TRY(fail_line(context, path, number, "is not a pair"));
         if (!find_pair(a, b, values, found, pair))

@@ -1,0 +1,120 @@
+"""map and morph: the contract, and wrong use of both."""
+import json
+import os
+import struct
+
+import support
+from support import Case, OPEN, TETRAHEDRON
+
+
+class Morph(Case):
+    def setUp(self):
+        super().setUp()
+        for pose in "01":
+            self.run_text("sample", "cat", "--pose", pose, "--vertices", "700", "-o",
+                          f"cat{pose}.off")
+        self.run_text("sample", "sphere", "--vertices", "600", "-o", "ball.off")
+
+    def vertices(self, name):
+        words = self.read(name).decode().split()
+        count = int(words[1])
+        return count, [float(w) for w in words[4:4 + 3 * count]], words[4 + 3 * count:]
+
+    def test_frames(self):
+        for method in "star", "arap", "linear", "spherical":
+            report = self.run_json("morph", "cat0.off", "cat1.off", "--frames", "3", "-o", method,
+                                   "--method", method)
+            self.assertEqual(sorted(os.listdir(self.path(method))),
+                             [f"frame_{i:04d}.off" for i in range(3)])
+            self.assertEqual([frame["t"] for frame in report["frames"]], [0, 0.5, 1])
+            self.assertEqual(self.read(f"{method}/frame_0000.off"), self.read("cat0.off"))
+            self.assertEqual(self.read(f"{method}/frame_0002.off"), self.read("cat1.off"))
+            self.assertEqual(len(report["guards"]), len(report["counterparts"]))
+            self.assertEqual(len(report["guards"]) > 0, method in ("star", "spherical"))
+
+    def test_threads(self):
+        for threads in "1", "3":
+            self.run_text("morph", "cat0.off", "ball.off", "--frames", "3", "-o", threads,
+                          "--threads", threads)
+        self.assertEqual(self.read("1/frame_0001.off"), self.read("3/frame_0001.off"))
+
+    def test_map(self):
+        self.write("marks.txt", "# two\n3 5\n100 200\n")
+        report = self.run_json("map", "cat0.off", "ball.off", "--landmarks", "marks.txt", "-o",
+                               "map.json")
+        self.assertEqual(report["landmarks"], 2)
+        self.assertEqual(report["kind"], "sphere")
+        points = json.loads(self.read("map.json"))["points"]
+        count, source, faces = self.vertices("cat0.off")
+        self.assertEqual(len(points), count)
+        self.run_text("morph", "cat0.off", "ball.off", "--map", "map.json", "--frames", "2", "-o",
+                      "out", "--method", "arap")
+        last, target = self.vertices("out/frame_0001.off"), self.vertices("ball.off")
+        self.assertEqual(last[2], faces)
+        for a, b in (3, 5), (100, 200):
+            self.assertEqual(last[1][3 * a:3 * a + 3], target[1][3 * b:3 * b + 3])
+
+    def test_animation_and_picture(self):
+        self.run_text("morph", "cat0.off", "cat1.off", "--frames", "4", "-o", "out", "--glb",
+                      "cat.glb", "--picture", "cat.png")
+        self.assertTrue(self.read("cat.png").startswith(b"\x89PNG"))
+        data = self.read("cat.glb")
+        magic, version, length, size, kind = struct.unpack("<4sIII4s", data[:20])
+        self.assertEqual((magic, version, length, kind), (b"glTF", 2, len(data), b"JSON"))
+        scene = json.loads(data[20:20 + size])
+        binary, kind = struct.unpack("<I4s", data[20 + size:28 + size])
+        self.assertEqual((binary, kind), (len(data) - 28 - size, b"BIN\0"))
+        views, accessors = scene["bufferViews"], scene["accessors"]
+        targets = scene["meshes"][0]["primitives"][0]["targets"]
+        self.assertEqual(len(targets), 3)
+        _, first, _ = self.vertices("cat0.off")
+        _, last, _ = self.vertices("cat1.off")
+        numbers = {}
+        for i in 1, targets[-1]["POSITION"]:
+            view = views[accessors[i]["bufferView"]]
+            numbers[i] = struct.unpack_from(f"<{len(first)}f", data,
+                                            28 + size + view["byteOffset"])
+        center = scene["nodes"][0]["translation"]
+        for i, (a, b) in enumerate(zip(first, last)):
+            self.assertAlmostEqual(numbers[1][i] + center[i % 3], a, places=5)
+            self.assertAlmostEqual(numbers[targets[-1]["POSITION"]][i], b - a, places=5)
+
+    def test_bad_input(self):
+        self.write("open.off", OPEN)
+        self.write("tiny.off", TETRAHEDRON)
+        self.run_text("sample", "torus", "--vertices", "600", "-o", "torus.off")
+        self.write("far.txt", "0 999999\n")
+        self.write("twice.txt", "0 1\n0 2\n")
+        self.write("odd.txt", "1 2 3\n")
+        names = self.names()
+        for words, says in ((["torus.off", "ball.off"], "genus 1"),
+                            (["ball.off", "open.off"], "open"),
+                            (["cat0.off", "ball.off", "--landmarks", "far.txt"], "line 1"),
+                            (["cat0.off", "ball.off", "--landmarks", "twice.txt"], "same vertex"),
+                            (["cat0.off", "ball.off", "--landmarks", "odd.txt"], "line 1"),
+                            (["cat0.off", "ball.off", "--landmarks", "none.txt"], "none.txt"),
+                            (["cat0.off", "none.off"], "none.off")):
+            _, err = self.run_text("map", *words, "-o", "map.json", status=2)
+            self.assertIn(says, err)
+            _, err = self.run_text("morph", *words, "-o", "out", status=2)
+            self.assertIn(says, err)
+        self.run_text("map", "ball.off", "tiny.off", "-o", "other.json")
+        _, err = self.run_text("morph", "cat0.off", "ball.off", "--map", "other.json", "-o", "out",
+                               status=2)
+        self.assertIn("another pair", err)
+        self.assertEqual(self.names(), sorted(names + ["other.json"]))
+
+    def test_usage(self):
+        self.usage_error("map", "cat0.off", "ball.off", says="-o MAP.json")
+        self.usage_error("map", "cat0.off", "-o", "m.json", says="too few")
+        self.usage_error("morph", "cat0.off", "cat1.off", says="-o DIR")
+        self.usage_error("morph", "cat0.off", "cat1.off", "-o", "-", says="folder")
+        self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--frames", "1", says="frames")
+        self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--method", "x", says="star")
+        self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--glb", "x.gltf", says=".glb")
+        self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--map", "m", "--landmarks",
+                         "l", says="--landmarks")
+
+
+if __name__ == "__main__":
+    support.main()
