@@ -7,6 +7,9 @@
  * [Kabsch 1976]; landmarks count as much as all samples. The rotation wins under which the points
  * that lie on one another on the sphere are the nearest in space, in the mean of squares.
  *
+ * Without landmarks, tips of limbs (tips.c) that are each other's nearest in space after the
+ * winning way are told as pairs.
+ *
  * Cost: 24 x SAMPLES^2 distances and 24 x SAMPLES locations. */
 #include "morph/align.h"
 
@@ -18,6 +21,7 @@
 
 static const char STAGE[] = "align";
 enum { SAMPLES = 600, WAYS = 24 };
+static const double NEAR = 1.3; /* of the surface's size: tips farther apart are no pair */
 
 typedef struct axes {
     double center[3], frame[9]; /* columns: principal axes */
@@ -191,12 +195,56 @@ done:
     return status;
 }
 
-starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks) {
+/* Takes the nearest two of two lists of places out; false when they are farther apart than `far`.
+ */
+static bool take_nearest(double (*from)[3], size_t from_count, double (*to)[3], size_t to_count,
+                         double far, size_t pair[2]) {
+    double least = far;
+    bool found = false;
+    for (size_t i = 0; i < from_count; i++)
+        for (size_t j = 0; j < to_count; j++) {
+            double d = vec3_distance(from[i], to[j]);
+            if (!(d < least))
+                continue;
+            least = d;
+            pair[0] = i;
+            pair[1] = j;
+            found = true;
+        }
+    if (found)
+        from[pair[0]][0] = to[pair[1]][0] = NAN; /* nearest to nothing any more */
+    return found;
+}
+
+/* Tips that are near to one another in space after the motion, the nearest first. */
+static starg_status pair_tips(const aligner *a, const motion *m, feature_pairs *out) {
+    starg_status status = STARG_OK;
+    tip_list from, to;
+    double moved[TIPS_MOST][3], places[TIPS_MOST][3];
+    size_t pair[2] = {0, 0};
+    STARG_TRY(tips_find(a->from, &from));
+    STARG_TRY(tips_find(a->to->sphere, &to));
+    for (size_t i = 0; i < from.count; i++)
+        move(m, a->from->mesh->vertices + 3 * (size_t)from.vertices[i], moved[i]);
+    for (size_t i = 0; i < to.count; i++)
+        vec3_copy(a->to->sphere->mesh->vertices + 3 * (size_t)to.vertices[i], places[i]);
+    while (take_nearest(moved, from.count, places, to.count, NEAR * m->to->size, pair)) {
+        out->from[out->count] = from.vertices[pair[0]];
+        out->to[out->count++] = to.vertices[pair[1]];
+    }
+done:
+    return status;
+}
+
+starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
+                           feature_pairs *features) {
     starg_status status = STARG_OK;
     const aligner a = {from, to, landmarks};
     const axes axes_from = principal_axes(from->mesh), axes_to = principal_axes(to->sphere->mesh);
     double best[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, least = INFINITY;
     bool guided = landmarks->count >= 3;
+    motion best_motion = {0};
+    *features = (feature_pairs){0};
     for (int way = 0; way < (guided ? 1 : WAYS); way++) {
         motion m;
         double rotation[9];
@@ -208,8 +256,15 @@ starg_status align_spheres(sphere *from, const locator *to, const landmark_list 
         double own = misfit(&a, &m, rotation);
         if (own < least) {
             least = own;
+            best_motion = m;
             memcpy(best, rotation, sizeof best);
         }
+    }
+    if (landmarks->count == 0 && least < INFINITY) {
+        STARG_TRY(pair_tips(&a, &best_motion, features));
+        const landmark_list pairs = {features->from, features->to, features->count};
+        const aligner by_tips = {from, to, &pairs};
+        rotation_for(&by_tips, &best_motion, best);
     }
     STARG_TRY(turn(from, best));
 done:

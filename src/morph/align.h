@@ -3,6 +3,7 @@
 #define STARG_MORPH_ALIGN_H
 
 #include "morph/locate.h"
+#include "morph/tips.h"
 
 /* Vertices that shall meet: `from` of the first surface, `to` of the second. */
 typedef struct landmark_list {
@@ -10,7 +11,15 @@ typedef struct landmark_list {
     size_t count;
 } landmark_list;
 
-/* Turns the directions of `from`. Errors: MEMORY, CANCELLED. */
-starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks);
+/* Ends of limbs that seem to correspond. */
+typedef struct feature_pairs {
+    size_t count;
+    uint32_t from[TIPS_MOST], to[TIPS_MOST];
+} feature_pairs;
+
+/* Turns the directions of `from`. Where no landmarks are given, `features` tells the tips of both
+ * surfaces that are near to one another in space. Errors: MEMORY, CANCELLED. */
+starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
+                           feature_pairs *features);
 
 #endif

@@ -19,7 +19,7 @@
 #include "morph/relax.h"
 
 static const char STAGE[] = "landmarks";
-enum { ROUNDS = 400, PATIENCE = 12, SWEEPS = 3, FINAL_SWEEPS = 30, HALVINGS = 5 };
+enum { ROUNDS = 400, PATIENCE = 12, SWEEPS = 3, FINAL_SWEEPS = 200, HALVINGS = 5 };
 static const double STEP = 0.12; /* radians */
 static const double WIDTH = 0.5; /* of the radial functions */
 

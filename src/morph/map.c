@@ -264,6 +264,25 @@ done:
     return status;
 }
 
+/* Brings the ends of limbs together where that can be done; they are a guess, so that what they
+ * contradict is no error. */
+static starg_status meet_features(sphere *from, const sphere *to, const feature_pairs *features) {
+    starg_status status = STARG_OK;
+    double *before = NULL;
+    size_t size = 3 * from->mesh->vertex_count;
+    landmark_list list = {features->from, features->to, features->count};
+    STARG_NEW(from->context, STAGE, before, size);
+    memcpy(before, from->directions, size * sizeof *before);
+    status = landmarks_meet(from, to, &list);
+    if (status == STARG_ERROR_MESH) {
+        memcpy(from->directions, before, size * sizeof *before);
+        status = STARG_OK;
+    }
+done:
+    starg_release(from->context, before);
+    return status;
+}
+
 static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                                   const starg_map_options *options, starg_map **out) {
     starg_status status = STARG_OK;
@@ -271,11 +290,13 @@ static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, c
     locator where = {0};
     uint32_t *lists = NULL;
     landmark_list marks;
+    feature_pairs features;
     STARG_TRY(split_landmarks(context, options, &lists, &marks));
     STARG_TRY(spread_surface(context, a, "A", &from));
     STARG_TRY(spread_surface(context, b, "B", &to));
     STARG_TRY(locator_create(context, to.sphere, &where));
-    STARG_TRY(align_spheres(from.sphere, &where, &marks));
+    STARG_TRY(align_spheres(from.sphere, &where, &marks, &features));
+    STARG_TRY(meet_features(from.sphere, to.sphere, &features));
     STARG_TRY(landmarks_meet(from.sphere, to.sphere, &marks));
     STARG_TRY(map_make(context, a, b, STARG_MAP_SPHERE, out));
     STARG_TRY(place_vertices(from.sphere, &where, b, &marks, *out));
