@@ -333,10 +333,13 @@ static void nothing_but_the_shape_counts(void **state) {
     starg_context *context = test_context(2);
     starg_mesh *mesh = test_sample_mesh(context, "octopus", 3000);
     starg_mesh *other = test_sample_mesh(context, "torus", 3000);
-    const double noise[STARG_SIGNATURE_KINDS] = {
-        [STARG_SIGNATURE_D2] = 0.02, [STARG_SIGNATURE_SHAPE_DNA] = 1e-5};
+    const double noise[STARG_SIGNATURE_KINDS] = {[STARG_SIGNATURE_D2] = 0.02,
+                                                 [STARG_SIGNATURE_SHAPE_DNA] = 1e-5,
+                                                 [STARG_SIGNATURE_STAR] = 0.1};
     for (int k = 0; k < STARG_SIGNATURE_KINDS; k++) {
         starg_signature_kind kind = (starg_signature_kind)k;
+        if (kind == STARG_SIGNATURE_PAPER)
+            continue; /* hangs on where the guards happen to stand; test_match turns its graphs */
         starg_signature *first = describe(context, mesh, kind);
         starg_signature *unlike = describe(context, other, kind);
         assert_true(distance(context, first, first) == 0);
