@@ -3,10 +3,8 @@
 #include "report.h"
 
 const char *const cli_distance_words[] = {
-    [STARG_SIGNATURE_D2] = "d2",
-    [STARG_SIGNATURE_SHAPE_DNA] = "shape-dna",
-    [STARG_SIGNATURE_STAR] = "star",
-    [STARG_SIGNATURE_PAPER] = "paper",
+    [STARG_SIGNATURE_D2] = "d2",     [STARG_SIGNATURE_SHAPE_DNA] = "shape-dna",
+    [STARG_SIGNATURE_STAR] = "star", [STARG_SIGNATURE_PAPER] = "paper",
     [STARG_SIGNATURE_KINDS] = NULL,
 };
 
