@@ -1,4 +1,6 @@
 /* starguard describe: a shape by its guards and what they see. */
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,7 +11,7 @@
 #include "starguard/picture.h"
 
 typedef struct values {
-    const char *output, *reconstruct, *picture;
+    const char *output, *reconstruct, *picture, *histograms;
     uint64_t directions, effort;
 } values;
 
@@ -24,6 +26,9 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION("reconstruct", reconstruct, "FILE.ply",
                     "Write the boundary as the descriptor knows it: a point where each look ends."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the model and its guards."),
+    CLI_TEXT_OPTION("histograms", histograms, "FILE.svg",
+                    "Draw what the guards of the eight largest pieces see: in which part of all "
+                    "directions the boundary is nearer than that."),
 };
 
 static void set_defaults(void *data) {
@@ -38,6 +43,7 @@ static starg_status prepare(cli_session *session, void *data) {
     CLI_TRY(cli_announce_needed(session, v->output, "FILE.json"));
     CLI_TRY(cli_announce_with_ending(session, "--reconstruct", v->reconstruct, ".ply"));
     CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_ending(session, "--histograms", v->histograms, ".svg"));
 done:
     return status;
 }
@@ -73,7 +79,7 @@ static void report(cli_session *session, const starg_descriptor *d, const starg_
                       "from_mean", r->from_mean, "from_largest", r->from_largest));
 }
 
-/* ---- files ---- */
+/* ---- points and guards ---- */
 
 static starg_status write_points(cli_session *session, const starg_descriptor *d,
                                  const char *name) {
@@ -107,12 +113,77 @@ static starg_status draw(cli_session *session, const starg_descriptor *d, const 
     return status;
 }
 
+/* ---- histograms ---- */
+
+enum { CURVES = 8 };
+
+static int compare_reals(const void *left, const void *right) {
+    double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+/* The guards of the largest pieces, the largest first, equal ones by their number. */
+static size_t choose_guards(const starg_descriptor *d, size_t chosen[CURVES]) {
+    size_t count = 0;
+    for (size_t i = 0; i < d->guard_count; i++) {
+        size_t place = count;
+        while (place > 0 && d->guards[chosen[place - 1]].volume < d->guards[i].volume)
+            place--;
+        if (place == CURVES)
+            continue;
+        count += count < CURVES;
+        for (size_t k = count - 1; k > place; k--)
+            chosen[k] = chosen[k - 1];
+        chosen[place] = i;
+    }
+    return count;
+}
+
+/* Sorted distances by the largest of all, and the fraction of directions up to each. */
+static void make_curve(const starg_descriptor *d, size_t guard, double largest, double *x,
+                       double *y) {
+    memcpy(x, d->distances + guard * d->direction_count, d->direction_count * sizeof *x);
+    qsort(x, d->direction_count, sizeof *x, compare_reals);
+    for (size_t i = 0; i < d->direction_count; i++) {
+        x[i] = largest > 0 ? x[i] / largest : 0;
+        y[i] = (double)(i + 1) / (double)d->direction_count;
+    }
+}
+
+static starg_status draw_histograms(cli_session *session, const starg_descriptor *d,
+                                    const char *name) {
+    size_t chosen[CURVES] = {0}, count = choose_guards(d, chosen), width = d->direction_count;
+    starg_curve curves[CURVES];
+    char names[CURVES][32];
+    double largest = 0, *numbers = malloc(2 * CURVES * width * sizeof *numbers);
+    if (numbers == NULL)
+        return cli_fail_memory(session);
+    for (size_t c = 0; c < count; c++)
+        for (size_t i = 0; i < width; i++)
+            largest = fmax(largest, d->distances[chosen[c] * width + i]);
+    for (size_t c = 0; c < count; c++) {
+        double *x = numbers + 2 * c * width;
+        make_curve(d, chosen[c], largest, x, x + width);
+        snprintf(names[c], sizeof names[c], "guard %zu", chosen[c]);
+        curves[c] = (starg_curve){.name = names[c], .x = x, .y = x + width, .count = width};
+    }
+    starg_status status =
+        starg_chart_write(session->context, curves, count, "distance, by the largest", "directions",
+                          cli_outputs_place(&session->outputs, name));
+    free(numbers);
+    return status;
+}
+
+/* ---- files ---- */
+
 static starg_status write_files(cli_session *session, const starg_descriptor *d, const values *v) {
     starg_status status = STARG_OK;
     if (v->reconstruct != NULL)
         CLI_TRY(write_points(session, d, v->reconstruct));
     if (v->picture != NULL)
         CLI_TRY(draw(session, d, v->picture));
+    if (v->histograms != NULL)
+        CLI_TRY(draw_histograms(session, d, v->histograms));
     CLI_TRY(starg_descriptor_write(session->context, d, session->operands[0],
                                    cli_outputs_place(&session->outputs, v->output)));
 done:

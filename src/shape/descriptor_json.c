@@ -227,7 +227,7 @@ static starg_status read_document(const json_reader *r, json_t *root) {
     starg_status status = STARG_OK;
     starg_descriptor *d = r->result;
     const char *format = json_string_value(json_object_get(root, "format"));
-    size_t version, effort;
+    size_t version = 0, effort = 0;
     if (format == NULL || strcmp(format, FORMAT) != 0)
         return reject(r, "format", "\"starguard-descriptor\"");
     STARG_TRY(read_count(r, root, "version", SIZE_MAX, &version));

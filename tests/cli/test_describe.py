@@ -12,7 +12,8 @@ class Describe(support.Case):
 
     def test_files(self):
         report, file = self.describe("torus", "--directions", "100", "--reconstruct", "points.ply",
-                                     "--picture", "guards.png")
+                                     "--picture", "guards.png",
+                                     "--histograms", "seen.svg")
         self.assertEqual(report["format"], "starguard-describe")
         self.assertEqual(file["format"], "starguard-descriptor")
         self.assertEqual(file["version"], 1)
@@ -24,6 +25,11 @@ class Describe(support.Case):
         self.assertEqual(points, 100 * len(file["guards"]))
         self.assertLess(report["reconstruction"]["to_largest"], 1e-9)
         self.assertIn(b"element vertex %d\n" % points, self.read("points.ply"))
+        drawn = self.read("seen.svg").decode()
+        largest = sorted(range(len(file["guards"])), key=lambda i: (-file["guards"][i]["volume"], i))
+        for i in largest[:8]:
+            self.assertIn(f"guard {i}<", drawn)
+        self.assertEqual(drawn.count("guard "), min(8, len(largest)))
         self.assertEqual(self.read("guards.png")[:8], b"\x89PNG\r\n\x1a\n")
 
     def test_same_bytes_on_any_threads(self):
