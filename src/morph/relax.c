@@ -97,14 +97,13 @@ static double nearest(const relaxation *r, uint32_t v) {
     return least;
 }
 
-/* Returns how far the vertex has gone. */
-static double relax_vertex(const relaxation *r, uint32_t v) {
+static void relax_vertex(const relaxation *r, uint32_t v) {
     double *x = r->directions + 3 * (size_t)v, gradient[3] = {0};
     double before = energy_at(r, v, x, gradient);
     vec3_along(gradient, -vec3_dot(gradient, x), x, gradient);
     double slope = vec3_length(gradient), step = FIRST_STEP * nearest(r, v);
     if (!(slope > 0 && slope < INFINITY))
-        return 0;
+        return;
     for (int i = 0; i < HALVINGS; i++, step *= 0.5) {
         double y[3];
         vec3_along(x, -step / slope, gradient, y);
@@ -114,16 +113,13 @@ static double relax_vertex(const relaxation *r, uint32_t v) {
         if (energy_at(r, v, y, NULL) < before &&
             relax_is_positive(&r->rings->of[v], r->directions, y)) {
             vec3_copy(y, x);
-            return step;
+            return;
         }
     }
-    return 0;
 }
 
-double relax_sweep(const relaxation *r) {
-    double longest = 0;
+void relax_sweep(const relaxation *r) {
     for (size_t i = 0; i < r->alive_count; i++)
         if (r->pinned == NULL || r->pinned[r->alive[i]] == 0)
-            longest = fmax(longest, relax_vertex(r, r->alive[i]));
-    return longest;
+            relax_vertex(r, r->alive[i]);
 }

@@ -13,9 +13,8 @@ typedef struct relaxation {
     double floor;          /* squared length that is added to every edge of the surface  */
 } relaxation;
 
-/* Moves each vertex downhill once. Every triangle about it stays positive, exactly. Returns the
- * longest move. */
-double relax_sweep(const relaxation *relaxation);
+/* Moves each vertex downhill once. Every triangle about it stays positive, exactly. */
+void relax_sweep(const relaxation *relaxation);
 
 /* Is every triangle about a vertex positively oriented as seen from outside? Exact. */
 bool relax_is_positive(const ring *around, const double *directions, const double at[3]);
