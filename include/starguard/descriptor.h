@@ -104,7 +104,7 @@ STARG_API starg_status starg_descriptor_reconstruct(starg_context *context,
 /* ---- signatures ---- */
 
 /* A signature of a kind that is made of descriptors (STAR, PAPER). Errors: ARGUMENT (another kind),
- * MEMORY. */
+ * FORMAT (lengths that do not fit each other, as no model has), MEMORY. */
 STARG_API starg_status starg_signature_of_descriptor(starg_context *context,
                                                      const starg_descriptor *descriptor,
                                                      starg_signature_kind kind,

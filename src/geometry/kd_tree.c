@@ -116,7 +116,7 @@ static void look_in(search *s, size_t low, size_t high, int axis) {
 }
 
 size_t kd_tree_nearest(const kd_tree *tree, const double *p, double *squared) {
-    search s = {.tree = tree, .p = p, .best = INFINITY, .point = UINT32_MAX};
+    search s = {.tree = tree, .p = p, .best = INFINITY, .point = 0};
     look_in(&s, 0, tree->count, 0);
     *squared = s.best;
     return s.point;

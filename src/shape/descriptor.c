@@ -232,9 +232,9 @@ static starg_status check_options(starg_context *context, const starg_descriptor
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "%zu directions were asked for; choose %d to %d", o->direction_count,
                           LEAST_DIRECTIONS, MOST_DIRECTIONS);
-    if (o->effort == 0)
+    if (o->effort == 0 || o->effort > INT64_MAX) /* more has no place in a file */
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the effort must be 1 or more trials");
+                          "the effort must be 1 to 2^63 - 1 trials");
     return STARG_OK;
 }
 

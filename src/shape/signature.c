@@ -65,7 +65,14 @@ starg_status starg_signature_of_descriptor(starg_context *context,
                           "signatures of kind %d are not made of descriptors but of models",
                           (int)kind);
     starg_status status = methods[kind]->derive(context, descriptor, &numbers, &count);
-    return status == STARG_OK ? wrap(context, kind, numbers, count, out) : status;
+    if (status != STARG_OK)
+        return status;
+    if (methods[kind]->check(numbers, count))
+        return wrap(context, kind, numbers, count, out);
+    starg_release(context, numbers);
+    return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
+                      "the lengths and volumes of the descriptor are out of all proportion to each "
+                      "other; describe the model anew");
 }
 
 /* Of the descriptor where the kind wants one. */

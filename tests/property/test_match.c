@@ -167,6 +167,36 @@ static void motions_hardly_count(void **state) {
     test_context_free(context);
 }
 
+/* A file may hold any finite numbers: what cannot be compared is refused. */
+static void absurd_descriptors(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    const double sizes[] = {0, 1e-320, 1e-200, 1, 1e99, 3e100};
+    for (size_t round = 0; round < 216; round++) {
+        double distances[24];
+        starg_descriptor_guard guards[2] = {{{0, 0, 0}, sizes[round % 6]},
+                                            {{1e99, 0, -1e99}, sizes[round / 6 % 6]}};
+        for (size_t i = 0; i < 24; i++)
+            distances[i] = sizes[(round / 36 + i * (round % 7)) % 6];
+        starg_descriptor d = {.diagonal = sizes[(round + round / 6) % 6],
+                              .guard_count = 2,
+                              .guards = guards,
+                              .direction_count = 12,
+                              .distances = distances};
+        for (int k = STARG_SIGNATURE_STAR; k <= STARG_SIGNATURE_PAPER; k++) {
+            starg_signature *s = NULL;
+            starg_status status =
+                starg_signature_of_descriptor(context, &d, (starg_signature_kind)k, &s);
+            assert_true(status == STARG_OK || status == STARG_ERROR_FORMAT);
+            assert_int_equal(status == STARG_OK, s != NULL);
+            if (s != NULL)
+                assert_true(distance(context, s, s) == 0);
+            starg_signature_free(context, s);
+        }
+    }
+    test_context_free(context);
+}
+
 /* ---- the paper's distance of graphs made up ---- */
 
 typedef struct made_up {
@@ -377,6 +407,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_are_nearer_than_classes),
         cmocka_unit_test(motions_hardly_count),
+        cmocka_unit_test(absurd_descriptors),
         cmocka_unit_test(deforming_never_costs_more_than_resting),
         cmocka_unit_test(alone_guards_reach_their_counterparts),
         cmocka_unit_test(moving_as_a_whole_is_nearly_free),
