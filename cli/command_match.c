@@ -70,7 +70,8 @@ const cli_command cli_command_match = {
     .description =
         "Prints the distance of two shapes: 0 for a shape and itself, larger for shapes that are "
         "less alike. A and B are models, or descriptors that 'starguard describe' has written "
-        "(for star and paper). Distances of different kinds do not compare (docs/retrieval.md).",
+        "(for star and paper), all with the same options. Distances of different kinds do not "
+        "compare (docs/retrieval.md).",
     .examples = "# what guards see, whatever the pose\n"
                 "starguard match cat.off dog.off\n"
                 "# the distance of the paper, of descriptors made before\n"
