@@ -1,5 +1,6 @@
 #include "core/json.h"
 
+#include "core/file.h"
 #include "core/memory.h"
 
 enum { DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
@@ -30,5 +31,23 @@ starg_status starg_json_path(starg_context *context, const char *stage, const ch
                 (*copy)[i] = '?';
     json_decref(probe);
 done:
+    return status;
+}
+
+starg_status starg_json_write(starg_context *context, const char *stage, const char *path,
+                              starg_json_writer *put, const void *result, const char *model_file) {
+    starg_status status = STARG_OK;
+    starg_output output = {0};
+    char *shown = NULL;
+    STARG_TRY(starg_json_path(context, stage, model_file, &shown));
+    STARG_TRY(starg_output_open(context, stage, path, &output));
+    if (!put(output.stream, result, shown)) {
+        starg_output_discard(&output);
+        status = starg_fail_memory(context, stage);
+        goto done;
+    }
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_release(context, shown);
     return status;
 }

@@ -17,4 +17,11 @@ bool starg_json_put(FILE *stream, const char *before, json_t *value, const char 
 starg_status starg_json_path(starg_context *context, const char *stage, const char *path,
                              char **copy);
 
+/* Writes a result to `path` ("-" is standard output), whole or not at all. `put` writes all of it
+ * and is false when memory is out; `model_file` is the model's path for it, or NULL. Errors: WRITE,
+ * MEMORY. */
+typedef bool starg_json_writer(FILE *stream, const void *result, const char *model_file);
+starg_status starg_json_write(starg_context *context, const char *stage, const char *path,
+                              starg_json_writer *put, const void *result, const char *model_file);
+
 #endif

@@ -126,7 +126,8 @@ static json_t *guard_json(const starg_guards *g, size_t i) {
     return NULL;
 }
 
-static bool put_all(FILE *stream, const starg_guards *g, const char *model_file) {
+static bool put_all(FILE *stream, const void *result, const char *model_file) {
+    const starg_guards *g = result;
     json_t *model = json_pack("{s:s?, s:I, s:I}", "file", model_file, "vertices",
                               (json_int_t)g->vertex_count, "faces", (json_int_t)g->face_count);
     bool done =
@@ -150,20 +151,7 @@ static bool put_all(FILE *stream, const starg_guards *g, const char *model_file)
 
 starg_status starg_guards_write(starg_context *context, const starg_guards *guards,
                                 const char *model_file, const char *path) {
-    starg_status status = STARG_OK;
-    starg_output output = {0};
-    char *shown = NULL;
-    STARG_TRY(starg_json_path(context, STAGE, model_file, &shown));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    if (!put_all(output.stream, guards, shown)) {
-        starg_output_discard(&output);
-        status = starg_fail_memory(context, STAGE);
-        goto done;
-    }
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_release(context, shown);
-    return status;
+    return starg_json_write(context, STAGE, path, put_all, guards, model_file);
 }
 
 /* A reader in the middle of a file: the first thing that does not fit ends it. */

@@ -49,7 +49,8 @@ static bool put_head(FILE *stream, const starg_descriptor *d, const char *file) 
                           ",\n");
 }
 
-static bool put_all(FILE *stream, const starg_descriptor *d, const char *file) {
+static bool put_all(FILE *stream, const void *result, const char *file) {
+    const starg_descriptor *d = result;
     bool done = put_head(stream, d, file);
     fputs("\"guards\": [\n", stream);
     for (size_t i = 0; i < d->guard_count && done; i++)
@@ -64,20 +65,7 @@ static bool put_all(FILE *stream, const starg_descriptor *d, const char *file) {
 
 starg_status starg_descriptor_write(starg_context *context, const starg_descriptor *descriptor,
                                     const char *model_file, const char *path) {
-    starg_status status = STARG_OK;
-    starg_output output = {0};
-    char *shown = NULL;
-    STARG_TRY(starg_json_path(context, STAGE, model_file, &shown));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    if (!put_all(output.stream, descriptor, shown)) {
-        starg_output_discard(&output);
-        status = starg_fail_memory(context, STAGE);
-        goto done;
-    }
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_release(context, shown);
-    return status;
+    return starg_json_write(context, STAGE, path, put_all, descriptor, model_file);
 }
 
 /* ---- reading ---- */

@@ -70,8 +70,20 @@ done:
     return status;
 }
 
-starg_status starg_decompose(starg_context *context, const starg_solid *solid,
-                             const starg_decompose_options *options, starg_decomposition **out) {
+/* Fills a solid, or an open surface: one of the two is NULL. */
+static starg_status fill(starg_context *context, const starg_solid *solid,
+                         const starg_mesh *surface, const starg_decompose_options *options,
+                         starg_tetra_report *report, starg_tetmesh **out) {
+    const starg_tetra_options tetra = tetra_options(options);
+    if (solid != NULL)
+        return starg_tetmesh_from_solid(context, solid, &tetra, report, out);
+    return starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
+}
+
+static starg_status decompose_filled(starg_context *context, const starg_solid *solid,
+                                     const starg_mesh *surface,
+                                     const starg_decompose_options *options,
+                                     starg_decomposition **out) {
     starg_status status = STARG_OK;
     starg_decompose_options defaults;
     starg_decompose_options_default(&defaults);
@@ -81,11 +93,11 @@ starg_status starg_decompose(starg_context *context, const starg_solid *solid,
         options = &defaults;
     *out = NULL;
     STARG_TRY(check_options(context, options));
-    const starg_tetra_options tetra = tetra_options(options);
-    STARG_TRY(starg_tetmesh_from_solid(context, solid, &tetra, &report, &mesh));
+    STARG_TRY(fill(context, solid, surface, options, &report, &mesh));
     STARG_TRY(run_mode(context, mesh, options, out));
-    (*out)->model_vertices = solid->mesh->vertex_count;
-    (*out)->model_faces = solid->mesh->face_count;
+    const starg_mesh *model = solid != NULL ? solid->mesh : surface;
+    (*out)->model_vertices = model->vertex_count;
+    (*out)->model_faces = model->face_count;
     (*out)->model_tetrahedra = 0;
     (*out)->tetra = report;
 done:
@@ -93,26 +105,13 @@ done:
     return status;
 }
 
+starg_status starg_decompose(starg_context *context, const starg_solid *solid,
+                             const starg_decompose_options *options, starg_decomposition **out) {
+    return decompose_filled(context, solid, NULL, options, out);
+}
+
 starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    starg_decompose_options_default(&defaults);
-    starg_tetra_report report;
-    starg_tetmesh *mesh = NULL;
-    if (options == NULL)
-        options = &defaults;
-    *out = NULL;
-    STARG_TRY(check_options(context, options));
-    const starg_tetra_options tetra = tetra_options(options);
-    STARG_TRY(starg_tetmesh_from_open_mesh(context, surface, &tetra, &report, &mesh));
-    STARG_TRY(run_mode(context, mesh, options, out));
-    (*out)->model_vertices = surface->vertex_count;
-    (*out)->model_faces = surface->face_count;
-    (*out)->model_tetrahedra = 0;
-    (*out)->tetra = report;
-done:
-    starg_tetmesh_free(mesh);
-    return status;
+    return decompose_filled(context, NULL, surface, options, out);
 }

@@ -1,7 +1,5 @@
 /* PIECES.vtk and PIECES.json: a decomposition as text (docs/formats.md). */
-#include "core/file.h"
 #include "core/json.h"
-#include "core/memory.h"
 #include "star/decomposition.h"
 #include "tetra/tetmesh.h"
 
@@ -75,7 +73,8 @@ static bool put_contacts(FILE *stream, const starg_decomposition *d) {
     return done;
 }
 
-static bool put_all(FILE *stream, const starg_decomposition *d, const char *model_file) {
+static bool put_all(FILE *stream, const void *result, const char *model_file) {
+    const starg_decomposition *d = result;
     return put_head(stream, d, model_file) && put_pieces(stream, d) &&
            starg_json_put(stream, "\"strictly_star\": ", json_integer((json_int_t)d->strictly_star),
                           ",\n") &&
@@ -90,18 +89,5 @@ static bool put_all(FILE *stream, const starg_decomposition *d, const char *mode
 starg_status starg_decomposition_write_report(starg_context *context,
                                               const starg_decomposition *decomposition,
                                               const char *model_file, const char *path) {
-    starg_status status = STARG_OK;
-    starg_output output = {0};
-    char *shown = NULL;
-    STARG_TRY(starg_json_path(context, STAGE, model_file, &shown));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    if (!put_all(output.stream, decomposition, shown)) {
-        starg_output_discard(&output);
-        status = starg_fail_memory(context, STAGE);
-        goto done;
-    }
-    STARG_TRY(starg_output_commit(&output));
-done:
-    starg_release(context, shown);
-    return status;
+    return starg_json_write(context, STAGE, path, put_all, decomposition, model_file);
 }

@@ -171,6 +171,7 @@ static starg_status measure_overlap(const searcher *s, direction *d) {
     starg_status status = STARG_OK;
     region_reach up, down;
     d->score = -INFINITY;
+    d->low = d->high = 0;
     STARG_TRY(region_find_reach(s->r, d->normal, s->options->margin, s->scratch, &up, &down));
     if (up.height == -INFINITY)
         goto done;
