@@ -18,54 +18,6 @@ static void set_defaults(void *data) {
     *(values *)data = (values){.distance = STARG_SIGNATURE_DEFAULT, .classes = "by-prefix"};
 }
 
-/* ---- distances ---- */
-
-/* The models of a database with all their distances. */
-typedef struct table {
-    starg_database *database;
-    starg_database_models *models;
-    double *distances;
-} table;
-
-static void free_table(cli_session *session, table *t) {
-    free(t->distances);
-    starg_database_models_free(session->context, t->models);
-    starg_database_close(t->database);
-}
-
-static starg_status make_distances(cli_session *session, table *t) {
-    size_t count = t->models->count;
-    starg_signature **signatures = calloc(count, sizeof(starg_signature *));
-    t->distances = count <= SIZE_MAX / sizeof(double) / count
-                       ? malloc(count * count * sizeof *t->distances)
-                       : NULL;
-    starg_status status = STARG_OK;
-    if (signatures == NULL || t->distances == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
-    for (size_t i = 0; i < count; i++)
-        signatures[i] = t->models->items[i].signature;
-    CLI_TRY(starg_signature_distances(session->context, signatures, count, t->distances));
-done:
-    free(signatures);
-    return status;
-}
-
-static starg_status make_table(cli_session *session, const values *v, table *t) {
-    starg_status status = STARG_OK;
-    CLI_TRY(cli_database_open(session, &t->database));
-    CLI_TRY(starg_database_signatures(t->database, (starg_signature_kind)v->distance, &t->models));
-    if (t->models->count == 0) {
-        status = cli_fail(session, STARG_ERROR_FORMAT,
-                          "'%s' has no models; 'starguard db add' adds some", session->operands[0]);
-        goto done;
-    }
-    CLI_TRY(make_distances(session, t));
-done:
-    return status;
-}
-
 static void report_head(cli_session *session, const values *v, const char *format) {
     cli_report_head(session, format, NULL, NULL);
     cli_put(session, session->report, "database", cli_json_text(session->operands[0]));
@@ -95,7 +47,7 @@ done:
     return status;
 }
 
-static starg_status write_matrix(cli_session *session, const char *name, const table *t) {
+static starg_status write_matrix(cli_session *session, const char *name, const cli_table *t) {
     size_t count = t->models->count;
     cli_csv csv;
     starg_status status = cli_csv_open(session, name, &csv);
@@ -117,8 +69,8 @@ static starg_status write_matrix(cli_session *session, const char *name, const t
 static starg_status run_matrix(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    table t = {0};
-    CLI_TRY(make_table(session, v, &t));
+    cli_table t = {0};
+    CLI_TRY(cli_table_make(session, session->operands[0], v->distance, &t));
     if (v->picture != NULL)
         CLI_TRY(starg_matrix_picture_write(session->context, t.distances, t.models->count,
                                            cli_outputs_place(&session->outputs, v->picture)));
@@ -131,7 +83,7 @@ static starg_status run_matrix(cli_session *session, void *data) {
         cli_put(session, session->report, "models", json_integer((json_int_t)t.models->count));
     }
 done:
-    free_table(session, &t);
+    cli_table_free(session, &t);
     return status;
 }
 
@@ -273,7 +225,7 @@ static starg_status draw_precision(cli_session *session, const char *name, const
     return status;
 }
 
-static starg_status make_classes(cli_session *session, const values *v, const table *t,
+static starg_status make_classes(cli_session *session, const values *v, const cli_table *t,
                                  starg_classes **out) {
     if (strcmp(v->classes, "by-prefix") == 0)
         return starg_classes_by_prefix(session->context, t->models, out);
@@ -300,10 +252,10 @@ done:
 static starg_status run_evaluate(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    table t = {0};
+    cli_table t = {0};
     starg_classes *classes = NULL;
     starg_retrieval overall, *by_class = NULL;
-    CLI_TRY(make_table(session, v, &t));
+    CLI_TRY(cli_table_make(session, session->operands[0], v->distance, &t));
     CLI_TRY(make_classes(session, v, &t, &classes));
     by_class = calloc(classes->count + 1, sizeof *by_class);
     if (by_class == NULL) {
@@ -317,7 +269,7 @@ static starg_status run_evaluate(cli_session *session, void *data) {
 done:
     free(by_class);
     starg_classes_free(session->context, classes);
-    free_table(session, &t);
+    cli_table_free(session, &t);
     return status;
 }
 

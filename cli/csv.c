@@ -53,3 +53,21 @@ starg_status cli_csv_close(cli_csv *csv) {
     }
     return broken ? fail(csv, error != 0 ? error : EIO) : STARG_OK;
 }
+
+char *cli_csv_field(char **at) {
+    char *begin = *at, *from = *at, *to = *at;
+    if (begin == NULL)
+        return NULL;
+    bool quoted = *from == '"';
+    from += quoted;
+    while (*from != '\0' && (quoted || *from != ',')) {
+        if (quoted && *from == '"' && *++from != '"') {
+            quoted = false;
+            continue;
+        }
+        *to++ = *from++;
+    }
+    *at = *from == ',' ? from + 1 : NULL;
+    *to = '\0';
+    return begin;
+}

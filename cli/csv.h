@@ -21,4 +21,9 @@ void cli_csv_end_line(cli_csv *csv);
 /* Closes the table; finds the errors of all writes. Errors: WRITE. */
 starg_status cli_csv_close(cli_csv *csv);
 
+/* Takes the next field of a line (without its end), in place and without its quotes; `*at` begins
+ * at the line and is NULL behind the last field, which then gives NULL. Fields do not go over
+ * lines. */
+char *cli_csv_field(char **at);
+
 #endif

@@ -1,5 +1,7 @@
 #include "database.h"
 
+#include <stdlib.h>
+
 #include "report.h"
 
 const char *const cli_distance_words[] = {
@@ -16,4 +18,45 @@ json_t *cli_json_model(const starg_database_model *model) {
     return json_pack("{s:I, s:o, s:o, s:I, s:I}", "id", (json_int_t)model->id, "name",
                      cli_json_text(model->name), "path", cli_json_text(model->path), "vertices",
                      (json_int_t)model->vertices, "faces", (json_int_t)model->faces);
+}
+
+/* ---- all distances ---- */
+
+static starg_status make_distances(cli_session *session, cli_table *t) {
+    size_t count = t->models->count;
+    starg_signature **signatures = calloc(count, sizeof(starg_signature *));
+    t->distances = count <= SIZE_MAX / sizeof(double) / count
+                       ? malloc(count * count * sizeof *t->distances)
+                       : NULL;
+    starg_status status = STARG_OK;
+    if (signatures == NULL || t->distances == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (size_t i = 0; i < count; i++)
+        signatures[i] = t->models->items[i].signature;
+    CLI_TRY(starg_signature_distances(session->context, signatures, count, t->distances));
+done:
+    free(signatures);
+    return status;
+}
+
+starg_status cli_table_make(cli_session *session, const char *file, int kind, cli_table *t) {
+    starg_status status = STARG_OK;
+    CLI_TRY(starg_database_open(session->context, file, &t->database));
+    CLI_TRY(starg_database_signatures(t->database, (starg_signature_kind)kind, &t->models));
+    if (t->models->count == 0) {
+        status = cli_fail(session, STARG_ERROR_FORMAT,
+                          "'%s' has no models; 'starguard db add' adds some", file);
+        goto done;
+    }
+    CLI_TRY(make_distances(session, t));
+done:
+    return status;
+}
+
+void cli_table_free(cli_session *session, cli_table *t) {
+    free(t->distances);
+    starg_database_models_free(session->context, t->models);
+    starg_database_close(t->database);
 }

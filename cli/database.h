@@ -19,6 +19,18 @@ extern const char *const cli_distance_words[];
 /* Opens the database that the first operand names. */
 starg_status cli_database_open(cli_session *session, starg_database **out);
 
+/* The models of a database with all their distances (models->count squared). */
+typedef struct cli_table {
+    starg_database *database;
+    starg_database_models *models;
+    double *distances;
+} cli_table;
+
+/* `kind` is an index of cli_distance_words; `t` is all zero, and to be freed on failure as well. A
+ * database without models is an error. */
+starg_status cli_table_make(cli_session *session, const char *file, int kind, cli_table *t);
+void cli_table_free(cli_session *session, cli_table *t);
+
 /* {"id", "name", "path", "vertices", "faces"} */
 json_t *cli_json_model(const starg_database_model *model);
 

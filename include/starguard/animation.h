@@ -24,6 +24,13 @@ STARG_API starg_status starg_animation_write(starg_context *context, const starg
                                              const double *const *frames, size_t frame_count,
                                              double seconds, const char *path);
 
+/* Reads the frames of such a file (binary glTF of one mesh with morph targets): *count meshes of
+ * the same faces, to be freed with starg_animation_free. Errors: READ, FORMAT, RANGE, ARGUMENT (an
+ * index out of range), MEMORY, CANCELLED. */
+STARG_API starg_status starg_animation_read(starg_context *context, const char *path,
+                                            starg_mesh ***frames, size_t *count);
+STARG_API void starg_animation_free(starg_context *context, starg_mesh **frames, size_t count);
+
 #ifdef __cplusplus
 }
 #endif

@@ -34,6 +34,13 @@ STARG_API void starg_picture_options_default(starg_picture_options *options);
 STARG_API starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
                                            const starg_picture_options *options, const char *path);
 
+/* The same into a new block, to be freed with starg_picture_bytes_free. Errors: ARGUMENT, MEMORY,
+ * CANCELLED. */
+STARG_API starg_status starg_picture_encode(starg_context *context, const starg_mesh *mesh,
+                                            const starg_picture_options *options, uint8_t **png,
+                                            size_t *size);
+STARG_API void starg_picture_bytes_free(starg_context *context, uint8_t *png);
+
 /* Draws rows x columns meshes, row by row, each as starg_picture_write does, side by side into one
  * PNG of at most 16384 pixels a side. Errors: ARGUMENT, WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_picture_sheet_write(starg_context *context,

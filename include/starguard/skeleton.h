@@ -61,6 +61,18 @@ typedef enum starg_skeleton_format {
 STARG_API starg_status starg_skeleton_write(starg_context *context, const starg_skeleton *skeleton,
                                             const char *path, starg_skeleton_format format);
 
+/* Reads what starg_skeleton_write has written; the content tells the format. Parts, loops, joints
+ * and ends are counted; radii are NULL unless the file is VTK; what only the solid knows
+ * (vertex_nodes, cuts, mends, homotopic) is missing. Errors: READ, FORMAT (with the line), MEMORY.
+ */
+STARG_API starg_status starg_skeleton_read(starg_context *context, const char *path,
+                                           starg_skeleton **out);
+
+/* The same from `size` bytes in memory; `name` stands in messages. */
+STARG_API starg_status starg_skeleton_read_memory(starg_context *context, const void *bytes,
+                                                  size_t size, const char *name,
+                                                  starg_skeleton **out);
+
 #ifdef __cplusplus
 }
 #endif

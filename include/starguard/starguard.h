@@ -14,6 +14,7 @@
 #include "kernel.h"
 #include "mesh.h"
 #include "morph.h"
+#include "page.h"
 #include "picture.h"
 #include "repair.h"
 #include "sample.h"

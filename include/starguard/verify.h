@@ -49,6 +49,7 @@ typedef struct starg_pieces_mesh {
 
 /* What PIECES.json says about them. */
 typedef struct starg_pieces_report {
+    char *file; /* the model's path as given; NULL if there is none */
     starg_decompose_mode mode;
     size_t tetrahedra;
     size_t piece_count;

@@ -207,6 +207,29 @@ starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
     return starg_picture_sheet_write(context, &mesh, 1, 1, options, path);
 }
 
+starg_status starg_picture_encode(starg_context *context, const starg_mesh *mesh,
+                                  const starg_picture_options *options, uint8_t **png,
+                                  size_t *size) {
+    starg_status status = STARG_OK;
+    starg_picture_options defaults;
+    uint8_t *rgb = NULL;
+    *png = NULL;
+    *size = 0;
+    starg_picture_options_default(&defaults);
+    const starg_picture_options *o = options ? options : &defaults;
+    STARG_TRY(check_options(context, o));
+    STARG_NEW(context, STAGE, rgb, 3 * o->width * o->height);
+    STARG_TRY(draw(context, mesh, o, rgb));
+    STARG_TRY(starg_png_encode(context, rgb, o->width, o->height, png, size));
+done:
+    starg_release(context, rgb);
+    return status;
+}
+
+void starg_picture_bytes_free(starg_context *context, uint8_t *png) {
+    starg_release(context, png);
+}
+
 static starg_status check_sheet(starg_context *context, size_t rows, size_t columns,
                                 const starg_picture_options *o) {
     if (rows >= 1 && columns >= 1 && rows <= MAX_SIDE / o->height && columns <= MAX_SIDE / o->width)

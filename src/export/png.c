@@ -10,7 +10,10 @@
 
 static const char STAGE[] = "png";
 
+static const uint8_t SIGNATURE[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+
 enum { PAETH = 4, BYTES_PER_PIXEL = 3 };
+enum { WORD = 4, HEADER = 13, CHUNK = 3 * WORD /* length, type, sum */ };
 
 static uint8_t paeth(int left, int above, int corner) {
     int estimate = left + above - corner;
@@ -72,50 +75,63 @@ static void store_big_endian(uint32_t value, uint8_t out[4]) {
         out[k] = (uint8_t)(value >> (24 - 8 * k));
 }
 
-/* Errors of the stream are found when the output is committed. */
-static void write_chunk(FILE *stream, const char type[4], const uint8_t *data, size_t size) {
-    uint8_t word[4];
-    store_big_endian((uint32_t)size, word);
-    fwrite(word, 1, 4, stream);
-    fwrite(type, 1, 4, stream);
+static uint8_t *store(uint8_t *at, const void *bytes, size_t size) {
     if (size != 0)
-        fwrite(data, 1, size, stream);
-    uLong sum = crc32(0, (const Bytef *)type, 4);
-    if (size != 0)
-        sum = crc32(sum, data, (uInt)size);
-    store_big_endian((uint32_t)sum, word);
-    fwrite(word, 1, 4, stream);
+        memcpy(at, bytes, size);
+    return at + size;
 }
 
-static void write_file(FILE *stream, size_t width, size_t height, const uint8_t *data,
-                       size_t size) {
-    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-    uint8_t header[13] = {[8] = 8 /* bits */, [9] = 2 /* RGB */};
+static uint8_t *store_chunk(uint8_t *at, const char type[4], const uint8_t *data, size_t size) {
+    uint8_t *begin = at;
+    store_big_endian((uint32_t)size, at);
+    at = store(at + WORD, type, WORD);
+    at = store(at, data, size);
+    uLong sum = crc32(0, begin + WORD, (uInt)(size + WORD));
+    store_big_endian((uint32_t)sum, at);
+    return at + WORD;
+}
+
+static void store_file(uint8_t *at, size_t width, size_t height, const uint8_t *data, size_t size) {
+    uint8_t header[HEADER] = {[8] = 8 /* bits */, [9] = 2 /* RGB */};
     store_big_endian((uint32_t)width, header);
     store_big_endian((uint32_t)height, header + 4);
-    fwrite(signature, 1, sizeof signature, stream);
-    write_chunk(stream, "IHDR", header, sizeof header);
-    write_chunk(stream, "IDAT", data, size);
-    write_chunk(stream, "IEND", NULL, 0);
+    at = store(at, SIGNATURE, sizeof SIGNATURE);
+    at = store_chunk(at, "IHDR", header, sizeof header);
+    at = store_chunk(at, "IDAT", data, size);
+    store_chunk(at, "IEND", NULL, 0);
 }
 
-starg_status starg_png_write(starg_context *context, const char *path, const uint8_t *rgb,
-                             size_t width, size_t height) {
+starg_status starg_png_encode(starg_context *context, const uint8_t *rgb, size_t width,
+                              size_t height, uint8_t **png, size_t *size) {
     starg_status status = STARG_OK;
     uint8_t *filtered = NULL, *packed = NULL;
     size_t packed_size = 0, row = BYTES_PER_PIXEL * width;
-    starg_output output = {0};
-
+    *png = NULL;
     STARG_NEW(context, STAGE, filtered, height * (row + 1));
     for (size_t y = 0; y < height; y++)
         filter_row(rgb + y * row, y == 0 ? NULL : rgb + (y - 1) * row, row,
                    filtered + y * (row + 1));
     STARG_TRY(deflate_block(context, filtered, height * (row + 1), &packed, &packed_size));
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    write_file(output.stream, width, height, packed, packed_size);
-    STARG_TRY(starg_output_commit(&output));
+    *size = sizeof SIGNATURE + 3 * CHUNK + HEADER + packed_size;
+    STARG_NEW(context, STAGE, *png, *size);
+    store_file(*png, width, height, packed, packed_size);
 done:
     starg_release(context, filtered);
     starg_release(context, packed);
+    return status;
+}
+
+starg_status starg_png_write(starg_context *context, const char *path, const uint8_t *rgb,
+                             size_t width, size_t height) {
+    starg_status status = STARG_OK;
+    uint8_t *png = NULL;
+    size_t size = 0;
+    starg_output output = {0};
+    STARG_TRY(starg_png_encode(context, rgb, width, height, &png, &size));
+    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    fwrite(png, 1, size, output.stream);
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_release(context, png);
     return status;
 }

@@ -131,12 +131,26 @@ static void read_surface(reader *r, const json_t *root, starg_pieces_report *rep
         report->distance_back = read_real(r, root, "distance_back");
 }
 
+static void read_model(reader *r, const json_t *model, starg_pieces_report *report) {
+    starg_status status = STARG_OK;
+    const char *file = json_string_value(json_object_get(model, "file"));
+    if (file == NULL)
+        return;
+    size_t size = strlen(file) + 1;
+    STARG_NEW(r->context, STAGE, report->file, size);
+    memcpy(report->file, file, size);
+done:
+    if (status != STARG_OK)
+        r->status = status;
+}
+
 static void read_document(reader *r, const json_t *root, starg_pieces_report *report) {
     const char *format = json_string_value(json_object_get(root, "format"));
     if (format == NULL || strcmp(format, "starguard-pieces") != 0)
         reject(r, "format", "\"starguard-pieces\"");
     if (read_count(r, root, "version") != 1)
         reject(r, "version", "1, the only one that is known");
+    read_model(r, json_object_get(root, "model"), report);
     report->mode = read_word(r, root, "mode", "strict", "paper") == 0 ? STARG_DECOMPOSE_STRICT
                                                                       : STARG_DECOMPOSE_PAPER;
     report->tetrahedra = read_count(r, root, "tetrahedra");
@@ -175,6 +189,7 @@ done:
 void starg_pieces_report_free(starg_context *context, starg_pieces_report *report) {
     if (report == NULL)
         return;
+    starg_release(context, report->file);
     starg_release(context, report->pieces);
     starg_release(context, report->contacts);
     starg_release(context, report);

@@ -1,0 +1,347 @@
+#include "show.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+#include "model.h"
+#include "starguard/animation.h"
+
+enum { HEAD = 4096 }; /* bytes of a file that tell what it holds */
+
+/* ---- kinds of files ---- */
+
+typedef enum kind {
+    KIND_MODEL,
+    KIND_RESULT, /* guards, pieces, a report of pieces */
+    KIND_SKELETON,
+    KIND_FRAMES,
+    KIND_ANIMATION,
+    KIND_DATABASE,
+    KIND_TABLE
+} kind;
+
+static bool has_ending(const char *name, const char *ending) {
+    size_t size = strlen(name), tail = strlen(ending);
+    return size > tail && strcasecmp(name + size - tail, ending) == 0;
+}
+
+/* Does an OBJ file have edges and no face before them? */
+static bool has_edges(FILE *file) {
+    char *line = NULL;
+    size_t capacity = 0;
+    bool edges = false, faces = false;
+    rewind(file);
+    while (!edges && !faces && getline(&line, &capacity, file) >= 0) {
+        edges = strncmp(line, "l ", 2) == 0;
+        faces = strncmp(line, "f ", 2) == 0;
+    }
+    free(line);
+    return edges;
+}
+
+static kind kind_of_content(const char *name, const char *head, size_t size, FILE *file) {
+    static const char database[] = "SQLite format 3", vtk[] = "# vtk", curve[] = "# D:";
+    const char *first = head + strspn(head, " \t\r\n");
+    if (size >= sizeof database && memcmp(head, database, sizeof database) == 0)
+        return KIND_DATABASE;
+    if (memcmp(head, "glTF", 4) == 0)
+        return KIND_ANIMATION;
+    if (strncmp(head, vtk, sizeof vtk - 1) == 0)
+        return strstr(head, "DATASET POLYDATA") != NULL ? KIND_SKELETON : KIND_RESULT;
+    if (strncmp(head, curve, sizeof curve - 1) == 0)
+        return KIND_SKELETON;
+    if (*first == '{')
+        return KIND_RESULT;
+    if (has_ending(name, ".csv"))
+        return KIND_TABLE;
+    return has_ending(name, ".obj") && has_edges(file) ? KIND_SKELETON : KIND_MODEL;
+}
+
+/* What cannot be opened is left to a reader, which says why. */
+static kind kind_of(const char *name) {
+    char head[HEAD + 1] = {0};
+    struct stat info;
+    if (strcmp(name, "-") == 0)
+        return KIND_RESULT;
+    if (stat(name, &info) != 0 || !(S_ISREG(info.st_mode) || S_ISDIR(info.st_mode)))
+        return KIND_RESULT;
+    if (S_ISDIR(info.st_mode))
+        return KIND_FRAMES;
+    FILE *file = fopen(name, "rb");
+    if (file == NULL)
+        return KIND_RESULT;
+    size_t size = fread(head, 1, HEAD, file);
+    kind found = kind_of_content(name, head, size, file);
+    fclose(file);
+    return found;
+}
+
+/* ---- results ---- */
+
+static starg_status fail_twice(cli_session *session, const char *what, const char *file) {
+    return cli_fail(session, STARG_ERROR_ARGUMENT,
+                    "'%.300s' is a second %s; a page shows one of each kind", file, what);
+}
+
+static starg_status take_result(cli_session *session, size_t operand, cli_show *show) {
+    const char *file = session->operands[operand];
+    starg_status status = starg_result_read(session->context, file, &show->results[operand]);
+    if (status != STARG_OK)
+        return status;
+    const starg_result *result = show->results[operand];
+    starg_page *page = &show->page;
+    if (result->guards != NULL) {
+        if (page->guards != NULL)
+            return fail_twice(session, "file of guards", file);
+        page->guards = result->guards;
+        show->guards_file = file;
+    } else if (result->pieces != NULL) {
+        if (page->pieces != NULL)
+            return fail_twice(session, "file of pieces", file);
+        page->pieces = result->pieces;
+    } else {
+        if (page->report != NULL)
+            return fail_twice(session, "report of pieces", file);
+        page->report = result->report;
+        show->report_file = file;
+    }
+    return STARG_OK;
+}
+
+static starg_status take_animation(cli_session *session, const char *file, cli_show *show) {
+    show->from_animation = true;
+    return starg_animation_read(session->context, file, &show->frames, &show->frame_count);
+}
+
+/* `model` becomes the operand that is a model. */
+static starg_status take_operand(cli_session *session, size_t operand, int distance,
+                                 const char **model, cli_show *show) {
+    const char *file = session->operands[operand];
+    switch (kind_of(file)) {
+    case KIND_MODEL:
+        if (*model != NULL)
+            return fail_twice(session, "model", file);
+        *model = file;
+        return STARG_OK;
+    case KIND_RESULT:
+        return take_result(session, operand, show);
+    case KIND_SKELETON:
+        if (show->skeleton != NULL)
+            return fail_twice(session, "skeleton", file);
+        return starg_skeleton_read(session->context, file, &show->skeleton);
+    case KIND_FRAMES:
+    case KIND_ANIMATION:
+        if (show->frame_count > 0)
+            return fail_twice(session, "morph", file);
+        return kind_of(file) == KIND_FRAMES ? cli_show_frames(session, file, show)
+                                            : take_animation(session, file, show);
+    case KIND_DATABASE:
+    case KIND_TABLE:
+        if (show->shape_count > 0)
+            return fail_twice(session, "table of shapes", file);
+        return kind_of(file) == KIND_TABLE ? cli_show_table(session, file, show)
+                                           : cli_show_database(session, file, distance, show);
+    }
+    return STARG_OK;
+}
+
+static starg_status take_operands(cli_session *session, int distance, const char **model,
+                                  cli_show *show) {
+    starg_status status = STARG_OK;
+    show->results = calloc(session->operand_count + 1, sizeof(starg_result *));
+    if (show->results == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < session->operand_count && status == STARG_OK; i++)
+        status = take_operand(session, i, distance, model, show);
+    return status;
+}
+
+/* ---- the model ---- */
+
+/* The model that a result names: from where we stand, or beside the result. To be freed. */
+static char *find_model(const char *named, const char *result) {
+    struct stat info;
+    const char *slash = strrchr(result, '/');
+    size_t folder = slash != NULL ? (size_t)(slash - result) + 1 : 0;
+    if (named == NULL || strcmp(named, "-") == 0)
+        return NULL;
+    if (stat(named, &info) == 0)
+        return strdup(named);
+    if (named[0] == '/' || folder == 0)
+        return NULL;
+    size_t size = folder + strlen(named) + 1;
+    char *beside = malloc(size);
+    if (beside != NULL)
+        snprintf(beside, size, "%.*s%s", (int)folder, result, named);
+    if (beside != NULL && stat(beside, &info) == 0)
+        return beside;
+    free(beside);
+    return NULL;
+}
+
+static char *find_named_model(const cli_show *show) {
+    const starg_page *page = &show->page;
+    char *found = NULL;
+    if (page->guards != NULL)
+        found = find_model(page->guards->file, show->guards_file);
+    else if (page->report != NULL)
+        found = find_model(page->report->file, show->report_file);
+    return found;
+}
+
+static const char *base_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash != NULL && slash[1] != '\0' ? slash + 1 : path;
+}
+
+static starg_status read_model(cli_session *session, const char *file, cli_show *show) {
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_shape_read(session, file, &show->model, &show->tetmesh));
+    if (show->tetmesh != NULL)
+        CLI_TRY(starg_tetmesh_surface(session->context, show->tetmesh, &show->model, NULL));
+    show->page.model = show->model;
+done:
+    return status;
+}
+
+/* Guards cannot do without their model; a skeleton is glad of one. */
+static starg_status take_model(cli_session *session, const char *model, cli_show *show) {
+    starg_status status = STARG_OK;
+    const starg_guards *guards = show->page.guards;
+    char *found = model != NULL ? strdup(model) : find_named_model(show);
+    if (found == NULL && guards != NULL)
+        status = cli_fail(session, STARG_ERROR_READ,
+                          "the model '%.200s' of '%.200s' is not found; name it with --model FILE",
+                          guards->file != NULL ? guards->file : "-", show->guards_file);
+    if (found != NULL &&
+        (model != NULL || guards != NULL || show->skeleton != NULL || show->page.report != NULL))
+        status = read_model(session, found, show);
+    free(found);
+    return status;
+}
+
+/* ---- what is computed ---- */
+
+static starg_status check_model(cli_session *session, const cli_show *show) {
+    const starg_guards *g = show->page.guards;
+    size_t vertices = starg_mesh_vertex_count(show->model);
+    size_t faces = starg_mesh_face_count(show->model);
+    if (g->vertex_count == vertices && g->face_count == faces)
+        return STARG_OK;
+    return cli_fail(session, STARG_ERROR_FORMAT,
+                    "'%.200s' is for a model of %zu vertices and %zu faces, but this one has %zu "
+                    "and %zu; name the right one with --model FILE",
+                    show->guards_file, g->vertex_count, g->face_count, vertices, faces);
+}
+
+/* What every guard sees, and whether the file says the same. */
+static starg_status see(cli_session *session, cli_show *show) {
+    starg_status status = STARG_OK;
+    const starg_guards *g = show->page.guards;
+    starg_visibility_options options = g->options.visibility;
+    options.engine = STARG_VISIBILITY_FASTEST;
+    options.target = STARG_TARGET_FACES;
+    options.directions = g->directions;
+    CLI_TRY(check_model(session, show));
+    CLI_TRY(starg_visibility(session->context, show->solid, g->positions, g->count, &options,
+                             &show->seen));
+    show->page.seen = show->seen;
+    for (size_t i = 0; i < g->count; i++)
+        if (starg_bits_count(show->seen, i) != g->seen_faces[i]) {
+            cli_warn(session,
+                     "warning: guard %zu sees %zu faces, but '%.200s' says %zu; is this the right "
+                     "model? 'starguard verify' tells more",
+                     i, starg_bits_count(show->seen, i), show->guards_file, g->seen_faces[i]);
+            break;
+        }
+done:
+    return status;
+}
+
+/* The skeleton as it is shown: where its file has no radii, the solid tells them. */
+static starg_status measure(cli_session *session, cli_show *show) {
+    const starg_skeleton *s = show->skeleton;
+    show->measured = *s;
+    show->page.skeleton = &show->measured;
+    if (s->radii != NULL || show->solid == NULL)
+        return STARG_OK;
+    show->radii = malloc(s->node_count * sizeof *show->radii);
+    if (show->radii == NULL)
+        return cli_fail_memory(session);
+    for (size_t i = 0; i < s->node_count; i++)
+        show->radii[i] = starg_solid_distance(show->solid, s->positions + 3 * i);
+    show->measured.radii = show->radii;
+    return STARG_OK;
+}
+
+static starg_status compute(cli_session *session, cli_show *show) {
+    starg_status status = STARG_OK;
+    bool radii = show->skeleton != NULL && show->skeleton->radii == NULL;
+    if (show->model != NULL && (show->page.guards != NULL || radii))
+        CLI_TRY(starg_solid_create(session->context, show->model, &show->solid));
+    if (show->page.guards != NULL)
+        CLI_TRY(see(session, show));
+    if (show->skeleton != NULL)
+        CLI_TRY(measure(session, show));
+done:
+    return status;
+}
+
+/* ---- all of it ---- */
+
+/* The shared name of models and results stands above the page: the model's, or the first file's. */
+static void fill_page(const cli_session *session, const char *model, cli_show *show) {
+    starg_page *page = &show->page;
+    page->frames = (const starg_mesh *const *)show->frames;
+    page->frame_count = show->frame_count;
+    page->shapes = show->shapes;
+    page->shape_count = show->shape_count;
+    page->distances = show->distances != NULL ? show->distances : show->table.distances;
+    const char *named = page->guards != NULL   ? page->guards->file
+                        : page->report != NULL ? page->report->file
+                                               : NULL;
+    if (model == NULL && show->model != NULL)
+        model = named;
+    page->model_name = model != NULL ? base_of(model) : NULL;
+    page->title = page->model_name != NULL ? page->model_name : base_of(session->operands[0]);
+}
+
+starg_status cli_show_read(cli_session *session, const char *model, int distance, cli_show *show) {
+    starg_status status = STARG_OK;
+    CLI_TRY(take_operands(session, distance, &model, show));
+    if (show->page.report != NULL && show->page.pieces == NULL) {
+        status = cli_fail(session, STARG_ERROR_READ,
+                          "'%.200s' only reports on a decomposition; name the PIECES.vtk that it "
+                          "belongs to as well",
+                          show->report_file);
+        goto done;
+    }
+    CLI_TRY(take_model(session, model, show));
+    CLI_TRY(compute(session, show));
+    fill_page(session, model, show);
+done:
+    return status;
+}
+
+void cli_show_free(cli_session *session, cli_show *show) {
+    starg_context *context = session->context;
+    for (size_t i = 0; show->results != NULL && i < session->operand_count; i++)
+        starg_result_free(context, show->results[i]);
+    free(show->results);
+    if (show->from_animation)
+        starg_animation_free(context, show->frames, show->frame_count);
+    else
+        for (size_t i = 0; i < show->frame_count; i++)
+            starg_mesh_free(show->frames[i]);
+    if (!show->from_animation)
+        free(show->frames);
+    cli_show_free_shapes(session, show);
+    free(show->radii);
+    starg_skeleton_free(context, show->skeleton);
+    starg_bits_free(show->seen);
+    starg_solid_free(show->solid);
+    starg_mesh_free(show->model);
+    starg_tetmesh_free(show->tetmesh);
+}

@@ -1,0 +1,87 @@
+/* The frames of a morph in a folder, as 'starguard morph' leaves them. */
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "show.h"
+#include "starguard/animation.h"
+
+/* frame_0000.off and so on. */
+static bool is_frame(const char *name) {
+    static const char begin[] = "frame_", end[] = ".off";
+    size_t size = strlen(name), head = sizeof begin - 1, tail = sizeof end - 1;
+    return size > head + tail && strncmp(name, begin, head) == 0 &&
+           strcmp(name + size - tail, end) == 0 &&
+           strspn(name + head, "0123456789") == size - head - tail;
+}
+
+/* Numbers of more digits come later. */
+static int compare_names(const void *a, const void *b) {
+    const char *left = *(char *const *)a, *right = *(char *const *)b;
+    size_t m = strlen(left), n = strlen(right);
+    return m != n ? (m < n ? -1 : 1) : strcmp(left, right);
+}
+
+typedef struct name_list {
+    char **items;
+    size_t count, capacity;
+} name_list;
+
+static bool append(name_list *list, const char *folder, const char *name) {
+    if (list->count == list->capacity) {
+        size_t capacity = list->capacity > 0 ? 2 * list->capacity : 32;
+        char **items = realloc(list->items, capacity * sizeof *items);
+        if (items == NULL)
+            return false;
+        list->items = items;
+        list->capacity = capacity;
+    }
+    size_t size = strlen(folder) + strlen(name) + 2;
+    char *path = malloc(size);
+    if (path == NULL)
+        return false;
+    snprintf(path, size, "%s/%s", folder, name);
+    list->items[list->count++] = path;
+    return true;
+}
+
+static starg_status list_frames(cli_session *session, const char *folder, name_list *list) {
+    DIR *directory = opendir(folder);
+    bool complete = true;
+    if (directory == NULL)
+        return cli_fail(session, STARG_ERROR_READ, "cannot open '%.300s': %s", folder,
+                        strerror(errno));
+    for (const struct dirent *entry; complete && (entry = readdir(directory)) != NULL;)
+        if (is_frame(entry->d_name))
+            complete = append(list, folder, entry->d_name);
+    closedir(directory);
+    if (!complete)
+        return cli_fail_memory(session);
+    if (list->count < 2 || list->count > STARG_ANIMATION_FRAMES)
+        return cli_fail(session, STARG_ERROR_FORMAT,
+                        "'%.300s' has %zu frames (frame_0000.off and so on); a morph has 2 to %d",
+                        folder, list->count, STARG_ANIMATION_FRAMES);
+    qsort(list->items, list->count, sizeof *list->items, compare_names);
+    return STARG_OK;
+}
+
+starg_status cli_show_frames(cli_session *session, const char *folder, cli_show *show) {
+    starg_status status = STARG_OK;
+    name_list list = {0};
+    CLI_TRY(list_frames(session, folder, &list));
+    show->frames = calloc(list.count, sizeof(starg_mesh *));
+    if (show->frames == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (size_t i = 0; i < list.count; i++) {
+        CLI_TRY(starg_mesh_read(session->context, list.items[i], &show->frames[i]));
+        show->frame_count++;
+    }
+done:
+    for (size_t i = 0; i < list.count; i++)
+        free(list.items[i]);
+    free(list.items);
+    return status;
+}

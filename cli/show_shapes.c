@@ -1,0 +1,200 @@
+/* Tables of distances: a database, or what 'starguard db matrix -o' has written; with small
+ * pictures of the models that can be found. */
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "csv.h"
+#include "numbers.h"
+#include "show.h"
+#include "starguard/picture.h"
+
+enum { PICTURE_WIDTH = 108, PICTURE_HEIGHT = 80, MOST_SHAPES = 4000 };
+
+/* ---- pictures ---- */
+
+/* A picture of a model that cannot be read is missing, no failure: the table is what counts. */
+static starg_status draw_shape(cli_session *session, const char *file, starg_page_shape *shape) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    starg_picture_options options;
+    uint8_t *png = NULL;
+    struct stat info;
+    if (stat(file, &info) != 0 || !S_ISREG(info.st_mode))
+        return STARG_OK;
+    starg_picture_options_default(&options);
+    options.width = PICTURE_WIDTH;
+    options.height = PICTURE_HEIGHT;
+    options.opacity = 1;
+    status = starg_mesh_read(session->context, file, &mesh);
+    if (status == STARG_OK)
+        status = starg_picture_encode(session->context, mesh, &options, &png, &shape->png_size);
+    shape->png = png;
+    starg_mesh_free(mesh);
+    return status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ? status : STARG_OK;
+}
+
+static void tell_missing(cli_session *session, const cli_show *show) {
+    size_t missing = 0;
+    for (size_t i = 0; i < show->shape_count; i++)
+        missing += show->shapes[i].png == NULL;
+    if (missing > 0)
+        cli_notice(session, "%zu of %zu models are not where the table says: shown without picture",
+                   missing, show->shape_count);
+}
+
+/* ---- databases ---- */
+
+starg_status cli_show_database(cli_session *session, const char *file, int distance,
+                               cli_show *show) {
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_table_make(session, file, distance, &show->table));
+    const starg_database_models *models = show->table.models;
+    if (models->count > MOST_SHAPES)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "'%.200s' has %zu models; a page shows %d at most", file, models->count,
+                        MOST_SHAPES);
+    show->shapes = calloc(models->count, sizeof *show->shapes);
+    if (show->shapes == NULL)
+        return cli_fail_memory(session);
+    show->shape_count = models->count;
+    for (size_t i = 0; i < models->count; i++) {
+        show->shapes[i].name = models->items[i].name;
+        CLI_TRY(draw_shape(session, models->items[i].path, &show->shapes[i]));
+    }
+    tell_missing(session, show);
+done:
+    return status;
+}
+
+/* ---- tables of text ---- */
+
+/* A table as it is read: its first line names the models, each other line one and its distances. */
+typedef struct reading {
+    cli_session *session;
+    const char *file;
+    cli_show *show;
+    size_t line;
+} reading;
+
+static starg_status reject(const reading *r, const char *what) {
+    return cli_fail(r->session, STARG_ERROR_FORMAT, "'%.200s', line %zu: %s", r->file, r->line,
+                    what);
+}
+
+static starg_status append_name(reading *r, const char *name) {
+    cli_show *show = r->show;
+    if (show->shape_count == MOST_SHAPES)
+        return reject(r, "more models than a page shows");
+    char **names = realloc(show->names, (show->shape_count + 1) * sizeof *names);
+    if (names == NULL)
+        return cli_fail_memory(r->session);
+    show->names = names;
+    names[show->shape_count] = strdup(name);
+    if (names[show->shape_count] == NULL)
+        return cli_fail_memory(r->session);
+    show->shape_count++;
+    return STARG_OK;
+}
+
+static starg_status read_names(reading *r, char *line) {
+    starg_status status = STARG_OK;
+    char *at = line, *field = cli_csv_field(&at);
+    if (field == NULL || strcmp(field, "model") != 0)
+        return reject(r, "a table of distances begins with 'model' and the models' names, as "
+                         "'starguard db matrix -o' writes it");
+    while ((field = cli_csv_field(&at)) != NULL && status == STARG_OK)
+        status = append_name(r, field);
+    if (status == STARG_OK && r->show->shape_count == 0)
+        return reject(r, "the table has no models");
+    return status;
+}
+
+static starg_status read_row(reading *r, char *line, size_t row) {
+    const cli_show *show = r->show;
+    size_t count = show->shape_count;
+    char *at = line, *field = cli_csv_field(&at);
+    if (row >= count || field == NULL || strcmp(field, show->names[row]) != 0)
+        return reject(r, "the models of the lines are not those of the first line");
+    for (size_t k = 0; k < count; k++) {
+        field = cli_csv_field(&at);
+        double *distance = &show->distances[row * count + k];
+        if (field == NULL || !cli_number_real(field, distance) || *distance < 0)
+            return reject(r, "there must be a distance to each model, a number of 0 or more");
+    }
+    return cli_csv_field(&at) == NULL ? STARG_OK : reject(r, "there are more numbers than models");
+}
+
+static starg_status read_lines(reading *r, FILE *stream) {
+    starg_status status = STARG_OK;
+    char *line = NULL;
+    size_t capacity = 0, rows = 0;
+    while (status == STARG_OK && getline(&line, &capacity, stream) >= 0) {
+        r->line++;
+        line[strcspn(line, "\r\n")] = '\0';
+        if (r->line > 1) {
+            status = read_row(r, line, rows++);
+            continue;
+        }
+        status = read_names(r, line);
+        size_t count = r->show->shape_count;
+        if (status == STARG_OK)
+            r->show->distances = malloc(count * count * sizeof *r->show->distances);
+        if (status == STARG_OK && r->show->distances == NULL)
+            status = cli_fail_memory(r->session);
+    }
+    free(line);
+    if (status == STARG_OK && (rows == 0 || rows != r->show->shape_count))
+        status = reject(r, "a line for each model must follow");
+    return status;
+}
+
+/* Models are looked for beside the table. */
+static starg_status draw_shapes(cli_session *session, const char *file, cli_show *show) {
+    starg_status status = STARG_OK;
+    const char *slash = strrchr(file, '/');
+    size_t folder = slash != NULL ? (size_t)(slash - file) + 1 : 0;
+    for (size_t i = 0; i < show->shape_count && status == STARG_OK; i++) {
+        size_t size = folder + strlen(show->names[i]) + 1;
+        char *path = malloc(size);
+        if (path == NULL)
+            return cli_fail_memory(session);
+        snprintf(path, size, "%.*s%s", (int)folder, file, show->names[i]);
+        show->shapes[i].name = show->names[i];
+        status = draw_shape(session, path, &show->shapes[i]);
+        free(path);
+    }
+    return status;
+}
+
+starg_status cli_show_table(cli_session *session, const char *file, cli_show *show) {
+    starg_status status = STARG_OK;
+    reading r = {.session = session, .file = file, .show = show};
+    FILE *stream = fopen(file, "rb");
+    if (stream == NULL)
+        return cli_fail(session, STARG_ERROR_READ, "cannot open '%.300s'", file);
+    CLI_TRY(read_lines(&r, stream));
+    show->shapes = calloc(show->shape_count, sizeof *show->shapes);
+    if (show->shapes == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    CLI_TRY(draw_shapes(session, file, show));
+    tell_missing(session, show);
+done:
+    fclose(stream);
+    return status;
+}
+
+void cli_show_free_shapes(cli_session *session, cli_show *show) {
+    for (size_t i = 0; i < show->shape_count; i++) {
+        if (show->names != NULL)
+            free(show->names[i]);
+        if (show->shapes != NULL) /* what the page gets as constant is ours */
+            starg_picture_bytes_free(session->context, (uint8_t *)(uintptr_t)show->shapes[i].png);
+    }
+    free(show->names);
+    free(show->shapes);
+    free(show->distances);
+    cli_table_free(session, &show->table);
+}

@@ -1,0 +1,453 @@
+/* A page to look at results: the text before the data, the data, the text behind it.
+ *
+ * Small things stand in one block of JSON ("data"), arrays in blocks of their own in base64, whose
+ * names viewer/data.js knows. Positions are moved and scaled so that all that is shown lies about
+ * the origin and reaches about 1 from it (the JSON says by how much): single precision then does
+ * for models of any size and place. Cost: that of the output, and of sorting the faces of pieces.
+ */
+#include "starguard/page.h"
+
+#include <math.h>
+
+#include "core/file.h"
+#include "core/json.h"
+#include "core/memory.h"
+#include "export/page_data.h"
+#include "export/piece_surfaces.h"
+#include "export/viewer.h"
+#include "starguard/picture.h"
+
+static const char STAGE[] = "page";
+static const char NO_VIEWER[] =
+    "this build of starguard has no viewer: Node.js and npm were missing, or npm could not fetch "
+    "packages, when it was built; install them (scripts/install-deps.sh build), run CMake again "
+    "with -DSTARGUARD_VIEWER=ON, and build";
+
+enum { JSON_POINT_LIMIT = 1 << 20 }; /* guards and pieces that are described singly */
+
+/* Where positions go: (p - center) / scale. */
+typedef struct frame {
+    double lower[3], upper[3], center[3], scale;
+    bool begun;
+} frame;
+
+/* What a page is made of. */
+typedef struct book {
+    const starg_page *page;
+    frame frame;
+    starg_piece_surfaces surfaces;
+    char **names; /* of shapes, as text that JSON can hold */
+    char *title, *model_name;
+} book;
+
+bool starg_page_available(void) {
+    return starg_viewer_head_size > 0;
+}
+
+/* ---- checks ---- */
+
+static starg_status check_guards(starg_context *context, const starg_page *p) {
+    const starg_guards *g = p->guards;
+    if (g == NULL)
+        return STARG_OK;
+    if (g->count > JSON_POINT_LIMIT)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "%zu guards are too many for a page", g->count);
+    if (p->model != NULL && (g->face_count != starg_mesh_face_count(p->model) ||
+                             g->vertex_count != starg_mesh_vertex_count(p->model)))
+        return starg_fail(
+            context, STARG_ERROR_ARGUMENT, STAGE,
+            "the guards are for a model of %zu vertices and %zu faces, but this one has "
+            "%zu and %zu; name the model that they were made for",
+            g->vertex_count, g->face_count, starg_mesh_vertex_count(p->model),
+            starg_mesh_face_count(p->model));
+    if (p->seen != NULL && (p->model == NULL || starg_bits_rows(p->seen) != g->count ||
+                            starg_bits_columns(p->seen) != g->face_count))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "what guards see must have a row for each guard and a column for each "
+                          "face of the model");
+    return STARG_OK;
+}
+
+static starg_status check_pieces(starg_context *context, const starg_page *p,
+                                 const starg_piece_surfaces *surfaces) {
+    if (p->report != NULL && p->pieces == NULL)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a report of pieces needs the tetrahedra that it belongs to");
+    if (p->report != NULL && p->report->piece_count != surfaces->piece_count)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the report is of %zu pieces, but the tetrahedra are of %zu; name two "
+                          "files of the same decomposition",
+                          p->report->piece_count, surfaces->piece_count);
+    return STARG_OK;
+}
+
+static starg_status check_frames(starg_context *context, const starg_page *p) {
+    if (p->frame_count == 1)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a morph of one frame; there must be two at least");
+    for (size_t i = 1; i < p->frame_count; i++) {
+        const starg_mesh *a = p->frames[0], *b = p->frames[i];
+        size_t faces = starg_mesh_face_count(a);
+        if (starg_mesh_vertex_count(a) != starg_mesh_vertex_count(b) ||
+            faces != starg_mesh_face_count(b) ||
+            memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * faces * sizeof(uint32_t)) != 0)
+            return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                              "frame %zu has other vertices or faces than frame 0; all frames must "
+                              "be of one morph",
+                              i);
+    }
+    return STARG_OK;
+}
+
+static starg_status check_shapes(starg_context *context, const starg_page *p) {
+    for (size_t i = 0; i < p->shape_count * p->shape_count; i++)
+        if (!isfinite(p->distances[i]))
+            return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                              "the distance of shapes %zu and %zu is no finite number",
+                              i / p->shape_count, i % p->shape_count);
+    return STARG_OK;
+}
+
+static starg_status check(starg_context *context, const book *b) {
+    starg_status status = STARG_OK;
+    const starg_page *p = b->page;
+    if (p->model == NULL && p->guards == NULL && p->pieces == NULL && p->skeleton == NULL &&
+        p->frame_count == 0 && p->shape_count == 0)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "the page has nothing to show");
+    STARG_TRY(check_guards(context, p));
+    STARG_TRY(check_pieces(context, p, &b->surfaces));
+    STARG_TRY(check_frames(context, p));
+    STARG_TRY(check_shapes(context, p));
+done:
+    return status;
+}
+
+/* ---- frame ---- */
+
+static void cover_points(frame *f, const double *points, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = 0; k < 3; k++) {
+            double x = points[3 * i + k];
+            f->lower[k] = f->begun || i > 0 ? fmin(f->lower[k], x) : x;
+            f->upper[k] = f->begun || i > 0 ? fmax(f->upper[k], x) : x;
+        }
+    f->begun = f->begun || count > 0;
+}
+
+static void cover_mesh(frame *f, const starg_mesh *mesh) {
+    cover_points(f, starg_mesh_vertices(mesh), starg_mesh_vertex_count(mesh));
+}
+
+static void find_frame(const starg_page *p, frame *f) {
+    double span[3];
+    if (p->model != NULL)
+        cover_mesh(f, p->model);
+    if (p->guards != NULL)
+        cover_points(f, p->guards->positions, p->guards->count);
+    if (p->pieces != NULL)
+        cover_points(f, p->pieces->vertices, p->pieces->vertex_count);
+    if (p->skeleton != NULL)
+        cover_points(f, p->skeleton->positions, p->skeleton->node_count);
+    for (size_t i = 0; i < p->frame_count; i++)
+        cover_mesh(f, p->frames[i]);
+    for (int k = 0; k < 3; k++) {
+        span[k] = f->upper[k] - f->lower[k];
+        f->center[k] = f->lower[k] + 0.5 * span[k];
+    }
+    f->scale = 0.5 * hypot(hypot(span[0], span[1]), span[2]);
+    if (!(f->scale > 0))
+        f->scale = 1;
+}
+
+/* ---- blocks ---- */
+
+static void put_point(starg_page_block *block, const frame *f, const double point[3]) {
+    for (int k = 0; k < 3; k++)
+        starg_page_block_float(block, (point[k] - f->center[k]) / f->scale);
+}
+
+static void put_points(FILE *stream, const char *name, size_t index, const frame *f,
+                       const double *points, size_t count) {
+    starg_page_block block = starg_page_block_open(stream, name, index);
+    for (size_t i = 0; i < count; i++)
+        put_point(&block, f, points + 3 * i);
+    starg_page_block_close(&block);
+}
+
+static void put_indices(FILE *stream, const char *name, const uint32_t *indices, size_t count) {
+    starg_page_block block = starg_page_block_open(stream, name, STARG_PAGE_SINGLE);
+    for (size_t i = 0; i < count; i++)
+        starg_page_block_uint32(&block, indices[i]);
+    starg_page_block_close(&block);
+}
+
+/* A row is as many bytes as its columns need; bit i of a byte is column 8 byte + i. */
+static void put_bits(FILE *stream, const char *name, const starg_bits *bits) {
+    starg_page_block block = starg_page_block_open(stream, name, STARG_PAGE_SINGLE);
+    for (size_t row = 0; row < starg_bits_rows(bits); row++)
+        for (size_t i = 0; i < (starg_bits_columns(bits) + 7) / 8; i++)
+            starg_page_block_byte(&block,
+                                  (uint8_t)(starg_bits_row(bits, row)[i / 8] >> (i % 8 * 8)));
+    starg_page_block_close(&block);
+}
+
+static void put_surface(FILE *stream, const book *b) {
+    const starg_mesh *m = b->page->model;
+    put_points(stream, "model-points", STARG_PAGE_SINGLE, &b->frame, starg_mesh_vertices(m),
+               starg_mesh_vertex_count(m));
+    put_indices(stream, "model-faces", starg_mesh_faces(m), 3 * starg_mesh_face_count(m));
+}
+
+static void put_guards(FILE *stream, const book *b) {
+    const starg_guards *g = b->page->guards;
+    put_points(stream, "guard-points", STARG_PAGE_SINGLE, &b->frame, g->positions, g->count);
+    if (b->page->seen != NULL)
+        put_bits(stream, "guard-seen", b->page->seen);
+}
+
+static void put_pieces(FILE *stream, const book *b) {
+    const starg_piece_surfaces *s = &b->surfaces;
+    starg_page_block block = starg_page_block_open(stream, "piece-points", STARG_PAGE_SINGLE);
+    for (size_t i = 0; i < s->vertex_count; i++)
+        put_point(&block, &b->frame, b->page->pieces->vertices + 3 * s->vertices[i]);
+    starg_page_block_close(&block);
+    put_indices(stream, "piece-faces", s->faces, 3 * s->first_face[s->piece_count]);
+    if (b->page->report == NULL)
+        return;
+    block = starg_page_block_open(stream, "piece-guards", STARG_PAGE_SINGLE);
+    for (size_t i = 0; i < s->piece_count; i++)
+        put_point(&block, &b->frame, b->page->report->pieces[i].guard);
+    starg_page_block_close(&block);
+}
+
+static void put_skeleton(FILE *stream, const book *b) {
+    const starg_skeleton *s = b->page->skeleton;
+    put_points(stream, "skeleton-points", STARG_PAGE_SINGLE, &b->frame, s->positions,
+               s->node_count);
+    put_indices(stream, "skeleton-edges", s->edges, 2 * s->edge_count);
+    if (s->radii == NULL)
+        return;
+    starg_page_block block = starg_page_block_open(stream, "skeleton-radii", STARG_PAGE_SINGLE);
+    for (size_t i = 0; i < s->node_count; i++)
+        starg_page_block_float(&block, s->radii[i] / b->frame.scale);
+    starg_page_block_close(&block);
+}
+
+static void put_frames(FILE *stream, const book *b) {
+    const starg_mesh *first = b->page->frames[0];
+    put_indices(stream, "morph-faces", starg_mesh_faces(first), 3 * starg_mesh_face_count(first));
+    for (size_t i = 0; i < b->page->frame_count; i++)
+        put_points(stream, "morph-points", i, &b->frame, starg_mesh_vertices(b->page->frames[i]),
+                   starg_mesh_vertex_count(first));
+}
+
+static void put_shapes(FILE *stream, const starg_page *p) {
+    starg_page_block block = starg_page_block_open(stream, "shape-distances", STARG_PAGE_SINGLE);
+    for (size_t i = 0; i < p->shape_count * p->shape_count; i++)
+        starg_page_block_double(&block, p->distances[i]);
+    starg_page_block_close(&block);
+    for (size_t i = 0; i < p->shape_count; i++) {
+        if (p->shapes[i].png == NULL)
+            continue;
+        block = starg_page_block_open(stream, "shape-picture", i);
+        starg_page_block_bytes(&block, p->shapes[i].png, p->shapes[i].png_size);
+        starg_page_block_close(&block);
+    }
+}
+
+static void put_blocks(FILE *stream, const book *b) {
+    if (b->page->model != NULL)
+        put_surface(stream, b);
+    if (b->page->guards != NULL)
+        put_guards(stream, b);
+    if (b->page->pieces != NULL)
+        put_pieces(stream, b);
+    if (b->page->skeleton != NULL)
+        put_skeleton(stream, b);
+    if (b->page->frame_count > 0)
+        put_frames(stream, b);
+    if (b->page->shape_count > 0)
+        put_shapes(stream, b->page);
+}
+
+/* ---- description ---- */
+
+static json_t *point_json(const double p[3]) {
+    return json_pack("[f, f, f]", p[0], p[1], p[2]);
+}
+
+static json_t *model_json(const book *b) {
+    const starg_mesh *m = b->page->model;
+    return json_pack("{s:s?, s:I, s:I}", "name", b->model_name, "vertices",
+                     (json_int_t)starg_mesh_vertex_count(m), "faces",
+                     (json_int_t)starg_mesh_face_count(m));
+}
+
+static json_t *uncovered_json(const starg_guards *g) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < g->uncovered_count; i++)
+        json_array_append_new(list, json_integer(g->uncovered[i]));
+    return list;
+}
+
+static json_t *guard_json(const book *b, size_t i) {
+    const starg_guards *g = b->page->guards;
+    size_t seen = b->page->seen != NULL ? starg_bits_count(b->page->seen, i) : g->seen_faces[i];
+    json_t *guard = json_pack("{s:o, s:I, s:i}", "position", point_json(g->positions + 3 * i),
+                              "faces", (json_int_t)seen, "level", g->levels[i]);
+    if (g->curve_faces != NULL)
+        json_object_set_new(guard, "covered",
+                            json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));
+    return guard;
+}
+
+static json_t *guards_json(const book *b) {
+    const starg_guards *g = b->page->guards;
+    static const char *const methods[] = {"ilp", "greedy", "pilp"};
+    json_t *list = json_array();
+    for (size_t i = 0; i < g->count; i++)
+        json_array_append_new(list, guard_json(b, i));
+    return json_pack("{s:o, s:I, s:s, s:f, s:f, s:I, s:b, s:b, s:o}", "list", list, "faces",
+                     (json_int_t)g->face_count, "method", methods[g->options.method],
+                     "coverage_faces", g->coverage_faces, "coverage_area", g->coverage_area,
+                     "lower_bound", (json_int_t)g->lower_bound, "optimal", (int)g->optimal, "seen",
+                     (int)(b->page->seen != NULL), "uncovered", uncovered_json(g));
+}
+
+static json_t *piece_json(const book *b, size_t i) {
+    const starg_piece_surfaces *s = &b->surfaces;
+    json_t *piece =
+        json_pack("{s:I}", "faces", (json_int_t)(s->first_face[i + 1] - s->first_face[i]));
+    if (b->page->report == NULL)
+        return piece;
+    const starg_piece *told = &b->page->report->pieces[i];
+    json_object_set_new(piece, "guard", point_json(told->guard));
+    json_object_set_new(piece, "tetrahedra", json_integer((json_int_t)told->tetrahedra));
+    json_object_set_new(piece, "volume", json_real(told->volume));
+    json_object_set_new(piece, "star", json_boolean(told->star));
+    return piece;
+}
+
+static json_t *pieces_json(const book *b) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < b->surfaces.piece_count; i++)
+        json_array_append_new(list, piece_json(b, i));
+    return json_pack("{s:o, s:I, s:b}", "list", list, "tetrahedra",
+                     (json_int_t)b->page->pieces->count, "reported",
+                     (int)(b->page->report != NULL));
+}
+
+static json_t *skeleton_json(const starg_skeleton *s) {
+    return json_pack("{s:I, s:I, s:b}", "nodes", (json_int_t)s->node_count, "edges",
+                     (json_int_t)s->edge_count, "radii", (int)(s->radii != NULL));
+}
+
+static json_t *morph_json(const starg_page *p) {
+    return json_pack("{s:I, s:I, s:I}", "frames", (json_int_t)p->frame_count, "vertices",
+                     (json_int_t)starg_mesh_vertex_count(p->frames[0]), "faces",
+                     (json_int_t)starg_mesh_face_count(p->frames[0]));
+}
+
+static json_t *shapes_json(const book *b) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < b->page->shape_count; i++)
+        json_array_append_new(list, json_pack("{s:s, s:b}", "name", b->names[i], "picture",
+                                              (int)(b->page->shapes[i].png != NULL)));
+    return list;
+}
+
+/* Colours of guards and pieces, those of pictures. */
+static json_t *colors_json(const book *b) {
+    size_t count = b->page->guards != NULL ? b->page->guards->count : 0;
+    if (count < b->surfaces.piece_count)
+        count = b->surfaces.piece_count;
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++) {
+        uint8_t rgb[3];
+        char text[8];
+        starg_distinct_color(i, rgb);
+        snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+        json_array_append_new(list, json_string(text));
+    }
+    return list;
+}
+
+static json_t *describe(const book *b) {
+    const starg_page *p = b->page;
+    json_t *root =
+        json_pack("{s:s, s:i, s:s, s:{s:o, s:f}, s:o}", "format", "starguard-page", "version", 1,
+                  "title", b->title, "frame", "center", point_json(b->frame.center), "scale",
+                  b->frame.scale, "colors", colors_json(b));
+    if (p->model != NULL)
+        json_object_set_new(root, "model", model_json(b));
+    if (p->guards != NULL)
+        json_object_set_new(root, "guards", guards_json(b));
+    if (p->pieces != NULL)
+        json_object_set_new(root, "pieces", pieces_json(b));
+    if (p->skeleton != NULL)
+        json_object_set_new(root, "skeleton", skeleton_json(p->skeleton));
+    if (p->frame_count > 0)
+        json_object_set_new(root, "morph", morph_json(p));
+    if (p->shape_count > 0)
+        json_object_set_new(root, "shapes", shapes_json(b));
+    return root;
+}
+
+/* ---- the page ---- */
+
+static starg_status copy_names(starg_context *context, book *b) {
+    starg_status status = STARG_OK;
+    const starg_page *p = b->page;
+    const char *title = p->title != NULL ? p->title : p->model_name;
+    STARG_TRY(starg_json_path(context, STAGE, title != NULL ? title : "starguard", &b->title));
+    STARG_TRY(starg_json_path(context, STAGE, p->model_name, &b->model_name));
+    STARG_NEW_ZERO(context, STAGE, b->names, p->shape_count);
+    for (size_t i = 0; i < p->shape_count; i++)
+        STARG_TRY(starg_json_path(context, STAGE, p->shapes[i].name, &b->names[i]));
+done:
+    return status;
+}
+
+static void free_book(starg_context *context, book *b) {
+    for (size_t i = 0; b->names != NULL && i < b->page->shape_count; i++)
+        starg_release(context, b->names[i]);
+    starg_release(context, b->names);
+    starg_release(context, b->title);
+    starg_release(context, b->model_name);
+    starg_piece_surfaces_free(context, &b->surfaces);
+}
+
+/* False when memory is out; errors of the stream are found when it is committed. */
+static bool put_page(FILE *stream, const book *b) {
+    fwrite(starg_viewer_head, 1, starg_viewer_head_size, stream);
+    if (!starg_page_json(stream, "data", describe(b)))
+        return false;
+    put_blocks(stream, b);
+    fwrite(starg_viewer_tail, 1, starg_viewer_tail_size, stream);
+    return true;
+}
+
+starg_status starg_page_write(starg_context *context, const starg_page *page, const char *path) {
+    starg_status status = STARG_OK;
+    book b = {.page = page};
+    starg_output output = {0};
+    if (!starg_page_available())
+        return starg_fail(context, STARG_ERROR_WRITE, STAGE, "%s", NO_VIEWER);
+    if (page->pieces != NULL)
+        STARG_TRY(starg_piece_surfaces_create(context, page->pieces, &b.surfaces));
+    STARG_TRY(check(context, &b));
+    find_frame(page, &b.frame);
+    STARG_TRY(copy_names(context, &b));
+    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    if (!put_page(output.stream, &b)) {
+        status = starg_fail_memory(context, STAGE);
+        goto done;
+    }
+    STARG_TRY(starg_check_cancel(context, STAGE));
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_output_discard(&output);
+    free_book(context, &b);
+    return status;
+}

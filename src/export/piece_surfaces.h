@@ -1,0 +1,21 @@
+/* The surfaces of pieces of tetrahedra, to be drawn. */
+#ifndef STARG_EXPORT_PIECE_SURFACES_H
+#define STARG_EXPORT_PIECE_SURFACES_H
+
+#include "core/context.h"
+#include "starguard/verify.h"
+
+typedef struct starg_piece_surfaces {
+    size_t piece_count;
+    size_t *first_face; /* piece_count + 1: the faces of each piece follow one another    */
+    uint32_t *faces;    /* three each, outward from the piece; indices into `vertices`    */
+    size_t vertex_count;
+    uint32_t *vertices; /* that faces use, ascending; indices into those of the tetrahedra */
+} starg_piece_surfaces;
+
+/* Errors: ARGUMENT (an index or a label out of range), MEMORY, CANCELLED. */
+starg_status starg_piece_surfaces_create(starg_context *context, const starg_pieces_mesh *mesh,
+                                         starg_piece_surfaces *out);
+void starg_piece_surfaces_free(starg_context *context, starg_piece_surfaces *surfaces);
+
+#endif

@@ -1,0 +1,13 @@
+/* The viewer: the text of a page before and behind its data. viewer/build.mjs makes it of the
+ * sources in viewer/; without Node.js and npm at build time, viewer_missing.c stands in. */
+#ifndef STARG_EXPORT_VIEWER_H
+#define STARG_EXPORT_VIEWER_H
+
+#include <stddef.h>
+
+extern const unsigned char starg_viewer_head[];
+extern const size_t starg_viewer_head_size; /* 0: there is no viewer */
+extern const unsigned char starg_viewer_tail[];
+extern const size_t starg_viewer_tail_size;
+
+#endif

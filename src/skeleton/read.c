@@ -1,0 +1,272 @@
+/* Skeleton files, as write.c writes them: OBJ (v and l, from 1), CG (v and e, from 1), and VTK
+ * (legacy polydata as text, from 0, with the points' radii). What the numbers say about the graph
+ * is counted anew; whether it lies in a solid is not asked. Cost: linear. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "mesh/scan.h"
+#include "starguard/skeleton.h"
+
+static const char STAGE[] = "skeleton file";
+
+typedef struct reader {
+    const starg_source *source;
+    starg_scan scan;
+    STARG_ARRAY(double) points;
+    STARG_ARRAY(double) radii;
+    STARG_ARRAY(uint32_t) edges;
+} reader;
+
+static starg_status reject(const reader *r, size_t line, const char *what) {
+    return starg_source_fail(r->source, starg_at_line(line), "%s", what);
+}
+
+static starg_status read_point(reader *r) {
+    starg_status status = STARG_OK;
+    for (int k = 0; k < 3; k++) {
+        double x;
+        STARG_TRY(starg_scan_real(&r->scan, "a coordinate of a node", &x));
+        if (!(fabs(x) < 1e100))
+            return reject(r, r->scan.line, "a coordinate is not finite and below 1e100");
+        STARG_PUSH(r->source->context, STAGE, &r->points, x);
+    }
+done:
+    return status;
+}
+
+/* An end of an edge, counted from `base`. */
+static starg_status push_end(reader *r, int64_t node, int64_t base) {
+    starg_status status = STARG_OK;
+    if (node < base || (uint64_t)(node - base) >= UINT32_MAX)
+        return reject(r, r->scan.line, "an edge names a node that cannot be");
+    STARG_PUSH(r->source->context, STAGE, &r->edges, (uint32_t)(node - base));
+done:
+    return status;
+}
+
+/* ---- OBJ and CG ---- */
+
+/* The nodes of a polyline, or of an edge: as many edges as it has steps. */
+static starg_status read_line(reader *r) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    int64_t before = 0, node;
+    size_t count = 0;
+    for (; starg_scan_word_here(&r->scan, &word); count++, before = node) {
+        STARG_TRY(starg_word_integer(&r->scan, word, "a node of an edge", &node));
+        if (count == 0)
+            continue;
+        STARG_TRY(push_end(r, before, 1));
+        STARG_TRY(push_end(r, node, 1));
+    }
+    if (count < 2)
+        status = reject(r, r->scan.line, "an edge needs two nodes");
+done:
+    return status;
+}
+
+static starg_status read_lines(reader *r) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    while (starg_scan_word(&r->scan, &word)) {
+        if (starg_word_is(word, "v"))
+            STARG_TRY(read_point(r));
+        else if (starg_word_is(word, "l") || starg_word_is(word, "e"))
+            STARG_TRY(read_line(r));
+        else if (starg_word_is(word, "f"))
+            return reject(r, word.line, "faces are of a surface; a skeleton has nodes and edges");
+        starg_scan_next_line(&r->scan);
+    }
+done:
+    return status;
+}
+
+/* ---- VTK ---- */
+
+static starg_status expect(reader *r, const char *keyword) {
+    starg_word word;
+    starg_status status = starg_scan_expect(&r->scan, keyword, &word);
+    if (status == STARG_OK && !starg_word_is(word, keyword))
+        return starg_source_fail(r->source, starg_at_line(word.line), "'%s' stands where %s should",
+                                 starg_word_excerpt(word).text, keyword);
+    return status;
+}
+
+/* A count of things of two bytes at least, which the file must have room for. */
+static starg_status read_count(reader *r, const char *what, int64_t *count) {
+    starg_status status = starg_scan_integer(&r->scan, what, count);
+    if (status == STARG_OK && (*count < 0 || (uint64_t)*count > r->source->size / 2))
+        return reject(r, r->scan.line, "a count is larger than the file");
+    return status;
+}
+
+static starg_status read_vtk_points(reader *r) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    int64_t count;
+    STARG_TRY(read_count(r, "the number of points", &count));
+    STARG_TRY(starg_scan_expect(&r->scan, "a type of numbers", &word));
+    while (count-- > 0)
+        STARG_TRY(read_point(r));
+done:
+    return status;
+}
+
+/* LINES (edges) or VERTICES (which say nothing new): each is a count and that many points. */
+static starg_status read_vtk_cells(reader *r, bool edges) {
+    starg_status status = STARG_OK;
+    int64_t cells, numbers, size, node, before = 0;
+    STARG_TRY(read_count(r, "a number of cells", &cells));
+    STARG_TRY(read_count(r, "a number of numbers", &numbers));
+    while (cells-- > 0) {
+        STARG_TRY(read_count(r, "the size of a cell", &size));
+        for (int64_t i = 0; i < size; i++, before = node) {
+            STARG_TRY(starg_scan_integer(&r->scan, "a point of a cell", &node));
+            if (!edges || i == 0)
+                continue;
+            STARG_TRY(push_end(r, before, 0));
+            STARG_TRY(push_end(r, node, 0));
+        }
+    }
+done:
+    return status;
+}
+
+static starg_status read_vtk_radii(reader *r) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    STARG_TRY(expect(r, "radius"));
+    starg_scan_next_line(&r->scan); /* the type */
+    STARG_TRY(expect(r, "LOOKUP_TABLE"));
+    STARG_TRY(starg_scan_expect(&r->scan, "a table's name", &word));
+    for (size_t i = 0; i < r->points.count / 3; i++) {
+        double radius;
+        STARG_TRY(starg_scan_real(&r->scan, "a radius", &radius));
+        if (!(radius >= 0 && radius < 1e101))
+            return reject(r, r->scan.line, "a radius is negative or not finite");
+        STARG_PUSH(r->source->context, STAGE, &r->radii, radius);
+    }
+done:
+    return status;
+}
+
+static starg_status read_vtk(reader *r) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    int64_t count;
+    starg_scan_next_line(&r->scan); /* the magic */
+    starg_scan_next_line(&r->scan); /* the title */
+    STARG_TRY(expect(r, "ASCII"));
+    STARG_TRY(expect(r, "DATASET"));
+    STARG_TRY(expect(r, "POLYDATA"));
+    while (starg_scan_word(&r->scan, &word)) {
+        if (starg_word_is(word, "POINTS"))
+            STARG_TRY(read_vtk_points(r));
+        else if (starg_word_is(word, "LINES") || starg_word_is(word, "VERTICES"))
+            STARG_TRY(read_vtk_cells(r, starg_word_is(word, "LINES")));
+        else if (starg_word_is(word, "POINT_DATA"))
+            STARG_TRY(read_count(r, "the number of points", &count));
+        else if (starg_word_is(word, "SCALARS") && r->radii.count == 0)
+            STARG_TRY(read_vtk_radii(r));
+        else
+            return starg_source_fail(r->source, starg_at_line(word.line),
+                                     "'%s' is no part of a skeleton",
+                                     starg_word_excerpt(word).text);
+    }
+done:
+    return status;
+}
+
+/* ---- the graph ---- */
+
+static uint32_t root_of(uint32_t *parents, uint32_t v) {
+    while (parents[v] != v)
+        v = parents[v] = parents[parents[v]];
+    return v;
+}
+
+/* Counts parts, loops, joints and ends. */
+static starg_status count_graph(starg_context *context, starg_skeleton *s) {
+    starg_status status = STARG_OK;
+    uint32_t *parents = NULL, *degrees = NULL;
+    STARG_NEW(context, STAGE, parents, s->node_count);
+    STARG_NEW_ZERO(context, STAGE, degrees, s->node_count);
+    for (size_t v = 0; v < s->node_count; v++)
+        parents[v] = (uint32_t)v;
+    s->components = s->node_count;
+    for (size_t e = 0; e < s->edge_count; e++) {
+        uint32_t a = root_of(parents, s->edges[2 * e]), b = root_of(parents, s->edges[2 * e + 1]);
+        s->components -= a != b;
+        parents[a] = b;
+        degrees[s->edges[2 * e]]++;
+        degrees[s->edges[2 * e + 1]]++;
+    }
+    s->loops = s->edge_count + s->components - s->node_count;
+    for (size_t v = 0; v < s->node_count; v++) {
+        s->joints += degrees[v] > 2;
+        s->ends += degrees[v] == 1;
+    }
+done:
+    starg_release(context, parents);
+    starg_release(context, degrees);
+    return status;
+}
+
+/* Hands the arrays over. */
+static starg_status finish(reader *r, starg_skeleton *s) {
+    s->node_count = r->points.count / 3;
+    s->edge_count = r->edges.count / 2;
+    if (s->node_count == 0)
+        return starg_source_fail(r->source, starg_at_file(), "the file has no nodes");
+    for (size_t i = 0; i < r->edges.count; i++)
+        if (r->edges.data[i] >= s->node_count)
+            return starg_source_fail(r->source, starg_at_file(),
+                                     "edge %zu names a node that is not there", i / 2);
+    s->positions = r->points.data;
+    s->edges = r->edges.data;
+    s->radii = r->radii.data;
+    r->points.data = NULL;
+    r->edges.data = NULL;
+    r->radii.data = NULL;
+    return count_graph(r->source->context, s);
+}
+
+static bool is_vtk(const starg_source *source) {
+    return source->size >= 5 && memcmp(source->bytes, "# vtk", 5) == 0;
+}
+
+starg_status starg_skeleton_read_memory(starg_context *context, const void *bytes, size_t size,
+                                        const char *name, starg_skeleton **out) {
+    starg_status status = STARG_OK;
+    const starg_source source = {context, name, bytes, size};
+    reader r = {.source = &source, .scan = starg_scan_make(&source)};
+    starg_skeleton *skeleton = NULL;
+    starg_c_locale locale = {0};
+    *out = NULL;
+    STARG_TRY(starg_c_locale_enter(context, &locale));
+    STARG_NEW_ZERO(context, STAGE, skeleton, 1);
+    STARG_TRY(is_vtk(&source) ? read_vtk(&r) : read_lines(&r));
+    STARG_TRY(finish(&r, skeleton));
+    *out = skeleton;
+done:
+    starg_c_locale_leave(&locale);
+    STARG_ARRAY_FREE(context, &r.points);
+    STARG_ARRAY_FREE(context, &r.radii);
+    STARG_ARRAY_FREE(context, &r.edges);
+    if (status != STARG_OK)
+        starg_skeleton_free(context, skeleton);
+    return status;
+}
+
+starg_status starg_skeleton_read(starg_context *context, const char *path, starg_skeleton **out) {
+    starg_status status = STARG_OK;
+    char *bytes = NULL;
+    size_t size;
+    *out = NULL;
+    STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
+    STARG_TRY(starg_skeleton_read_memory(context, bytes, size, path, out));
+done:
+    starg_release(context, bytes);
+    return status;
+}

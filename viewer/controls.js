@@ -1,0 +1,89 @@
+// What all 3D views share: how clear the model is, the cut, which way is up.
+import { shared } from "./materials.js";
+import { choice, element, heading, say, slider } from "./panel.js";
+import { percent } from "./text.js";
+
+const AXES = ["Off", "X", "Y", "Z"];
+
+export class Controls {
+    constructor(stage, surface, openCut) {
+        this.stage = stage;
+        this.openCut = openCut; // called with true or false when inner sides begin or cease to show
+        this.flipped = false;
+        this.open = false;
+        this.opacity =
+            surface &&
+            slider({
+                name: "Model",
+                id: "opacity",
+                value: 0.3,
+                show: (x) => (x === 0 ? "hidden" : x === 1 ? "solid" : `${percent(x)} opaque`),
+                change: (x) => {
+                    surface.setOpacity(x);
+                    stage.request();
+                },
+            });
+        this.axis = choice({ name: "Cut", words: AXES, value: 0, change: () => this.cut() });
+        this.place = slider({
+            name: "Cut at",
+            id: "cut",
+            value: 0.5,
+            show: (x) => percent(x),
+            change: () => this.cut(),
+        });
+        this.flip = element("button", { type: "button", id: "flip", onclick: () => this.turnOver() }, "Other side");
+        this.up = choice({ name: "Up", words: ["Y", "Z"], value: 0, change: (i) => this.setUp(i) });
+        this.reset = element("button", { type: "button", id: "reset", onclick: () => stage.fit(stage.ball) }, "Reset view");
+        this.cutParts = element("div", {}, this.place.node, element("div", { className: "row" }, element("span"), this.flip));
+        this.surfacePart = element("div", {}, ...(this.opacity ? [this.opacity.node] : []));
+        this.node = element(
+            "div",
+            {},
+            heading("View"),
+            this.surfacePart,
+            this.axis.node,
+            this.cutParts,
+            this.up.node,
+            element("div", { className: "row" }, element("span"), this.reset),
+        );
+        this.cut();
+    }
+
+    setUp(i) {
+        this.stage.setUp(i + 1);
+        say(`${"YZ"[i]} points up`);
+    }
+
+    turnOver() {
+        this.flipped = !this.flipped;
+        this.cut();
+        say("The other side is cut off");
+    }
+
+    /** From off to x, y, z and off again. */
+    nextCut() {
+        this.axis.set((this.axis.value + 1) % AXES.length);
+        say(this.axis.value === 0 ? "No cut" : `Cut across ${AXES[this.axis.value]}`);
+    }
+
+    cut() {
+        const axis = this.axis.value - 1;
+        const { center, radius } = this.stage.ball;
+        const sign = this.flipped ? -1 : 1;
+        const cut = shared.cut.value.set(0, 0, 0, 1);
+        if (axis >= 0) {
+            cut.setComponent(axis, sign);
+            cut.w = sign * (center[axis] + radius * (2 * this.place.value - 1));
+        }
+        this.cutParts.hidden = axis < 0;
+        if (this.open !== axis >= 0) this.openCut((this.open = axis >= 0));
+        this.stage.request();
+    }
+
+    /** The view has another model, or none. */
+    suit(view) {
+        this.node.hidden = view.flat;
+        this.surfacePart.hidden = !view.withSurface;
+        this.cut();
+    }
+}

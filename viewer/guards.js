@@ -1,0 +1,171 @@
+// Guards: points inside the glass model; what one sees is painted when it is picked, and what the
+// first few see when the slider moves.
+import page, { bytes, floats } from "./data.js";
+import { coverageCurve } from "./curve.js";
+import { element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
+import { PickPoints } from "./points.js";
+import { amount, count, percent, point } from "./text.js";
+import { View } from "./view.js";
+
+const METHODS = { pilp: "progressive (pilp)", ilp: "fewest of the candidates (ilp)", greedy: "greedy" };
+
+export class GuardsView extends View {
+    name = "Guards";
+    withSurface = true;
+
+    constructor(stage, surface) {
+        super();
+        const told = page.guards;
+        this.stage = stage;
+        this.surface = surface;
+        this.told = told;
+        this.points = new PickPoints(floats("guard-points"), page.colors);
+        this.rowBytes = Math.ceil(told.faces / 8);
+        this.seen = told.seen ? bytes("guard-seen") : null;
+        this.unseen = new Set(told.uncovered);
+        this.picked = -1;
+        this.first = told.list.length;
+        this.objects = [this.points.object];
+        this.node = this.makePanel();
+        this.update();
+    }
+
+    row(i) {
+        return this.seen.subarray(i * this.rowBytes, (i + 1) * this.rowBytes);
+    }
+
+    /** What the first `count` guards see, as bits. */
+    union(count) {
+        const bits = new Uint8Array(this.rowBytes);
+        for (let i = 0; i < count; i++) this.row(i).forEach((byte, k) => (bits[k] |= byte));
+        return bits;
+    }
+
+    sentence(i) {
+        const { faces } = this.told.list[i];
+        return `Guard ${i + 1} sees ${amount(faces, "face", "faces")} of ${count(this.told.faces)} (${percent(faces / this.told.faces)})`;
+    }
+
+    // ---- panel ----
+
+    makePanel() {
+        const { told } = this;
+        const number = told.list.length;
+        this.list = pickList({
+            name: "Guards",
+            pick: (i) => this.pick(this.picked === i ? -1 : i),
+            rows: told.list.map((guard, i) => [
+                swatch("dot", page.colors[i]),
+                element("span", { className: "name" }, `Guard ${i + 1}`),
+                element("span", { className: "number" }, amount(guard.faces, "face", "faces")),
+            ]),
+        });
+        const node = element("div", {}, this.makeFacts());
+        if (number > 0 && told.list[0].covered) node.append(...this.makeCurve());
+        node.append(heading("Pick a guard to see what it sees"), this.list.node);
+        this.place = note("");
+        node.append(this.place);
+        if (told.uncovered.length > 0)
+            node.append(note(`${amount(told.uncovered.length, "face is", "faces are")} seen by no guard: shown in red.`));
+        return node;
+    }
+
+    makeFacts() {
+        const { told } = this;
+        const number = told.list.length;
+        return facts([
+            ["Guards", count(number), METHODS[told.method]],
+            told.optimal
+                ? ["Lower bound", count(told.lower_bound), "optimal", "good"]
+                : ["Lower bound", count(told.lower_bound), "proven"],
+            ["Area seen", percent(told.coverage_area), `${percent(told.coverage_faces)} of faces`],
+        ]);
+    }
+
+    makeCurve() {
+        const fractions = [0, ...this.told.list.map((guard) => Math.min(Math.max(guard.covered[1], 0), 1))];
+        this.curve = coverageCurve(fractions, (k) => this.firstSlider?.move(k));
+        const parts = [heading("Area seen by the first guards"), this.curve.node];
+        if (this.seen === null) return parts;
+        this.firstSlider = slider({
+            name: "Paint what the first guards see",
+            id: "first-guards",
+            max: fractions.length - 1,
+            step: 1,
+            value: fractions.length - 1,
+            show: (k) => `${k} · ${percent(fractions[k])}`,
+            change: (k) => this.showFirst(k),
+        });
+        return [...parts, this.firstSlider.node];
+    }
+
+    // ---- what is shown ----
+
+    /** Picks one guard, or none for -1. */
+    pick(i) {
+        this.picked = i;
+        this.painted = false;
+        this.first = this.points.count;
+        this.update();
+        say(i < 0 ? "No guard is picked" : this.sentence(i));
+    }
+
+    showFirst(k) {
+        this.picked = -1;
+        this.painted = true;
+        this.first = k;
+        this.update();
+        say(`The first ${amount(k, "guard sees", "guards see")} ${this.firstSlider.input.getAttribute("aria-valuetext").split(" · ")[1]} of the area`);
+    }
+
+    step(by) {
+        const { count: number } = this.points;
+        if (number > 0) this.pick(this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number);
+    }
+
+    clear() {
+        this.pick(-1);
+    }
+
+    update() {
+        const { picked, first } = this;
+        this.points.pick(picked);
+        this.points.showFirst(first);
+        this.list.press(picked);
+        if (this.firstSlider) this.firstSlider.value = first;
+        this.curve?.mark(first);
+        this.place.textContent = picked < 0 ? "" : `Guard ${picked + 1} stands at ${point(this.told.list[picked].position)}`;
+        this.place.hidden = picked < 0;
+        this.paint();
+        this.stage.request();
+    }
+
+    paint() {
+        if (this.surface === null) return;
+        if (this.seen !== null && this.picked >= 0)
+            this.surface.paintSeen(this.row(this.picked), page.colors[this.picked], new Set());
+        else if (this.seen !== null && this.painted)
+            this.surface.paintSeen(this.union(this.first), null, this.unseen);
+        else this.surface.paintSeen(null, null, this.unseen);
+    }
+
+    // ---- pointer ----
+
+    click(at) {
+        const i = this.points.under(this.stage, at);
+        if (i >= 0) this.pick(i === this.picked ? -1 : i);
+        else if (this.picked >= 0) this.clear();
+    }
+
+    /** What the tag under the pointer says, and where it points; null for nothing. */
+    tag(at) {
+        const i = at === null ? -1 : this.points.under(this.stage, at);
+        if (i >= 0) return { text: `Guard ${i + 1} · ${amount(this.told.list[i].faces, "face", "faces")}`, place: this.points.place(i), over: true };
+        if (this.picked < 0) return null;
+        return { text: `Guard ${this.picked + 1} · ${amount(this.told.list[this.picked].faces, "face", "faces")}`, place: this.points.place(this.picked), over: false };
+    }
+
+    enter() {
+        this.paint();
+    }
+}

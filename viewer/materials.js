@@ -1,0 +1,151 @@
+// How things look: one shader for surfaces, one for points. Colours are those of the style sheet, as
+// they are; light comes from the viewer's left shoulder.
+import { Color, DoubleSide, FrontSide, ShaderMaterial, Vector4 } from "three";
+
+/** Uniforms that all materials share: the cut, which hides where dot(p, cut.xyz) > cut.w. */
+export const shared = {
+    cut: { value: new Vector4(0, 0, 0, 1) },
+    explode: { value: 0 },
+    time: { value: 0 },
+    pixels: { value: 1 },
+};
+
+const SURFACE_VERTEX = `
+uniform float explode, time;
+varying vec3 where, direction, view, tint;
+#ifdef PIECES
+attribute vec3 away;
+attribute vec3 color;
+attribute float piece;
+uniform float picked;
+varying float fade;
+#endif
+#ifdef MOVING
+attribute vec3 positionNext;
+attribute vec3 normalNext;
+#endif
+void main() {
+    vec3 p = position, n = normal;
+    tint = vec3(1.0);
+#ifdef MOVING
+    p = mix(position, positionNext, time);
+    n = mix(normal, normalNext, time);
+#endif
+#ifdef PIECES
+    p += explode * away;
+    tint = color;
+    fade = picked < 0.0 || abs(picked - piece) < 0.5 ? 1.0 : 0.0;
+#endif
+#ifdef USE_INSTANCING
+    p = (instanceMatrix * vec4(p, 1.0)).xyz;
+    n = mat3(instanceMatrix) * n;
+#endif
+#ifdef USE_INSTANCING_COLOR
+    tint = instanceColor;
+#endif
+    where = p;
+    vec4 seen = modelViewMatrix * vec4(p, 1.0);
+    direction = normalMatrix * n;
+    view = -seen.xyz;
+    gl_Position = projectionMatrix * seen;
+}`;
+
+const SURFACE_FRAGMENT = `
+uniform vec4 cut;
+uniform vec3 base;
+uniform float opacity, rim;
+varying vec3 where, direction, view, tint;
+#ifdef PIECES
+varying float fade;
+#endif
+void main() {
+    if (dot(where, cut.xyz) > cut.w) discard;
+    vec3 n = normalize(direction), v = normalize(view);
+    if (!gl_FrontFacing) n = -n;
+    float facing = clamp(dot(n, v), 0.0, 1.0);
+    float key = max(dot(n, normalize(vec3(-0.45, 0.65, 0.7))), 0.0);
+    float light = 0.50 + 0.40 * key + 0.16 * facing;
+    vec3 c = base * tint * light + 0.10 * pow(key, 24.0);
+    float a = mix(opacity, 1.0, rim * pow(1.0 - facing, 2.5));
+    if (!gl_FrontFacing) c *= 0.74;
+#ifdef PIECES
+    if (fade < 0.5) {
+        /* a screen of dots: no sorting is needed */
+        vec2 dot2 = mod(floor(gl_FragCoord.xy), 4.0);
+        if (dot2.x + dot2.y > 0.5) discard;
+    }
+#endif
+    gl_FragColor = vec4(c, a);
+}`;
+
+/** A lit surface; `defines` may hold PIECES or MOVING. */
+export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defines = {} } = {}) {
+    const material = new ShaderMaterial({
+        vertexShader: SURFACE_VERTEX,
+        fragmentShader: SURFACE_FRAGMENT,
+        defines,
+        uniforms: {
+            ...shared,
+            base: { value: new Color(color) },
+            opacity: { value: opacity },
+            rim: { value: rim },
+            picked: { value: -1 },
+        },
+        side: FrontSide,
+    });
+    setOpacity(material, opacity);
+    return material;
+}
+
+/** Half transparent surfaces leave the depth alone, so that nothing behind them is lost. */
+export function setOpacity(material, opacity) {
+    const solid = opacity > 0.995;
+    material.uniforms.opacity.value = opacity;
+    material.transparent = !solid;
+    material.depthWrite = solid;
+    material.visible = opacity > 0.005;
+}
+
+/** A cut shows the inner side. */
+export function setCutOpen(material, open) {
+    material.side = open ? DoubleSide : FrontSide;
+    material.needsUpdate = true;
+}
+
+const POINT_VERTEX = `
+attribute vec3 color, away;
+attribute float size;
+uniform float pixels, explode;
+varying vec3 tint;
+varying float large;
+void main() {
+    tint = color;
+    large = size * pixels;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + explode * away, 1.0);
+    gl_PointSize = large;
+}`;
+
+const POINT_FRAGMENT = `
+uniform vec3 edge;
+varying vec3 tint;
+varying float large;
+void main() {
+    float r = length(gl_PointCoord - 0.5) * large;
+    float outer = 0.5 * large - 0.5, inner = outer - max(0.16 * large, 1.5);
+    float a = 1.0 - smoothstep(outer - 0.75, outer + 0.5, r);
+    if (a <= 0.0) discard;
+    gl_FragColor = vec4(mix(tint, edge, smoothstep(inner - 0.75, inner + 0.75, r)), a);
+}`;
+
+/** Discs of a size in pixels that nothing hides. */
+export function pointMaterial() {
+    return new ShaderMaterial({
+        vertexShader: POINT_VERTEX,
+        fragmentShader: POINT_FRAGMENT,
+        uniforms: { ...shared, edge: { value: new Color("#ffffff") } },
+        transparent: true,
+        depthTest: false,
+        depthWrite: false,
+    });
+}
+

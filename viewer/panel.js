@@ -1,0 +1,162 @@
+// Parts of the panel. Whatever comes from a file is set as text, never as markup.
+
+/** An element with properties and children; strings become text. */
+export function element(tag, properties = {}, ...children) {
+    const made = document.createElement(tag);
+    for (const [name, value] of Object.entries(properties)) {
+        if (value === undefined) continue;
+        if (name in made) made[name] = value;
+        else made.setAttribute(name, value);
+    }
+    made.append(...children);
+    return made;
+}
+
+/** An element of SVG. */
+export function drawn(tag, attributes = {}, ...children) {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+    made.append(...children);
+    return made;
+}
+
+const said = document.getElementById("said");
+
+/** Tells those who cannot see the change. */
+export function say(text) {
+    said.textContent = text;
+}
+
+/** A slider with its name and value. `show` makes the text of a value, `change` is called with it. */
+export function slider({ name, min = 0, max = 1, step = 0.01, value, show, change, id }) {
+    const output = element("output", {}, show(value));
+    const input = element("input", { type: "range", id, min, max, step, value });
+    input.setAttribute("aria-label", name);
+    const label = element("label", { className: "control" }, element("span", {}, name, output), input);
+    const update = () => {
+        output.textContent = show(input.valueAsNumber);
+        input.setAttribute("aria-valuetext", output.textContent);
+    };
+    input.addEventListener("input", () => {
+        update();
+        change(input.valueAsNumber);
+    });
+    update();
+    return {
+        node: label,
+        input,
+        get value() {
+            return input.valueAsNumber;
+        },
+        /** Shows a value without a call of `change`. */
+        set value(x) {
+            input.value = x;
+            update();
+        },
+        /** As if the slider had been moved. */
+        move(x) {
+            input.value = x;
+            update();
+            change(input.valueAsNumber);
+        },
+    };
+}
+
+export function check({ name, value, change, id }) {
+    const input = element("input", { type: "checkbox", id, checked: value });
+    input.addEventListener("change", () => change(input.checked));
+    return element("label", { className: "check" }, input, name);
+}
+
+/** One of a few words; arrow keys go from one to the next. */
+export function choice({ name, words, value, change }) {
+    const group = element("div", { className: "choice" });
+    group.setAttribute("role", "radiogroup");
+    group.setAttribute("aria-label", name);
+    const buttons = words.map((word, i) => {
+        const button = element("button", { type: "button", onclick: () => set(i) }, word);
+        button.setAttribute("role", "radio");
+        return button;
+    });
+    let current = value;
+    const show = () =>
+        buttons.forEach((button, i) => {
+            button.setAttribute("aria-checked", String(i === current));
+            button.tabIndex = i === current ? 0 : -1;
+        });
+    const set = (i) => {
+        current = i;
+        show();
+        change(i);
+    };
+    group.addEventListener("keydown", (event) => {
+        const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+        if (step === undefined) return;
+        event.preventDefault();
+        event.stopPropagation();
+        set((current + step + words.length) % words.length);
+        buttons[current].focus();
+    });
+    group.append(...buttons);
+    show();
+    return {
+        node: element("div", { className: "row" }, element("span", {}, name), group),
+        set,
+        get value() {
+            return current;
+        },
+    };
+}
+
+/** Numbers that matter: rows of [name, value, remark, kind of remark]. */
+export function facts(rows) {
+    const list = element("dl", { className: "facts" });
+    for (const [name, value, remark, kind] of rows) {
+        const dd = element("dd", {}, value);
+        if (remark) dd.append(element("small", { className: kind ?? "" }, remark));
+        list.append(element("div", {}, element("dt", {}, name), dd));
+    }
+    return list;
+}
+
+export function heading(text) {
+    return element("h2", {}, text);
+}
+
+export function note(text) {
+    return element("p", { className: "note" }, text);
+}
+
+/** A list of buttons of which one may be pressed. `rows` make the children of each. */
+export function pickList({ name, rows, pick }) {
+    const list = element("div", { className: "list" });
+    list.setAttribute("role", "group");
+    list.setAttribute("aria-label", name);
+    const buttons = rows.map((children, i) => {
+        const button = element("button", { type: "button", onclick: () => pick(i) }, ...children);
+        button.setAttribute("aria-pressed", "false");
+        return button;
+    });
+    list.append(...buttons);
+    let pressed = -1;
+    return {
+        node: list,
+        /** Presses one, or none for -1, and brings it into sight. */
+        press(i) {
+            buttons[pressed]?.setAttribute("aria-pressed", "false");
+            buttons[i]?.setAttribute("aria-pressed", "true");
+            pressed = i;
+            const button = buttons[i];
+            if (button === undefined) return;
+            const above = button.offsetTop - list.offsetTop - list.scrollTop;
+            if (above < 0 || above + button.offsetHeight > list.clientHeight)
+                list.scrollTop += above - list.clientHeight / 2;
+        },
+    };
+}
+
+export function swatch(kind, color) {
+    const mark = element("span", { className: kind });
+    mark.style.background = color;
+    return mark;
+}

@@ -1,0 +1,213 @@
+// Star-shaped pieces in colours of their own, which can be moved apart; each with its guard.
+import { BufferAttribute, BufferGeometry, Color, Mesh } from "three";
+import page, { floats, indices } from "./data.js";
+import { ballOf, shadedSurface } from "./geometry.js";
+import { setCutOpen, shared, surfaceMaterial } from "./materials.js";
+import { check, element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
+import { PickPoints } from "./points.js";
+import { normalAttribute } from "./surface.js";
+import { amount, count, percent, real } from "./text.js";
+import { View } from "./view.js";
+
+export class PiecesView extends View {
+    name = "Pieces";
+
+    constructor(stage) {
+        super();
+        this.stage = stage;
+        this.told = page.pieces;
+        this.picked = -1;
+        this.build();
+        const guards = floats("piece-guards");
+        this.points = guards && new PickPoints(guards, page.colors, this.away);
+        this.objects = this.points ? [this.object, this.points.object] : [this.object];
+        this.node = this.makePanel();
+    }
+
+    // ---- geometry ----
+
+    /** One mesh of all pieces: each vertex knows its piece, its colour and where that goes. */
+    build() {
+        const points = floats("piece-points"), faces = indices("piece-faces");
+        this.ball = ballOf(points);
+        this.away = new Float32Array(3 * this.told.list.length);
+        this.firstFace = [0];
+        const parts = this.told.list.map((piece, i) => {
+            const first = this.firstFace[i];
+            this.firstFace.push(first + piece.faces);
+            return this.makePiece(points, faces.subarray(3 * first, 3 * (first + piece.faces)), i);
+        });
+        const total = parts.reduce((sum, part) => sum + part.position.length / 3, 0);
+        const position = new Float32Array(3 * total), normal = new Int8Array(4 * total);
+        const away = new Float32Array(3 * total), color = new Uint8Array(4 * total), piece = new Float32Array(total);
+        const index = new Uint32Array(faces.length);
+        let vertices = 0, corners = 0;
+        parts.forEach((part, i) => {
+            const size = part.position.length / 3;
+            const rgb = new Color(page.colors[i]).toArray().map((x) => Math.round(255 * x));
+            position.set(part.position, 3 * vertices);
+            normal.set(part.normal, 4 * vertices);
+            part.index.forEach((corner) => (index[corners++] = corner + vertices));
+            for (let v = vertices; v < vertices + size; v++) {
+                away.set(this.away.subarray(3 * i, 3 * i + 3), 3 * v);
+                color.set(rgb, 4 * v);
+                piece[v] = i;
+            }
+            vertices += size;
+        });
+        const geometry = new BufferGeometry();
+        geometry.setAttribute("position", new BufferAttribute(position, 3));
+        geometry.setAttribute("normal", normalAttribute(normal));
+        geometry.setAttribute("away", new BufferAttribute(away, 3));
+        geometry.setAttribute("color", new BufferAttribute(color, 4, true));
+        geometry.setAttribute("piece", new BufferAttribute(piece, 1));
+        geometry.setIndex(new BufferAttribute(index, 1));
+        this.position = position;
+        this.index = index;
+        this.material = surfaceMaterial({ defines: { PIECES: "" } });
+        this.object = new Mesh(geometry, this.material);
+        this.object.frustumCulled = false;
+    }
+
+    /** The surface of a piece, and the way that it goes: from the middle of all to its own. */
+    makePiece(points, faces, i) {
+        const numbers = new Map();
+        const own = new Uint32Array(faces.length);
+        const used = [];
+        faces.forEach((v, k) => {
+            if (!numbers.has(v)) {
+                numbers.set(v, numbers.size);
+                used.push(points[3 * v], points[3 * v + 1], points[3 * v + 2]);
+            }
+            own[k] = numbers.get(v);
+        });
+        const local = Float32Array.from(used);
+        const { center } = used.length > 0 ? ballOf(local) : { center: this.ball.center };
+        for (let k = 0; k < 3; k++) this.away[3 * i + k] = center[k] - this.ball.center[k];
+        return shadedSurface(local, own);
+    }
+
+    // ---- panel ----
+
+    makePanel() {
+        const { told } = this;
+        const number = told.list.length;
+        const stars = told.list.filter((piece) => piece.star).length;
+        const volume = told.list.reduce((sum, piece) => sum + (piece.volume ?? 0), 0);
+        const rows = [["Pieces", count(number), told.reported && stars === number ? "all proven star-shaped" : "", "good"]];
+        if (told.reported && stars < number) rows.push(["Star-shaped", count(stars), "proven"]);
+        rows.push(["Tetrahedra", count(told.tetrahedra)]);
+        this.explode = slider({
+            name: "Explode",
+            id: "explode",
+            max: 1.5,
+            value: 0,
+            show: (x) => percent(x),
+            change: (x) => this.setExplode(x),
+        });
+        this.list = pickList({
+            name: "Pieces",
+            pick: (i) => this.pick(this.picked === i ? -1 : i),
+            rows: told.list.map((piece, i) => [
+                swatch("square", page.colors[i]),
+                element("span", { className: "name" }, `Piece ${i + 1}`),
+                element("span", { className: "number" }, piece.volume !== undefined && volume > 0 ? percent(piece.volume / volume) : amount(piece.faces, "face", "faces")),
+            ]),
+        });
+        const node = element("div", {}, facts(rows), this.explode.node);
+        if (this.points)
+            node.append(check({ name: "Show guards", id: "piece-guards-shown", value: true, change: (on) => { this.points.object.visible = on; this.stage.request(); } }));
+        node.append(heading(told.reported ? "Pieces by number, and their share of the volume" : "Pieces by number"), this.list.node);
+        if (!told.reported) node.append(note("Without PIECES.json, guards and proofs are not known."));
+        return node;
+    }
+
+    sentence(i) {
+        const piece = this.told.list[i];
+        if (piece.volume === undefined) return `Piece ${i + 1} has ${amount(piece.faces, "face", "faces")}`;
+        return `Piece ${i + 1}: volume ${real(piece.volume)}, ${amount(piece.tetrahedra, "tetrahedron", "tetrahedra")}, ${piece.star ? "star-shaped, proven" : "not star-shaped"}`;
+    }
+
+    // ---- what is shown ----
+
+    setExplode(x) {
+        shared.explode.value = x;
+        this.stage.request();
+    }
+
+    pick(i) {
+        this.picked = i;
+        this.material.uniforms.picked.value = i;
+        this.points?.pick(i);
+        this.list.press(i);
+        this.stage.request();
+        say(i < 0 ? "No piece is picked" : this.sentence(i));
+    }
+
+    step(by) {
+        const number = this.told.list.length;
+        this.pick(this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number);
+    }
+
+    clear() {
+        this.pick(-1);
+    }
+
+    // ---- pointer ----
+
+    /** The first piece that a ray meets, -1 if none: every triangle is tried. */
+    hit({ origin, direction }) {
+        const { position, index, firstFace } = this;
+        const cut = shared.cut.value, by = shared.explode.value;
+        let best = -1, nearest = Infinity;
+        for (let i = 0; i + 1 < firstFace.length; i++) {
+            const o = [origin.x, origin.y, origin.z].map((x, k) => x - by * this.away[3 * i + k]);
+            const moved = [0, 1, 2].map((k) => by * this.away[3 * i + k]);
+            for (let c = 3 * firstFace[i]; c < 3 * firstFace[i + 1]; c += 3) {
+                const t = meet(o, direction, position, 3 * index[c], 3 * index[c + 1], 3 * index[c + 2]);
+                if (!(t > 0 && t < nearest)) continue;
+                const x = o[0] + moved[0] + t * direction.x, y = o[1] + moved[1] + t * direction.y, z = o[2] + moved[2] + t * direction.z;
+                if (x * cut.x + y * cut.y + z * cut.z > cut.w) continue;
+                nearest = t;
+                best = i;
+            }
+        }
+        return best;
+    }
+
+    under(at) {
+        const guard = this.points?.object.visible ? this.points.under(this.stage, at) : -1;
+        return guard >= 0 ? guard : this.hit(this.stage.ray(at.x, at.y));
+    }
+
+    click(at) {
+        const i = this.under(at);
+        if (i !== this.picked || i >= 0) this.pick(i === this.picked ? -1 : i);
+    }
+
+    tag(at) {
+        const guard = at !== null && this.points?.object.visible ? this.points.under(this.stage, at) : -1;
+        if (guard >= 0) return { text: `Guard of piece ${guard + 1}`, place: this.points.place(guard), over: true };
+        if (this.picked < 0 || !this.points) return null;
+        return { text: `Piece ${this.picked + 1}`, place: this.points.place(this.picked), over: false };
+    }
+
+    setCutOpen(open) {
+        setCutOpen(this.material, open);
+    }
+}
+
+/** How far along a ray a triangle is; NaN where they do not meet. */
+function meet(o, d, p, a, b, c) {
+    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+    const hx = d.y * vz - d.z * vy, hy = d.z * vx - d.x * vz, hz = d.x * vy - d.y * vx;
+    const scale = 1 / (ux * hx + uy * hy + uz * hz);
+    const sx = o[0] - p[a], sy = o[1] - p[a + 1], sz = o[2] - p[a + 2];
+    const s = (sx * hx + sy * hy + sz * hz) * scale;
+    if (!(s >= 0 && s <= 1)) return NaN;
+    const qx = sy * uz - sz * uy, qy = sz * ux - sx * uz, qz = sx * uy - sy * ux;
+    const t = (d.x * qx + d.y * qy + d.z * qz) * scale;
+    if (!(t >= 0 && s + t <= 1)) return NaN;
+    return (vx * qx + vy * qy + vz * qz) * scale;
+}

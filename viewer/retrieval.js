@@ -1,0 +1,244 @@
+// Retrieval: the table of distances as shades, darkest for the most alike of each shape, and for a
+// picked shape the others by distance, with their pictures.
+import page, { doubles, pictureAddress } from "./data.js";
+import { element, facts, heading, note, say } from "./panel.js";
+import { themeColor } from "./theme.js";
+import { amount, count, real } from "./text.js";
+import { View } from "./view.js";
+
+const LIST_MOST = 60; // neighbours that are listed
+
+export class RetrievalView extends View {
+    name = "Retrieval";
+    flat = true;
+
+    constructor(stage, place) {
+        super();
+        this.stage = stage;
+        this.place = place; // the element over the stage
+        this.shapes = page.shapes.map((shape, i) => ({ ...shape, address: shape.picture ? pictureAddress(`shape-picture-${i}`) : null }));
+        this.distances = doubles("shape-distances");
+        this.ranks = this.rankAll();
+        this.picked = 0;
+        this.node = this.makePanel();
+        this.makeSheet();
+        this.update();
+    }
+
+    get count() {
+        return this.shapes.length;
+    }
+
+    distance(i, k) {
+        return this.distances[i * this.count + k];
+    }
+
+    /** For each row the rank of every other shape, scaled to 0 to 1; equal distances share a rank. */
+    rankAll() {
+        const n = this.shapes.length;
+        const ranks = new Float32Array(n * n);
+        for (let i = 0; i < n; i++) {
+            const order = Array.from({ length: n }, (_, k) => k).sort((a, b) => this.distance(i, a) - this.distance(i, b) || a - b);
+            order.forEach((k, place) => {
+                const before = order[place - 1];
+                const tied = place > 0 && this.distance(i, before) === this.distance(i, k);
+                ranks[i * n + k] = tied ? ranks[i * n + before] : place / Math.max(n - 1, 1);
+            });
+        }
+        return ranks;
+    }
+
+    /** The other shapes, the most alike first. */
+    neighbours(i) {
+        const others = this.shapes.map((_, k) => k).filter((k) => k !== i);
+        return others.sort((a, b) => this.distance(i, a) - this.distance(i, b) || a - b);
+    }
+
+    // ---- panel ----
+
+    makePanel() {
+        this.title = heading("");
+        this.self = element("div", { className: "list" });
+        this.list = element("div", { className: "list" });
+        this.list.setAttribute("role", "group");
+        return element(
+            "div",
+            {},
+            facts([["Shapes", count(this.count)]]),
+            note("Each row of the table ranks the others: the darker, the more alike."),
+            this.self,
+            this.title,
+            this.list,
+        );
+    }
+
+    entry(k, remark) {
+        const { name, address } = this.shapes[k];
+        const picture = address
+            ? element("img", { src: address, alt: "", width: 54, height: 40, loading: "lazy" })
+            : element("span", { className: "blank" });
+        const button = element(
+            "button",
+            { type: "button", onclick: () => this.pick(k) },
+            picture,
+            element("span", { className: "name", title: name }, name),
+            element("span", { className: "number" }, remark),
+        );
+        return button;
+    }
+
+    // ---- table ----
+
+    makeSheet() {
+        this.canvas = element("canvas", { tabIndex: 0 });
+        this.canvas.setAttribute("role", "img");
+        this.canvas.setAttribute("aria-label", `Table of distances of ${amount(this.count, "shape", "shapes")}; arrow keys go from shape to shape`);
+        this.place.append(element("div", { className: "sheet" }, this.canvas));
+        this.canvas.addEventListener("pointerdown", (event) => {
+            const cell = this.cellAt(event);
+            if (cell) this.pick(cell.row, cell.column);
+        });
+        this.canvas.addEventListener("pointermove", (event) => {
+            const cell = this.cellAt(event);
+            this.canvas.title = cell
+                ? `${this.shapes[cell.row].name} – ${this.shapes[cell.column].name}: ${real(this.distance(cell.row, cell.column))}`
+                : "";
+        });
+        this.canvas.addEventListener("keydown", (event) => {
+            const by = { ArrowUp: -1, ArrowLeft: -1, ArrowDown: 1, ArrowRight: 1 }[event.key];
+            if (by === undefined) return;
+            event.preventDefault();
+            event.stopPropagation();
+            this.step(by);
+        });
+        new ResizeObserver(() => this.draw()).observe(this.place);
+    }
+
+    cellAt(event) {
+        const box = this.canvas.getBoundingClientRect();
+        const column = Math.floor((event.clientX - box.left - this.left) / this.cell);
+        const row = Math.floor((event.clientY - box.top - this.top) / this.cell);
+        const inside = row >= 0 && row < this.count && column >= 0 && column < this.count;
+        return inside ? { row, column } : null;
+    }
+
+    /** Names stand beside and above the cells where these are large enough. */
+    measure(width, height) {
+        const n = this.count;
+        const context = this.canvas.getContext("2d");
+        context.font = this.font();
+        const longest = Math.min(170, Math.max(...this.shapes.map((shape) => context.measureText(shape.name).width)) + 8);
+        const room = Math.min(width, height);
+        const named = (room - longest) / n >= 9;
+        const frame = named ? longest : 0;
+        this.left = this.top = frame;
+        this.named = named;
+        this.cell = Math.max(named ? Math.floor((room - frame) / n) : Math.floor(room / n), 3);
+        this.cell = Math.min(this.cell, 56);
+    }
+
+    font() {
+        return `${Math.min(12.5, Math.max(9, (this.cell ?? 12) * 0.8))}px ${getComputedStyle(document.body).fontFamily}`;
+    }
+
+    draw() {
+        const style = getComputedStyle(this.place);
+        const width = this.place.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+        const height = this.place.clientHeight - parseFloat(style.paddingTop) - parseFloat(style.paddingBottom);
+        if (width <= 0 || height <= 0) return;
+        this.measure(width, height);
+        const n = this.count, { cell, left, top } = this;
+        const ratio = Math.min(window.devicePixelRatio || 1, 2);
+        this.canvas.width = (left + n * cell) * ratio;
+        this.canvas.height = (top + n * cell) * ratio;
+        this.canvas.style.width = `${left + n * cell}px`;
+        this.canvas.style.height = `${top + n * cell}px`;
+        const context = this.canvas.getContext("2d");
+        context.scale(ratio, ratio);
+        this.drawCells(context);
+        if (this.named) this.drawNames(context);
+        this.drawPicked(context);
+    }
+
+    drawCells(context) {
+        const near = parse(themeColor("cell-near")), far = parse(themeColor("cell-far"));
+        const n = this.count, gap = this.cell >= 8 ? 1 : 0;
+        const shades = Array.from({ length: 64 }, (_, s) => {
+            const x = Math.pow(s / 63, 0.7);
+            return `rgb(${near.map((c, k) => Math.round(c + (far[k] - c) * x)).join(" ")})`;
+        });
+        for (let i = 0; i < n; i++)
+            for (let k = 0; k < n; k++) {
+                context.fillStyle = shades[Math.round(63 * this.ranks[i * n + k])];
+                context.fillRect(this.left + k * this.cell, this.top + i * this.cell, this.cell - gap, this.cell - gap);
+            }
+    }
+
+    drawNames(context) {
+        const plain = themeColor("soft"), strong = themeColor("text");
+        context.font = this.font();
+        context.textBaseline = "middle";
+        this.shapes.forEach(({ name }, i) => {
+            const middle = (i + 0.5) * this.cell;
+            context.fillStyle = i === this.picked ? strong : plain;
+            context.textAlign = "right";
+            context.fillText(name, this.left - 6, this.top + middle, this.left - 8);
+            context.save();
+            context.translate(this.left + middle, this.top - 6);
+            context.rotate(-Math.PI / 2);
+            context.textAlign = "left";
+            context.fillText(name, 0, 0, this.top - 8);
+            context.restore();
+        });
+    }
+
+    drawPicked(context) {
+        context.strokeStyle = themeColor("warn");
+        context.lineWidth = 2;
+        context.strokeRect(this.left - 1, this.top + this.picked * this.cell - 1, this.count * this.cell + 1, this.cell + 1);
+    }
+
+    // ---- what is shown ----
+
+    update() {
+        const i = this.picked;
+        const nearest = this.neighbours(i);
+        this.self.replaceChildren(this.entry(i, ""));
+        this.self.firstChild.setAttribute("aria-pressed", "true");
+        this.title.textContent = "Most like it, with distances";
+        this.list.setAttribute("aria-label", `Most like ${this.shapes[i].name}`);
+        this.list.replaceChildren(...nearest.slice(0, LIST_MOST).map((k) => this.entry(k, real(this.distance(i, k)))));
+        this.list.scrollTop = 0;
+        this.draw();
+    }
+
+    pick(i, other = null) {
+        this.picked = i;
+        this.update();
+        const nearest = this.neighbours(i)[0];
+        const { name } = this.shapes[i];
+        if (other !== null && other !== i) say(`${name} and ${this.shapes[other].name}: distance ${real(this.distance(i, other))}`);
+        else say(nearest === undefined ? name : `${name}: most like ${this.shapes[nearest].name}`);
+    }
+
+    step(by) {
+        this.pick((this.picked + by + this.count) % this.count);
+    }
+
+    applyTheme() {
+        this.draw();
+    }
+
+    enter() {
+        this.place.hidden = false;
+        this.draw();
+    }
+
+    leave() {
+        this.place.hidden = true;
+    }
+}
+
+function parse(hex) {
+    return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+}

@@ -1,0 +1,173 @@
+// The stage: canvas, camera, turning and zooming, drawing when something has changed.
+import {
+    ColorManagement,
+    LinearSRGBColorSpace,
+    PerspectiveCamera,
+    Scene,
+    Vector3,
+    WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { shared } from "./materials.js";
+
+ColorManagement.enabled = false;
+
+const VIEW_ANGLE = 32;
+const CLICK_SLACK = 5; // pixels between press and release
+const DIRECTION = new Vector3(0.62, 0.34, 0.9).normalize();
+
+export class Stage {
+    constructor(canvas, place) {
+        this.canvas = canvas;
+        this.place = place; // the element that the canvas fills
+        this.scene = new Scene();
+        this.camera = new PerspectiveCamera(VIEW_ANGLE, 1, 0.01, 100);
+        this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+        this.renderer.outputColorSpace = LinearSRGBColorSpace;
+        this.controls = new OrbitControls(this.camera, canvas);
+        this.controls.rotateSpeed = 0.9;
+        this.controls.zoomToCursor = true;
+        this.controls.addEventListener("change", () => this.request());
+        this.ball = { center: [0, 0, 0], radius: 1 };
+        this.frames = 0; // drawn so far
+        this.waiting = false;
+        this.beforeDraw = [];
+        new ResizeObserver(() => this.resize()).observe(place);
+        canvas.addEventListener("webglcontextrestored", () => this.request());
+    }
+
+    resize() {
+        const { clientWidth: width, clientHeight: height } = this.place;
+        if (width === 0 || height === 0) return;
+        const ratio = Math.min(window.devicePixelRatio || 1, 2);
+        this.renderer.setPixelRatio(ratio);
+        this.renderer.setSize(width, height, false);
+        shared.pixels.value = ratio;
+        this.camera.aspect = width / height;
+        this.camera.updateProjectionMatrix();
+        this.draw(); // at once: a resized canvas is empty
+    }
+
+    /** Draws in the next frame, however often it is asked. */
+    request() {
+        if (this.waiting) return;
+        this.waiting = true;
+        requestAnimationFrame(() => {
+            this.waiting = false;
+            this.draw();
+        });
+    }
+
+    draw() {
+        this.beforeDraw.forEach((work) => work());
+        this.renderer.render(this.scene, this.camera);
+        this.frames++;
+    }
+
+    /** Looks at all of a ball, from where one looks first. */
+    fit(ball, keepDirection = false) {
+        const aspect = Math.min(this.camera.aspect, 1);
+        const half = Math.atan(Math.tan((VIEW_ANGLE * Math.PI) / 360) * aspect);
+        const distance = (ball.radius * 1.02) / Math.sin(half);
+        const from = keepDirection
+            ? this.camera.position.clone().sub(this.controls.target).normalize()
+            : DIRECTION.clone().applyQuaternion(this.turnOfUp());
+        this.ball = ball;
+        this.controls.target.set(...ball.center);
+        this.camera.position.copy(from).multiplyScalar(distance).add(this.controls.target);
+        this.camera.near = ball.radius / 500;
+        this.camera.far = distance + 200 * ball.radius;
+        this.camera.updateProjectionMatrix();
+        this.controls.minDistance = ball.radius / 50;
+        this.controls.maxDistance = 40 * ball.radius;
+        this.controls.update();
+        this.request();
+    }
+
+    /** The turn from y up to what is up now. */
+    turnOfUp() {
+        const turn = this.camera.quaternion.clone();
+        return turn.setFromUnitVectors(new Vector3(0, 1, 0), this.camera.up);
+    }
+
+    /** Axis 1 (y) or 2 (z) points up. OrbitControls take the axis when they are made. */
+    setUp(axis) {
+        this.camera.up.set(0, axis === 1 ? 1 : 0, axis === 2 ? 1 : 0);
+        const old = this.controls;
+        this.controls = new OrbitControls(this.camera, this.canvas);
+        this.controls.rotateSpeed = old.rotateSpeed;
+        this.controls.zoomToCursor = true;
+        this.controls.addEventListener("change", () => this.request());
+        old.dispose();
+        this.fit(this.ball);
+    }
+
+    /** Turns about the target by angles in degrees, right and up. */
+    turn(right, upward) {
+        const offset = this.camera.position.clone().sub(this.controls.target);
+        const axis = this.camera.up;
+        offset.applyAxisAngle(axis, (right * Math.PI) / 180);
+        const angle = offset.angleTo(axis) - (upward * Math.PI) / 180;
+        if (angle > 0.02 && angle < Math.PI - 0.02) {
+            const side = new Vector3().crossVectors(axis, offset).normalize();
+            offset.applyAxisAngle(side, (-upward * Math.PI) / 180);
+        }
+        this.camera.position.copy(this.controls.target).add(offset);
+        this.controls.update();
+        this.request();
+    }
+
+    zoom(factor) {
+        const offset = this.camera.position.clone().sub(this.controls.target);
+        const wanted = offset.length() * factor;
+        offset.setLength(
+            Math.min(Math.max(wanted, this.controls.minDistance), this.controls.maxDistance),
+        );
+        this.camera.position.copy(this.controls.target).add(offset);
+        this.controls.update();
+        this.request();
+    }
+
+    /** Where a point lands, in pixels of the place; null behind the camera. */
+    project(x, y, z) {
+        const p = new Vector3(x, y, z).project(this.camera);
+        if (p.z > 1) return null;
+        return {
+            x: ((p.x + 1) / 2) * this.place.clientWidth,
+            y: ((1 - p.y) / 2) * this.place.clientHeight,
+        };
+    }
+
+    /** The ray under a pixel of the place. */
+    ray(x, y) {
+        const near = new Vector3(
+            (x / this.place.clientWidth) * 2 - 1,
+            1 - (y / this.place.clientHeight) * 2,
+            0.5,
+        ).unproject(this.camera);
+        const origin = this.camera.position.clone();
+        return { origin, direction: near.sub(origin).normalize() };
+    }
+
+    /** Calls `click` for presses that do not drag, `hover` for moves with no button down. */
+    listen(click, hover) {
+        let pressed = null;
+        const at = (event) => {
+            const box = this.canvas.getBoundingClientRect();
+            return { x: event.clientX - box.left, y: event.clientY - box.top, touch: event.pointerType === "touch" };
+        };
+        this.canvas.addEventListener("pointerdown", (event) => {
+            pressed = event.isPrimary && event.button === 0 ? at(event) : null;
+        });
+        this.canvas.addEventListener("pointerup", (event) => {
+            const released = at(event);
+            if (pressed && Math.hypot(released.x - pressed.x, released.y - pressed.y) < CLICK_SLACK)
+                click(released);
+            pressed = null;
+        });
+        this.canvas.addEventListener("pointermove", (event) => {
+            if (event.buttons === 0 && event.pointerType !== "touch") hover(at(event));
+        });
+        this.canvas.addEventListener("pointerleave", () => hover(null));
+    }
+}

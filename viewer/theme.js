@@ -1,0 +1,32 @@
+// Light or dark: as the system has it, until the switch says otherwise.
+
+const system = window.matchMedia("(prefers-color-scheme: dark)");
+const listeners = [];
+let chosen = null;
+
+export function isDark() {
+    return chosen ?? system.matches;
+}
+
+function apply() {
+    document.documentElement.dataset.theme = isDark() ? "dark" : "light";
+    listeners.forEach((listener) => listener());
+}
+
+export function toggleTheme() {
+    chosen = !isDark();
+    apply();
+}
+
+/** Calls `listener` after every change. */
+export function onTheme(listener) {
+    listeners.push(listener);
+}
+
+/** A colour of page.css, as "#rrggbb". */
+export function themeColor(name) {
+    return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+system.addEventListener("change", apply);
+apply();
