@@ -34,7 +34,7 @@ export class Controls {
         this.flip = element("button", { type: "button", id: "flip", onclick: () => this.turnOver() }, "Other side");
         this.up = choice({ name: "Up", words: ["Y", "Z"], value: 0, change: (i) => this.setUp(i) });
         this.reset = element("button", { type: "button", id: "reset", onclick: () => stage.fit(stage.ball) }, "Reset view");
-        this.cutParts = element("div", {}, this.place.node, element("div", { className: "row" }, element("span"), this.flip));
+        this.cutParts = element("div", { className: "beside" }, this.place.node, this.flip);
         this.surfacePart = element("div", {}, ...(this.opacity ? [this.opacity.node] : []));
         this.node = element(
             "div",
@@ -43,8 +43,7 @@ export class Controls {
             this.surfacePart,
             this.axis.node,
             this.cutParts,
-            this.up.node,
-            element("div", { className: "row" }, element("span"), this.reset),
+            element("div", { className: "ends" }, this.reset, this.up.node),
         );
         this.cut();
     }
@@ -82,7 +81,6 @@ export class Controls {
 
     /** The view has another model, or none. */
     suit(view) {
-        this.node.hidden = view.flat;
         this.surfacePart.hidden = !view.withSurface;
         this.cut();
     }

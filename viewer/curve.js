@@ -2,7 +2,7 @@
 import { drawn } from "./panel.js";
 import { percent } from "./text.js";
 
-const WIDTH = 300, HEIGHT = 128, LEFT = 34, RIGHT = 8, TOP = 8, BOTTOM = 22;
+const WIDTH = 300, HEIGHT = 128, LEFT = 42, RIGHT = 8, TOP = 8, BOTTOM = 22;
 
 /** Grid counts along the axis of guards: a few round numbers. */
 function ticks(count) {

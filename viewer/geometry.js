@@ -97,19 +97,21 @@ export function smoothNormals(points, faces) {
     return packed;
 }
 
-/** Middle of the box of points, and how far they reach from it. */
-export function ballOf(points) {
+/** Middle of the box of points, and how far they reach from it; of one array or several. */
+export function ballOf(...arrays) {
     const lower = [Infinity, Infinity, Infinity], upper = [-Infinity, -Infinity, -Infinity];
-    for (let i = 0; i < points.length; i++) {
-        lower[i % 3] = Math.min(lower[i % 3], points[i]);
-        upper[i % 3] = Math.max(upper[i % 3], points[i]);
-    }
+    for (const points of arrays)
+        for (let i = 0; i < points.length; i++) {
+            lower[i % 3] = Math.min(lower[i % 3], points[i]);
+            upper[i % 3] = Math.max(upper[i % 3], points[i]);
+        }
     const center = lower.map((x, k) => (x + upper[k]) / 2);
     let radius = 0;
-    for (let i = 0; i < points.length; i += 3)
-        radius = Math.max(
-            radius,
-            Math.hypot(points[i] - center[0], points[i + 1] - center[1], points[i + 2] - center[2]),
-        );
+    for (const points of arrays)
+        for (let i = 0; i < points.length; i += 3)
+            radius = Math.max(
+                radius,
+                Math.hypot(points[i] - center[0], points[i + 1] - center[1], points[i + 2] - center[2]),
+            );
     return { center, radius: radius || 1 };
 }

@@ -7,7 +7,7 @@ import { PickPoints } from "./points.js";
 import { amount, count, percent, point } from "./text.js";
 import { View } from "./view.js";
 
-const METHODS = { pilp: "progressive (pilp)", ilp: "fewest of the candidates (ilp)", greedy: "greedy" };
+const METHODS = { pilp: "progressive", ilp: "integer program", greedy: "greedy" };
 
 export class GuardsView extends View {
     name = "Guards";
@@ -30,15 +30,17 @@ export class GuardsView extends View {
         this.update();
     }
 
-    row(i) {
-        return this.seen.subarray(i * this.rowBytes, (i + 1) * this.rowBytes);
+    sees(i, face) {
+        return (this.seen[i * this.rowBytes + (face >> 3)] >> (face & 7)) & 1;
     }
 
-    /** What the first `count` guards see, as bits. */
-    union(count) {
-        const bits = new Uint8Array(this.rowBytes);
-        for (let i = 0; i < count; i++) this.row(i).forEach((byte, k) => (bits[k] |= byte));
-        return bits;
+    /** By face the first guard that sees it, -1 where none does. */
+    firstViewers() {
+        if (this.viewers) return this.viewers;
+        this.viewers = new Int32Array(this.told.faces).fill(-1);
+        for (let i = this.points.count - 1; i >= 0; i--)
+            for (let f = 0; f < this.told.faces; f++) if (this.sees(i, f)) this.viewers[f] = i;
+        return this.viewers;
     }
 
     sentence(i) {
@@ -142,11 +144,14 @@ export class GuardsView extends View {
 
     paint() {
         if (this.surface === null) return;
-        if (this.seen !== null && this.picked >= 0)
-            this.surface.paintSeen(this.row(this.picked), page.colors[this.picked], new Set());
-        else if (this.seen !== null && this.painted)
-            this.surface.paintSeen(this.union(this.first), null, this.unseen);
-        else this.surface.paintSeen(null, null, this.unseen);
+        if (this.seen !== null && this.picked >= 0) {
+            this.surface.paint((f) => (this.sees(this.picked, f) ? this.picked : -1), new Set());
+        } else if (this.seen !== null && this.painted) {
+            const viewers = this.firstViewers();
+            this.surface.paint((f) => (viewers[f] < this.first ? viewers[f] : -1), this.unseen);
+        } else {
+            this.surface.paint(null, this.unseen);
+        }
     }
 
     // ---- pointer ----

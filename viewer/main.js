@@ -131,10 +131,11 @@ function start() {
         if (surface) surface.object.visible = current.withSurface;
         canvas.hidden = current.flat;
         tag.hidden = true;
-        if (current.withSurface && !(current instanceof GuardsView)) surface?.paintSeen(null, null, new Set());
+        if (current.withSurface && !(current instanceof GuardsView)) surface?.paint(null, new Set());
         const ball = ballOfView(current, surface);
         if (!current.flat && (before === null || ball !== stage.ball)) stage.fit(ball, before !== null);
         controls.suit(current);
+        at("common").hidden = current.flat;
         current.enter();
         at("hint").textContent = current.flat ? "" : "Drag to turn, scroll to zoom, ? for keys";
         stage.request();
@@ -174,7 +175,7 @@ function start() {
         [["n", "p"], "next, previous guard, piece, frame or shape", (key) => current.step(key.toLowerCase() === "n" ? 1 : -1)],
         [["Escape"], "pick nothing", () => current.clear()],
         [["c"], "cut across X, Y, Z, or not", () => controls.nextCut()],
-        ...(explode ? [[["e"], "pieces apart, together", () => explode.move(explode.value > 0 ? 0 : 0.6)]] : []),
+        ...(explode ? [[["e"], "pieces apart, together", () => explode.move(explode.value > 0 ? 0 : 0.5)]] : []),
         ...(morph ? [[[" "], "play the morph, pause", () => current === morph && morph.toggle()]] : []),
         ...(views.length > 1 ? [[views.map((_, i) => String(i + 1)), views.map((view) => view.name.toLowerCase()).join(", "), (key) => open(Number(key) - 1)]] : []),
         [["t"], "light or dark", toggleTheme],

@@ -53,7 +53,7 @@ void main() {
 const SURFACE_FRAGMENT = `
 uniform vec4 cut;
 uniform vec3 base;
-uniform float opacity, rim;
+uniform float opacity, rim, pixels;
 varying vec3 where, direction, view, tint;
 #ifdef PIECES
 varying float fade;
@@ -67,7 +67,15 @@ void main() {
     float light = 0.50 + 0.40 * key + 0.16 * facing;
     vec3 c = base * tint * light + 0.10 * pow(key, 24.0);
     float a = mix(opacity, 1.0, rim * pow(1.0 - facing, 2.5));
-    if (!gl_FrontFacing) c *= 0.74;
+    if (!gl_FrontFacing) {
+#ifdef SOLID
+        /* what a cut lays open of a closed surface looks filled */
+        float hatch = step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / (9.0 * pixels)));
+        c = base * tint * (0.72 + 0.05 * hatch);
+#else
+        c *= 0.74;
+#endif
+    }
 #ifdef PIECES
     if (fade < 0.5) {
         /* a screen of dots: no sorting is needed */
@@ -78,7 +86,7 @@ void main() {
     gl_FragColor = vec4(c, a);
 }`;
 
-/** A lit surface; `defines` may hold PIECES or MOVING. */
+/** A lit surface; `defines` may hold PIECES, MOVING or SOLID (closed: cuts look filled). */
 export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defines = {} } = {}) {
     const material = new ShaderMaterial({
         vertexShader: SURFACE_VERTEX,
@@ -116,28 +124,31 @@ const POINT_VERTEX = `
 attribute vec3 color, away;
 attribute float size;
 uniform float pixels, explode;
+uniform vec4 cut;
 varying vec3 tint;
-varying float large;
+varying float large, kept;
 void main() {
     tint = color;
     large = size * pixels;
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + explode * away, 1.0);
+    vec3 p = position + explode * away;
+    kept = dot(p, cut.xyz) > cut.w ? 0.35 : 1.0;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(p, 1.0);
     gl_PointSize = large;
 }`;
 
 const POINT_FRAGMENT = `
 uniform vec3 edge;
 varying vec3 tint;
-varying float large;
+varying float large, kept;
 void main() {
     float r = length(gl_PointCoord - 0.5) * large;
     float outer = 0.5 * large - 0.5, inner = outer - max(0.16 * large, 1.5);
     float a = 1.0 - smoothstep(outer - 0.75, outer + 0.5, r);
     if (a <= 0.0) discard;
-    gl_FragColor = vec4(mix(tint, edge, smoothstep(inner - 0.75, inner + 0.75, r)), a);
+    gl_FragColor = vec4(mix(tint, edge, smoothstep(inner - 0.75, inner + 0.75, r)), a * kept);
 }`;
 
-/** Discs of a size in pixels that nothing hides. */
+/** Discs of a size in pixels that nothing hides; pale where they are cut off. */
 export function pointMaterial() {
     return new ShaderMaterial({
         vertexShader: POINT_VERTEX,

@@ -21,7 +21,7 @@ export class MorphView extends View {
         this.frames = Array.from({ length: frames }, (_, i) => floats(`morph-points-${i}`));
         this.faces = indices("morph-faces");
         this.normals = [];
-        this.ball = this.wholeBall();
+        this.ball = ballOf(...this.frames);
         this.build();
         this.objects = [this.object];
         this.playing = false;
@@ -30,19 +30,11 @@ export class MorphView extends View {
         this.show(0);
     }
 
-    /** About every frame. */
-    wholeBall() {
-        const balls = this.frames.map(ballOf);
-        const { center } = balls[0];
-        const reach = balls.map((b) => b.radius + Math.hypot(...b.center.map((x, k) => x - center[k])));
-        return { center, radius: Math.max(...reach) };
-    }
-
     build() {
         const geometry = new BufferGeometry();
         geometry.setIndex(new BufferAttribute(this.faces, 1));
         this.attributes = this.frames.map((points) => new BufferAttribute(points, 3));
-        this.material = surfaceMaterial({ defines: { MOVING: "" } });
+        this.material = surfaceMaterial({ defines: { MOVING: "", SOLID: "" } });
         this.object = new Mesh(geometry, this.material);
         this.object.frustumCulled = false;
     }

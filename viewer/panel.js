@@ -148,9 +148,11 @@ export function pickList({ name, rows, pick }) {
             pressed = i;
             const button = buttons[i];
             if (button === undefined) return;
-            const above = button.offsetTop - list.offsetTop - list.scrollTop;
-            if (above < 0 || above + button.offsetHeight > list.clientHeight)
-                list.scrollTop += above - list.clientHeight / 2;
+            const box = list.closest("#views");
+            if (!box) return;
+            const inside = box.getBoundingClientRect(), own = button.getBoundingClientRect();
+            if (own.top < inside.top) box.scrollTop -= inside.top - own.top + 8;
+            else if (own.bottom > inside.bottom) box.scrollTop += own.bottom - inside.bottom + 8;
         },
     };
 }

@@ -31,6 +31,7 @@ export class PiecesView extends View {
         const points = floats("piece-points"), faces = indices("piece-faces");
         this.ball = ballOf(points);
         this.away = new Float32Array(3 * this.told.list.length);
+        this.radii = [];
         this.firstFace = [0];
         const parts = this.told.list.map((piece, i) => {
             const first = this.firstFace[i];
@@ -64,7 +65,7 @@ export class PiecesView extends View {
         geometry.setIndex(new BufferAttribute(index, 1));
         this.position = position;
         this.index = index;
-        this.material = surfaceMaterial({ defines: { PIECES: "" } });
+        this.material = surfaceMaterial({ defines: { PIECES: "", SOLID: "" } });
         this.object = new Mesh(geometry, this.material);
         this.object.frustumCulled = false;
     }
@@ -82,7 +83,8 @@ export class PiecesView extends View {
             own[k] = numbers.get(v);
         });
         const local = Float32Array.from(used);
-        const { center } = used.length > 0 ? ballOf(local) : { center: this.ball.center };
+        const { center, radius } = used.length > 0 ? ballOf(local) : { center: this.ball.center, radius: 0 };
+        this.radii.push(radius);
         for (let k = 0; k < 3; k++) this.away[3 * i + k] = center[k] - this.ball.center[k];
         return shadedSurface(local, own);
     }
@@ -100,7 +102,7 @@ export class PiecesView extends View {
         this.explode = slider({
             name: "Explode",
             id: "explode",
-            max: 1.5,
+            max: 1,
             value: 0,
             show: (x) => percent(x),
             change: (x) => this.setExplode(x),
@@ -130,9 +132,21 @@ export class PiecesView extends View {
 
     // ---- what is shown ----
 
+    /** The camera steps back as the pieces move, so that all stay in sight. */
     setExplode(x) {
+        const before = this.reach(shared.explode.value);
         shared.explode.value = x;
-        this.stage.request();
+        this.stage.zoom(this.reach(x) / before);
+    }
+
+    /** How far from the middle pieces are that have been moved apart. */
+    reach(x) {
+        let most = this.ball.radius;
+        this.radii.forEach((radius, i) => {
+            const [dx, dy, dz] = this.away.subarray(3 * i, 3 * i + 3);
+            most = Math.max(most, (1 + x) * Math.hypot(dx, dy, dz) + radius);
+        });
+        return most;
     }
 
     pick(i) {

@@ -1,7 +1,7 @@
 // Retrieval: the table of distances as shades, darkest for the most alike of each shape, and for a
 // picked shape the others by distance, with their pictures.
 import page, { doubles, pictureAddress } from "./data.js";
-import { element, facts, heading, note, say } from "./panel.js";
+import { element, facts, heading, say } from "./panel.js";
 import { themeColor } from "./theme.js";
 import { amount, count, real } from "./text.js";
 import { View } from "./view.js";
@@ -17,6 +17,7 @@ export class RetrievalView extends View {
         this.stage = stage;
         this.place = place; // the element over the stage
         this.shapes = page.shapes.map((shape, i) => ({ ...shape, address: shape.picture ? pictureAddress(`shape-picture-${i}`) : null }));
+        this.pictured = this.shapes.some((shape) => shape.picture);
         this.distances = doubles("shape-distances");
         this.ranks = this.rankAll();
         this.picked = 0;
@@ -65,7 +66,7 @@ export class RetrievalView extends View {
             "div",
             {},
             facts([["Shapes", count(this.count)]]),
-            note("Each row of the table ranks the others: the darker, the more alike."),
+            legend(),
             this.self,
             this.title,
             this.list,
@@ -75,12 +76,14 @@ export class RetrievalView extends View {
     entry(k, remark) {
         const { name, address } = this.shapes[k];
         const picture = address
-            ? element("img", { src: address, alt: "", width: 54, height: 40, loading: "lazy" })
-            : element("span", { className: "blank" });
+            ? [element("img", { src: address, alt: "", width: 54, height: 40 })]
+            : this.pictured
+              ? [element("span", { className: "blank" })]
+              : [];
         const button = element(
             "button",
             { type: "button", onclick: () => this.pick(k) },
-            picture,
+            ...picture,
             element("span", { className: "name", title: name }, name),
             element("span", { className: "number" }, remark),
         );
@@ -237,6 +240,11 @@ export class RetrievalView extends View {
     leave() {
         this.place.hidden = true;
     }
+}
+
+/** What the shades of a row mean. */
+function legend() {
+    return element("p", { className: "legend" }, "alike", element("span"), "unlike");
 }
 
 function parse(hex) {

@@ -82,6 +82,7 @@ export class SkeletonView extends View {
                 ["Ends", count(ends)],
             ]),
         );
+        node.append(note("Joints are red, ends are green."));
         if (this.radii)
             node.append(
                 slider({

@@ -1,11 +1,12 @@
 // The model: glass, with faces painted that are seen, or that nothing sees.
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
-import { floats, indices } from "./data.js";
+import page, { floats, indices } from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
 import { setCutOpen, setOpacity, surfaceMaterial } from "./materials.js";
 import { themeColor } from "./theme.js";
 
-const GLASS = 0, SEEN = 1, UNSEEN = 2;
+const GLASS = 0, UNSEEN = 1, PAINTED = 2; // kinds of faces; PAINTED + i has colour i
+const MOST_COLORS = 200; // of which each is drawn by itself; then they begin again
 
 export class Surface {
     constructor() {
@@ -19,21 +20,16 @@ export class Surface {
         this.geometry.setAttribute("position", new BufferAttribute(surface.position, 3));
         this.geometry.setAttribute("normal", normalAttribute(surface.normal));
         this.geometry.setIndex(new BufferAttribute(surface.index.slice(), 1));
-        this.materials = [
-            surfaceMaterial({ opacity: 0.3, rim: 0.45 }),
-            surfaceMaterial(),
-            surfaceMaterial(),
-        ];
+        this.materials = [surfaceMaterial({ opacity: 0.3, rim: 0.45 }), surfaceMaterial()];
+        for (const color of page.colors.slice(0, MOST_COLORS)) this.materials.push(surfaceMaterial({ color }));
         this.object = new Mesh(this.geometry, this.materials);
         this.object.frustumCulled = false;
-        this.color = null; // of what is seen; null: the accent
         this.applyTheme();
-        this.paint(() => GLASS);
+        this.paint(null, new Set());
     }
 
     applyTheme() {
         this.materials[GLASS].uniforms.base.value.set(themeColor("surface"));
-        this.materials[SEEN].uniforms.base.value.set(this.color ?? themeColor("accent"));
         this.materials[UNSEEN].uniforms.base.value.set(themeColor("warn"));
     }
 
@@ -45,32 +41,37 @@ export class Surface {
         this.materials.forEach((material) => setCutOpen(material, open));
     }
 
-    /** Sorts faces by kind, so that each kind is one range of the index. */
-    paint(kindOf) {
-        const ends = [0, 0, 0];
-        for (let f = 0; f < this.faceCount; f++) ends[(this.kinds[f] = kindOf(f))]++;
-        const next = [0, ends[0], ends[0] + ends[1]];
-        this.geometry.clearGroups();
-        next.forEach((start, kind) => {
-            if (ends[kind] > 0) this.geometry.addGroup(3 * start, 3 * ends[kind], kind);
-        });
-        const index = this.geometry.index.array;
+    /**
+     * Paints faces: `colorOf` tells the index of a face's colour, -1 for glass (null: all glass);
+     * what is in `unseen` and has no colour is marked.
+     */
+    paint(colorOf, unseen) {
+        const { kinds } = this;
         for (let f = 0; f < this.faceCount; f++) {
-            const place = 3 * next[this.kinds[f]]++;
-            index[place] = this.corners[3 * f];
-            index[place + 1] = this.corners[3 * f + 1];
-            index[place + 2] = this.corners[3 * f + 2];
+            const color = colorOf === null ? -1 : colorOf(f);
+            kinds[f] = color >= 0 ? PAINTED + (color % MOST_COLORS) : unseen.has(f) ? UNSEEN : GLASS;
         }
-        this.geometry.index.needsUpdate = true;
+        this.sortFaces();
     }
 
-    /** Paints what a row of bits holds in a colour (null: the accent), and the listed faces. */
-    paintSeen(bits, color, unseen) {
-        this.color = color;
-        this.applyTheme();
-        this.paint((f) =>
-            bits !== null && (bits[f >> 3] >> (f & 7)) & 1 ? SEEN : unseen.has(f) ? UNSEEN : GLASS,
-        );
+    /** Faces by kind, so that each kind is one range of the index. */
+    sortFaces() {
+        const { kinds, corners } = this;
+        const next = new Uint32Array(this.materials.length + 1);
+        for (const kind of kinds) next[kind + 1]++;
+        this.geometry.clearGroups();
+        for (let kind = 0; kind < this.materials.length; kind++) {
+            if (next[kind + 1] > 0) this.geometry.addGroup(3 * next[kind], 3 * next[kind + 1], kind);
+            next[kind + 1] += next[kind];
+        }
+        const index = this.geometry.index.array;
+        for (let f = 0; f < this.faceCount; f++) {
+            const place = 3 * next[kinds[f]]++;
+            index[place] = corners[3 * f];
+            index[place + 1] = corners[3 * f + 1];
+            index[place + 2] = corners[3 * f + 2];
+        }
+        this.geometry.index.needsUpdate = true;
     }
 }
 
