@@ -11,7 +11,7 @@ build: deps
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=OFF > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 
-# The main job on a bundled sample, and a picture of it.
+# The main jobs on a bundled sample, with a picture and a page of them.
 demo: build
 	@scripts/demo.sh $(BUILD)
 

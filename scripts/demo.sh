@@ -1,11 +1,16 @@
 #!/bin/sh
-# The main job on a bundled sample: makes the solid, guards it, checks the result, draws it.
+# The main jobs on a bundled sample: makes the solid, guards it, cuts it into pieces, checks both, and
+# leaves a picture and a page to look at.
 # Usage: demo.sh BUILD
 set -eu
 starguard=$1/starguard
 mkdir -p demo
 "$starguard" sample horse --vertices 5000 -o demo/horse.off
 "$starguard" guard demo/horse.off -o demo/guards.json --picture demo/guards.png
-"$starguard" verify demo/horse.off demo/guards.json
+"$starguard" decompose demo/horse.off -o demo/pieces.vtk --report demo/pieces.json --time-limit 10
+"$starguard" verify demo/horse.off demo/guards.json demo/pieces.vtk demo/pieces.json
 echo
-echo "Look at demo/guards.png; the guards stand in demo/guards.json."
+if "$starguard" view demo/guards.json demo/pieces.vtk demo/pieces.json -o demo/horse.html; then
+    echo "Open demo/horse.html in a browser: guards, what they see, and star-shaped pieces."
+fi
+echo "Look at demo/guards.png; the guards stand in demo/guards.json, the pieces in demo/pieces.vtk."

@@ -4,11 +4,17 @@
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 
+# Node.js bundles the viewer; one that is not Debian's brings its own npm and is as good.
+viewer_packages() {
+    command -v node >/dev/null || echo nodejs
+    command -v npm >/dev/null || echo npm
+}
+
 packages=""
 for purpose in "$@"; do
     case $purpose in
-    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libarpack2-dev libsuitesparse-dev" ;;
-    check) packages="$packages libcmocka-dev libgmp-dev clang clang-format clang-tidy libclang-rt-14-dev python3 tetgen" ;;
+    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libarpack2-dev libsuitesparse-dev $(viewer_packages)" ;;
+    check) packages="$packages libcmocka-dev libgmp-dev clang clang-format clang-tidy libclang-rt-14-dev python3 tetgen chromium" ;;
     bench) packages="$packages libembree-dev hyperfine" ;;
     *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;
     esac

@@ -17,4 +17,11 @@ for header in include/starguard/*.h; do
         printf '%s\n' "$unit" | $language -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only -
     done
 done
+# The lock file of the viewer names no registry: npm asks the one that it is set to.
+if grep -nE '"resolved"|https?://' viewer/package-lock.json viewer/package.json >&2; then
+    echo "lint: viewer/package-lock.json names a registry; make it anew with" >&2
+    echo "  npm install --package-lock-only --omit-lockfile-registry-resolved" >&2
+    exit 1
+fi
+
 echo "lint: format, layers and headers are fine"

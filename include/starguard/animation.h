@@ -29,6 +29,10 @@ STARG_API starg_status starg_animation_write(starg_context *context, const starg
  * index out of range), MEMORY, CANCELLED. */
 STARG_API starg_status starg_animation_read(starg_context *context, const char *path,
                                             starg_mesh ***frames, size_t *count);
+/* The same from `size` bytes in memory; `name` stands in messages. */
+STARG_API starg_status starg_animation_read_memory(starg_context *context, const void *bytes,
+                                                   size_t size, const char *name,
+                                                   starg_mesh ***frames, size_t *count);
 STARG_API void starg_animation_free(starg_context *context, starg_mesh **frames, size_t count);
 
 #ifdef __cplusplus

@@ -208,19 +208,29 @@ done:
     return status;
 }
 
+starg_status starg_animation_read_memory(starg_context *context, const void *bytes, size_t size,
+                                         const char *name, starg_mesh ***frames, size_t *count) {
+    starg_status status = STARG_OK;
+    reader r = {.context = context, .name = name};
+    *frames = NULL;
+    *count = 0;
+    STARG_TRY(open_chunks(&r, bytes, size));
+    STARG_TRY(read_frames(&r, frames, count));
+done:
+    json_decref(r.root);
+    return status;
+}
+
 starg_status starg_animation_read(starg_context *context, const char *path, starg_mesh ***frames,
                                   size_t *count) {
     starg_status status = STARG_OK;
-    reader r = {.context = context, .name = path};
     char *bytes = NULL;
     size_t size;
     *frames = NULL;
     *count = 0;
     STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    STARG_TRY(open_chunks(&r, (const uint8_t *)bytes, size));
-    STARG_TRY(read_frames(&r, frames, count));
+    STARG_TRY(starg_animation_read_memory(context, bytes, size, path, frames, count));
 done:
-    json_decref(r.root);
     starg_release(context, bytes);
     return status;
 }

@@ -1,0 +1,176 @@
+"""view: what goes into a page, what is refused, and what a build without the viewer says."""
+import base64
+import json
+import os
+import re
+
+import support
+from support import Case, TETRAHEDRON
+
+
+def data_of(page):
+    """The JSON block of a page."""
+    found = re.search(rb'<script type="application/json" id="data">(.*?)</script>', page, re.S)
+    return json.loads(found.group(1))
+
+
+def block_of(page, name):
+    """The bytes of a block; None if there is none."""
+    mark = f'<script type="text/plain" id="{name}">(.*?)</script>'.encode()
+    found = re.search(mark, page, re.S)
+    return base64.b64decode(found.group(1), validate=True) if found else None
+
+
+class View(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("t.off", TETRAHEDRON)
+        out, err = self.run_text("view", "t.off", "-o", "probe.html", status=None)
+        if "has no viewer" in err:
+            self.skipTest("this build has no viewer (docs/viewer.md)")
+        os.remove(self.path("probe.html"))
+
+    def run_bytes(self, *words, status=0, **options):
+        """A status of None lets any pass."""
+        if status is not None:
+            return super().run_bytes(*words, status=status, **options)
+        with self.start(*words) as process:
+            return process.communicate(timeout=60 * support.SLOWNESS)
+
+    def results(self):
+        self.sample("l-room", 500, "room.off")
+        self.run_text("guard", "room.off", "-o", "guards.json")
+        self.run_text("decompose", "room.off", "-o", "pieces.vtk", "--report", "pieces.json",
+                      "--mode", "paper")
+        self.run_text("skeleton", "room.off", "-o", "curve.obj", "--nodes", "30")
+        return json.loads(self.read("guards.json"))
+
+    def test_all_results_in_one_page(self):
+        guards = self.results()
+        self.run_text("morph", "room.off", "room.off", "--frames", "3", "--method", "linear",
+                      "-o", "frames")
+        report = self.run_json("view", "guards.json", "pieces.json", "pieces.vtk", "curve.obj",
+                               "frames", "-o", "page.html")
+        page = self.read("page.html")
+        data = data_of(page)
+        pieces = json.loads(self.read("pieces.json"))
+        self.assertEqual(data["title"], "room.off")
+        self.assertEqual(data["model"]["vertices"], guards["model"]["vertices"])
+        self.assertEqual([g["faces"] for g in data["guards"]["list"]],
+                         [g["faces"] for g in guards["guards"]])
+        self.assertEqual([p["volume"] for p in data["pieces"]["list"]],
+                         [p["volume"] for p in pieces["pieces"]])
+        self.assertTrue(data["skeleton"]["radii"])
+        self.assertEqual(data["morph"]["frames"], 3)
+        self.assertEqual(report["shown"]["guards"], len(guards["guards"]))
+        self.assertEqual(report["shown"]["pieces"], len(pieces["pieces"]))
+        self.assertEqual(report["output"], "page.html")
+        row = (guards["model"]["faces"] + 7) // 8
+        seen = block_of(page, "guard-seen")
+        for i, guard in enumerate(guards["guards"]):
+            bits = sum(bin(byte).count("1") for byte in seen[i * row:(i + 1) * row])
+            self.assertEqual(bits, guard["faces"])
+
+    def test_the_same_bytes(self):
+        self.results()
+        for threads in "1", "3":
+            self.run_text("view", "guards.json", "curve.obj", "-o", threads, "--threads", threads)
+        self.assertEqual(self.read("1"), self.read("3"))
+        out, _ = self.run_bytes("view", "guards.json", "curve.obj", "-o", "-", "--threads", "2")
+        self.assertEqual(out, self.read("1"))
+
+    def test_model_beside_the_result(self):
+        os.mkdir(self.path("sub"))
+        self.write("sub/t.off", TETRAHEDRON)
+        self.run_text("guard", "t.off", "-o", "sub/g.json")
+        os.remove(self.path("t.off"))
+        self.run_text("view", "sub/g.json", "-o", "page.html")
+        os.rename(self.path("sub/t.off"), self.path("sub/moved.off"))
+        os.remove(self.path("page.html"))
+        _, err = self.run_text("view", "sub/g.json", "-o", "page.html", status=2)
+        self.assertIn("--model", err)
+        self.assertFalse(os.path.exists(self.path("page.html")))
+        self.run_text("view", "sub/g.json", "--model", "sub/moved.off", "-o", "page.html")
+        self.assertEqual(data_of(self.read("page.html"))["title"], "moved.off")
+        self.run_text("view", "sub/g.json", "sub/moved.off", "-o", "again.html")
+        self.assertEqual(self.read("page.html"), self.read("again.html"))
+
+    def test_wrong_models(self):
+        self.results()
+        _, err = self.run_text("view", "guards.json", "--model", "t.off", "-o", "p", status=2)
+        self.assertIn("name the right one with --model", err)
+        # as many vertices and faces, but elsewhere
+        text = self.read("room.off").decode().split("\n")
+        text[2:20] = [" ".join(reversed(line.split())) for line in text[2:20]]
+        self.write("other.off", "\n".join(text))
+        out, err = self.run_text("view", "guards.json", "--model", "other.off", "-o", "p",
+                                 status=None)
+        self.assertTrue("right model?" in err or "other.off" in err)
+
+    def test_refusals(self):
+        self.results()
+        self.write("broken.json", "{")
+        self.write("empty.csv", "")
+        self.write("short.csv", "model,a,b\na,0,1\n")
+        self.write("wrong.csv", "model,a,b\na,0,1\nc,1,0\n")
+        self.write("words.csv", "model,a,b\na,0,x\nb,1,0\n")
+        self.write("long.csv", "model,a\na,0,1\n")
+        os.mkdir(self.path("none"))
+        before = self.names()
+        for words, says in [
+                (["missing.json"], "missing.json"),
+                (["broken.json"], "broken.json"),
+                (["pieces.json"], "PIECES.vtk"),
+                (["none"], "frame_0000.off"),
+                (["empty.csv"], "line"),
+                (["short.csv"], "a line for each model"),
+                (["wrong.csv"], "line 3"),
+                (["words.csv"], "line 2"),
+                (["long.csv"], "more numbers"),
+        ]:
+            _, err = self.run_text("view", *words, "-o", "page.html", status=2)
+            self.assertIn(says, err)
+        for words in (["guards.json", "guards.json"], ["curve.obj", "curve.obj"],
+                      ["room.off", "t.off"], ["pieces.vtk", "pieces.vtk"]):
+            _, err = self.run_text("view", *words, "-o", "page.html", status=1)
+            self.assertIn("second", err)
+        self.usage_error("view", "guards.json", says="-o")
+        self.usage_error("view", "-o", "page.html", says="RESULT")
+        self.run_text("view", "guards.json", "-o", "nowhere/page.html", status=3)
+        self.assertEqual(self.names(), before)
+        self.write("page.html", "before")
+        self.run_text("view", "broken.json", "-o", "page.html", status=2)
+        self.assertEqual(self.read("page.html"), b"before")
+
+    def test_names_are_escaped(self):
+        name = "<script>alert(1)<!--&.off"
+        self.write(name, TETRAHEDRON)
+        self.run_text("guard", name, "-o", "g.json")
+        self.run_text("view", "g.json", "-o", "page.html")
+        page = self.read("page.html")
+        self.assertEqual(data_of(page)["title"], name)
+        self.assertNotIn(b"<script>alert(1)", page)
+
+    def test_tables(self):
+        for name, pose in ("a_0", "0"), ("a_1", "1"):
+            self.run_text("sample", "cat", "--pose", pose, "--vertices", "500", "-o",
+                          f"{name}.off")
+        self.run_text("sample", "sphere", "--vertices", "500", "-o", "b, \"c\".off")
+        self.run_text("db", "create", "s.db")
+        self.run_text("db", "add", "s.db", "a_0.off", "a_1.off", "b, \"c\".off", timeout=200)
+        self.run_text("db", "matrix", "s.db", "-o", "m.csv")
+        self.run_text("view", "s.db", "-o", "db.html")
+        self.run_text("view", "m.csv", "-o", "csv.html")
+        db, csv = self.read("db.html"), self.read("csv.html")
+        self.assertEqual(data_of(db)["shapes"], data_of(csv)["shapes"])
+        self.assertEqual(block_of(db, "shape-distances"), block_of(csv, "shape-distances"))
+        for i in range(3):
+            self.assertTrue(block_of(db, f"shape-picture-{i}").startswith(b"\x89PNG"))
+        os.remove(self.path("a_1.off"))
+        _, err = self.run_text("view", "s.db", "-o", "db.html")
+        self.assertIn("1 of 3 models", err)
+        self.assertIsNone(block_of(self.read("db.html"), "shape-picture-1"))
+
+
+if __name__ == "__main__":
+    support.main()

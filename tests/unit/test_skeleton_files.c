@@ -1,0 +1,165 @@
+/* Files of skeletons: round trips through each format, files by hand, and what must be refused with
+ * the line. */
+#include "support.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/rng.h"
+#include "models.h"
+#include "starguard/skeleton.h"
+
+static starg_status read_text(starg_context *context, const char *text, starg_skeleton **out) {
+    return starg_skeleton_read_memory(context, text, strlen(text), "curve.txt", out);
+}
+
+static void round_trips(void **state) {
+    (void)state;
+    static const char *const endings[] = {"obj", "cg", "vtk"};
+    static const char *const models[] = {"octopus", "torus", "plate", "sphere"};
+    starg_context *context = test_context(1);
+    for (size_t m = 0; m < 4; m++) {
+        starg_solid *solid = test_sample(context, models[m], 800);
+        starg_skeleton *made = NULL;
+        test_ok(context, starg_skeleton_create(context, solid, NULL, &made));
+        for (size_t i = 0; i < 3; i++) {
+            char path[64];
+            starg_skeleton *read = NULL;
+            snprintf(path, sizeof path, "/tmp/test_skeleton_%ld.%s", (long)getpid(), endings[i]);
+            test_ok(context, starg_skeleton_write(context, made, path, STARG_SKELETON_AUTO));
+            test_ok(context, starg_skeleton_read(context, path, &read));
+            unlink(path);
+            assert_int_equal(read->node_count, made->node_count);
+            assert_int_equal(read->edge_count, made->edge_count);
+            assert_memory_equal(read->positions, made->positions,
+                                3 * made->node_count * sizeof *made->positions);
+            for (size_t e = 0; e < 2 * made->edge_count; e++)
+                assert_int_equal(read->edges[e], made->edges[e]);
+            assert_int_equal(read->radii != NULL, i == 2);
+            if (read->radii != NULL)
+                assert_memory_equal(read->radii, made->radii,
+                                    made->node_count * sizeof *made->radii);
+            assert_int_equal(read->components, made->components);
+            assert_int_equal(read->loops, made->loops);
+            assert_int_equal(read->joints, made->joints);
+            assert_int_equal(read->ends, made->ends);
+            starg_skeleton_free(context, read);
+        }
+        starg_skeleton_free(context, made);
+        starg_solid_free(solid);
+    }
+    test_context_free(context);
+}
+
+/* A polyline of OBJ is as many edges as it has steps. */
+static void polylines(void **state) {
+    (void)state;
+    static const char text[] = "# by hand\nv 0 0 0\nv 1 0 0 \nv 1 1 0\nv 5 5 5\nl 1 2 3 1\n";
+    static const uint32_t edges[] = {0, 1, 1, 2, 2, 0};
+    starg_context *context = test_context(1);
+    starg_skeleton *s = NULL;
+    test_ok(context, read_text(context, text, &s));
+    assert_int_equal(s->edge_count, 3);
+    assert_memory_equal(s->edges, edges, sizeof edges);
+    assert_int_equal(s->components, 2);
+    assert_int_equal(s->loops, 1);
+    assert_int_equal(s->ends, 0);
+    starg_skeleton_free(context, s);
+    test_context_free(context);
+}
+
+#define VTK_HEAD "# vtk DataFile Version 3.0\ncurve\nASCII\nDATASET POLYDATA\n"
+
+static void refusals(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *says;
+    } cases[] = {
+        {"", "no nodes"},
+        {"# D:3 NV:0 NE:0\n", "no nodes"},
+        {"v 0 0 0\nv 1 1 1\nl 1 3\n", "not there"},
+        {"v 0 0 0\nv 1 1 1\nl 0 1\n", "line 3"},
+        {"v 0 0 0\nv 1 1 1\nl -1 -2\n", "line 3"},
+        {"v 0 0 0\nv 1 1 1\nl 1\n", "two nodes"},
+        {"v 0 0 0\nv 1 1 1\nl 1 99999999999999999999\n", "line 3"},
+        {"v 0 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3\n", "surface"},
+        {"v 0 0 1e200\n", "line 1"},
+        {"v 0 0 nan\n", "line 1"},
+        {"v 0 0 x\n", "line 1"},
+        {VTK_HEAD "POINTS 1 double\n0 0\n", "coordinate"},
+        {VTK_HEAD "POINTS 900000000 double\n0 0 0\n", "larger than the file"},
+        {VTK_HEAD "POINTS 1 double\n0 0 0\nLINES 1 3\n2 0 1\n", "not there"},
+        {VTK_HEAD "POINTS 1 double\n0 0 0\nLINES 1 3\n2 0 -1\n", "cannot be"},
+        {VTK_HEAD "POINTS 1 double\n0 0 0\nPOLYGONS 1 3\n", "no part"},
+        {VTK_HEAD "POINTS 1 double\n0 0 0\nPOINT_DATA 1\nSCALARS radius double 1\n"
+                  "LOOKUP_TABLE default\n-1\n",
+         "negative"},
+        {"# vtk DataFile Version 3.0\ncurve\nBINARY\nDATASET POLYDATA\n", "ASCII"},
+    };
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        starg_skeleton *s = NULL;
+        assert_int_equal(read_text(context, cases[i].text, &s), STARG_ERROR_FORMAT);
+        assert_null(s);
+        if (strstr(starg_context_error(context)->message, cases[i].says) == NULL)
+            fail_msg("case %zu: %s", i, starg_context_error(context)->message);
+    }
+    starg_skeleton *s = NULL;
+    assert_int_equal(starg_skeleton_read(context, "/nowhere/curve.obj", &s), STARG_ERROR_READ);
+    test_context_free(context);
+}
+
+static const char GOOD[] =
+    VTK_HEAD "POINTS 4 double\n0 0 0\n1 0 0\n2 0 0\n1 1 0\nVERTICES 1 5\n4 0 1 2 3\n"
+             "LINES 3 9\n2 0 1\n2 1 2\n2 1 3\nPOINT_DATA 4\nSCALARS radius double 1\n"
+             "LOOKUP_TABLE default\n.5\n.5\n.25\n.125\n";
+
+/* Files that are cut off or have bytes changed are read or refused, and never more than that. */
+static void damaged_files(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    char text[sizeof GOOD];
+    for (size_t i = 0; i < 4000; i++) {
+        starg_rng rng = starg_rng_make(3, 1, i);
+        size_t size = sizeof GOOD - 1;
+        memcpy(text, GOOD, sizeof GOOD);
+        if (i < size)
+            size = i;
+        else
+            for (int k = 0; k < 3; k++)
+                text[starg_rng_below(&rng, size)] = (char)starg_rng_below(&rng, 128);
+        starg_skeleton *s = NULL;
+        starg_status status = starg_skeleton_read_memory(context, text, size, "damaged", &s);
+        assert_true(status == STARG_OK || status == STARG_ERROR_FORMAT);
+        for (size_t e = 0; s != NULL && e < 2 * s->edge_count; e++)
+            assert_true(s->edges[e] < s->node_count);
+        starg_skeleton_free(context, s);
+    }
+    test_context_free(context);
+}
+
+static void scarce_memory(void **state) {
+    (void)state;
+    starg_status status = STARG_ERROR_MEMORY;
+    for (size_t limit = 1; status != STARG_OK; limit++) {
+        size_t left = limit;
+        starg_context *context = test_scarce_context(1, &left);
+        starg_skeleton *s = NULL;
+        status = read_text(context, GOOD, &s);
+        assert_true(status == STARG_OK || status == STARG_ERROR_MEMORY);
+        starg_skeleton_free(context, s);
+        test_context_free(context);
+        assert_true(limit < 100);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_trips),   cmocka_unit_test(polylines),
+        cmocka_unit_test(refusals),      cmocka_unit_test(damaged_files),
+        cmocka_unit_test(scarce_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

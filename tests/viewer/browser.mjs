@@ -1,0 +1,42 @@
+// What the tests of pages and their benchmark share: a browser, and watching what a page does.
+import { existsSync } from "node:fs";
+import { createRequire } from "node:module";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+
+const FLAGS = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+/** Why no page can be looked at, or null. */
+export function whatIsMissing() {
+    const { STARGUARD_CHROMIUM: chromium, STARGUARD_MODULES: modules } = process.env;
+    if (!chromium || !existsSync(chromium)) return "Chromium is not installed (apt-get install chromium)";
+    if (!modules || !existsSync(path.join(modules, "node_modules", "playwright-core")))
+        return "playwright-core is not there: this build has no viewer (docs/viewer.md)";
+    return null;
+}
+
+export async function openBrowser() {
+    const require = createRequire(path.resolve(process.env.STARGUARD_MODULES, "package.json"));
+    const { chromium } = require("playwright-core");
+    return chromium.launch({ executablePath: process.env.STARGUARD_CHROMIUM, args: FLAGS });
+}
+
+/** Opens a page, waits until it is ready, and keeps all that it complains of or asks for. */
+export async function openPage(browser, file, options = {}) {
+    const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
+    const page = await context.newPage();
+    const watched = { complaints: [], requests: [], dialogs: 0 };
+    const address = pathToFileURL(file).href;
+    page.on("console", (message) => watched.complaints.push(`${message.type()}: ${message.text()}`));
+    page.on("pageerror", (error) => watched.complaints.push(String(error)));
+    page.on("request", (request) => {
+        if (request.url() !== address && !request.url().startsWith("data:")) watched.requests.push(request.url());
+    });
+    page.on("dialog", (dialog) => {
+        watched.dialogs++;
+        dialog.dismiss();
+    });
+    await page.goto(address);
+    await page.waitForSelector("html[data-ready=true]", { timeout: 60000 });
+    return { page, watched, close: () => context.close() };
+}

@@ -1,0 +1,329 @@
+// Pages as a browser shows them: they load, answer to mouse, touch and keys, ask for nothing, run
+// nothing but their own script, and say what they show.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import test, { after, before } from "node:test";
+import { openBrowser, openPage, whatIsMissing } from "./browser.mjs";
+
+const missing = whatIsMissing();
+if (missing !== null) {
+    console.log(`skipped: ${missing}`);
+    process.exit(77);
+}
+
+const folder = mkdtempSync(path.join(os.tmpdir(), "starguard-pages-"));
+const HOSTILE = "<script>alert(1)<\u2215script>.off"; // a file name cannot hold a slash
+let browser;
+
+function starguard(...words) {
+    return execFileSync(process.env.STARGUARD, [...words, "--quiet"], { cwd: folder, encoding: "utf8" });
+}
+
+function fileOf(name) {
+    return path.join(folder, name);
+}
+
+before(async () => {
+    browser = await openBrowser();
+    starguard("sample", "horse", "--vertices", "900", "-o", "horse.off");
+    starguard("sample", "horse", "--pose", "1", "--vertices", "900", "-o", "other.off");
+    starguard("guard", "horse.off", "-o", "guards.json");
+    starguard("decompose", "horse.off", "-o", "pieces.vtk", "--report", "pieces.json", "--mode", "paper");
+    starguard("skeleton", "horse.off", "-o", "skeleton.obj", "--nodes", "80");
+    starguard("morph", "horse.off", "other.off", "--frames", "4", "--method", "linear", "-o", "frames", "--glb", "morph.glb");
+    writeFileSync(fileOf("table.csv"), `model,horse.off,"<img src=x onerror=alert(1)>",other.off\nhorse.off,0,2,1\n"<img src=x onerror=alert(1)>",2,0,3\nother.off,1,3,0\n`);
+    starguard("view", "guards.json", "pieces.vtk", "pieces.json", "skeleton.obj", "frames", "table.csv", "-o", "all.html");
+});
+
+after(async () => {
+    await browser?.close();
+    rmSync(folder, { recursive: true });
+});
+
+/** Opens a page, does something with it, and holds it to be quiet all along. */
+async function look(name, options, work) {
+    const { page, watched, close } = await openPage(browser, fileOf(name), options);
+    try {
+        await work(page);
+        assert.deepEqual(watched, { complaints: [], requests: [], dialogs: 0 });
+    } finally {
+        await close();
+    }
+}
+
+const said = (page) => page.textContent("#said");
+const openTab = (page, name) => page.getByRole("tab", { name }).click();
+
+/** Waits until nothing is drawn any more; how many frames were drawn until then. */
+async function settle(page) {
+    for (let before = -1; ; ) {
+        const frames = await page.evaluate(() => window.starguard.stage.frames);
+        if (frames === before) return frames;
+        before = frames;
+        await page.waitForTimeout(150);
+    }
+}
+
+/** The pixels of the stage. */
+async function picture(page) {
+    await settle(page);
+    return page.locator("#stage").screenshot();
+}
+
+async function placeOfGuard(page, i) {
+    const box = await page.locator("#canvas").boundingBox();
+    const spot = await page.evaluate((guard) => {
+        const { stage, views } = window.starguard;
+        return stage.project(...views[0].points.place(guard));
+    }, i);
+    return { x: box.x + spot.x, y: box.y + spot.y };
+}
+
+/** Number of faces that are painted in a colour. */
+const paintedFaces = (page) =>
+    page.evaluate(() => window.starguard.views[0].surface.kinds.reduce((sum, kind) => sum + (kind >= 2), 0));
+
+test("a click on a guard shows what it sees", async () => {
+    const guards = JSON.parse(readFileSync(fileOf("guards.json"), "utf8")).guards;
+    await look("all.html", {}, async (page) => {
+        await settle(page);
+        for (const i of [0, guards.length - 1]) {
+            const { x, y } = await placeOfGuard(page, i);
+            await page.mouse.click(x, y);
+            assert.match(await said(page), new RegExp(`^Guard ${i + 1} sees ${guards[i].faces.toLocaleString("en")} faces? of `));
+            assert.equal(await paintedFaces(page), guards[i].faces);
+            assert.equal(await page.getByRole("button", { name: `Guard ${i + 1} `, pressed: true }).count(), 1);
+            assert.match(await page.textContent("#tag"), new RegExp(`^Guard ${i + 1} `));
+        }
+        await page.mouse.click(5, 5); // beside the model
+        assert.equal(await paintedFaces(page), 0);
+    });
+});
+
+test("the first guards' faces are those of the coverage curve", async () => {
+    const { coverage, model } = JSON.parse(readFileSync(fileOf("guards.json"), "utf8"));
+    await look("all.html", {}, async (page) => {
+        const slider = page.locator("#first-guards");
+        for (let k = coverage.curve.length - 1; k >= 0; k--) {
+            await slider.fill(String(k));
+            const fraction = k === 0 ? 0 : coverage.curve[k - 1][0];
+            assert.equal(await paintedFaces(page), Math.round(fraction * model.faces));
+        }
+    });
+});
+
+test("every slider moves, by key and to both ends", async () => {
+    await look("all.html", {}, async (page) => {
+        for (const name of ["Guards", "Pieces", "Skeleton", "Morph"]) {
+            await openTab(page, name);
+            await page.getByRole("radio", { name: "X", exact: true }).click(); // lays open the slider of the cut
+            const sliders = page.locator("input[type=range]:visible");
+            for (let i = 0; i < (await sliders.count()); i++) {
+                const slider = sliders.nth(i);
+                const values = new Set();
+                for (const key of ["Home", "End", "ArrowLeft"]) {
+                    await slider.press(key);
+                    values.add(await slider.getAttribute("aria-valuetext"));
+                    await settle(page);
+                }
+                assert.ok(values.size >= 2, `${name}: slider ${i} says ${[...values]}`);
+            }
+            await page.getByRole("radio", { name: "Off", exact: true }).click();
+        }
+    });
+});
+
+test("pieces move apart, are cut and are picked", async () => {
+    await look("all.html", {}, async (page) => {
+        await openTab(page, "Pieces");
+        const whole = await picture(page);
+        await page.locator("#explode").fill("0.5");
+        const apart = await picture(page);
+        await page.keyboard.press("Escape");
+        await page.locator("#explode").fill("0");
+        assert.ok(!whole.equals(apart));
+        await page.getByRole("radio", { name: "Y", exact: true }).first().click();
+        const cut = await picture(page);
+        assert.ok(!whole.equals(cut));
+        await page.locator("#flip").click();
+        assert.ok(!cut.equals(await picture(page)));
+        await page.getByRole("radio", { name: "Off", exact: true }).click();
+        const box = await page.locator("#canvas").boundingBox();
+        await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+        assert.match(await said(page), /^Piece \d+: volume .*(star-shaped)/);
+    });
+});
+
+test("a morph plays, and stands still when it does not", async () => {
+    await look("all.html", {}, async (page) => {
+        await openTab(page, "Morph");
+        const time = page.locator("#time");
+        await page.locator("#canvas").focus();
+        await page.keyboard.press(" ");
+        await page.waitForFunction(() => document.getElementById("time").valueAsNumber > 0.02);
+        assert.equal(await page.textContent("#play"), "Pause");
+        await page.keyboard.press(" ");
+        const still = await time.inputValue();
+        const frames = await settle(page);
+        await page.waitForTimeout(500);
+        assert.equal(await time.inputValue(), still);
+        assert.equal(await page.evaluate(() => window.starguard.stage.frames), frames);
+        await time.fill("0");
+        const first = await picture(page);
+        await time.fill("1");
+        assert.ok(!first.equals(await picture(page)));
+    });
+});
+
+test("frames of a .glb are those of the folder", async () => {
+    starguard("view", "morph.glb", "-o", "glb.html");
+    starguard("view", "frames", "-o", "frames.html");
+    const read = (page) => page.evaluate(() => window.starguard.views[0].frames.map((points) => [...points]));
+    let folderFrames, glbFrames;
+    await look("frames.html", {}, async (page) => (folderFrames = await read(page)));
+    await look("glb.html", {}, async (page) => (glbFrames = await read(page)));
+    assert.equal(folderFrames.length, 4);
+    folderFrames.forEach((points, i) => points.forEach((x, k) => assert.ok(Math.abs(x - glbFrames[i][k]) < 1e-5)));
+});
+
+test("the table of distances ranks and names", async () => {
+    await look("all.html", {}, async (page) => {
+        await openTab(page, "Retrieval");
+        await page.locator("#matrix canvas").focus();
+        await page.keyboard.press("ArrowDown");
+        assert.equal(await said(page), "<img src=x onerror=alert(1)>: most like horse.off");
+        assert.equal(await page.locator("#views .list").last().innerText().then((text) => text.split("\n")[0]), "horse.off");
+        await page.keyboard.press("ArrowUp");
+        assert.equal(await said(page), "horse.off: most like other.off");
+        const pictures = page.locator("#views img");
+        assert.equal(await pictures.count(), 2); // of the two models that are there
+        for (const image of await pictures.all()) assert.ok((await image.evaluate((node) => node.naturalWidth)) > 0);
+    });
+});
+
+test("every key of the help does what it says", async () => {
+    await look("all.html", {}, async (page) => {
+        const pressed = () => page.locator(".list button[aria-pressed=true]:visible").innerText();
+        await page.locator("#canvas").focus();
+        const start = await picture(page);
+        for (const key of ["ArrowLeft", "ArrowUp", "+", "-"]) {
+            const before = await picture(page);
+            await page.keyboard.press(key);
+            assert.ok(!before.equals(await picture(page)), `${key} changes the view`);
+        }
+        await page.keyboard.press("0");
+        assert.ok(start.equals(await picture(page)), "0 gives the first view");
+        await page.keyboard.press("n");
+        assert.match(await pressed(), /^Guard 1\s/);
+        await page.keyboard.press("n");
+        assert.match(await pressed(), /^Guard 2\s/);
+        await page.keyboard.press("p");
+        assert.match(await pressed(), /^Guard 1\s/);
+        await page.keyboard.press("Escape");
+        assert.equal(await page.locator(".list button[aria-pressed=true]:visible").count(), 0);
+        await page.keyboard.press("c");
+        assert.equal(await said(page), "Cut across X");
+        await page.keyboard.press("2");
+        assert.equal(await page.getByRole("tab", { name: "Pieces", selected: true }).count(), 1);
+        await page.keyboard.press("e");
+        assert.equal(await page.locator("#explode").inputValue(), "0.5");
+        await page.keyboard.press("?");
+        assert.ok(await page.locator("dialog#help").isVisible());
+        await page.keyboard.press("Escape");
+        assert.ok(!(await page.locator("dialog#help").isVisible()));
+    });
+});
+
+test("light and dark follow the system and the switch", async () => {
+    const theme = (page) => page.evaluate(() => document.documentElement.dataset.theme);
+    await look("all.html", { colorScheme: "dark" }, async (page) => {
+        assert.equal(await theme(page), "dark");
+        await page.emulateMedia({ colorScheme: "light" });
+        await page.waitForFunction(() => document.documentElement.dataset.theme === "light");
+        const light = await picture(page);
+        await page.getByRole("button", { name: "Light or dark" }).click();
+        assert.equal(await theme(page), "dark");
+        assert.ok(!light.equals(await picture(page)));
+    });
+});
+
+test("no view is wider than a narrow window, and a tap picks", async () => {
+    for (const width of [320, 390, 740]) {
+        await look("all.html", { viewport: { width, height: 700 }, hasTouch: true, isMobile: true }, async (page) => {
+            for (const name of ["Guards", "Pieces", "Skeleton", "Morph", "Retrieval"]) {
+                await openTab(page, name);
+                await settle(page);
+                const widths = await page.evaluate(() => [document.documentElement.scrollWidth, document.getElementById("panel").scrollWidth, window.innerWidth]);
+                assert.ok(widths[0] <= width && widths[1] <= width && widths[2] === width, `${name}: ${widths}`);
+            }
+            await openTab(page, "Guards");
+            await settle(page);
+            const { x, y } = await placeOfGuard(page, 0);
+            await page.touchscreen.tap(x, y);
+            assert.match(await said(page), /^Guard \d+ sees /);
+        });
+    }
+});
+
+test("controls have names, tabs are tabs", async () => {
+    await look("all.html", {}, async (page) => {
+        const nameless = await page.evaluate(() =>
+            [...document.querySelectorAll("button, input, canvas, svg[role=img], dialog, [role]")].filter(
+                (node) =>
+                    !(node.getAttribute("aria-label") || node.getAttribute("aria-labelledby") || node.textContent.trim() || node.closest("label")?.textContent.trim() || node.id === "said"),
+            ).length,
+        );
+        assert.equal(nameless, 0);
+        await page.getByRole("tab", { name: "Guards" }).focus();
+        await page.keyboard.press("ArrowRight");
+        assert.equal(await page.getByRole("tab", { name: "Pieces", selected: true }).count(), 1);
+        assert.ok(await page.getByRole("tabpanel", { name: "Pieces" }).isVisible());
+        assert.equal(await page.locator("[role=tabpanel]:visible").count(), 1);
+    });
+});
+
+test("names are text, whatever they are", async () => {
+    mkdirSync(fileOf("hostile"));
+    const model = path.join("hostile", HOSTILE);
+    writeFileSync(fileOf(model), readFileSync(fileOf("horse.off")));
+    starguard("guard", model, "-o", "hostile.json", "--method", "greedy");
+    starguard("view", "hostile.json", "-o", "hostile.html");
+    await look("hostile.html", {}, async (page) => {
+        assert.equal(await page.textContent("#title"), HOSTILE);
+        assert.equal(await page.title(), `${HOSTILE} – starguard`);
+        assert.equal(await page.locator("script").count(), 2); // the data and the viewer; blocks of arrays are gone
+    });
+});
+
+test("a folder named </script> stays text too", async () => {
+    mkdirSync(path.join(fileOf("<"), "script><script>alert(1)<", "script>"), { recursive: true });
+    const model = "</script><script>alert(1)</script>/horse.off";
+    writeFileSync(fileOf(model), readFileSync(fileOf("horse.off")));
+    starguard("guard", model, "-o", "folder.json", "--method", "greedy");
+    starguard("view", "folder.json", "-o", "folder.html");
+    await look("folder.html", {}, async (page) => assert.equal(await page.textContent("#title"), "horse.off"));
+});
+
+test("the page's policy keeps other scripts and the network out", async () => {
+    const { page, watched, close } = await openPage(browser, fileOf("all.html"));
+    const reached = await page.evaluate(async () => {
+        const script = document.createElement("script");
+        script.textContent = "window.intruder = true";
+        document.body.append(script);
+        const answer = await fetch("http://127.0.0.1:9/").then(() => "fetched", () => "refused");
+        return [window.intruder === true, answer];
+    });
+    assert.deepEqual(reached, [false, "refused"]);
+    assert.ok(watched.complaints.some((text) => text.includes("Content Security Policy")));
+    await close();
+});
+
+test("a model alone, and a skeleton alone, are shown", async () => {
+    starguard("view", "horse.off", "-o", "model.html");
+    starguard("view", "skeleton.obj", "-o", "skeleton.html");
+    await look("model.html", {}, async (page) => assert.match(await page.textContent("#views"), /Vertices900/));
+    await look("skeleton.html", {}, async (page) => assert.match(await page.textContent("#views"), /Radii are not known/));
+});
