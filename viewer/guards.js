@@ -68,7 +68,7 @@ export class GuardsView extends View {
         this.place = note("");
         node.append(this.place);
         if (told.uncovered.length > 0)
-            node.append(note(`${amount(told.uncovered.length, "face is", "faces are")} seen by no guard: shown in red.`));
+            node.append(note(`${amount(told.uncovered.length, "face is", "faces are")} seen by no guard: striped in red.`));
         return node;
     }
 

@@ -66,6 +66,9 @@ void main() {
     float key = max(dot(n, normalize(vec3(-0.45, 0.65, 0.7))), 0.0);
     float light = 0.50 + 0.40 * key + 0.16 * facing;
     vec3 c = base * tint * light + 0.10 * pow(key, 24.0);
+#ifdef STRIPED
+    c *= mix(1.0, 0.45, step(0.5, fract((gl_FragCoord.x - gl_FragCoord.y) / (8.0 * pixels))));
+#endif
     float a = mix(opacity, 1.0, rim * pow(1.0 - facing, 2.5));
     if (!gl_FrontFacing) {
 #ifdef SOLID
@@ -86,7 +89,7 @@ void main() {
     gl_FragColor = vec4(c, a);
 }`;
 
-/** A lit surface; `defines` may hold PIECES, MOVING or SOLID (closed: cuts look filled). */
+/** A lit surface; `defines` may hold PIECES, MOVING, SOLID (closed: cuts look filled) or STRIPED. */
 export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defines = {} } = {}) {
     const material = new ShaderMaterial({
         vertexShader: SURFACE_VERTEX,

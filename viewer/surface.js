@@ -20,7 +20,7 @@ export class Surface {
         this.geometry.setAttribute("position", new BufferAttribute(surface.position, 3));
         this.geometry.setAttribute("normal", normalAttribute(surface.normal));
         this.geometry.setIndex(new BufferAttribute(surface.index.slice(), 1));
-        this.materials = [surfaceMaterial({ opacity: 0.3, rim: 0.45 }), surfaceMaterial()];
+        this.materials = [surfaceMaterial({ opacity: 0.3, rim: 0.45 }), surfaceMaterial({ defines: { STRIPED: "" } })];
         for (const color of page.colors.slice(0, MOST_COLORS)) this.materials.push(surfaceMaterial({ color }));
         this.object = new Mesh(this.geometry, this.materials);
         this.object.frustumCulled = false;
