@@ -22,7 +22,8 @@ typedef struct cli_show {
     cli_table table; /* of a database */
     double *distances;
     starg_page_shape *shapes;
-    char **names; /* of shapes, as a table of text names them */
+    uint8_t **pictures; /* of shapes, where there are any */
+    char **names;       /* of shapes, as a table of text names them */
     size_t shape_count;
 } cli_show;
 

@@ -70,7 +70,7 @@ starg_status cli_show_frames(cli_session *session, const char *folder, cli_show 
     starg_status status = STARG_OK;
     name_list list = {0};
     CLI_TRY(list_frames(session, folder, &list));
-    show->frames = calloc(list.count, sizeof(starg_mesh *));
+    show->frames = calloc(list.count + 1, sizeof(starg_mesh *));
     if (show->frames == NULL) {
         status = cli_fail_memory(session);
         goto done;

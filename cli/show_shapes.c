@@ -11,14 +11,22 @@
 
 enum { PICTURE_WIDTH = 108, PICTURE_HEIGHT = 80, MOST_SHAPES = 4000 };
 
+static starg_status make_room(cli_session *session, size_t count, cli_show *show) {
+    show->shapes = calloc(count + 1, sizeof *show->shapes);
+    show->pictures = calloc(count + 1, sizeof *show->pictures);
+    show->shape_count = count;
+    return show->shapes != NULL && show->pictures != NULL ? STARG_OK : cli_fail_memory(session);
+}
+
 /* ---- pictures ---- */
 
 /* A picture of a model that cannot be read is missing, no failure: the table is what counts. */
-static starg_status draw_shape(cli_session *session, const char *file, starg_page_shape *shape) {
+static starg_status draw_shape(cli_session *session, const char *file, size_t index,
+                               cli_show *show) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     starg_picture_options options;
-    uint8_t *png = NULL;
+    starg_page_shape *shape = &show->shapes[index];
     struct stat info;
     if (stat(file, &info) != 0 || !S_ISREG(info.st_mode))
         return STARG_OK;
@@ -28,8 +36,9 @@ static starg_status draw_shape(cli_session *session, const char *file, starg_pag
     options.opacity = 1;
     status = starg_mesh_read(session->context, file, &mesh);
     if (status == STARG_OK)
-        status = starg_picture_encode(session->context, mesh, &options, &png, &shape->png_size);
-    shape->png = png;
+        status = starg_picture_encode(session->context, mesh, &options, &show->pictures[index],
+                                      &shape->png_size);
+    shape->png = show->pictures[index];
     starg_mesh_free(mesh);
     return status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ? status : STARG_OK;
 }
@@ -54,13 +63,10 @@ starg_status cli_show_database(cli_session *session, const char *file, int dista
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "'%.200s' has %zu models; a page shows %d at most", file, models->count,
                         MOST_SHAPES);
-    show->shapes = calloc(models->count, sizeof *show->shapes);
-    if (show->shapes == NULL)
-        return cli_fail_memory(session);
-    show->shape_count = models->count;
+    CLI_TRY(make_room(session, models->count, show));
     for (size_t i = 0; i < models->count; i++) {
         show->shapes[i].name = models->items[i].name;
-        CLI_TRY(draw_shape(session, models->items[i].path, &show->shapes[i]));
+        CLI_TRY(draw_shape(session, models->items[i].path, i, show));
     }
     tell_missing(session, show);
 done:
@@ -161,7 +167,7 @@ static starg_status draw_shapes(cli_session *session, const char *file, cli_show
             return cli_fail_memory(session);
         snprintf(path, size, "%.*s%s", (int)folder, file, show->names[i]);
         show->shapes[i].name = show->names[i];
-        status = draw_shape(session, path, &show->shapes[i]);
+        status = draw_shape(session, path, i, show);
         free(path);
     }
     return status;
@@ -174,11 +180,7 @@ starg_status cli_show_table(cli_session *session, const char *file, cli_show *sh
     if (stream == NULL)
         return cli_fail(session, STARG_ERROR_READ, "cannot open '%.300s'", file);
     CLI_TRY(read_lines(&r, stream));
-    show->shapes = calloc(show->shape_count, sizeof *show->shapes);
-    if (show->shapes == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    CLI_TRY(make_room(session, show->shape_count, show));
     CLI_TRY(draw_shapes(session, file, show));
     tell_missing(session, show);
 done:
@@ -190,11 +192,12 @@ void cli_show_free_shapes(cli_session *session, cli_show *show) {
     for (size_t i = 0; i < show->shape_count; i++) {
         if (show->names != NULL)
             free(show->names[i]);
-        if (show->shapes != NULL) /* what the page gets as constant is ours */
-            starg_picture_bytes_free(session->context, (uint8_t *)(uintptr_t)show->shapes[i].png);
+        if (show->pictures != NULL)
+            starg_picture_bytes_free(session->context, show->pictures[i]);
     }
     free(show->names);
     free(show->shapes);
+    free(show->pictures);
     free(show->distances);
     cli_table_free(session, &show->table);
 }

@@ -138,7 +138,7 @@ static starg_status find_primitive(reader *r) {
 
 static starg_status read_faces(const reader *r, uint32_t **faces, size_t *count) {
     starg_status status = STARG_OK;
-    span indices;
+    span indices = {0};
     STARG_TRY(open_accessor(r, number(r->primitive, "indices", -1), 1, &indices));
     if (indices.type == GL_FLOAT || indices.count == 0 || indices.count % 3 != 0)
         return reject(r, "its indices are not those of triangles");
@@ -180,7 +180,7 @@ static starg_status read_frames(reader *r, starg_mesh ***out, size_t *frame_coun
     starg_mesh **frames = NULL;
     uint32_t *faces = NULL;
     double *points = NULL;
-    span first;
+    span first = {0};
     size_t face_count = 0, count = 0;
     STARG_TRY(find_primitive(r));
     STARG_TRY(open_positions(r, json_object_get(r->primitive, "attributes"), &first));
@@ -190,7 +190,11 @@ static starg_status read_frames(reader *r, starg_mesh ***out, size_t *frame_coun
         status = reject(r, "it has no morph targets, or too many");
         goto done;
     }
-    STARG_NEW_ZERO(r->context, STAGE, frames, count);
+    frames = starg_allocate_zero(r->context, count, sizeof(starg_mesh *));
+    if (frames == NULL) {
+        status = starg_fail_memory(r->context, STAGE);
+        goto done;
+    }
     STARG_NEW(r->context, STAGE, points, 3 * first.count);
     for (size_t i = 0; i < count; i++) {
         STARG_TRY(starg_check_cancel(r->context, STAGE));
