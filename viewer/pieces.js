@@ -139,6 +139,10 @@ export class PiecesView extends View {
         this.stage.zoom(this.reach(x) / before);
     }
 
+    toggleExplode() {
+        this.explode.move(this.explode.value > 0 ? 0 : 0.5);
+    }
+
     /** How far from the middle pieces are that have been moved apart. */
     reach(x) {
         let most = this.ball.radius;

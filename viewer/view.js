@@ -4,7 +4,6 @@ export class View {
     objects = [];
     withSurface = false; // is the glass model shown as well?
     flat = false; // does it stand over the 3D stage?
-    steps = null; // what N and P go through, for the help
 
     enter() {}
     leave() {}

@@ -25,6 +25,7 @@ export async function openBrowser() {
 export async function openPage(browser, file, options = {}) {
     const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
     const page = await context.newPage();
+    page.setDefaultTimeout(90000); // drawing by a program on a busy machine is slow
     const watched = { complaints: [], requests: [], dialogs: 0 };
     const address = pathToFileURL(file).href;
     page.on("console", (message) => watched.complaints.push(`${message.type()}: ${message.text()}`));

@@ -6,6 +6,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import os from "node:os";
 import path from "node:path";
 import test, { after, before } from "node:test";
+import { pathToFileURL } from "node:url";
 import { openBrowser, openPage, whatIsMissing } from "./browser.mjs";
 
 const missing = whatIsMissing();
@@ -58,13 +59,15 @@ const said = (page) => page.textContent("#said");
 const openTab = (page, name) => page.getByRole("tab", { name }).click();
 
 /** Waits until nothing is drawn any more; how many frames were drawn until then. */
-async function settle(page) {
-    for (let before = -1; ; ) {
-        const frames = await page.evaluate(() => window.starguard.stage.frames);
-        if (frames === before) return frames;
-        before = frames;
-        await page.waitForTimeout(150);
-    }
+function settle(page) {
+    return page.evaluate(async () => {
+        const { stage } = window.starguard;
+        for (let before = -1; before !== stage.frames || stage.waiting; ) {
+            before = stage.frames;
+            for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
+        }
+        return stage.frames;
+    });
 }
 
 /** The pixels of the stage. */
@@ -319,6 +322,16 @@ test("the page's policy keeps other scripts and the network out", async () => {
     assert.deepEqual(reached, [false, "refused"]);
     assert.ok(watched.complaints.some((text) => text.includes("Content Security Policy")));
     await close();
+});
+
+test("without WebGL a page says so", async () => {
+    const context = await browser.newContext();
+    const page = await context.newPage();
+    await page.addInitScript(() => (HTMLCanvasElement.prototype.getContext = () => null));
+    await page.goto(pathToFileURL(fileOf("all.html")).href);
+    assert.match(await page.innerText("#hint"), /WebGL 2 is missing/);
+    assert.equal(await page.textContent("#title"), "horse.off");
+    await context.close();
 });
 
 test("a model alone, and a skeleton alone, are shown", async () => {
