@@ -45,7 +45,7 @@ export class GuardsView extends View {
 
     sentence(i) {
         const { faces } = this.told.list[i];
-        return `Guard ${i + 1} sees ${amount(faces, "face", "faces")} of ${count(this.told.faces)} (${percent(faces / this.told.faces)})`;
+        return `Guard ${i} sees ${amount(faces, "face", "faces")} of ${count(this.told.faces)} (${percent(faces / this.told.faces)})`;
     }
 
     // ---- panel ----
@@ -58,7 +58,7 @@ export class GuardsView extends View {
             pick: (i) => this.pick(this.picked === i ? -1 : i),
             rows: told.list.map((guard, i) => [
                 swatch("dot", page.colors[i]),
-                element("span", { className: "name" }, `Guard ${i + 1}`),
+                element("span", { className: "name" }, `Guard ${i}`),
                 element("span", { className: "number" }, amount(guard.faces, "face", "faces")),
             ]),
         });
@@ -136,7 +136,7 @@ export class GuardsView extends View {
         this.list.press(picked);
         if (this.firstSlider) this.firstSlider.value = first;
         this.curve?.mark(first);
-        this.place.textContent = picked < 0 ? "" : `Guard ${picked + 1} stands at ${point(this.told.list[picked].position)}`;
+        this.place.textContent = picked < 0 ? "" : `Guard ${picked} stands at ${point(this.told.list[picked].position)}`;
         this.place.hidden = picked < 0;
         this.paint();
         this.stage.request();
@@ -165,9 +165,9 @@ export class GuardsView extends View {
     /** What the tag under the pointer says, and where it points; null for nothing. */
     tag(at) {
         const i = at === null ? -1 : this.points.under(this.stage, at);
-        if (i >= 0) return { text: `Guard ${i + 1} · ${amount(this.told.list[i].faces, "face", "faces")}`, place: this.points.place(i), over: true };
+        if (i >= 0) return { text: `Guard ${i} · ${amount(this.told.list[i].faces, "face", "faces")}`, place: this.points.place(i), over: true };
         if (this.picked < 0) return null;
-        return { text: `Guard ${this.picked + 1} · ${amount(this.told.list[this.picked].faces, "face", "faces")}`, place: this.points.place(this.picked), over: false };
+        return { text: `Guard ${this.picked} · ${amount(this.told.list[this.picked].faces, "face", "faces")}`, place: this.points.place(this.picked), over: false };
     }
 
     enter() {

@@ -112,7 +112,7 @@ export class PiecesView extends View {
             pick: (i) => this.pick(this.picked === i ? -1 : i),
             rows: told.list.map((piece, i) => [
                 swatch("square", page.colors[i]),
-                element("span", { className: "name" }, `Piece ${i + 1}`),
+                element("span", { className: "name" }, `Piece ${i}`),
                 element("span", { className: "number" }, piece.volume !== undefined && volume > 0 ? percent(piece.volume / volume) : amount(piece.faces, "face", "faces")),
             ]),
         });
@@ -126,8 +126,8 @@ export class PiecesView extends View {
 
     sentence(i) {
         const piece = this.told.list[i];
-        if (piece.volume === undefined) return `Piece ${i + 1} has ${amount(piece.faces, "face", "faces")}`;
-        return `Piece ${i + 1}: volume ${real(piece.volume)}, ${amount(piece.tetrahedra, "tetrahedron", "tetrahedra")}, ${piece.star ? "star-shaped, proven" : "not star-shaped"}`;
+        if (piece.volume === undefined) return `Piece ${i} has ${amount(piece.faces, "face", "faces")}`;
+        return `Piece ${i}: volume ${real(piece.volume)}, ${amount(piece.tetrahedra, "tetrahedron", "tetrahedra")}, ${piece.star ? "star-shaped, proven" : "not star-shaped"}`;
     }
 
     // ---- what is shown ----
@@ -205,9 +205,9 @@ export class PiecesView extends View {
 
     tag(at) {
         const guard = at !== null && this.points?.object.visible ? this.points.under(this.stage, at) : -1;
-        if (guard >= 0) return { text: `Guard of piece ${guard + 1}`, place: this.points.place(guard), over: true };
+        if (guard >= 0) return { text: `Guard of piece ${guard}`, place: this.points.place(guard), over: true };
         if (this.picked < 0 || !this.points) return null;
-        return { text: `Piece ${this.picked + 1}`, place: this.points.place(this.picked), over: false };
+        return { text: `Piece ${this.picked}`, place: this.points.place(this.picked), over: false };
     }
 
     setCutOpen(open) {
