@@ -27,8 +27,8 @@ static bool has_ending(const char *name, const char *ending) {
     return size > tail && strcasecmp(name + size - tail, ending) == 0;
 }
 
-/* Does an OBJ file have edges and no face before them? */
-static bool has_edges(FILE *file) {
+/* Does an OBJ file have no face, or edges before the first one? */
+static bool is_curve(FILE *file) {
     char *line = NULL;
     size_t capacity = 0;
     bool edges = false, faces = false;
@@ -38,7 +38,7 @@ static bool has_edges(FILE *file) {
         faces = strncmp(line, "f ", 2) == 0;
     }
     free(line);
-    return edges;
+    return !faces;
 }
 
 static kind kind_of_content(const char *name, const char *head, size_t size, FILE *file) {
@@ -56,7 +56,7 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
         return KIND_RESULT;
     if (has_ending(name, ".csv"))
         return KIND_TABLE;
-    return has_ending(name, ".obj") && has_edges(file) ? KIND_SKELETON : KIND_MODEL;
+    return has_ending(name, ".obj") && is_curve(file) ? KIND_SKELETON : KIND_MODEL;
 }
 
 /* What cannot be opened is left to a reader, which says why. */

@@ -45,6 +45,7 @@ export class Controls {
             this.cutParts,
             element("div", { className: "ends" }, this.reset, this.up.node),
         );
+        stage.onBall = () => this.cut();
         this.cut();
     }
 
@@ -82,6 +83,5 @@ export class Controls {
     /** The view has another model, or none. */
     suit(view) {
         this.surfacePart.hidden = !view.withSurface;
-        this.cut();
     }
 }

@@ -1,12 +1,15 @@
 // Guards: points inside the glass model; what one sees is painted when it is picked, and what the
 // first few see when the slider moves.
+import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";
 import page, { bytes, floats } from "./data.js";
 import { coverageCurve } from "./curve.js";
 import { element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
 import { PickPoints } from "./points.js";
 import { amount, count, percent, point } from "./text.js";
+import { themeColor } from "./theme.js";
 import { View } from "./view.js";
 
+const POINTER = 0.14; // length of the line that shows where a guard looks
 const METHODS = { pilp: "progressive", ilp: "integer program", greedy: "greedy" };
 
 export class GuardsView extends View {
@@ -26,6 +29,7 @@ export class GuardsView extends View {
         this.picked = -1;
         this.first = told.list.length;
         this.objects = [this.points.object];
+        if (told.list[0]?.direction) this.objects.push((this.pointers = this.makePointers()));
         this.node = this.makePanel();
         this.update();
     }
@@ -46,6 +50,25 @@ export class GuardsView extends View {
     sentence(i) {
         const { faces } = this.told.list[i];
         return `Guard ${i} sees ${amount(faces, "face", "faces")} of ${count(this.told.faces)} (${percent(faces / this.told.faces)})`;
+    }
+
+    /** Lines that show where guards look that do not see all around. */
+    makePointers() {
+        const { points } = this.points;
+        const ends = this.told.list.flatMap(({ direction }, i) => {
+            const length = Math.hypot(...direction) || 1;
+            return [0, 1].flatMap((end) => direction.map((d, k) => points[3 * i + k] + (end * POINTER * d) / length));
+        });
+        const geometry = new BufferGeometry();
+        geometry.setAttribute("position", new BufferAttribute(Float32Array.from(ends), 3));
+        const lines = new LineSegments(geometry, new LineBasicMaterial({ color: themeColor("text"), depthTest: false }));
+        lines.frustumCulled = false;
+        lines.renderOrder = 9;
+        return lines;
+    }
+
+    applyTheme() {
+        this.pointers?.material.color.set(themeColor("text"));
     }
 
     // ---- panel ----

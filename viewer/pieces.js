@@ -29,7 +29,8 @@ export class PiecesView extends View {
     /** One mesh of all pieces: each vertex knows its piece, its colour and where that goes. */
     build() {
         const points = floats("piece-points"), faces = indices("piece-faces");
-        this.ball = ballOf(points);
+        this.rest = ballOf(points); // about the pieces in their places
+        this.ball = this.rest;
         this.away = new Float32Array(3 * this.told.list.length);
         this.radii = [];
         this.firstFace = [0];
@@ -83,9 +84,9 @@ export class PiecesView extends View {
             own[k] = numbers.get(v);
         });
         const local = Float32Array.from(used);
-        const { center, radius } = used.length > 0 ? ballOf(local) : { center: this.ball.center, radius: 0 };
+        const { center, radius } = used.length > 0 ? ballOf(local) : { center: this.rest.center, radius: 0 };
         this.radii.push(radius);
-        for (let k = 0; k < 3; k++) this.away[3 * i + k] = center[k] - this.ball.center[k];
+        for (let k = 0; k < 3; k++) this.away[3 * i + k] = center[k] - this.rest.center[k];
         return shadedSurface(local, own);
     }
 
@@ -134,9 +135,11 @@ export class PiecesView extends View {
 
     /** The camera steps back as the pieces move, so that all stay in sight. */
     setExplode(x) {
-        const before = this.reach(shared.explode.value);
+        const before = this.ball.radius;
         shared.explode.value = x;
-        this.stage.zoom(this.reach(x) / before);
+        this.ball = { center: this.rest.center, radius: this.reach(x) };
+        this.stage.setBall(this.ball);
+        this.stage.zoom(this.ball.radius / before);
     }
 
     toggleExplode() {
@@ -145,7 +148,7 @@ export class PiecesView extends View {
 
     /** How far from the middle pieces are that have been moved apart. */
     reach(x) {
-        let most = this.ball.radius;
+        let most = this.rest.radius;
         this.radii.forEach((radius, i) => {
             const [dx, dy, dz] = this.away.subarray(3 * i, 3 * i + 3);
             most = Math.max(most, (1 + x) * Math.hypot(dx, dy, dz) + radius);

@@ -28,7 +28,8 @@ export class Stage {
         this.controls.rotateSpeed = 0.9;
         this.controls.zoomToCursor = true;
         this.controls.addEventListener("change", () => this.request());
-        this.ball = { center: [0, 0, 0], radius: 1 };
+        this.ball = { center: [0, 0, 0], radius: 1 }; // what is looked at lies in it
+        this.onBall = () => {};
         this.frames = 0; // drawn so far
         this.waiting = false;
         this.beforeDraw = [];
@@ -72,7 +73,7 @@ export class Stage {
         const from = keepDirection
             ? this.camera.position.clone().sub(this.controls.target).normalize()
             : DIRECTION.clone().applyQuaternion(this.turnOfUp());
-        this.ball = ball;
+        this.setBall(ball);
         this.controls.target.set(...ball.center);
         this.camera.position.copy(from).multiplyScalar(distance).add(this.controls.target);
         this.camera.near = ball.radius / 500;
@@ -82,6 +83,12 @@ export class Stage {
         this.controls.maxDistance = 40 * ball.radius;
         this.controls.update();
         this.request();
+    }
+
+    /** What is looked at has grown or shrunk. */
+    setBall(ball) {
+        this.ball = ball;
+        this.onBall();
     }
 
     /** The turn from y up to what is up now. */

@@ -296,6 +296,8 @@ static json_t *guard_json(const book *b, size_t i) {
     size_t seen = b->page->seen != NULL ? starg_bits_count(b->page->seen, i) : g->seen_faces[i];
     json_t *guard = json_pack("{s:o, s:I, s:i}", "position", point_json(g->positions + 3 * i),
                               "faces", (json_int_t)seen, "level", g->levels[i]);
+    if (g->directions != NULL)
+        json_object_set_new(guard, "direction", point_json(g->directions + 3 * i));
     if (g->curve_faces != NULL)
         json_object_set_new(guard, "covered",
                             json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));

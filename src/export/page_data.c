@@ -4,6 +4,8 @@
  * and &, which stand only inside its strings, are written as escapes. Base64 has none of them. */
 #include "export/page_data.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* ---- numbers ---- */
@@ -45,7 +47,7 @@ void starg_page_block_uint32(starg_page_block *block, uint32_t value) {
 }
 
 void starg_page_block_float(starg_page_block *block, double value) {
-    float single = (float)value;
+    float single = (float)fmin(fmax(value, (double)-FLT_MAX), (double)FLT_MAX);
     uint32_t word;
     memcpy(&word, &single, sizeof word);
     starg_page_block_uint32(block, word);

@@ -21,7 +21,7 @@ starg_page_block starg_page_block_open(FILE *stream, const char *name, size_t in
 void starg_page_block_byte(starg_page_block *block, uint8_t byte);
 void starg_page_block_bytes(starg_page_block *block, const void *bytes, size_t size);
 void starg_page_block_uint32(starg_page_block *block, uint32_t value);
-void starg_page_block_float(starg_page_block *block, double value);
+void starg_page_block_float(starg_page_block *block, double value); /* in single precision */
 void starg_page_block_double(starg_page_block *block, double value);
 void starg_page_block_close(starg_page_block *block);
 

@@ -334,6 +334,39 @@ test("without WebGL a page says so", async () => {
     await context.close();
 });
 
+test("results with next to nothing in them are shown", async () => {
+    const guards = JSON.parse(readFileSync(fileOf("guards.json"), "utf8"));
+    guards.guards = [];
+    guards.coverage.curve = [];
+    writeFileSync(fileOf("none.json"), JSON.stringify(guards));
+    writeFileSync(fileOf("dot.obj"), "v 0 0.5 0\n");
+    const points = "POINTS 5 double\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n";
+    const cells = "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\n";
+    const labels = "CELL_DATA 2\nSCALARS piece int 1\nLOOKUP_TABLE default\n1\n1\n"; // there is no piece 0
+    writeFileSync(fileOf("gap.vtk"), `# vtk DataFile Version 3.0\npieces\nASCII\nDATASET UNSTRUCTURED_GRID\n${points}${cells}${labels}`);
+    writeFileSync(fileOf("one.csv"), "model,a\na,0\n");
+    starguard("view", "none.json", "gap.vtk", "dot.obj", "one.csv", "-o", "little.html");
+    await look("little.html", {}, async (page) => {
+        for (const name of ["Guards", "Pieces", "Skeleton", "Retrieval"]) {
+            await openTab(page, name);
+            for (const key of ["n", "p", "Escape", "c", "e", "0"]) await page.keyboard.press(key);
+            await settle(page);
+        }
+    });
+});
+
+test("guards with a cone of view point to where they look", async () => {
+    starguard("guard", "horse.off", "-o", "cone.json", "--cone", "120", "--method", "greedy");
+    starguard("view", "cone.json", "-o", "cone.html");
+    const directions = JSON.parse(readFileSync(fileOf("cone.json"), "utf8")).guards.map((guard) => guard.direction);
+    await look("cone.html", {}, async (page) => {
+        const ends = await page.evaluate(() => [...window.starguard.views[0].pointers.geometry.attributes.position.array]);
+        directions.forEach((direction, i) =>
+            direction.forEach((d, k) => assert.ok(Math.abs((ends[6 * i + 3 + k] - ends[6 * i + k]) / 0.14 - d) < 1e-4)),
+        );
+    });
+});
+
 test("a model alone, and a skeleton alone, are shown", async () => {
     starguard("view", "horse.off", "-o", "model.html");
     starguard("view", "skeleton.obj", "-o", "skeleton.html");
