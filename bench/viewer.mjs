@@ -21,7 +21,8 @@ if (missing !== null) {
     process.exit(1);
 }
 const vertices = process.argv[2] ?? "100000";
-const BLOCKS = 7, FRAMES = 5;
+const BLOCKS = 7,
+    FRAMES = 5;
 const SIZE = { width: 1280, height: 800 };
 const folder = mkdtempSync(path.join(os.tmpdir(), "starguard-bench-"));
 const fileOf = (name) => path.join(folder, name);
@@ -134,8 +135,11 @@ async function compare(name, ours, plain, opacity) {
         times.ours.push(...(await drawOurs(ours)));
         times.plain.push(...(await drawPlain(plain, opacity)));
     }
-    const a = median(times.ours), b = median(times.plain);
-    console.log(`${name.padEnd(34)} ${a.toFixed(1).padStart(8)} ms ${b.toFixed(1).padStart(8)} ms   ratio ${(a / b).toFixed(2)}`);
+    const a = median(times.ours),
+        b = median(times.plain);
+    console.log(
+        `${name.padEnd(34)} ${a.toFixed(1).padStart(8)} ms ${b.toFixed(1).padStart(8)} ms   ratio ${(a / b).toFixed(2)}`,
+    );
 }
 
 const setOpacity = (page, x) =>
@@ -153,7 +157,9 @@ const browser = await openBrowser();
 try {
     const ours = await openPage(browser, fileOf("ours.html"), { viewport: SIZE });
     const plain = await openPage(browser, fileOf("plain.html"), { viewport: SIZE });
-    console.log(`${faces} triangles, ${SIZE.width - 340} x ${SIZE.height} pixels: page, plain three.js page`);
+    console.log(
+        `${faces} triangles, ${SIZE.width - 340} x ${SIZE.height} pixels: page, plain three.js page`,
+    );
     await compare("half transparent", ours.page, plain.page, 0.3);
     await setOpacity(ours.page, 1);
     await compare("solid", ours.page, plain.page, 1);

@@ -9,7 +9,7 @@
 #include "show.h"
 #include "starguard/picture.h"
 
-enum { PICTURE_WIDTH = 108, PICTURE_HEIGHT = 80, MOST_SHAPES = 4000 };
+enum { PICTURE_WIDTH = 108, PICTURE_HEIGHT = 80, MOST_SHAPES = 2000 };
 
 static starg_status make_room(cli_session *session, size_t count, cli_show *show) {
     show->shapes = calloc(count + 1, sizeof *show->shapes);

@@ -31,9 +31,17 @@ export class Controls {
             show: (x) => percent(x),
             change: () => this.cut(),
         });
-        this.flip = element("button", { type: "button", id: "flip", onclick: () => this.turnOver() }, "Other side");
+        this.flip = element(
+            "button",
+            { type: "button", id: "flip", onclick: () => this.turnOver() },
+            "Other side",
+        );
         this.up = choice({ name: "Up", words: ["Y", "Z"], value: 0, change: (i) => this.setUp(i) });
-        this.reset = element("button", { type: "button", id: "reset", onclick: () => stage.fit(stage.ball) }, "Reset view");
+        this.reset = element(
+            "button",
+            { type: "button", id: "reset", onclick: () => stage.fit(stage.ball) },
+            "Reset view",
+        );
         this.cutParts = element("div", { className: "beside" }, this.place.node, this.flip);
         this.surfacePart = element("div", {}, ...(this.opacity ? [this.opacity.node] : []));
         this.node = element(

@@ -2,11 +2,17 @@
 import { drawn } from "./panel.js";
 import { percent } from "./text.js";
 
-const WIDTH = 300, HEIGHT = 128, LEFT = 42, RIGHT = 8, TOP = 8, BOTTOM = 22;
+const WIDTH = 300,
+    HEIGHT = 128,
+    LEFT = 42,
+    RIGHT = 8,
+    TOP = 8,
+    BOTTOM = 22;
 
 /** Grid counts along the axis of guards: a few round numbers. */
 function ticks(count) {
-    const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => count / s <= 6) ?? count;
+    const step =
+        [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => count / s <= 6) ?? count;
     const list = [];
     for (let k = 0; k <= count; k += step) list.push(k);
     return list;
@@ -25,8 +31,18 @@ export function coverageCurve(fractions, choose) {
     });
     for (const fraction of [0, 0.5, 1]) {
         svg.append(
-            drawn("line", { class: "grid", x1: LEFT, x2: WIDTH - RIGHT, y1: y(fraction), y2: y(fraction) }),
-            drawn("text", { x: LEFT - 6, y: y(fraction) + 4, "text-anchor": "end" }, `${100 * fraction} %`),
+            drawn("line", {
+                class: "grid",
+                x1: LEFT,
+                x2: WIDTH - RIGHT,
+                y1: y(fraction),
+                y2: y(fraction),
+            }),
+            drawn(
+                "text",
+                { x: LEFT - 6, y: y(fraction) + 4, "text-anchor": "end" },
+                `${100 * fraction} %`,
+            ),
         );
     }
     for (const k of ticks(count))

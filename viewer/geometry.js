@@ -8,10 +8,18 @@ function faceNormals(points, faces) {
     const normals = new Float32Array(3 * count);
     const areas = new Float32Array(count);
     for (let f = 0; f < count; f++) {
-        const a = 3 * faces[3 * f], b = 3 * faces[3 * f + 1], c = 3 * faces[3 * f + 2];
-        const ux = points[b] - points[a], uy = points[b + 1] - points[a + 1], uz = points[b + 2] - points[a + 2];
-        const vx = points[c] - points[a], vy = points[c + 1] - points[a + 1], vz = points[c + 2] - points[a + 2];
-        const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+        const a = 3 * faces[3 * f],
+            b = 3 * faces[3 * f + 1],
+            c = 3 * faces[3 * f + 2];
+        const ux = points[b] - points[a],
+            uy = points[b + 1] - points[a + 1],
+            uz = points[b + 2] - points[a + 2];
+        const vx = points[c] - points[a],
+            vy = points[c + 1] - points[a + 1],
+            vz = points[c + 2] - points[a + 2];
+        const x = uy * vz - uz * vy,
+            y = uz * vx - ux * vz,
+            z = ux * vy - uy * vx;
         const length = Math.hypot(x, y, z);
         areas[f] = length;
         const by = length > 0 ? 1 / length : 0;
@@ -48,10 +56,14 @@ export function shadedSurface(points, faces) {
         const begin = source.length; // the new vertices of v
         for (let i = first[v]; i < first[v + 1]; i++) {
             const f = Math.floor(corners[i] / 3);
-            const x = normals[3 * f], y = normals[3 * f + 1], z = normals[3 * f + 2];
+            const x = normals[3 * f],
+                y = normals[3 * f + 1],
+                z = normals[3 * f + 2];
             let k = begin;
             for (; k < source.length; k++) {
-                const sx = sums[3 * k], sy = sums[3 * k + 1], sz = sums[3 * k + 2];
+                const sx = sums[3 * k],
+                    sy = sums[3 * k + 1],
+                    sz = sums[3 * k + 2];
                 if (x * sx + y * sy + z * sz >= CREASE * Math.hypot(sx, sy, sz)) break;
             }
             if (k === source.length) {
@@ -92,14 +104,16 @@ export function smoothNormals(points, faces) {
     const packed = new Int8Array((4 * points.length) / 3);
     for (let v = 0; v < points.length / 3; v++) {
         const length = Math.hypot(sums[3 * v], sums[3 * v + 1], sums[3 * v + 2]) || 1;
-        for (let c = 0; c < 3; c++) packed[4 * v + c] = Math.round((127 * sums[3 * v + c]) / length);
+        for (let c = 0; c < 3; c++)
+            packed[4 * v + c] = Math.round((127 * sums[3 * v + c]) / length);
     }
     return packed;
 }
 
 /** Middle of the box of points, and how far they reach from it; of one array or several. */
 export function ballOf(...arrays) {
-    const lower = [Infinity, Infinity, Infinity], upper = [-Infinity, -Infinity, -Infinity];
+    const lower = [Infinity, Infinity, Infinity],
+        upper = [-Infinity, -Infinity, -Infinity];
     for (const points of arrays)
         for (let i = 0; i < points.length; i++) {
             lower[i % 3] = Math.min(lower[i % 3], points[i]);
@@ -111,7 +125,11 @@ export function ballOf(...arrays) {
         for (let i = 0; i < points.length; i += 3)
             radius = Math.max(
                 radius,
-                Math.hypot(points[i] - center[0], points[i + 1] - center[1], points[i + 2] - center[2]),
+                Math.hypot(
+                    points[i] - center[0],
+                    points[i + 1] - center[1],
+                    points[i + 2] - center[2],
+                ),
             );
     return { center, radius: radius || 1 };
 }

@@ -57,11 +57,16 @@ export class GuardsView extends View {
         const { points } = this.points;
         const ends = this.told.list.flatMap(({ direction }, i) => {
             const length = Math.hypot(...direction) || 1;
-            return [0, 1].flatMap((end) => direction.map((d, k) => points[3 * i + k] + (end * POINTER * d) / length));
+            return [0, 1].flatMap((end) =>
+                direction.map((d, k) => points[3 * i + k] + (end * POINTER * d) / length),
+            );
         });
         const geometry = new BufferGeometry();
         geometry.setAttribute("position", new BufferAttribute(Float32Array.from(ends), 3));
-        const lines = new LineSegments(geometry, new LineBasicMaterial({ color: themeColor("text"), depthTest: false }));
+        const lines = new LineSegments(
+            geometry,
+            new LineBasicMaterial({ color: themeColor("text"), depthTest: false }),
+        );
         lines.frustumCulled = false;
         lines.renderOrder = 9;
         return lines;
@@ -91,7 +96,11 @@ export class GuardsView extends View {
         this.place = note("");
         node.append(this.place);
         if (told.uncovered.length > 0)
-            node.append(note(`${amount(told.uncovered.length, "face is", "faces are")} seen by no guard: striped in red.`));
+            node.append(
+                note(
+                    `${amount(told.uncovered.length, "face is", "faces are")} seen by no guard: striped in red.`,
+                ),
+            );
         return node;
     }
 
@@ -108,7 +117,10 @@ export class GuardsView extends View {
     }
 
     makeCurve() {
-        const fractions = [0, ...this.told.list.map((guard) => Math.min(Math.max(guard.covered[1], 0), 1))];
+        const fractions = (this.fractions = [
+            0,
+            ...this.told.list.map((guard) => Math.min(Math.max(guard.covered[1], 0), 1)),
+        ]);
         this.curve = coverageCurve(fractions, (k) => this.firstSlider?.move(k));
         const parts = [heading("Area seen by the first guards"), this.curve.node];
         if (this.seen === null) return parts;
@@ -140,12 +152,17 @@ export class GuardsView extends View {
         this.painted = true;
         this.first = k;
         this.update();
-        say(`The first ${amount(k, "guard sees", "guards see")} ${this.firstSlider.input.getAttribute("aria-valuetext").split(" · ")[1]} of the area`);
+        say(
+            `The first ${amount(k, "guard sees", "guards see")} ${percent(this.fractions[k])} of the area`,
+        );
     }
 
     step(by) {
         const { count: number } = this.points;
-        if (number > 0) this.pick(this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number);
+        if (number > 0)
+            this.pick(
+                this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number,
+            );
     }
 
     clear() {
@@ -159,7 +176,8 @@ export class GuardsView extends View {
         this.list.press(picked);
         if (this.firstSlider) this.firstSlider.value = first;
         this.curve?.mark(first);
-        this.place.textContent = picked < 0 ? "" : `Guard ${picked} stands at ${point(this.told.list[picked].position)}`;
+        this.place.textContent =
+            picked < 0 ? "" : `Guard ${picked} stands at ${point(this.told.list[picked].position)}`;
         this.place.hidden = picked < 0;
         this.paint();
         this.stage.request();
@@ -188,9 +206,18 @@ export class GuardsView extends View {
     /** What the tag under the pointer says, and where it points; null for nothing. */
     tag(at) {
         const i = at === null ? -1 : this.points.under(this.stage, at);
-        if (i >= 0) return { text: `Guard ${i} · ${amount(this.told.list[i].faces, "face", "faces")}`, place: this.points.place(i), over: true };
+        if (i >= 0)
+            return {
+                text: `Guard ${i} · ${amount(this.told.list[i].faces, "face", "faces")}`,
+                place: this.points.place(i),
+                over: true,
+            };
         if (this.picked < 0) return null;
-        return { text: `Guard ${this.picked} · ${amount(this.told.list[this.picked].faces, "face", "faces")}`, place: this.points.place(this.picked), over: false };
+        return {
+            text: `Guard ${this.picked} · ${amount(this.told.list[this.picked].faces, "face", "faces")}`,
+            place: this.points.place(this.picked),
+            over: false,
+        };
     }
 
     enter() {

@@ -9,8 +9,16 @@ const HALF_MOON = "M8 1.5a6.5 6.5 0 1 0 0 13z M8 1.5a6.5 6.5 0 0 1 0 13";
 const QUESTION = "M5.6 6a2.4 2.4 0 1 1 3.3 2.2c-.6.3-.9.7-.9 1.3v.4 M8 12.6v.1";
 
 function roundButton(name, path, act) {
-    const icon = drawn("svg", { viewBox: "0 0 16 16", "aria-hidden": "true" }, drawn("path", { d: path }));
-    const button = element("button", { type: "button", className: "round", title: name, onclick: act }, icon);
+    const icon = drawn(
+        "svg",
+        { viewBox: "0 0 16 16", "aria-hidden": "true" },
+        drawn("path", { d: path }),
+    );
+    const button = element(
+        "button",
+        { type: "button", className: "round", title: name, onclick: act },
+        icon,
+    );
     button.setAttribute("aria-label", name);
     return button;
 }
@@ -24,5 +32,8 @@ export function fillHeader() {
         : "";
     document
         .getElementById("buttons")
-        .append(roundButton("Light or dark", HALF_MOON, toggleTheme), roundButton("Keys and help", QUESTION, showHelp));
+        .append(
+            roundButton("Light or dark", HALF_MOON, toggleTheme),
+            roundButton("Keys and help", QUESTION, showHelp),
+        );
 }

@@ -7,16 +7,26 @@ const dialog = document.getElementById("help");
 export function listenToKeys(keys) {
     document.addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey || dialog.open) return;
-        const onControl = event.target.closest("input, select, textarea, button, [role=radio]") !== null;
+        const onControl =
+            event.target.closest("input, select, textarea, button, [role=radio]") !== null;
         if (onControl && /^(Arrow|Home|End| |Enter)/.test(event.key)) return; // those are the control's
-        const entry = keys.find(([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()));
+        const entry = keys.find(
+            ([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()),
+        );
         if (entry === undefined) return;
         event.preventDefault();
         entry[2](event.key);
     });
 }
 
-const SHOWN = { ArrowLeft: "←", ArrowRight: "→", ArrowUp: "↑", ArrowDown: "↓", " ": "Space", Escape: "Esc" };
+const SHOWN = {
+    ArrowLeft: "←",
+    ArrowRight: "→",
+    ArrowUp: "↑",
+    ArrowDown: "↓",
+    " ": "Space",
+    Escape: "Esc",
+};
 
 function shown(key) {
     return SHOWN[key] ?? (key.length === 1 ? key.toUpperCase() : key);
@@ -37,8 +47,16 @@ export function fillHelp(keys) {
             { className: "note" },
             "Mouse: drag to turn, wheel to zoom, right button to move, click to pick. Touch: one finger turns, two zoom and move, a tap picks.",
         ),
-        element("p", { className: "note" }, "This page holds all that it shows. It fetches nothing and sends nothing."),
-        element("button", { type: "button", className: "main", onclick: () => dialog.close() }, "Close"),
+        element(
+            "p",
+            { className: "note" },
+            "This page holds all that it shows. It fetches nothing and sends nothing.",
+        ),
+        element(
+            "button",
+            { type: "button", className: "main", onclick: () => dialog.close() },
+            "Close",
+        ),
     );
     dialog.addEventListener("click", (event) => {
         if (event.target === dialog) dialog.close();

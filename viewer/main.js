@@ -84,7 +84,8 @@ class App {
     /** Objects of other views are on a layer that the camera does not see. */
     showObjects() {
         const { view, surface } = this;
-        for (const each of this.views) each.objects.forEach((object) => object.layers.set(each === view ? 0 : 1));
+        for (const each of this.views)
+            each.objects.forEach((object) => object.layers.set(each === view ? 0 : 1));
         if (surface) {
             surface.object.visible = view.withSurface;
             surface.paint(null, new Set());
@@ -126,14 +127,18 @@ class App {
 
     /** The text beside what is under the pointer, or picked; within the stage. */
     showTag() {
-        const tag = at("tag"), { place } = this.stage;
+        const tag = at("tag"),
+            { place } = this.stage;
         const found = this.view.tag(this.pointer);
         const spot = found && this.stage.project(...found.place);
         this.stage.canvas.classList.toggle("over", found?.over ?? false);
         tag.hidden = !spot;
         if (!spot) return;
         tag.textContent = found.text;
-        const x = Math.min(Math.max(spot.x - tag.offsetWidth / 2, 8), place.clientWidth - tag.offsetWidth - 8);
+        const x = Math.min(
+            Math.max(spot.x - tag.offsetWidth / 2, 8),
+            place.clientWidth - tag.offsetWidth - 8,
+        );
         const y = spot.y > 60 ? spot.y - tag.offsetHeight - 16 : spot.y + 18;
         tag.style.transform = `translate(${Math.round(x)}px, ${Math.round(y)}px)`;
     }
@@ -142,20 +147,34 @@ class App {
 
     keys() {
         const { stage, views } = this;
-        const pieces = this.viewOf(PiecesView), morph = this.viewOf(MorphView);
+        const pieces = this.viewOf(PiecesView),
+            morph = this.viewOf(MorphView);
         const keys = [
             [["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"], "turn", (key) => this.turn(key)],
             [["+", "-"], "zoom in, out", (key) => stage.zoom(key === "+" ? 1 / 1.15 : 1.15)],
             [["0"], "the first view again", () => stage.fit(stage.ball)],
-            [["n", "p"], "next, previous guard, piece, frame or shape", (key) => this.view.step(key.toLowerCase() === "n" ? 1 : -1)],
+            [
+                ["n", "p"],
+                "next, previous guard, piece, frame or shape",
+                (key) => this.view.step(key.toLowerCase() === "n" ? 1 : -1),
+            ],
             [["Escape"], "pick nothing", () => this.view.clear()],
             [["c"], "cut across X, Y, Z, or not", () => this.controls.nextCut()],
         ];
         if (pieces) keys.push([["e"], "pieces apart, together", () => pieces.toggleExplode()]);
-        if (morph) keys.push([[" "], "play the morph, pause", () => this.view === morph && morph.toggle()]);
+        if (morph)
+            keys.push([
+                [" "],
+                "play the morph, pause",
+                () => this.view === morph && morph.toggle(),
+            ]);
         if (views.length > 1) {
             const digits = views.map((_, i) => String(i + 1));
-            keys.push([digits, views.map((view) => view.name.toLowerCase()).join(", "), (key) => this.open(Number(key) - 1)]);
+            keys.push([
+                digits,
+                views.map((view) => view.name.toLowerCase()).join(", "),
+                (key) => this.open(Number(key) - 1),
+            ]);
         }
         keys.push([["t"], "light or dark", toggleTheme], [["?"], "this help", showHelp]);
         return keys;

@@ -9,7 +9,8 @@ import { normalAttribute } from "./surface.js";
 import { count } from "./text.js";
 import { View } from "./view.js";
 
-const SECONDS = 2.4, REST = 0.35; // of one way, and of the halt at each end
+const SECONDS = 2.4,
+    REST = 0.35; // of one way, and of the halt at each end
 
 export class MorphView extends View {
     name = "Morph";
@@ -45,7 +46,11 @@ export class MorphView extends View {
 
     makePanel() {
         const { frames, vertices, faces } = page.morph;
-        this.button = element("button", { type: "button", className: "main", id: "play", onclick: () => this.toggle() }, "Play");
+        this.button = element(
+            "button",
+            { type: "button", className: "main", id: "play", onclick: () => this.toggle() },
+            "Play",
+        );
         this.time = slider({
             name: "Time",
             id: "time",
@@ -66,7 +71,12 @@ export class MorphView extends View {
                 ["Faces", count(faces)],
             ]),
             this.time.node,
-            element("div", { className: "row" }, this.button, element("span", { className: "number" }, "Space")),
+            element(
+                "div",
+                { className: "row" },
+                this.button,
+                element("span", { className: "number" }, "Space"),
+            ),
             note("0 is the first shape, 1 the last one."),
         );
     }

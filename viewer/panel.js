@@ -32,7 +32,12 @@ export function slider({ name, min = 0, max = 1, step = 0.01, value, show, chang
     const output = element("output", {}, show(value));
     const input = element("input", { type: "range", id, min, max, step, value });
     input.setAttribute("aria-label", name);
-    const label = element("label", { className: "control" }, element("span", {}, name, output), input);
+    const label = element(
+        "label",
+        { className: "control" },
+        element("span", {}, name, output),
+        input,
+    );
     const update = () => {
         output.textContent = show(input.valueAsNumber);
         input.setAttribute("aria-valuetext", output.textContent);
@@ -150,7 +155,8 @@ export function pickList({ name, rows, pick }) {
             if (button === undefined) return;
             const box = list.closest("#views");
             if (!box) return;
-            const inside = box.getBoundingClientRect(), own = button.getBoundingClientRect();
+            const inside = box.getBoundingClientRect(),
+                own = button.getBoundingClientRect();
             if (own.top < inside.top) box.scrollTop -= inside.top - own.top + 8;
             else if (own.bottom > inside.bottom) box.scrollTop += own.bottom - inside.bottom + 8;
         },

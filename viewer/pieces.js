@@ -28,7 +28,8 @@ export class PiecesView extends View {
 
     /** One mesh of all pieces: each vertex knows its piece, its colour and where that goes. */
     build() {
-        const points = floats("piece-points"), faces = indices("piece-faces");
+        const points = floats("piece-points"),
+            faces = indices("piece-faces");
         this.rest = ballOf(points); // about the pieces in their places
         this.ball = this.rest;
         this.away = new Float32Array(3 * this.told.list.length);
@@ -40,10 +41,14 @@ export class PiecesView extends View {
             return this.makePiece(points, faces.subarray(3 * first, 3 * (first + piece.faces)), i);
         });
         const total = parts.reduce((sum, part) => sum + part.position.length / 3, 0);
-        const position = new Float32Array(3 * total), normal = new Int8Array(4 * total);
-        const away = new Float32Array(3 * total), color = new Uint8Array(4 * total), piece = new Float32Array(total);
+        const position = new Float32Array(3 * total),
+            normal = new Int8Array(4 * total);
+        const away = new Float32Array(3 * total),
+            color = new Uint8Array(4 * total),
+            piece = new Float32Array(total);
         const index = new Uint32Array(faces.length);
-        let vertices = 0, corners = 0;
+        let vertices = 0,
+            corners = 0;
         parts.forEach((part, i) => {
             const size = part.position.length / 3;
             const rgb = new Color(page.colors[i]).toArray().map((x) => Math.round(255 * x));
@@ -84,7 +89,8 @@ export class PiecesView extends View {
             own[k] = numbers.get(v);
         });
         const local = Float32Array.from(used);
-        const { center, radius } = used.length > 0 ? ballOf(local) : { center: this.rest.center, radius: 0 };
+        const { center, radius } =
+            used.length > 0 ? ballOf(local) : { center: this.rest.center, radius: 0 };
         this.radii.push(radius);
         for (let k = 0; k < 3; k++) this.away[3 * i + k] = center[k] - this.rest.center[k];
         return shadedSurface(local, own);
@@ -97,7 +103,14 @@ export class PiecesView extends View {
         const number = told.list.length;
         const stars = told.list.filter((piece) => piece.star).length;
         const volume = told.list.reduce((sum, piece) => sum + (piece.volume ?? 0), 0);
-        const rows = [["Pieces", count(number), told.reported && stars === number ? "all proven star-shaped" : "", "good"]];
+        const rows = [
+            [
+                "Pieces",
+                count(number),
+                told.reported && stars === number ? "all proven star-shaped" : "",
+                "good",
+            ],
+        ];
         if (told.reported && stars < number) rows.push(["Star-shaped", count(stars), "proven"]);
         rows.push(["Tetrahedra", count(told.tetrahedra)]);
         this.explode = slider({
@@ -114,20 +127,45 @@ export class PiecesView extends View {
             rows: told.list.map((piece, i) => [
                 swatch("square", page.colors[i]),
                 element("span", { className: "name" }, `Piece ${i}`),
-                element("span", { className: "number" }, piece.volume !== undefined && volume > 0 ? percent(piece.volume / volume) : amount(piece.faces, "face", "faces")),
+                element(
+                    "span",
+                    { className: "number" },
+                    piece.volume !== undefined && volume > 0
+                        ? percent(piece.volume / volume)
+                        : amount(piece.faces, "face", "faces"),
+                ),
             ]),
         });
         const node = element("div", {}, facts(rows), this.explode.node);
         if (this.points)
-            node.append(check({ name: "Show guards", id: "piece-guards-shown", value: true, change: (on) => { this.points.object.visible = on; this.stage.request(); } }));
-        node.append(heading(told.reported ? "Pieces by number, and their share of the volume" : "Pieces by number"), this.list.node);
-        if (!told.reported) node.append(note("Without PIECES.json, guards and proofs are not known."));
+            node.append(
+                check({
+                    name: "Show guards",
+                    id: "piece-guards-shown",
+                    value: true,
+                    change: (on) => {
+                        this.points.object.visible = on;
+                        this.stage.request();
+                    },
+                }),
+            );
+        node.append(
+            heading(
+                told.reported
+                    ? "Pieces by number, and their share of the volume"
+                    : "Pieces by number",
+            ),
+            this.list.node,
+        );
+        if (!told.reported)
+            node.append(note("Without PIECES.json, guards and proofs are not known."));
         return node;
     }
 
     sentence(i) {
         const piece = this.told.list[i];
-        if (piece.volume === undefined) return `Piece ${i} has ${amount(piece.faces, "face", "faces")}`;
+        if (piece.volume === undefined)
+            return `Piece ${i} has ${amount(piece.faces, "face", "faces")}`;
         return `Piece ${i}: volume ${real(piece.volume)}, ${amount(piece.tetrahedra, "tetrahedron", "tetrahedra")}, ${piece.star ? "star-shaped, proven" : "not star-shaped"}`;
     }
 
@@ -167,7 +205,9 @@ export class PiecesView extends View {
 
     step(by) {
         const number = this.told.list.length;
-        this.pick(this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number);
+        this.pick(
+            this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number,
+        );
     }
 
     clear() {
@@ -179,15 +219,26 @@ export class PiecesView extends View {
     /** The first piece that a ray meets, -1 if none: every triangle is tried. */
     hit({ origin, direction }) {
         const { position, index, firstFace } = this;
-        const cut = shared.cut.value, by = shared.explode.value;
-        let best = -1, nearest = Infinity;
+        const cut = shared.cut.value,
+            by = shared.explode.value;
+        let best = -1,
+            nearest = Infinity;
         for (let i = 0; i + 1 < firstFace.length; i++) {
             const o = [origin.x, origin.y, origin.z].map((x, k) => x - by * this.away[3 * i + k]);
             const moved = [0, 1, 2].map((k) => by * this.away[3 * i + k]);
             for (let c = 3 * firstFace[i]; c < 3 * firstFace[i + 1]; c += 3) {
-                const t = meet(o, direction, position, 3 * index[c], 3 * index[c + 1], 3 * index[c + 2]);
+                const t = meet(
+                    o,
+                    direction,
+                    position,
+                    3 * index[c],
+                    3 * index[c + 1],
+                    3 * index[c + 2],
+                );
                 if (!(t > 0 && t < nearest)) continue;
-                const x = o[0] + moved[0] + t * direction.x, y = o[1] + moved[1] + t * direction.y, z = o[2] + moved[2] + t * direction.z;
+                const x = o[0] + moved[0] + t * direction.x,
+                    y = o[1] + moved[1] + t * direction.y,
+                    z = o[2] + moved[2] + t * direction.z;
                 if (x * cut.x + y * cut.y + z * cut.z > cut.w) continue;
                 nearest = t;
                 best = i;
@@ -207,8 +258,10 @@ export class PiecesView extends View {
     }
 
     tag(at) {
-        const guard = at !== null && this.points?.object.visible ? this.points.under(this.stage, at) : -1;
-        if (guard >= 0) return { text: `Guard of piece ${guard}`, place: this.points.place(guard), over: true };
+        const guard =
+            at !== null && this.points?.object.visible ? this.points.under(this.stage, at) : -1;
+        if (guard >= 0)
+            return { text: `Guard of piece ${guard}`, place: this.points.place(guard), over: true };
         if (this.picked < 0 || !this.points) return null;
         return { text: `Piece ${this.picked}`, place: this.points.place(this.picked), over: false };
     }
@@ -220,14 +273,24 @@ export class PiecesView extends View {
 
 /** How far along a ray a triangle is; NaN where they do not meet. */
 function meet(o, d, p, a, b, c) {
-    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
-    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
-    const hx = d.y * vz - d.z * vy, hy = d.z * vx - d.x * vz, hz = d.x * vy - d.y * vx;
+    const ux = p[b] - p[a],
+        uy = p[b + 1] - p[a + 1],
+        uz = p[b + 2] - p[a + 2];
+    const vx = p[c] - p[a],
+        vy = p[c + 1] - p[a + 1],
+        vz = p[c + 2] - p[a + 2];
+    const hx = d.y * vz - d.z * vy,
+        hy = d.z * vx - d.x * vz,
+        hz = d.x * vy - d.y * vx;
     const scale = 1 / (ux * hx + uy * hy + uz * hz);
-    const sx = o[0] - p[a], sy = o[1] - p[a + 1], sz = o[2] - p[a + 2];
+    const sx = o[0] - p[a],
+        sy = o[1] - p[a + 1],
+        sz = o[2] - p[a + 2];
     const s = (sx * hx + sy * hy + sz * hz) * scale;
     if (!(s >= 0 && s <= 1)) return NaN;
-    const qx = sy * uz - sz * uy, qy = sz * ux - sx * uz, qz = sx * uy - sy * ux;
+    const qx = sy * uz - sz * uy,
+        qy = sz * ux - sx * uz,
+        qz = sx * uy - sy * ux;
     const t = (d.x * qx + d.y * qy + d.z * qz) * scale;
     if (!(t >= 0 && s + t <= 1)) return NaN;
     return (vx * qx + vy * qy + vz * qz) * scale;

@@ -2,7 +2,8 @@
 import { BufferAttribute, BufferGeometry, Color, Points } from "three";
 import { pointMaterial, shared } from "./materials.js";
 
-const SIZE = 15, PICKED_SIZE = 22; // pixels
+const SIZE = 15,
+    PICKED_SIZE = 22; // pixels
 const REACH = { mouse: 12, touch: 24 };
 
 export class PickPoints {
@@ -48,7 +49,8 @@ export class PickPoints {
 
     /** The point nearest to a place on the stage, -1 if none is near. */
     under(stage, at) {
-        let best = -1, nearest = at.touch ? REACH.touch : REACH.mouse;
+        let best = -1,
+            nearest = at.touch ? REACH.touch : REACH.mouse;
         const shown = Math.min(this.count, this.geometry.drawRange.count);
         for (let i = 0; i < shown; i++) {
             const p = stage.project(...this.place(i));

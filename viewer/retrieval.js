@@ -16,13 +16,17 @@ export class RetrievalView extends View {
         super();
         this.stage = stage;
         this.place = place; // the element over the stage
-        this.shapes = page.shapes.map((shape, i) => ({ ...shape, address: shape.picture ? pictureAddress(`shape-picture-${i}`) : null }));
+        this.shapes = page.shapes.map((shape, i) => ({
+            ...shape,
+            address: shape.picture ? pictureAddress(`shape-picture-${i}`) : null,
+        }));
         this.pictured = this.shapes.some((shape) => shape.picture);
         this.distances = doubles("shape-distances");
         this.ranks = this.rankAll();
         this.picked = 0;
         this.node = this.makePanel();
         this.makeSheet();
+        this.makeShades();
         this.update();
     }
 
@@ -39,7 +43,9 @@ export class RetrievalView extends View {
         const n = this.shapes.length;
         const ranks = new Float32Array(n * n);
         for (let i = 0; i < n; i++) {
-            const order = Array.from({ length: n }, (_, k) => k).sort((a, b) => this.distance(i, a) - this.distance(i, b) || a - b);
+            const order = Array.from({ length: n }, (_, k) => k).sort(
+                (a, b) => this.distance(i, a) - this.distance(i, b) || a - b,
+            );
             order.forEach((k, place) => {
                 const before = order[place - 1];
                 const tied = place > 0 && this.distance(i, before) === this.distance(i, k);
@@ -95,7 +101,10 @@ export class RetrievalView extends View {
     makeSheet() {
         this.canvas = element("canvas", { tabIndex: 0 });
         this.canvas.setAttribute("role", "img");
-        this.canvas.setAttribute("aria-label", `Table of distances of ${amount(this.count, "shape", "shapes")}; arrow keys go from shape to shape`);
+        this.canvas.setAttribute(
+            "aria-label",
+            `Table of distances of ${amount(this.count, "shape", "shapes")}; arrow keys go from shape to shape`,
+        );
         this.place.append(element("div", { className: "sheet" }, this.canvas));
         this.canvas.addEventListener("pointerdown", (event) => {
             const cell = this.cellAt(event);
@@ -130,7 +139,10 @@ export class RetrievalView extends View {
         const n = this.count;
         const context = this.canvas.getContext("2d");
         context.font = this.font();
-        const longest = Math.min(170, Math.max(...this.shapes.map((shape) => context.measureText(shape.name).width)) + 8);
+        const longest = Math.min(
+            170,
+            Math.max(...this.shapes.map((shape) => context.measureText(shape.name).width)) + 8,
+        );
         const room = Math.min(width, height);
         const named = (room - longest) / n >= 9;
         const frame = named ? longest : 0;
@@ -146,11 +158,16 @@ export class RetrievalView extends View {
 
     draw() {
         const style = getComputedStyle(this.place);
-        const width = this.place.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-        const height = this.place.clientHeight - parseFloat(style.paddingTop) - parseFloat(style.paddingBottom);
+        const width =
+            this.place.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+        const height =
+            this.place.clientHeight -
+            parseFloat(style.paddingTop) -
+            parseFloat(style.paddingBottom);
         if (width <= 0 || height <= 0) return;
         this.measure(width, height);
-        const n = this.count, { cell, left, top } = this;
+        const n = this.count,
+            { cell, left, top } = this;
         const ratio = Math.min(window.devicePixelRatio || 1, 2);
         this.canvas.width = (left + n * cell) * ratio;
         this.canvas.height = (top + n * cell) * ratio;
@@ -163,22 +180,33 @@ export class RetrievalView extends View {
         this.drawPicked(context);
     }
 
-    drawCells(context) {
-        const near = parse(themeColor("cell-near")), far = parse(themeColor("cell-far"));
-        const n = this.count, gap = this.cell >= 8 ? 1 : 0;
-        const shades = Array.from({ length: 64 }, (_, s) => {
-            const x = Math.pow(s / 63, 0.7);
-            return `rgb(${near.map((c, k) => Math.round(c + (far[k] - c) * x)).join(" ")})`;
+    /** A pixel for each cell, in the colours of the theme. */
+    makeShades() {
+        const near = parse(themeColor("cell-near")),
+            far = parse(themeColor("cell-far"));
+        const image = new ImageData(this.count, this.count);
+        this.ranks.forEach((rank, i) => {
+            const x = Math.pow(rank, 0.7);
+            for (let k = 0; k < 3; k++) image.data[4 * i + k] = near[k] + (far[k] - near[k]) * x;
+            image.data[4 * i + 3] = 255;
         });
-        for (let i = 0; i < n; i++)
-            for (let k = 0; k < n; k++) {
-                context.fillStyle = shades[Math.round(63 * this.ranks[i * n + k])];
-                context.fillRect(this.left + k * this.cell, this.top + i * this.cell, this.cell - gap, this.cell - gap);
-            }
+        this.shades = element("canvas", { width: this.count, height: this.count });
+        this.shades.getContext("2d").putImageData(image, 0, 0);
+    }
+
+    drawCells(context) {
+        const size = this.count * this.cell;
+        context.imageSmoothingEnabled = false;
+        context.drawImage(this.shades, this.left, this.top, size, size);
+        for (let k = 1; this.cell >= 8 && k <= this.count; k++) {
+            context.clearRect(this.left + k * this.cell - 1, this.top, 1, size);
+            context.clearRect(this.left, this.top + k * this.cell - 1, size, 1);
+        }
     }
 
     drawNames(context) {
-        const plain = themeColor("soft"), strong = themeColor("text");
+        const plain = themeColor("soft"),
+            strong = themeColor("text");
         context.font = this.font();
         context.textBaseline = "middle";
         this.shapes.forEach(({ name }, i) => {
@@ -198,7 +226,12 @@ export class RetrievalView extends View {
     drawPicked(context) {
         context.strokeStyle = themeColor("warn");
         context.lineWidth = 2;
-        context.strokeRect(this.left - 1, this.top + this.picked * this.cell - 1, this.count * this.cell + 1, this.cell + 1);
+        context.strokeRect(
+            this.left - 1,
+            this.top + this.picked * this.cell - 1,
+            this.count * this.cell + 1,
+            this.cell + 1,
+        );
     }
 
     // ---- what is shown ----
@@ -210,7 +243,9 @@ export class RetrievalView extends View {
         this.self.firstChild.setAttribute("aria-pressed", "true");
         this.title.textContent = "Most like it, with distances";
         this.list.setAttribute("aria-label", `Most like ${this.shapes[i].name}`);
-        this.list.replaceChildren(...nearest.slice(0, LIST_MOST).map((k) => this.entry(k, real(this.distance(i, k)))));
+        this.list.replaceChildren(
+            ...nearest.slice(0, LIST_MOST).map((k) => this.entry(k, real(this.distance(i, k)))),
+        );
         this.list.scrollTop = 0;
         this.draw();
     }
@@ -220,7 +255,10 @@ export class RetrievalView extends View {
         this.update();
         const nearest = this.neighbours(i)[0];
         const { name } = this.shapes[i];
-        if (other !== null && other !== i) say(`${name} and ${this.shapes[other].name}: distance ${real(this.distance(i, other))}`);
+        if (other !== null && other !== i)
+            say(
+                `${name} and ${this.shapes[other].name}: distance ${real(this.distance(i, other))}`,
+            );
         else say(nearest === undefined ? name : `${name}: most like ${this.shapes[nearest].name}`);
     }
 
@@ -229,6 +267,7 @@ export class RetrievalView extends View {
     }
 
     applyTheme() {
+        this.makeShades();
         this.draw();
     }
 

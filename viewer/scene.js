@@ -161,7 +161,11 @@ export class Stage {
         let pressed = null;
         const at = (event) => {
             const box = this.canvas.getBoundingClientRect();
-            return { x: event.clientX - box.left, y: event.clientY - box.top, touch: event.pointerType === "touch" };
+            return {
+                x: event.clientX - box.left,
+                y: event.clientY - box.top,
+                touch: event.pointerType === "touch",
+            };
         };
         this.canvas.addEventListener("pointerdown", (event) => {
             pressed = event.isPrimary && event.button === 0 ? at(event) : null;

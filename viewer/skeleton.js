@@ -16,7 +16,8 @@ import { themeColor } from "./theme.js";
 import { count, percent } from "./text.js";
 import { View } from "./view.js";
 
-const ROD = 0.0045, KNOB = 0.011; // of the radius of what is shown
+const ROD = 0.0045,
+    KNOB = 0.011; // of the radius of what is shown
 const MANY = 3000; // nodes from which on balls have fewer faces
 
 export class SkeletonView extends View {
@@ -46,21 +47,33 @@ export class SkeletonView extends View {
     build() {
         const { nodes, edges } = page.skeleton;
         const detail = nodes > MANY ? 1 : 3;
-        this.rods = new InstancedMesh(new CylinderGeometry(1, 1, 1, 8, 1, true), surfaceMaterial(), edges);
+        this.rods = new InstancedMesh(
+            new CylinderGeometry(1, 1, 1, 8, 1, true),
+            surfaceMaterial(),
+            edges,
+        );
         this.knobs = new InstancedMesh(new IcosahedronGeometry(1, 2), surfaceMaterial(), nodes);
-        const matrix = new Matrix4(), turn = new Quaternion(), up = new Vector3(0, 1, 0);
+        const matrix = new Matrix4(),
+            turn = new Quaternion(),
+            up = new Vector3(0, 1, 0);
         const rod = ROD * this.ball.radius;
         for (let e = 0; e < edges; e++) {
-            const a = this.node3(this.edges[2 * e]), b = this.node3(this.edges[2 * e + 1]);
-            const along = b.clone().sub(a), length = along.length();
+            const a = this.node3(this.edges[2 * e]),
+                b = this.node3(this.edges[2 * e + 1]);
+            const along = b.clone().sub(a),
+                length = along.length();
             turn.setFromUnitVectors(up, length > 0 ? along.divideScalar(length) : up);
             matrix.compose(a.add(b).multiplyScalar(0.5), turn, new Vector3(rod, length, rod));
             this.rods.setMatrixAt(e, matrix);
         }
-        for (let i = 0; i < nodes; i++) this.knobs.setMatrixAt(i, this.ballMatrix(i, this.knobSize(i)));
-        this.balls = this.radii && new InstancedMesh(new IcosahedronGeometry(1, detail), surfaceMaterial(), nodes);
+        for (let i = 0; i < nodes; i++)
+            this.knobs.setMatrixAt(i, this.ballMatrix(i, this.knobSize(i)));
+        this.balls =
+            this.radii &&
+            new InstancedMesh(new IcosahedronGeometry(1, detail), surfaceMaterial(), nodes);
         if (this.balls) setOpacity(this.balls.material, 0.999);
-        for (const object of [this.rods, this.knobs, this.balls]) if (object) object.frustumCulled = false;
+        for (const object of [this.rods, this.knobs, this.balls])
+            if (object) object.frustumCulled = false;
     }
 
     /** Joints and ends are knobs, other nodes as thick as the rods that they join. */
@@ -73,7 +86,8 @@ export class SkeletonView extends View {
     }
 
     makePanel() {
-        const joints = this.degrees.filter((d) => d > 2).length, ends = this.degrees.filter((d) => d === 1).length;
+        const joints = this.degrees.filter((d) => d > 2).length,
+            ends = this.degrees.filter((d) => d === 1).length;
         const node = document.createElement("div");
         node.append(
             facts([
@@ -94,7 +108,12 @@ export class SkeletonView extends View {
                 }).node,
                 note("At 100 % each ball touches the surface."),
             );
-        else node.append(note("Radii are not known: the file has none, and there is no model to measure them by."));
+        else
+            node.append(
+                note(
+                    "Radii are not known: the file has none, and there is no model to measure them by.",
+                ),
+            );
         return node;
     }
 
@@ -108,9 +127,13 @@ export class SkeletonView extends View {
     }
 
     applyTheme() {
-        const line = themeColor("accent"), joint = themeColor("warn"), end = themeColor("good");
+        const line = themeColor("accent"),
+            joint = themeColor("warn"),
+            end = themeColor("good");
         this.rods.material.uniforms.base.value.set(line);
-        this.degrees.forEach((d, i) => this.knobs.setColorAt(i, new Color(d > 2 ? joint : d === 2 ? line : end)));
+        this.degrees.forEach((d, i) =>
+            this.knobs.setColorAt(i, new Color(d > 2 ? joint : d === 2 ? line : end)),
+        );
         if (this.knobs.instanceColor) this.knobs.instanceColor.needsUpdate = true;
         this.balls?.material.uniforms.base.value.set(themeColor("accent"));
     }

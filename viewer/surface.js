@@ -5,7 +5,9 @@ import { ballOf, shadedSurface } from "./geometry.js";
 import { setCutOpen, setOpacity, surfaceMaterial } from "./materials.js";
 import { themeColor } from "./theme.js";
 
-const GLASS = 0, UNSEEN = 1, PAINTED = 2; // kinds of faces; PAINTED + i has colour i
+const GLASS = 0,
+    UNSEEN = 1,
+    PAINTED = 2; // kinds of faces; PAINTED + i has colour i
 const MOST_COLORS = 200; // of which each is drawn by itself; then they begin again
 
 export class Surface {
@@ -20,8 +22,12 @@ export class Surface {
         this.geometry.setAttribute("position", new BufferAttribute(surface.position, 3));
         this.geometry.setAttribute("normal", normalAttribute(surface.normal));
         this.geometry.setIndex(new BufferAttribute(surface.index.slice(), 1));
-        this.materials = [surfaceMaterial({ opacity: 0.3, rim: 0.45 }), surfaceMaterial({ defines: { STRIPED: "" } })];
-        for (const color of page.colors.slice(0, MOST_COLORS)) this.materials.push(surfaceMaterial({ color }));
+        this.materials = [
+            surfaceMaterial({ opacity: 0.3, rim: 0.45 }),
+            surfaceMaterial({ defines: { STRIPED: "" } }),
+        ];
+        for (const color of page.colors.slice(0, MOST_COLORS))
+            this.materials.push(surfaceMaterial({ color }));
         this.object = new Mesh(this.geometry, this.materials);
         this.object.frustumCulled = false;
         this.applyTheme();
@@ -49,7 +55,8 @@ export class Surface {
         const { kinds } = this;
         for (let f = 0; f < this.faceCount; f++) {
             const color = colorOf === null ? -1 : colorOf(f);
-            kinds[f] = color >= 0 ? PAINTED + (color % MOST_COLORS) : unseen.has(f) ? UNSEEN : GLASS;
+            kinds[f] =
+                color >= 0 ? PAINTED + (color % MOST_COLORS) : unseen.has(f) ? UNSEEN : GLASS;
         }
         this.sortFaces();
     }
@@ -61,7 +68,8 @@ export class Surface {
         for (const kind of kinds) next[kind + 1]++;
         this.geometry.clearGroups();
         for (let kind = 0; kind < this.materials.length; kind++) {
-            if (next[kind + 1] > 0) this.geometry.addGroup(3 * next[kind], 3 * next[kind + 1], kind);
+            if (next[kind + 1] > 0)
+                this.geometry.addGroup(3 * next[kind], 3 * next[kind + 1], kind);
             next[kind + 1] += next[kind];
         }
         const index = this.geometry.index.array;

@@ -2,7 +2,11 @@
 import { element } from "./panel.js";
 
 function makeTab(view, i, open) {
-    const tab = element("button", { type: "button", id: `tab-${i}`, onclick: () => open(i) }, view.name);
+    const tab = element(
+        "button",
+        { type: "button", id: `tab-${i}`, onclick: () => open(i) },
+        view.name,
+    );
     tab.setAttribute("role", "tab");
     tab.setAttribute("aria-controls", `view-${i}`);
     const panel = element("div", { id: `view-${i}`, hidden: true }, view.node);
@@ -21,7 +25,8 @@ export function makeTabs(views, open) {
     list.addEventListener("keydown", (event) => {
         const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
         if (by === undefined) return;
-        const next = (tabs.findIndex(({ tab }) => tab.tabIndex === 0) + by + tabs.length) % tabs.length;
+        const next =
+            (tabs.findIndex(({ tab }) => tab.tabIndex === 0) + by + tabs.length) % tabs.length;
         open(next);
         tabs[next].tab.focus();
     });

@@ -20,10 +20,10 @@
 static const char STAGE[] = "page";
 static const char NO_VIEWER[] =
     "this build of starguard has no viewer: Node.js and npm were missing, or npm could not fetch "
-    "packages, when it was built; install them (scripts/install-deps.sh build), run CMake again "
-    "with -DSTARGUARD_VIEWER=ON, and build";
+    "packages, when it was built; install them (scripts/install-deps.sh build) and build again "
+    "(docs/viewer.md)";
 
-enum { JSON_POINT_LIMIT = 1 << 20 }; /* guards and pieces that are described singly */
+enum { MOST_GUARDS = 1 << 20 }; /* each of which is described by itself */
 
 /* Where positions go: (p - center) / scale. */
 typedef struct frame {
@@ -50,7 +50,7 @@ static starg_status check_guards(starg_context *context, const starg_page *p) {
     const starg_guards *g = p->guards;
     if (g == NULL)
         return STARG_OK;
-    if (g->count > JSON_POINT_LIMIT)
+    if (g->count > MOST_GUARDS)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "%zu guards are too many for a page", g->count);
     if (p->model != NULL && (g->face_count != starg_mesh_face_count(p->model) ||

@@ -4,12 +4,18 @@ import { createRequire } from "node:module";
 import path from "node:path";
 import { pathToFileURL } from "node:url";
 
-const FLAGS = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+];
 
 /** Why no page can be looked at, or null. */
 export function whatIsMissing() {
     const { STARGUARD_CHROMIUM: chromium, STARGUARD_MODULES: modules } = process.env;
-    if (!chromium || !existsSync(chromium)) return "Chromium is not installed (apt-get install chromium)";
+    if (!chromium || !existsSync(chromium))
+        return "Chromium is not installed (apt-get install chromium)";
     if (!modules || !existsSync(path.join(modules, "node_modules", "playwright-core")))
         return "playwright-core is not there: this build has no viewer (docs/viewer.md)";
     return null;
@@ -23,15 +29,21 @@ export async function openBrowser() {
 
 /** Opens a page, waits until it is ready, and keeps all that it complains of or asks for. */
 export async function openPage(browser, file, options = {}) {
-    const context = await browser.newContext({ viewport: { width: 1000, height: 700 }, ...options });
+    const context = await browser.newContext({
+        viewport: { width: 1000, height: 700 },
+        ...options,
+    });
     const page = await context.newPage();
     page.setDefaultTimeout(90000); // drawing by a program on a busy machine is slow
     const watched = { complaints: [], requests: [], dialogs: 0 };
     const address = pathToFileURL(file).href;
-    page.on("console", (message) => watched.complaints.push(`${message.type()}: ${message.text()}`));
+    page.on("console", (message) =>
+        watched.complaints.push(`${message.type()}: ${message.text()}`),
+    );
     page.on("pageerror", (error) => watched.complaints.push(String(error)));
     page.on("request", (request) => {
-        if (request.url() !== address && !request.url().startsWith("data:")) watched.requests.push(request.url());
+        if (request.url() !== address && !request.url().startsWith("data:"))
+            watched.requests.push(request.url());
     });
     page.on("dialog", (dialog) => {
         watched.dialogs++;

@@ -20,7 +20,10 @@ const HOSTILE = "<script>alert(1)<\u2215script>.off"; // a file name cannot hold
 let browser;
 
 function starguard(...words) {
-    return execFileSync(process.env.STARGUARD, [...words, "--quiet"], { cwd: folder, encoding: "utf8" });
+    return execFileSync(process.env.STARGUARD, [...words, "--quiet"], {
+        cwd: folder,
+        encoding: "utf8",
+    });
 }
 
 function fileOf(name) {
@@ -32,11 +35,45 @@ before(async () => {
     starguard("sample", "horse", "--vertices", "900", "-o", "horse.off");
     starguard("sample", "horse", "--pose", "1", "--vertices", "900", "-o", "other.off");
     starguard("guard", "horse.off", "-o", "guards.json");
-    starguard("decompose", "horse.off", "-o", "pieces.vtk", "--report", "pieces.json", "--mode", "paper");
+    starguard(
+        "decompose",
+        "horse.off",
+        "-o",
+        "pieces.vtk",
+        "--report",
+        "pieces.json",
+        "--mode",
+        "paper",
+    );
     starguard("skeleton", "horse.off", "-o", "skeleton.obj", "--nodes", "80");
-    starguard("morph", "horse.off", "other.off", "--frames", "4", "--method", "linear", "-o", "frames", "--glb", "morph.glb");
-    writeFileSync(fileOf("table.csv"), `model,horse.off,"<img src=x onerror=alert(1)>",other.off\nhorse.off,0,2,1\n"<img src=x onerror=alert(1)>",2,0,3\nother.off,1,3,0\n`);
-    starguard("view", "guards.json", "pieces.vtk", "pieces.json", "skeleton.obj", "frames", "table.csv", "-o", "all.html");
+    starguard(
+        "morph",
+        "horse.off",
+        "other.off",
+        "--frames",
+        "4",
+        "--method",
+        "linear",
+        "-o",
+        "frames",
+        "--glb",
+        "morph.glb",
+    );
+    writeFileSync(
+        fileOf("table.csv"),
+        `model,horse.off,"<img src=x onerror=alert(1)>",other.off\nhorse.off,0,2,1\n"<img src=x onerror=alert(1)>",2,0,3\nother.off,1,3,0\n`,
+    );
+    starguard(
+        "view",
+        "guards.json",
+        "pieces.vtk",
+        "pieces.json",
+        "skeleton.obj",
+        "frames",
+        "table.csv",
+        "-o",
+        "all.html",
+    );
 });
 
 after(async () => {
@@ -62,7 +99,7 @@ const openTab = (page, name) => page.getByRole("tab", { name }).click();
 function settle(page) {
     return page.evaluate(async () => {
         const { stage } = window.starguard;
-        for (let before = -1; before !== stage.frames || stage.waiting; ) {
+        for (let before = -1; before !== stage.frames || stage.waiting;) {
             before = stage.frames;
             for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
         }
@@ -87,7 +124,9 @@ async function placeOfGuard(page, i) {
 
 /** Number of faces that are painted in a colour. */
 const paintedFaces = (page) =>
-    page.evaluate(() => window.starguard.views[0].surface.kinds.reduce((sum, kind) => sum + (kind >= 2), 0));
+    page.evaluate(() =>
+        window.starguard.views[0].surface.kinds.reduce((sum, kind) => sum + (kind >= 2), 0),
+    );
 
 test("a click on a guard shows what it sees", async () => {
     const guards = JSON.parse(readFileSync(fileOf("guards.json"), "utf8")).guards;
@@ -96,9 +135,15 @@ test("a click on a guard shows what it sees", async () => {
         for (const i of [0, guards.length - 1]) {
             const { x, y } = await placeOfGuard(page, i);
             await page.mouse.click(x, y);
-            assert.match(await said(page), new RegExp(`^Guard ${i} sees ${guards[i].faces.toLocaleString("en")} faces? of `));
+            assert.match(
+                await said(page),
+                new RegExp(`^Guard ${i} sees ${guards[i].faces.toLocaleString("en")} faces? of `),
+            );
             assert.equal(await paintedFaces(page), guards[i].faces);
-            assert.equal(await page.getByRole("button", { name: `Guard ${i} `, pressed: true }).count(), 1);
+            assert.equal(
+                await page.getByRole("button", { name: `Guard ${i} `, pressed: true }).count(),
+                1,
+            );
             assert.match(await page.textContent("#tag"), new RegExp(`^Guard ${i} `));
         }
         await page.mouse.click(5, 5); // beside the model
@@ -184,12 +229,15 @@ test("a morph plays, and stands still when it does not", async () => {
 test("frames of a .glb are those of the folder", async () => {
     starguard("view", "morph.glb", "-o", "glb.html");
     starguard("view", "frames", "-o", "frames.html");
-    const read = (page) => page.evaluate(() => window.starguard.views[0].frames.map((points) => [...points]));
+    const read = (page) =>
+        page.evaluate(() => window.starguard.views[0].frames.map((points) => [...points]));
     let folderFrames, glbFrames;
     await look("frames.html", {}, async (page) => (folderFrames = await read(page)));
     await look("glb.html", {}, async (page) => (glbFrames = await read(page)));
     assert.equal(folderFrames.length, 4);
-    folderFrames.forEach((points, i) => points.forEach((x, k) => assert.ok(Math.abs(x - glbFrames[i][k]) < 1e-5)));
+    folderFrames.forEach((points, i) =>
+        points.forEach((x, k) => assert.ok(Math.abs(x - glbFrames[i][k]) < 1e-5)),
+    );
 });
 
 test("the table of distances ranks and names", async () => {
@@ -198,12 +246,20 @@ test("the table of distances ranks and names", async () => {
         await page.locator("#matrix canvas").focus();
         await page.keyboard.press("ArrowDown");
         assert.equal(await said(page), "<img src=x onerror=alert(1)>: most like horse.off");
-        assert.equal(await page.locator("#views .list").last().innerText().then((text) => text.split("\n")[0]), "horse.off");
+        assert.equal(
+            await page
+                .locator("#views .list")
+                .last()
+                .innerText()
+                .then((text) => text.split("\n")[0]),
+            "horse.off",
+        );
         await page.keyboard.press("ArrowUp");
         assert.equal(await said(page), "horse.off: most like other.off");
         const pictures = page.locator("#views img");
         assert.equal(await pictures.count(), 2); // of the two models that are there
-        for (const image of await pictures.all()) assert.ok((await image.evaluate((node) => node.naturalWidth)) > 0);
+        for (const image of await pictures.all())
+            assert.ok((await image.evaluate((node) => node.naturalWidth)) > 0);
     });
 });
 
@@ -255,29 +311,51 @@ test("light and dark follow the system and the switch", async () => {
 
 test("no view is wider than a narrow window, and a tap picks", async () => {
     for (const width of [320, 390, 740]) {
-        await look("all.html", { viewport: { width, height: 700 }, hasTouch: true, isMobile: true }, async (page) => {
-            for (const name of ["Guards", "Pieces", "Skeleton", "Morph", "Retrieval"]) {
-                await openTab(page, name);
+        await look(
+            "all.html",
+            { viewport: { width, height: 700 }, hasTouch: true, isMobile: true },
+            async (page) => {
+                for (const name of ["Guards", "Pieces", "Skeleton", "Morph", "Retrieval"]) {
+                    await openTab(page, name);
+                    await settle(page);
+                    const widths = await page.evaluate(() => [
+                        document.documentElement.scrollWidth,
+                        document.getElementById("panel").scrollWidth,
+                        window.innerWidth,
+                    ]);
+                    assert.ok(
+                        widths[0] <= width && widths[1] <= width && widths[2] === width,
+                        `${name}: ${widths}`,
+                    );
+                }
+                await openTab(page, "Guards");
                 await settle(page);
-                const widths = await page.evaluate(() => [document.documentElement.scrollWidth, document.getElementById("panel").scrollWidth, window.innerWidth]);
-                assert.ok(widths[0] <= width && widths[1] <= width && widths[2] === width, `${name}: ${widths}`);
-            }
-            await openTab(page, "Guards");
-            await settle(page);
-            const { x, y } = await placeOfGuard(page, 0);
-            await page.touchscreen.tap(x, y);
-            assert.match(await said(page), /^Guard \d+ sees /);
-        });
+                const { x, y } = await placeOfGuard(page, 0);
+                await page.touchscreen.tap(x, y);
+                assert.match(await said(page), /^Guard \d+ sees /);
+            },
+        );
     }
 });
 
 test("controls have names, tabs are tabs", async () => {
     await look("all.html", {}, async (page) => {
-        const nameless = await page.evaluate(() =>
-            [...document.querySelectorAll("button, input, canvas, svg[role=img], dialog, [role]")].filter(
-                (node) =>
-                    !(node.getAttribute("aria-label") || node.getAttribute("aria-labelledby") || node.textContent.trim() || node.closest("label")?.textContent.trim() || node.id === "said"),
-            ).length,
+        const nameless = await page.evaluate(
+            () =>
+                [
+                    ...document.querySelectorAll(
+                        "button, input, canvas, svg[role=img], dialog, [role]",
+                    ),
+                ].filter(
+                    (node) =>
+                        !(
+                            node.getAttribute("aria-label") ||
+                            node.getAttribute("aria-labelledby") ||
+                            node.textContent.trim() ||
+                            node.closest("label")?.textContent.trim() ||
+                            node.id === "said"
+                        ),
+                ).length,
         );
         assert.equal(nameless, 0);
         await page.getByRole("tab", { name: "Guards" }).focus();
@@ -307,7 +385,9 @@ test("a folder named </script> stays text too", async () => {
     writeFileSync(fileOf(model), readFileSync(fileOf("horse.off")));
     starguard("guard", model, "-o", "folder.json", "--method", "greedy");
     starguard("view", "folder.json", "-o", "folder.html");
-    await look("folder.html", {}, async (page) => assert.equal(await page.textContent("#title"), "horse.off"));
+    await look("folder.html", {}, async (page) =>
+        assert.equal(await page.textContent("#title"), "horse.off"),
+    );
 });
 
 test("the page's policy keeps other scripts and the network out", async () => {
@@ -316,7 +396,10 @@ test("the page's policy keeps other scripts and the network out", async () => {
         const script = document.createElement("script");
         script.textContent = "window.intruder = true";
         document.body.append(script);
-        const answer = await fetch("http://127.0.0.1:9/").then(() => "fetched", () => "refused");
+        const answer = await fetch("http://127.0.0.1:9/").then(
+            () => "fetched",
+            () => "refused",
+        );
         return [window.intruder === true, answer];
     });
     assert.deepEqual(reached, [false, "refused"]);
@@ -343,7 +426,10 @@ test("results with next to nothing in them are shown", async () => {
     const points = "POINTS 5 double\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n";
     const cells = "CELLS 2 10\n4 0 1 2 3\n4 1 2 3 4\nCELL_TYPES 2\n10\n10\n";
     const labels = "CELL_DATA 2\nSCALARS piece int 1\nLOOKUP_TABLE default\n1\n1\n"; // there is no piece 0
-    writeFileSync(fileOf("gap.vtk"), `# vtk DataFile Version 3.0\npieces\nASCII\nDATASET UNSTRUCTURED_GRID\n${points}${cells}${labels}`);
+    writeFileSync(
+        fileOf("gap.vtk"),
+        `# vtk DataFile Version 3.0\npieces\nASCII\nDATASET UNSTRUCTURED_GRID\n${points}${cells}${labels}`,
+    );
     writeFileSync(fileOf("one.csv"), "model,a\na,0\n");
     starguard("view", "none.json", "gap.vtk", "dot.obj", "one.csv", "-o", "little.html");
     await look("little.html", {}, async (page) => {
@@ -358,11 +444,17 @@ test("results with next to nothing in them are shown", async () => {
 test("guards with a cone of view point to where they look", async () => {
     starguard("guard", "horse.off", "-o", "cone.json", "--cone", "120", "--method", "greedy");
     starguard("view", "cone.json", "-o", "cone.html");
-    const directions = JSON.parse(readFileSync(fileOf("cone.json"), "utf8")).guards.map((guard) => guard.direction);
+    const directions = JSON.parse(readFileSync(fileOf("cone.json"), "utf8")).guards.map(
+        (guard) => guard.direction,
+    );
     await look("cone.html", {}, async (page) => {
-        const ends = await page.evaluate(() => [...window.starguard.views[0].pointers.geometry.attributes.position.array]);
+        const ends = await page.evaluate(() => [
+            ...window.starguard.views[0].pointers.geometry.attributes.position.array,
+        ]);
         directions.forEach((direction, i) =>
-            direction.forEach((d, k) => assert.ok(Math.abs((ends[6 * i + 3 + k] - ends[6 * i + k]) / 0.14 - d) < 1e-4)),
+            direction.forEach((d, k) =>
+                assert.ok(Math.abs((ends[6 * i + 3 + k] - ends[6 * i + k]) / 0.14 - d) < 1e-4),
+            ),
         );
     });
 });
@@ -370,6 +462,10 @@ test("guards with a cone of view point to where they look", async () => {
 test("a model alone, and a skeleton alone, are shown", async () => {
     starguard("view", "horse.off", "-o", "model.html");
     starguard("view", "skeleton.obj", "-o", "skeleton.html");
-    await look("model.html", {}, async (page) => assert.match(await page.textContent("#views"), /Vertices900/));
-    await look("skeleton.html", {}, async (page) => assert.match(await page.textContent("#views"), /Radii are not known/));
+    await look("model.html", {}, async (page) =>
+        assert.match(await page.textContent("#views"), /Vertices900/),
+    );
+    await look("skeleton.html", {}, async (page) =>
+        assert.match(await page.textContent("#views"), /Radii are not known/),
+    );
 });
