@@ -6,6 +6,7 @@ import { themeColor } from "./theme.js";
 import { amount, count, real } from "./text.js";
 import { View } from "./view.js";
 
+const EDGE = 2; // pixels around the table, for the frame of what is picked
 const LIST_MOST = 60; // neighbours that are listed
 
 export class RetrievalView extends View {
@@ -145,7 +146,7 @@ export class RetrievalView extends View {
         );
         const room = Math.min(width, height);
         const named = (room - longest) / n >= 9;
-        const frame = named ? longest : 0;
+        const frame = named ? longest : EDGE;
         this.left = this.top = frame;
         this.named = named;
         this.cell = Math.max(named ? Math.floor((room - frame) / n) : Math.floor(room / n), 3);
@@ -166,13 +167,12 @@ export class RetrievalView extends View {
             parseFloat(style.paddingBottom);
         if (width <= 0 || height <= 0) return;
         this.measure(width, height);
-        const n = this.count,
-            { cell, left, top } = this;
+        const size = this.count * this.cell + EDGE;
         const ratio = Math.min(window.devicePixelRatio || 1, 2);
-        this.canvas.width = (left + n * cell) * ratio;
-        this.canvas.height = (top + n * cell) * ratio;
-        this.canvas.style.width = `${left + n * cell}px`;
-        this.canvas.style.height = `${top + n * cell}px`;
+        this.canvas.width = (this.left + size) * ratio;
+        this.canvas.height = (this.top + size) * ratio;
+        this.canvas.style.width = `${this.left + size}px`;
+        this.canvas.style.height = `${this.top + size}px`;
         const context = this.canvas.getContext("2d");
         context.scale(ratio, ratio);
         this.drawCells(context);
