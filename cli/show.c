@@ -119,7 +119,8 @@ static starg_status take_animation(cli_session *session, const char *file, cli_s
 static starg_status take_operand(cli_session *session, size_t operand, int distance,
                                  const char **model, cli_show *show) {
     const char *file = session->operands[operand];
-    switch (kind_of(file)) {
+    kind found = kind_of(file);
+    switch (found) {
     case KIND_MODEL:
         if (*model != NULL)
             return fail_twice(session, "model", file);
@@ -135,14 +136,14 @@ static starg_status take_operand(cli_session *session, size_t operand, int dista
     case KIND_ANIMATION:
         if (show->frame_count > 0)
             return fail_twice(session, "morph", file);
-        return kind_of(file) == KIND_FRAMES ? cli_show_frames(session, file, show)
-                                            : take_animation(session, file, show);
+        return found == KIND_FRAMES ? cli_show_frames(session, file, show)
+                                    : take_animation(session, file, show);
     case KIND_DATABASE:
     case KIND_TABLE:
         if (show->shape_count > 0)
             return fail_twice(session, "table of shapes", file);
-        return kind_of(file) == KIND_TABLE ? cli_show_table(session, file, show)
-                                           : cli_show_database(session, file, distance, show);
+        return found == KIND_TABLE ? cli_show_table(session, file, show)
+                                   : cli_show_database(session, file, distance, show);
     }
     return STARG_OK;
 }
@@ -325,18 +326,22 @@ done:
     return status;
 }
 
+static void free_frames(starg_context *context, cli_show *show) {
+    if (show->from_animation) {
+        starg_animation_free(context, show->frames, show->frame_count);
+        return;
+    }
+    for (size_t i = 0; i < show->frame_count; i++)
+        starg_mesh_free(show->frames[i]);
+    free(show->frames);
+}
+
 void cli_show_free(cli_session *session, cli_show *show) {
     starg_context *context = session->context;
     for (size_t i = 0; show->results != NULL && i < session->operand_count; i++)
         starg_result_free(context, show->results[i]);
     free(show->results);
-    if (show->from_animation)
-        starg_animation_free(context, show->frames, show->frame_count);
-    else
-        for (size_t i = 0; i < show->frame_count; i++)
-            starg_mesh_free(show->frames[i]);
-    if (!show->from_animation)
-        free(show->frames);
+    free_frames(context, show);
     cli_show_free_shapes(session, show);
     free(show->radii);
     starg_skeleton_free(context, show->skeleton);

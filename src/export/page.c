@@ -38,6 +38,7 @@ typedef struct book {
     starg_piece_surfaces surfaces;
     char **names; /* of shapes, as text that JSON can hold */
     char *title, *model_name;
+    bool broken; /* a part of the description could not be made: memory is out */
 } book;
 
 bool starg_page_available(void) {
@@ -273,68 +274,75 @@ static void put_blocks(FILE *stream, const book *b) {
 
 /* ---- description ---- */
 
+static void put(book *b, json_t *object, const char *key, json_t *value) {
+    b->broken |= json_object_set_new(object, key, value) != 0;
+}
+
+static void append(book *b, json_t *array, json_t *value) {
+    b->broken |= json_array_append_new(array, value) != 0;
+}
+
 static json_t *point_json(const double p[3]) {
     return json_pack("[f, f, f]", p[0], p[1], p[2]);
 }
 
-static json_t *model_json(const book *b) {
+static json_t *model_json(book *b) {
     const starg_mesh *m = b->page->model;
     return json_pack("{s:s?, s:I, s:I}", "name", b->model_name, "vertices",
                      (json_int_t)starg_mesh_vertex_count(m), "faces",
                      (json_int_t)starg_mesh_face_count(m));
 }
 
-static json_t *uncovered_json(const starg_guards *g) {
+static json_t *uncovered_json(book *b) {
     json_t *list = json_array();
-    for (size_t i = 0; i < g->uncovered_count; i++)
-        json_array_append_new(list, json_integer(g->uncovered[i]));
+    for (size_t i = 0; i < b->page->guards->uncovered_count; i++)
+        append(b, list, json_integer(b->page->guards->uncovered[i]));
     return list;
 }
 
-static json_t *guard_json(const book *b, size_t i) {
+static json_t *guard_json(book *b, size_t i) {
     const starg_guards *g = b->page->guards;
     size_t seen = b->page->seen != NULL ? starg_bits_count(b->page->seen, i) : g->seen_faces[i];
     json_t *guard = json_pack("{s:o, s:I, s:i}", "position", point_json(g->positions + 3 * i),
                               "faces", (json_int_t)seen, "level", g->levels[i]);
     if (g->directions != NULL)
-        json_object_set_new(guard, "direction", point_json(g->directions + 3 * i));
+        put(b, guard, "direction", point_json(g->directions + 3 * i));
     if (g->curve_faces != NULL)
-        json_object_set_new(guard, "covered",
-                            json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));
+        put(b, guard, "covered", json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));
     return guard;
 }
 
-static json_t *guards_json(const book *b) {
+static json_t *guards_json(book *b) {
     const starg_guards *g = b->page->guards;
     static const char *const methods[] = {"ilp", "greedy", "pilp"};
     json_t *list = json_array();
     for (size_t i = 0; i < g->count; i++)
-        json_array_append_new(list, guard_json(b, i));
+        append(b, list, guard_json(b, i));
     return json_pack("{s:o, s:I, s:s, s:f, s:f, s:I, s:b, s:b, s:o}", "list", list, "faces",
                      (json_int_t)g->face_count, "method", methods[g->options.method],
                      "coverage_faces", g->coverage_faces, "coverage_area", g->coverage_area,
                      "lower_bound", (json_int_t)g->lower_bound, "optimal", (int)g->optimal, "seen",
-                     (int)(b->page->seen != NULL), "uncovered", uncovered_json(g));
+                     (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
 }
 
-static json_t *piece_json(const book *b, size_t i) {
+static json_t *piece_json(book *b, size_t i) {
     const starg_piece_surfaces *s = &b->surfaces;
     json_t *piece =
         json_pack("{s:I}", "faces", (json_int_t)(s->first_face[i + 1] - s->first_face[i]));
     if (b->page->report == NULL)
         return piece;
     const starg_piece *told = &b->page->report->pieces[i];
-    json_object_set_new(piece, "guard", point_json(told->guard));
-    json_object_set_new(piece, "tetrahedra", json_integer((json_int_t)told->tetrahedra));
-    json_object_set_new(piece, "volume", json_real(told->volume));
-    json_object_set_new(piece, "star", json_boolean(told->star));
+    put(b, piece, "guard", point_json(told->guard));
+    put(b, piece, "tetrahedra", json_integer((json_int_t)told->tetrahedra));
+    put(b, piece, "volume", json_real(told->volume));
+    put(b, piece, "star", json_boolean(told->star));
     return piece;
 }
 
-static json_t *pieces_json(const book *b) {
+static json_t *pieces_json(book *b) {
     json_t *list = json_array();
     for (size_t i = 0; i < b->surfaces.piece_count; i++)
-        json_array_append_new(list, piece_json(b, i));
+        append(b, list, piece_json(b, i));
     return json_pack("{s:o, s:I, s:b}", "list", list, "tetrahedra",
                      (json_int_t)b->page->pieces->count, "reported",
                      (int)(b->page->report != NULL));
@@ -351,16 +359,17 @@ static json_t *morph_json(const starg_page *p) {
                      (json_int_t)starg_mesh_face_count(p->frames[0]));
 }
 
-static json_t *shapes_json(const book *b) {
+static json_t *shapes_json(book *b) {
     json_t *list = json_array();
     for (size_t i = 0; i < b->page->shape_count; i++)
-        json_array_append_new(list, json_pack("{s:s, s:b}", "name", b->names[i], "picture",
-                                              (int)(b->page->shapes[i].png != NULL)));
+        append(b, list,
+               json_pack("{s:s, s:b}", "name", b->names[i], "picture",
+                         (int)(b->page->shapes[i].png != NULL)));
     return list;
 }
 
 /* Colours of guards and pieces, those of pictures. */
-static json_t *colors_json(const book *b) {
+static json_t *colors_json(book *b) {
     size_t count = b->page->guards != NULL ? b->page->guards->count : 0;
     if (count < b->surfaces.piece_count)
         count = b->surfaces.piece_count;
@@ -370,29 +379,29 @@ static json_t *colors_json(const book *b) {
         char text[8];
         starg_distinct_color(i, rgb);
         snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-        json_array_append_new(list, json_string(text));
+        append(b, list, json_string(text));
     }
     return list;
 }
 
-static json_t *describe(const book *b) {
+static json_t *describe(book *b) {
     const starg_page *p = b->page;
     json_t *root =
         json_pack("{s:s, s:i, s:s, s:{s:o, s:f}, s:o}", "format", "starguard-page", "version", 1,
                   "title", b->title, "frame", "center", point_json(b->frame.center), "scale",
                   b->frame.scale, "colors", colors_json(b));
     if (p->model != NULL)
-        json_object_set_new(root, "model", model_json(b));
+        put(b, root, "model", model_json(b));
     if (p->guards != NULL)
-        json_object_set_new(root, "guards", guards_json(b));
+        put(b, root, "guards", guards_json(b));
     if (p->pieces != NULL)
-        json_object_set_new(root, "pieces", pieces_json(b));
+        put(b, root, "pieces", pieces_json(b));
     if (p->skeleton != NULL)
-        json_object_set_new(root, "skeleton", skeleton_json(p->skeleton));
+        put(b, root, "skeleton", skeleton_json(p->skeleton));
     if (p->frame_count > 0)
-        json_object_set_new(root, "morph", morph_json(p));
+        put(b, root, "morph", morph_json(p));
     if (p->shape_count > 0)
-        json_object_set_new(root, "shapes", shapes_json(b));
+        put(b, root, "shapes", shapes_json(b));
     return root;
 }
 
@@ -421,9 +430,9 @@ static void free_book(starg_context *context, book *b) {
 }
 
 /* False when memory is out; errors of the stream are found when it is committed. */
-static bool put_page(FILE *stream, const book *b) {
+static bool put_page(FILE *stream, book *b) {
     fwrite(starg_viewer_head, 1, starg_viewer_head_size, stream);
-    if (!starg_page_json(stream, "data", describe(b)))
+    if (!starg_page_json(stream, "data", describe(b)) || b->broken)
         return false;
     put_blocks(stream, b);
     fwrite(starg_viewer_tail, 1, starg_viewer_tail_size, stream);
