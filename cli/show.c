@@ -164,10 +164,10 @@ static starg_status take_operands(cli_session *session, int distance, const char
 /* The model that a result names: from where we stand, or beside the result. To be freed. */
 static char *find_model(const char *named, const char *result) {
     struct stat info;
-    const char *slash = strrchr(result, '/');
-    size_t folder = slash != NULL ? (size_t)(slash - result) + 1 : 0;
     if (named == NULL || strcmp(named, "-") == 0)
         return NULL;
+    const char *slash = strrchr(result, '/');
+    size_t folder = slash != NULL ? (size_t)(slash - result) + 1 : 0;
     if (stat(named, &info) == 0)
         return strdup(named);
     if (named[0] == '/' || folder == 0)
@@ -182,14 +182,13 @@ static char *find_model(const char *named, const char *result) {
     return NULL;
 }
 
-static char *find_named_model(const cli_show *show) {
+/* What the results call their model, and which of them does; NULL if none does. */
+static const char *named_model(const cli_show *show, const char **result) {
     const starg_page *page = &show->page;
-    char *found = NULL;
+    *result = page->guards != NULL ? show->guards_file : show->report_file;
     if (page->guards != NULL)
-        found = find_model(page->guards->file, show->guards_file);
-    else if (page->report != NULL)
-        found = find_model(page->report->file, show->report_file);
-    return found;
+        return page->guards->file;
+    return page->report != NULL ? page->report->file : NULL;
 }
 
 static const char *base_of(const char *path) {
@@ -207,18 +206,21 @@ done:
     return status;
 }
 
-/* Guards cannot do without their model; a skeleton is glad of one. */
+/* Guards cannot do without their model; a skeleton is glad of one; pieces show themselves. */
 static starg_status take_model(cli_session *session, const char *model, cli_show *show) {
     starg_status status = STARG_OK;
-    const starg_guards *guards = show->page.guards;
-    char *found = model != NULL ? strdup(model) : find_named_model(show);
-    if (found == NULL && guards != NULL)
+    const char *result, *named = named_model(show, &result);
+    if (model != NULL)
+        return read_model(session, model, show);
+    if (show->page.guards == NULL && show->skeleton == NULL)
+        return STARG_OK;
+    char *found = find_model(named, result);
+    if (found != NULL)
+        status = read_model(session, found, show);
+    else if (show->page.guards != NULL)
         status = cli_fail(session, STARG_ERROR_READ,
                           "the model '%.200s' of '%.200s' is not found; name it with --model FILE",
-                          guards->file != NULL ? guards->file : "-", show->guards_file);
-    if (found != NULL &&
-        (model != NULL || guards != NULL || show->skeleton != NULL || show->page.report != NULL))
-        status = read_model(session, found, show);
+                          named != NULL ? named : "-", result);
     free(found);
     return status;
 }
@@ -292,7 +294,7 @@ done:
 
 /* ---- all of it ---- */
 
-/* The shared name of models and results stands above the page: the model's, or the first file's. */
+/* The page is called by the model, or by the first file. */
 static void fill_page(const cli_session *session, const char *model, cli_show *show) {
     starg_page *page = &show->page;
     page->frames = (const starg_mesh *const *)show->frames;
@@ -300,13 +302,9 @@ static void fill_page(const cli_session *session, const char *model, cli_show *s
     page->shapes = show->shapes;
     page->shape_count = show->shape_count;
     page->distances = show->distances != NULL ? show->distances : show->table.distances;
-    const char *named = page->guards != NULL   ? page->guards->file
-                        : page->report != NULL ? page->report->file
-                                               : NULL;
-    if (model == NULL && show->model != NULL)
-        model = named;
-    page->model_name = model != NULL ? base_of(model) : NULL;
-    page->title = page->model_name != NULL ? page->model_name : base_of(session->operands[0]);
+    const char *result, *named = model != NULL ? model : named_model(show, &result);
+    page->title = base_of(named != NULL ? named : session->operands[0]);
+    page->model_name = show->model != NULL ? page->title : NULL;
 }
 
 starg_status cli_show_read(cli_session *session, const char *model, int distance, cli_show *show) {

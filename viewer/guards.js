@@ -7,7 +7,7 @@ import { element, facts, heading, note, pickList, say, slider, swatch } from "./
 import { PickPoints } from "./points.js";
 import { amount, count, percent, point } from "./text.js";
 import { themeColor } from "./theme.js";
-import { View } from "./view.js";
+import { following, View } from "./view.js";
 
 const POINTER = 0.14; // length of the line that shows where a guard looks
 const METHODS = { pilp: "progressive", ilp: "integer program", greedy: "greedy" };
@@ -158,11 +158,7 @@ export class GuardsView extends View {
     }
 
     step(by) {
-        const { count: number } = this.points;
-        if (number > 0)
-            this.pick(
-                this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number,
-            );
+        this.pick(following(this.picked, by, this.points.count));
     }
 
     clear() {

@@ -7,7 +7,7 @@ import { check, element, facts, heading, note, pickList, say, slider, swatch } f
 import { PickPoints } from "./points.js";
 import { normalAttribute } from "./surface.js";
 import { amount, count, percent, real } from "./text.js";
-import { View } from "./view.js";
+import { following, View } from "./view.js";
 
 export class PiecesView extends View {
     name = "Pieces";
@@ -26,58 +26,33 @@ export class PiecesView extends View {
 
     // ---- geometry ----
 
-    /** One mesh of all pieces: each vertex knows its piece, its colour and where that goes. */
     build() {
-        const points = floats("piece-points"),
-            faces = indices("piece-faces");
-        this.rest = ballOf(points); // about the pieces in their places
-        this.ball = this.rest;
         this.away = new Float32Array(3 * this.told.list.length);
-        this.radii = [];
+        this.radii = []; // of the balls about pieces
         this.firstFace = [0];
-        const parts = this.told.list.map((piece, i) => {
-            const first = this.firstFace[i];
-            this.firstFace.push(first + piece.faces);
-            return this.makePiece(points, faces.subarray(3 * first, 3 * (first + piece.faces)), i);
-        });
-        const total = parts.reduce((sum, part) => sum + part.position.length / 3, 0);
-        const position = new Float32Array(3 * total),
-            normal = new Int8Array(4 * total);
-        const away = new Float32Array(3 * total),
-            color = new Uint8Array(4 * total),
-            piece = new Float32Array(total);
-        const index = new Uint32Array(faces.length);
-        let vertices = 0,
-            corners = 0;
-        parts.forEach((part, i) => {
-            const size = part.position.length / 3;
-            const rgb = new Color(page.colors[i]).toArray().map((x) => Math.round(255 * x));
-            position.set(part.position, 3 * vertices);
-            normal.set(part.normal, 4 * vertices);
-            part.index.forEach((corner) => (index[corners++] = corner + vertices));
-            for (let v = vertices; v < vertices + size; v++) {
-                away.set(this.away.subarray(3 * i, 3 * i + 3), 3 * v);
-                color.set(rgb, 4 * v);
-                piece[v] = i;
-            }
-            vertices += size;
-        });
-        const geometry = new BufferGeometry();
-        geometry.setAttribute("position", new BufferAttribute(position, 3));
-        geometry.setAttribute("normal", normalAttribute(normal));
-        geometry.setAttribute("away", new BufferAttribute(away, 3));
-        geometry.setAttribute("color", new BufferAttribute(color, 4, true));
-        geometry.setAttribute("piece", new BufferAttribute(piece, 1));
-        geometry.setIndex(new BufferAttribute(index, 1));
-        this.position = position;
-        this.index = index;
+        const geometry = this.join(this.makeParts());
+        this.position = geometry.attributes.position.array;
+        this.index = geometry.index.array;
         this.material = surfaceMaterial({ defines: { PIECES: "", SOLID: "" } });
         this.object = new Mesh(geometry, this.material);
         this.object.frustumCulled = false;
     }
 
+    /** The surfaces of all pieces, each with vertices of its own. */
+    makeParts() {
+        const points = floats("piece-points");
+        const faces = indices("piece-faces");
+        this.rest = ballOf(points); // about the pieces in their places
+        this.ball = this.rest;
+        return this.told.list.map((piece, i) => {
+            const first = this.firstFace[i];
+            this.firstFace.push(first + piece.faces);
+            return this.makePart(points, faces.subarray(3 * first, 3 * (first + piece.faces)), i);
+        });
+    }
+
     /** The surface of a piece, and the way that it goes: from the middle of all to its own. */
-    makePiece(points, faces, i) {
+    makePart(points, faces, i) {
         const numbers = new Map();
         const own = new Uint32Array(faces.length);
         const used = [];
@@ -94,6 +69,40 @@ export class PiecesView extends View {
         this.radii.push(radius);
         for (let k = 0; k < 3; k++) this.away[3 * i + k] = center[k] - this.rest.center[k];
         return shadedSurface(local, own);
+    }
+
+    /** One mesh of all: each vertex knows its piece, its colour and where that goes. */
+    join(parts) {
+        const total = parts.reduce((sum, part) => sum + part.position.length / 3, 0);
+        const position = new Float32Array(3 * total);
+        const normal = new Int8Array(4 * total);
+        const away = new Float32Array(3 * total);
+        const color = new Uint8Array(4 * total);
+        const piece = new Float32Array(total);
+        const index = new Uint32Array(3 * this.firstFace[parts.length]);
+        let vertices = 0;
+        parts.forEach((part, i) => {
+            const rgb = new Color(page.colors[i]).toArray().map((x) => Math.round(255 * x));
+            const end = vertices + part.position.length / 3;
+            position.set(part.position, 3 * vertices);
+            normal.set(part.normal, 4 * vertices);
+            index.set(
+                part.index.map((corner) => corner + vertices),
+                3 * this.firstFace[i],
+            );
+            piece.fill(i, vertices, end);
+            for (; vertices < end; vertices++) {
+                away.set(this.away.subarray(3 * i, 3 * i + 3), 3 * vertices);
+                color.set(rgb, 4 * vertices);
+            }
+        });
+        const geometry = new BufferGeometry();
+        geometry.setAttribute("position", new BufferAttribute(position, 3));
+        geometry.setAttribute("normal", normalAttribute(normal));
+        geometry.setAttribute("away", new BufferAttribute(away, 3));
+        geometry.setAttribute("color", new BufferAttribute(color, 4, true));
+        geometry.setAttribute("piece", new BufferAttribute(piece, 1));
+        return geometry.setIndex(new BufferAttribute(index, 1));
     }
 
     // ---- panel ----
@@ -204,10 +213,7 @@ export class PiecesView extends View {
     }
 
     step(by) {
-        const number = this.told.list.length;
-        this.pick(
-            this.picked < 0 ? (by > 0 ? 0 : number - 1) : (this.picked + by + number) % number,
-        );
+        this.pick(following(this.picked, by, this.told.list.length));
     }
 
     clear() {

@@ -4,7 +4,7 @@ import page, { doubles, pictureAddress } from "./data.js";
 import { element, facts, heading, say } from "./panel.js";
 import { themeColor } from "./theme.js";
 import { amount, count, real } from "./text.js";
-import { View } from "./view.js";
+import { following, View } from "./view.js";
 
 const EDGE = 2; // pixels around the table, for the frame of what is picked
 const LIST_MOST = 60; // neighbours that are listed
@@ -263,7 +263,7 @@ export class RetrievalView extends View {
     }
 
     step(by) {
-        this.pick((this.picked + by + this.count) % this.count);
+        this.pick(following(this.picked, by, this.count));
     }
 
     applyTheme() {

@@ -24,10 +24,7 @@ export class Stage {
         this.camera = new PerspectiveCamera(VIEW_ANGLE, 1, 0.01, 100);
         this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
         this.renderer.outputColorSpace = LinearSRGBColorSpace;
-        this.controls = new OrbitControls(this.camera, canvas);
-        this.controls.rotateSpeed = 0.9;
-        this.controls.zoomToCursor = true;
-        this.controls.addEventListener("change", () => this.request());
+        this.controls = this.makeControls();
         this.ball = { center: [0, 0, 0], radius: 1 }; // what is looked at lies in it
         this.onBall = () => {};
         this.frames = 0; // drawn so far
@@ -35,6 +32,14 @@ export class Stage {
         this.beforeDraw = [];
         new ResizeObserver(() => this.resize()).observe(place);
         canvas.addEventListener("webglcontextrestored", () => this.request());
+    }
+
+    makeControls() {
+        const controls = new OrbitControls(this.camera, this.canvas);
+        controls.rotateSpeed = 0.9;
+        controls.zoomToCursor = true;
+        controls.addEventListener("change", () => this.request());
+        return controls;
     }
 
     resize() {
@@ -100,12 +105,8 @@ export class Stage {
     /** Axis 1 (y) or 2 (z) points up. OrbitControls take the axis when they are made. */
     setUp(axis) {
         this.camera.up.set(0, axis === 1 ? 1 : 0, axis === 2 ? 1 : 0);
-        const old = this.controls;
-        this.controls = new OrbitControls(this.camera, this.canvas);
-        this.controls.rotateSpeed = old.rotateSpeed;
-        this.controls.zoomToCursor = true;
-        this.controls.addEventListener("change", () => this.request());
-        old.dispose();
+        this.controls.dispose();
+        this.controls = this.makeControls();
         this.fit(this.ball);
     }
 

@@ -10,7 +10,7 @@ import {
 } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf } from "./geometry.js";
-import { setCutOpen, setOpacity, surfaceMaterial } from "./materials.js";
+import { setCutOpen, surfaceMaterial } from "./materials.js";
 import { facts, note, slider } from "./panel.js";
 import { themeColor } from "./theme.js";
 import { count, percent } from "./text.js";
@@ -70,8 +70,11 @@ export class SkeletonView extends View {
             this.knobs.setMatrixAt(i, this.ballMatrix(i, this.knobSize(i)));
         this.balls =
             this.radii &&
-            new InstancedMesh(new IcosahedronGeometry(1, detail), surfaceMaterial(), nodes);
-        if (this.balls) setOpacity(this.balls.material, 0.999);
+            new InstancedMesh(
+                new IcosahedronGeometry(1, detail),
+                surfaceMaterial({ defines: { SOLID: "" } }),
+                nodes,
+            );
         for (const object of [this.rods, this.knobs, this.balls])
             if (object) object.frustumCulled = false;
     }

@@ -1,3 +1,10 @@
+/** The one after (by 1) or before (-1) among `count`, around the ends; the first or last after -1. */
+export function following(i, by, count) {
+    if (count === 0) return -1;
+    if (i < 0) return by > 0 ? 0 : count - 1;
+    return (i + by + count) % count;
+}
+
 /** What a tab shows. A view has a `name`, a `node` for the panel, `objects` for the scene and `withSurface`;
  * what it does not answer to does nothing. */
 export class View {
