@@ -51,6 +51,7 @@ extern const cli_command cli_command_describe;
 extern const cli_command cli_command_match;
 extern const cli_command cli_command_verify;
 extern const cli_command cli_command_view;
+extern const cli_command cli_command_export;
 extern const cli_command cli_command_map;
 extern const cli_command cli_command_morph;
 extern const cli_command cli_command_db;

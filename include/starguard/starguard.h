@@ -18,6 +18,7 @@
 #include "picture.h"
 #include "repair.h"
 #include "sample.h"
+#include "scene.h"
 #include "shape.h"
 #include "simplify.h"
 #include "skeleton.h"

@@ -1,4 +1,4 @@
-/* Animations as binary glTF 2.0: a header of 12 bytes, a chunk of JSON, a chunk of numbers.
+/* Animations as binary glTF 2.0.
  *
  * The numbers, all of four bytes and in this order: vertex indices of the faces; positions of the
  * first frame; for each other frame the displacements from the first; the times of the frames; the
@@ -8,13 +8,11 @@
 
 #include <math.h>
 
-#include "core/file.h"
-#include "core/json.h"
 #include "core/memory.h"
+#include "export/glb.h"
+#include "export/little.h"
 
 static const char STAGE[] = "animation";
-enum { GL_FLOAT = 5126, GL_UNSIGNED_INT = 5125, HEADER = 12, CHUNK_HEADER = 8 };
-static const double SINGLE_LIMIT = 1e38;
 
 typedef struct animation {
     const starg_mesh *mesh;
@@ -42,7 +40,7 @@ static starg_status check(starg_context *context, animation *a) {
         a->center[k] = 0.5 * lower[k] + 0.5 * upper[k];
     for (size_t f = 0; f < a->count; f++)
         for (size_t i = 0; i < 3 * a->vertices; i++)
-            if (!(fabs(a->frames[f][i] - a->center[i % 3]) < SINGLE_LIMIT))
+            if (!(fabs(a->frames[f][i] - a->center[i % 3]) < GLB_LIMIT))
                 return starg_fail(context, STARG_ERROR_RANGE, STAGE,
                                   "frame %zu has a coordinate that single precision cannot hold",
                                   f);
@@ -90,7 +88,7 @@ static json_t *accessor_json(const animation *a, size_t index) {
     bool vectors = index >= 1 && index <= a->count;
     json_t *json =
         json_pack("{s:I, s:I, s:I, s:s}", "bufferView", (json_int_t)index, "componentType",
-                  (json_int_t)(index == 0 ? GL_UNSIGNED_INT : GL_FLOAT), "count",
+                  (json_int_t)(index == 0 ? GLB_UNSIGNED_INT : GLB_FLOAT), "count",
                   (json_int_t)accessor_count(a, index), "type", vectors ? "VEC3" : "SCALAR");
     int failed = 0;
     if (index == 1)
@@ -149,54 +147,27 @@ static json_t *describe(const animation *a) {
 
 /* ---- bytes ---- */
 
-static void put_word(FILE *stream, uint32_t x) {
-    for (int shift = 0; shift < 32; shift += 8)
-        fputc((int)(x >> shift & 0xff), stream);
-}
-
-static void put_float(FILE *stream, float x) {
-    uint32_t word;
-    memcpy(&word, &x, sizeof word);
-    put_word(stream, word);
-}
-
-static void put_numbers(FILE *stream, const animation *a) {
+static void put_numbers(FILE *stream, const void *user) {
+    const animation *a = user;
     for (size_t i = 0; i < a->indices; i++)
-        put_word(stream, starg_mesh_faces(a->mesh)[i]);
+        little_put_word(stream, starg_mesh_faces(a->mesh)[i]);
     for (size_t i = 0; i < 3 * a->vertices; i++)
-        put_float(stream, first_position(a, i));
+        little_put_float(stream, first_position(a, i));
     for (size_t f = 1; f < a->count; f++)
         for (size_t i = 0; i < 3 * a->vertices; i++)
-            put_float(stream, (float)(a->frames[f][i] - a->frames[0][i]));
+            little_put_float(stream, (float)(a->frames[f][i] - a->frames[0][i]));
     for (size_t f = 0; f < a->count; f++)
-        put_float(stream, (float)(a->seconds * (double)f / (double)(a->count - 1)));
+        little_put_float(stream, (float)(a->seconds * (double)f / (double)(a->count - 1)));
     for (size_t f = 0; f < a->count; f++)
         for (size_t target = 1; target < a->count; target++)
-            put_float(stream, target == f ? 1 : 0);
-}
-
-static void put_file(FILE *stream, const animation *a, const char *text, size_t length) {
-    size_t padded = (length + 3) / 4 * 4, bytes = binary_bytes(a);
-    fwrite("glTF", 1, 4, stream);
-    put_word(stream, 2);
-    put_word(stream, (uint32_t)(HEADER + 2 * CHUNK_HEADER + padded + bytes));
-    put_word(stream, (uint32_t)padded);
-    fwrite("JSON", 1, 4, stream);
-    fwrite(text, 1, length, stream);
-    for (size_t i = length; i < padded; i++)
-        fputc(' ', stream);
-    put_word(stream, (uint32_t)bytes);
-    fwrite("BIN", 1, 4, stream);
-    put_numbers(stream, a);
+            little_put_float(stream, target == f ? 1 : 0);
 }
 
 starg_status starg_animation_write(starg_context *context, const starg_mesh *mesh,
                                    const double *const *frames, size_t frame_count, double seconds,
                                    const char *path) {
     starg_status status = STARG_OK;
-    starg_output output;
     json_t *json = NULL;
-    char *text = NULL;
     animation a = {.mesh = mesh,
                    .frames = frames,
                    .count = frame_count,
@@ -206,18 +177,8 @@ starg_status starg_animation_write(starg_context *context, const starg_mesh *mes
     STARG_TRY(check(context, &a));
     find_box(&a);
     json = describe(&a);
-    size_t length = json != NULL ? json_dumpb(json, NULL, 0, JSON_COMPACT) : 0;
-    if (length == 0) {
-        status = starg_fail_memory(context, STAGE);
-        goto done;
-    }
-    STARG_NEW(context, STAGE, text, length);
-    json_dumpb(json, text, length, JSON_COMPACT);
-    STARG_TRY(starg_output_open(context, STAGE, path, &output));
-    put_file(output.stream, &a, text, length);
-    STARG_TRY(starg_output_commit(&output));
+    STARG_TRY(glb_write(context, STAGE, path, json, binary_bytes(&a), put_numbers, &a));
 done:
     json_decref(json);
-    starg_release(context, text);
     return status;
 }

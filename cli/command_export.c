@@ -1,0 +1,144 @@
+/* starguard export: a model with its results in one file for other programs. */
+#include <string.h>
+#include <strings.h>
+
+#include "commands.h"
+#include "report.h"
+#include "show.h"
+#include "starguard/scene.h"
+
+typedef struct values {
+    const char *output, *model;
+    starg_scene_format format; /* by the name of the output */
+} values;
+
+static const cli_option options[] = {
+    CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj",
+                      "Where to write, by the name's ending (docs/formats.md); '-' writes .glb to "
+                      "standard output."),
+    CLI_TEXT_OPTION("model", model, "FILE",
+                    "The model that results are about. By default the one that they name, from "
+                    "where you stand or beside the result."),
+};
+
+static starg_status choose_format(cli_session *session, const char *name,
+                                  starg_scene_format *format) {
+    static const struct {
+        const char *ending;
+        starg_scene_format format;
+    } known[] = {{".glb", STARG_SCENE_GLB},
+                 {".vtu", STARG_SCENE_VTU},
+                 {".ply", STARG_SCENE_PLY},
+                 {".obj", STARG_SCENE_OBJ}};
+    *format = STARG_SCENE_GLB;
+    if (strcmp(name, "-") == 0)
+        return STARG_OK;
+    const char *dot = strrchr(name, '.');
+    for (size_t i = 0; dot != NULL && i < sizeof known / sizeof *known; i++)
+        if (strcasecmp(dot, known[i].ending) == 0) {
+            *format = known[i].format;
+            return STARG_OK;
+        }
+    return cli_fail(session, STARG_ERROR_ARGUMENT,
+                    "'%.200s' does not tell a format; end the name with .glb, .vtu, .ply or .obj",
+                    name);
+}
+
+static starg_status prepare(cli_session *session, void *data) {
+    values *v = data;
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_announce_needed(session, v->output, "FILE.glb, .vtu, .ply or .obj"));
+    CLI_TRY(choose_format(session, v->output, &v->format));
+done:
+    return status;
+}
+
+static starg_status check_kinds(cli_session *session, const starg_page *page) {
+    if (page->frame_count > 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "a morph is no part of a scene; 'starguard morph --glb FILE' writes it as "
+                        "an animation");
+    if (page->shape_count > 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "a table of shapes is no part of a scene; 'starguard db matrix' writes it "
+                        "as a table and a picture");
+    return STARG_OK;
+}
+
+/* What the file holds. */
+static void tell(cli_session *session, const values *v, const cli_show *show) {
+    const starg_page *page = &show->page;
+    const struct {
+        const char *name, *key;
+        size_t count;
+    } parts[] = {{"model faces", "model_faces",
+                  page->model != NULL ? starg_mesh_face_count(page->model) : 0},
+                 {"guards", "guards", page->guards != NULL ? page->guards->count : 0},
+                 {"tetrahedra", "tetrahedra", page->pieces != NULL ? page->pieces->count : 0},
+                 {"skeleton nodes", "skeleton_nodes",
+                  page->skeleton != NULL ? page->skeleton->node_count : 0}};
+    json_t *written = json_object();
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        if (parts[i].count == 0)
+            continue;
+        cli_say(session, "%-14s %zu\n", parts[i].name, parts[i].count);
+        cli_put(session, written, parts[i].key, json_integer((json_int_t)parts[i].count));
+    }
+    if (session->report == NULL) {
+        json_decref(written);
+        return;
+    }
+    cli_report_head(session, "starguard-export", page->model_name, page->model);
+    cli_put(session, session->report, "output", cli_json_text(v->output));
+    cli_put(session, session->report, "written", written);
+}
+
+static starg_status run(cli_session *session, void *data) {
+    const values *v = data;
+    starg_status status = STARG_OK;
+    cli_show show = {0};
+    const starg_page *page = &show.page;
+    CLI_TRY(cli_show_read(session, v->model, STARG_SIGNATURE_DEFAULT, &show));
+    CLI_TRY(check_kinds(session, page));
+    const starg_scene scene = {.model = page->model,
+                               .guards = page->guards,
+                               .seen = page->seen,
+                               .pieces = page->pieces,
+                               .report = page->report,
+                               .skeleton = page->skeleton};
+    CLI_TRY(starg_scene_write(session->context, &scene,
+                              cli_outputs_place(&session->outputs, v->output), v->format));
+    tell(session, v, &show);
+done:
+    cli_show_free(session, &show);
+    return status;
+}
+
+const cli_command cli_command_export = {
+    .name = "export",
+    .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj [options]",
+    .summary = "a model with guards, pieces and skeleton in one file for other programs",
+    .description =
+        "Writes results and the model that they are about into one file. The content of each file "
+        "tells what it is, and any mix will do, one of each kind: GUARDS.json, PIECES.vtk and "
+        "PIECES.json, a skeleton (.obj, .cg, .vtk), a model.\n"
+        ".glb (Blender, browsers, three.js): a named node for the model, each guard, each piece, "
+        "and the skeleton; what is known about a guard or piece is in its extras.\n"
+        ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; data of the cells "
+        "tell parts, pieces, and the guard that sees a face.\n"
+        ".ply (MeshLab): faces in the colours of pieces, or of the guards that see them.\n"
+        ".obj: an object for each part.",
+    .examples = "# guards and pieces of a model for Blender\n"
+                "starguard guard horse.off -o guards.json\n"
+                "starguard decompose horse.off -o pieces.vtk --report pieces.json\n"
+                "starguard export guards.json pieces.vtk pieces.json -o horse.glb\n"
+                "# which guard sees which face, for ParaView\n"
+                "starguard export guards.json -o guards.vtu\n"
+                "# a skeleton in its model\n"
+                "starguard skeleton horse.off -o skeleton.vtk\n"
+                "starguard export skeleton.vtk --model horse.off -o skeleton.glb",
+    CLI_OPTIONS(options),
+    CLI_OPERANDS(1, SIZE_MAX),
+    .prepare = prepare,
+    .run = run,
+};

@@ -1,0 +1,46 @@
+/* Binary glTF 2.0: 12 bytes of header, then two chunks, each with its length and its name; the JSON
+ * is filled up with blanks to a multiple of four bytes. */
+#include "export/glb.h"
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "export/little.h"
+
+enum { HEADER = 12, CHUNK_HEADER = 8 };
+
+static void put_head(FILE *stream, const char *text, size_t length, size_t bytes) {
+    size_t padded = (length + 3) / 4 * 4;
+    fwrite("glTF", 1, 4, stream);
+    little_put_word(stream, 2);
+    little_put_word(stream, (uint32_t)(HEADER + 2 * CHUNK_HEADER + padded + bytes));
+    little_put_word(stream, (uint32_t)padded);
+    fwrite("JSON", 1, 4, stream);
+    fwrite(text, 1, length, stream);
+    for (size_t i = length; i < padded; i++)
+        fputc(' ', stream);
+    little_put_word(stream, (uint32_t)bytes);
+    fwrite("BIN", 1, 4, stream);
+}
+
+starg_status glb_write(starg_context *context, const char *stage, const char *path,
+                       const json_t *json, size_t bytes, glb_numbers *put, const void *user) {
+    starg_status status = STARG_OK;
+    starg_output output;
+    char *text = NULL;
+    size_t length = json != NULL ? json_dumpb(json, NULL, 0, JSON_COMPACT) : 0;
+    if (length == 0)
+        return starg_fail_memory(context, stage);
+    if (bytes > UINT32_MAX - 2 * HEADER - 2 * CHUNK_HEADER - length)
+        return starg_fail(context, STARG_ERROR_MESH, stage,
+                          "%zu bytes of numbers are more than a file of this format can hold",
+                          bytes);
+    STARG_NEW(context, stage, text, length);
+    json_dumpb(json, text, length, JSON_COMPACT);
+    STARG_TRY(starg_output_open(context, stage, path, &output));
+    put_head(output.stream, text, length, bytes);
+    put(output.stream, user);
+    STARG_TRY(starg_output_commit(&output));
+done:
+    starg_release(context, text);
+    return status;
+}

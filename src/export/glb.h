@@ -1,0 +1,29 @@
+/* The container of binary glTF 2.0: a header, a chunk of JSON, a chunk of numbers. */
+#ifndef STARG_EXPORT_GLB_H
+#define STARG_EXPORT_GLB_H
+
+#include <jansson.h>
+#include <stdio.h>
+
+#include "core/context.h"
+
+/* What numbers are in an accessor, and what a view is for. */
+enum {
+    GLB_UNSIGNED_INT = 5125,
+    GLB_FLOAT = 5126,
+    GLB_ARRAY_BUFFER = 34962,
+    GLB_ELEMENT_ARRAY_BUFFER = 34963
+};
+
+/* Single precision holds coordinates below this. */
+#define GLB_LIMIT 1e38
+
+/* Writes the numbers: as many bytes as were announced, a multiple of four. */
+typedef void glb_numbers(FILE *stream, const void *user);
+
+/* Writes a file; path "-" is standard output. `json` is NULL when memory was out as it was made.
+ * Errors: MESH (over 4 GiB), WRITE, MEMORY. */
+starg_status glb_write(starg_context *context, const char *stage, const char *path,
+                       const json_t *json, size_t bytes, glb_numbers *put, const void *user);
+
+#endif

@@ -1,0 +1,45 @@
+/* What the writers of scenes share: the parts, checked, and what is made of them once. */
+#ifndef STARG_EXPORT_SCENE_H
+#define STARG_EXPORT_SCENE_H
+
+#include "export/piece_surfaces.h"
+#include "starguard/scene.h"
+
+typedef struct scene_job {
+    const starg_scene *scene;
+    starg_piece_surfaces surfaces; /* empty without pieces                                      */
+    int32_t *viewer;  /* per face of the model: the first guard that sees it, or -1; NULL
+                         unless it is known what guards see                          */
+    double center[3]; /* of the box of all that is shown                                   */
+    double size;      /* its largest side; above 0                                          */
+    size_t model_vertices, model_faces, guards, nodes, edges; /* 0 where the part is not shown */
+} scene_job;
+
+enum { SCENE_PARTS = 4 };
+typedef enum scene_part { SCENE_MODEL, SCENE_PIECE, SCENE_GUARD, SCENE_SKELETON } scene_part;
+
+extern const uint8_t SCENE_NEUTRAL[3], SCENE_UNSEEN[3], SCENE_CURVE[3];
+
+/* The colour of a face of the model: that of the guard that sees it first. */
+void scene_face_color(const scene_job *job, size_t face, uint8_t rgb[3]);
+
+/* The vertex of the tetrahedra that is vertex `index` of the surfaces of pieces. */
+const double *scene_piece_vertex(const scene_job *job, size_t index);
+
+/* A ball, to be put where a guard is: of radius 1, closed and outward. */
+enum { BALL_VERTICES = 38, BALL_FACES = 72 };
+typedef struct scene_ball {
+    double vertices[3 * BALL_VERTICES];
+    uint32_t faces[3 * BALL_FACES];
+} scene_ball;
+void scene_ball_make(scene_ball *ball);
+/* The radius that balls are given. */
+double scene_ball_radius(const scene_job *job);
+
+/* One writer for each format. */
+starg_status scene_write_glb(starg_context *context, const scene_job *job, const char *path);
+starg_status scene_write_vtu(starg_context *context, const scene_job *job, const char *path);
+starg_status scene_write_ply(starg_context *context, const scene_job *job, const char *path);
+starg_status scene_write_obj(starg_context *context, const scene_job *job, const char *path);
+
+#endif
