@@ -1,0 +1,55 @@
+"""starguard: the fewest guards inside a solid that see its whole boundary, and star-shaped pieces.
+
+    >>> import starguard
+    >>> room = starguard.sample("gallery", vertex_count=1000)
+    >>> guards = starguard.guard(room)
+    >>> starguard.verify(room, guards).passed
+    True
+
+A model is a Mesh, the name of a file, a pair (vertices, faces), or an object of trimesh, meshio or
+PyVista. Arrays are NumPy's: vertices (n, 3) float64, faces (m, 3) of any integer type. Those that
+come back are read-only views of the library's memory, without a copy. Errors are exceptions derived
+from `Error`. Slow calls take `threads`, `seed`, `time_limit` and `progress`; Ctrl-C interrupts them.
+"""
+from ._library import version as __version__
+from ._session import Defaults, defaults, logger
+from ._types import Progress
+from .covers import Cover, cover
+from .databases import Added, Database, Models, StoredModel
+from .descriptors import (NO_CLASS, Descriptor, Reconstruction, Retrieval, Signature, current_version,
+                          describe, directions, distances, is_descriptor, match, retrieval, signature,
+                          signatures)
+from .errors import (ArgumentError, CancelledError, Error, FormatError, MeshError, OutOfMemoryError,
+                     RangeError, ReadError, SolverError, TimeLimitError, WriteError)
+from .guards import Guards, GuardLevel, candidate_points, guard, points_from_bytes, read_points
+from .kernels import Kernel, kernel
+from .mesh import NO_VERTEX, Check, Finding, Level, Mesh, RepairReport, as_mesh
+from .morphs import (FrameMeasures, Morph, SurfaceMap, animation_from_bytes, map_surface,
+                     read_animation, read_landmarks, write_animation)
+from .pictures import (distinct_colors, picture, write_chart, write_matrix_picture, write_picture,
+                       write_picture_sheet)
+from .pieces import Decomposition, decompose
+from .catalogue import SampleInfo, sample, samples
+from .skeletons import Skeleton, skeleton
+from .solid import Solid
+from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, is_tetrahedral, tetrahedralize
+from .verification import Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
+from .views import page_available, write_page, write_scene
+from .visibility import Bits, cone_cosine, visible
+
+__all__ = [
+    "Added", "ArgumentError", "Bits", "CancelledError", "Check", "Claim", "Cover", "Database",
+    "Decomposition", "Defaults", "Descriptor", "Error", "Finding", "FormatError", "FrameMeasures",
+    "GuardLevel", "Guards", "Kernel", "Level", "Mesh", "MeshError", "Models", "Morph", "NO_CLASS",
+    "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",
+    "RangeError", "ReadError", "Reconstruction", "RepairReport", "Retrieval", "SampleInfo",
+    "Signature", "Skeleton", "Solid", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
+    "TetraReport", "TimeLimitError", "Verdict", "WriteError", "__version__", "animation_from_bytes",
+    "as_mesh",
+    "candidate_points", "cone_cosine", "cover", "current_version", "decompose", "defaults",
+    "describe", "directions", "distances", "distinct_colors", "guard", "is_descriptor",
+    "is_tetrahedral", "kernel", "logger", "map_surface", "match", "page_available", "picture",
+    "points_from_bytes", "read_animation", "read_landmarks", "read_points", "read_result", "retrieval", "sample", "samples", "signature",
+    "signatures", "skeleton", "tetrahedralize", "verify", "visible", "write_animation",
+    "write_chart", "write_matrix_picture", "write_page", "write_picture", "write_picture_sheet",
+    "write_scene"]

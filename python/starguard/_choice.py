@@ -1,0 +1,30 @@
+"""Options of C: words that stand for the values of an enum, and fields that the caller has named."""
+from __future__ import annotations
+
+from typing import Any, Mapping
+
+from .errors import ArgumentError
+
+
+def choose(name: str, word: str, words: Mapping[str, int]) -> int:
+    """The value of a word."""
+    value = words.get(word) if isinstance(word, str) else None
+    if value is None:
+        raise ArgumentError(f"{name} is {word!r}; it must be one of {', '.join(words)}")
+    return value
+
+
+def word_of(value: int, words: Mapping[str, int]) -> str:
+    """The word of a value."""
+    return next(word for word, other in words.items() if other == value)
+
+
+def give(options: Any, **values: Any) -> None:
+    """Sets those fields of an options struct that the caller has named."""
+    for name, value in values.items():
+        if value is None:
+            continue
+        try:
+            setattr(options, name, value)
+        except (TypeError, OverflowError) as error:
+            raise ArgumentError(f"{name} is {value!r}: {error}") from error

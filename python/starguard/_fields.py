@@ -1,0 +1,14 @@
+"""C structs as dataclasses."""
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+def fill(kind: type[T], struct: Any, /, **given: Any) -> T:
+    """A dataclass whose fields are those of a C struct by name, unless given."""
+    names = [field.name for field in dataclasses.fields(kind)]
+    values = {name: getattr(struct, name) for name in names if name not in given}
+    return kind(**values, **given)

@@ -1,0 +1,216 @@
+"""Calls of the library: a context for each, off the main thread, so that they can be interrupted.
+
+A call works with a context of its own, so that any thread may call anything at any time. What it
+makes keeps that context alive, because memory returns to where it came from.
+
+Python runs signal handlers on the main thread, between its own instructions: not while a C function
+runs there. So the main thread lets a helper thread run the C function (cffi drops the interpreter
+lock for that), waits, and stays open to Ctrl-C. It then asks the library to cancel, waits until the
+call has returned (its arrays must outlive it), and lets the KeyboardInterrupt go on. The progress
+callback runs on the waiting thread too, so that what it raises arrives where the call was made.
+"""
+from __future__ import annotations
+
+import collections
+import logging
+import threading
+from dataclasses import dataclass
+from typing import Any
+
+from . import errors
+from ._library import ffi, lib, text
+from ._types import Progress
+
+logger = logging.getLogger("starguard")
+_LEVELS = {lib.STARG_LOG_NOTICE: logging.INFO, lib.STARG_LOG_WARNING: logging.WARNING}
+_TICK = 0.05  # seconds between looks at the reports of progress
+
+
+@dataclass
+class Defaults:
+    """What calls use that are not told otherwise; `starguard.defaults` is the one in force.
+
+    >>> import starguard
+    >>> starguard.defaults
+    Defaults(threads=0, seed=1)
+    """
+
+    #: Threads of a call; 0: as many as the machine has. Results do not depend on it.
+    threads: int = 0
+    #: Where every random choice comes from.
+    seed: int = 1
+
+
+defaults = Defaults()
+
+
+class _Listener:
+    """Hears the library's callbacks, on whatever thread they come."""
+
+    def __init__(self) -> None:
+        self.reports: collections.deque[tuple[str, float]] | None = None
+
+
+@ffi.callback("bool(void *, const char *, double)", error=False)  # type: ignore[misc]
+def _on_progress(user: Any, stage: Any, fraction: float) -> bool:
+    reports = ffi.from_handle(user).reports
+    if reports is not None:
+        reports.append((text(stage), fraction))
+    return True
+
+
+@ffi.callback("void(void *, starg_log_level, const char *)")  # type: ignore[misc]
+def _on_log(user: Any, level: int, message: Any) -> None:
+    logger.log(_LEVELS.get(level, logging.WARNING), "%s", text(message))
+
+
+def _whole(name: str, value: int, most: int) -> int:
+    if not isinstance(value, int) or not 0 <= value <= most:
+        raise errors.ArgumentError(f"{name} is {value!r}; it must be a whole number from 0 to {most}")
+    return value
+
+
+# What objects and contexts need when they are freed, by address. It stands here and not in a closure,
+# because an object may die as a part of cyclic garbage, in which the collector clears functions
+# before it frees what would have called them, and in no order. What is here is never garbage, so a
+# context outlives all that was made with it.
+_owned: dict[int, tuple[Any, Any, bool]] = {}
+_callbacks: dict[int, Any] = {}
+
+
+def _address(block: Any) -> int:
+    return int(ffi.cast("uintptr_t", block))
+
+
+def _release(block: Any, owned: dict[int, tuple[Any, Any, bool]] = _owned,
+             address: Any = _address) -> None:
+    free, context, shared = owned.pop(address(block))
+    if shared:
+        free(context, block)
+    else:
+        free(block)
+
+
+def _release_context(context: Any, callbacks: dict[int, Any] = _callbacks, address: Any = _address,
+                     free: Any = lib.starg_context_free) -> None:
+    handle = callbacks.pop(address(context))
+    free(context)
+    del handle
+
+
+class Session:
+    """A context, and how to call functions with it. One thread at a time."""
+
+    def __init__(self, threads: int | None = None, seed: int | None = None) -> None:
+        options = ffi.new("starg_context_options *")
+        lib.starg_context_options_default(options)
+        options.threads = _whole("threads", defaults.threads if threads is None else threads, 1024)
+        options.seed = _whole("seed", defaults.seed if seed is None else seed, 2**64 - 1)
+        self._listener = _Listener()
+        handle = ffi.new_handle(self._listener)
+        options.log = _on_log
+        options.progress = _on_progress
+        options.log_user = options.progress_user = handle
+        out = ffi.new("starg_context **")
+        status = lib.starg_context_create(options, out)
+        if status != lib.STARG_OK:
+            raise errors.of_status(status, None)
+
+        _callbacks[_address(out[0])] = handle
+        self.context = ffi.gc(out[0], _release_context)
+
+    # ---- calls ----
+
+    def call(self, function: Any, *arguments: Any, progress: Progress | None = None,
+             time_limit: float | None = None, brief: bool = False) -> None:
+        """Calls a function that returns a status; raises what that says. One that is brief is not
+        worth a thread."""
+        lib.starg_context_set_time_limit(self.context, _seconds(time_limit))
+        on_main_thread = threading.current_thread() is threading.main_thread()
+        if brief or (progress is None and not on_main_thread):
+            status = function(*arguments)
+        else:
+            status = self._call_aside(function, arguments, progress)
+        if status != lib.STARG_OK:
+            raise errors.of_status(status, self.context)
+
+    def _call_aside(self, function: Any, arguments: tuple[Any, ...],
+                    progress: Progress | None) -> int:
+        """Runs the call on a thread of its own and waits for it, come what may."""
+        begun, done = threading.Event(), threading.Event()
+        outcome: list[Any] = []
+        reports: collections.deque[tuple[str, float]] = collections.deque()
+        self._listener.reports = reports if progress is not None else None
+
+        def work() -> None:
+            begun.set()
+            try:
+                outcome.append(function(*arguments))
+            except BaseException as error:  # an argument that is not of the C type
+                outcome.append(error)
+            done.set()
+
+        interruption: BaseException | None = None
+        try:
+            threading.Thread(target=work, name="starguard", daemon=True).start()
+        except BaseException as error:  # a signal, most likely when the thread had begun
+            lib.starg_context_cancel(self.context)
+            if not begun.wait(1):
+                raise
+            interruption = error
+        while interruption is None and not done.is_set():
+            try:
+                done.wait(_TICK if progress is not None else None)
+                self._deliver(reports, progress)
+            except BaseException as error:
+                interruption = error
+        while interruption is not None and not done.is_set():
+            try:
+                lib.starg_context_cancel(self.context)
+                done.wait()
+            except BaseException:  # asked again: it is under way
+                continue
+        self._listener.reports = None
+        lib.starg_context_reset(self.context)
+        if interruption is None and isinstance(outcome[0], BaseException):
+            interruption = outcome[0]
+        if interruption is not None:
+            try:
+                raise interruption
+            finally:
+                del interruption, outcome  # which would hold this frame, and it them
+        return int(outcome[0])
+
+    def _deliver(self, reports: collections.deque[tuple[str, float]],
+                 progress: Progress | None) -> None:
+        while reports:
+            stage, fraction = reports.popleft()
+            if progress is not None and progress(stage, fraction) is False:
+                lib.starg_context_cancel(self.context)
+
+    # ---- what calls make ----
+
+    def make(self, kind: str, free: Any, function: Any, *arguments: Any, shared: bool = False,
+             progress: Progress | None = None, time_limit: float | None = None,
+             brief: bool = False) -> Any:
+        """Calls a function whose last parameter receives a new `kind`, and owns what comes."""
+        out = ffi.new(f"{kind} **")
+        try:
+            self.call(function, *arguments, out, progress=progress, time_limit=time_limit,
+                      brief=brief)
+        finally:  # a call that was interrupted may have finished all the same
+            handle = self.own(out[0], free, shared) if out[0] else None
+        return handle
+
+    def own(self, pointer: Any, free: Any, shared: bool = False) -> Any:
+        """A handle that frees its object in the end; `shared`: with the context as first argument."""
+        _owned[_address(pointer)] = free, self.context, shared
+        return ffi.gc(pointer, _release)
+
+
+def _seconds(time_limit: float | None) -> float:
+    if time_limit is None:
+        return 0.0
+    if not time_limit > 0:
+        raise errors.ArgumentError(f"time_limit is {time_limit!r}; it must be above 0 seconds")
+    return float(time_limit)

@@ -1,0 +1,374 @@
+"""The descriptor of a shape by its guards, and signatures by which shapes compare."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arrays
+from ._choice import choose, give
+from ._fields import fill
+from ._library import ffi, lib, text
+from ._session import Session
+from ._types import Array, PathLike, Progress
+from .errors import ArgumentError
+from .guards import name_of
+from .mesh import as_mesh
+
+KINDS = {text(lib.starg_signature_name(kind)): kind for kind in range(lib.STARG_SIGNATURE_KINDS)}
+
+#: What stands for "no class" in `retrieval`.
+NO_CLASS = 2**32 - 1
+
+_HEAD = 4096  # bytes of a file that tell whether it is a descriptor
+
+
+@dataclass(frozen=True)
+class Reconstruction:
+    """How close the points of a descriptor come to a model, by its diagonal."""
+
+    points: int
+    samples: int
+    to_mean: float
+    to_largest: float
+    from_mean: float
+    from_largest: float
+
+
+@dataclass(frozen=True, eq=False)
+class Descriptor:
+    """A graph of guards, and from each the distances to the boundary in all directions. The arrays
+    are read-only views of the library's memory."""
+
+    #: The model's path as given; None if there is none.
+    file: str | None
+    model_vertices: int
+    model_faces: int
+    diagonal: float
+    effort: int
+    time_limited: bool
+    #: Structured: `position` (k, 3), `volume`.
+    guards: Array
+    #: Structured: `first`, `second`, `area`, `gate` (m, 3).
+    edges: Array
+    #: (k, directions).
+    distances: Array
+    _handle: Any = field(repr=False)
+
+    def __repr__(self) -> str:
+        return f"Descriptor({len(self.guards)} guards, {len(self.edges)} edges)"
+
+    @classmethod
+    def _of(cls, handle: Any, file: PathLike | None = None) -> Descriptor:
+        d = handle
+        return fill(cls, d, _handle=d, file=text(d.file) if d.file else name_of(file),
+                    guards=_arrays.records(d, d.guards, d.guard_count),
+                    edges=_arrays.records(d, d.edges, d.edge_count),
+                    distances=_arrays.view(d, d.distances, (d.guard_count, d.direction_count),
+                                           np.float64))
+
+    @classmethod
+    def read(cls, path: PathLike) -> Descriptor:
+        """Reads DESCRIPTOR.json.
+
+        >>> import starguard
+        >>> starguard.describe(starguard.sample("l-room", vertex_count=500)).write("room.json")
+        >>> starguard.Descriptor.read("room.json")
+        Descriptor(1 guards, 0 edges)
+        """
+        session = Session()
+        return cls._of(session.make("starg_descriptor", lib.starg_descriptor_free,
+                                    lib.starg_descriptor_read, session.context, _arrays.path(path),
+                                    shared=True))
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "memory") -> Descriptor:
+        """Reads the bytes of a DESCRIPTOR.json; `name` stands in messages."""
+        session = Session()
+        return cls._of(session.make(
+            "starg_descriptor", lib.starg_descriptor_free, lib.starg_descriptor_read_memory,
+            session.context, ffi.from_buffer(data) if data else ffi.NULL, len(data),
+            _arrays.path(name), shared=True))
+
+    def write(self, path: PathLike, model_file: PathLike | None = None) -> None:
+        """Writes DESCRIPTOR.json (docs/formats.md)."""
+        session = Session()
+        name = model_file if model_file is not None else self.file
+        session.call(lib.starg_descriptor_write, session.context, self._handle,
+                     _arrays.path(name) if name is not None else ffi.NULL, _arrays.path(path))
+
+    def points(self) -> Array:
+        """The boundary as the descriptor knows it: (guards, directions, 3).
+
+        >>> import starguard
+        >>> room = starguard.sample("l-room", vertex_count=500)
+        >>> starguard.describe(room, directions=100).points().shape
+        (1, 100, 3)
+        """
+        session = Session()
+        owner = session.make("double", lib.starg_descriptor_points_free, lib.starg_descriptor_points,
+                             session.context, self._handle, shared=True)
+        return _arrays.view(owner, owner, self.distances.shape + (3,), np.float64)
+
+    def reconstruct(self, model: Any) -> Reconstruction:
+        """Measures how close these points come to a model."""
+        mesh = as_mesh(model)
+        session = Session()
+        out = ffi.new("starg_reconstruction *")
+        session.call(lib.starg_descriptor_reconstruct, session.context, self._handle, mesh._handle,
+                     out)
+        return fill(Reconstruction, out)
+
+    def signature(self, kind: str = "star") -> Signature:
+        """A signature of a kind that is made of descriptors: "star" or "paper"."""
+        session = Session()
+        return Signature._of(session.make(
+            "starg_signature", lib.starg_signature_free, lib.starg_signature_of_descriptor,
+            session.context, self._handle, choose("kind", kind, KINDS), shared=True))
+
+
+def describe(model: Any, *, directions: int | None = None, effort: int | None = None,
+             threads: int | None = None, seed: int | None = None, time_limit: float | None = None,
+             progress: Progress | None = None) -> Descriptor:
+    """Describes a shape by the guards of a quick star decomposition and what they see.
+
+    >>> import starguard
+    >>> d = starguard.describe(starguard.sample("l-room", vertex_count=500))
+    >>> d.distances.shape, d.guards["position"].shape
+    ((1, 256), (1, 3))
+    """
+    mesh = as_mesh(model)
+    session = Session(threads, seed)
+    options = ffi.new("starg_descriptor_options *")
+    lib.starg_descriptor_options_default(options)
+    give(options, direction_count=directions, effort=effort)
+    return Descriptor._of(session.make(
+        "starg_descriptor", lib.starg_descriptor_free, lib.starg_descriptor_create, session.context,
+        mesh._handle, options, shared=True, progress=progress, time_limit=time_limit), mesh.file)
+
+
+def directions(count: int = 256) -> Array:
+    """The directions in which the guards of a descriptor look, (count, 3).
+
+    >>> import numpy, starguard
+    >>> bool(numpy.allclose(numpy.linalg.norm(starguard.directions(12), axis=1), 1))
+    True
+    """
+    rows = np.empty((count, 3))
+    for i, row in enumerate(rows):
+        lib.starg_descriptor_direction(count, i, ffi.from_buffer("double[3]", row))
+    return rows
+
+
+# ---- signatures ----
+
+
+@dataclass(frozen=True, eq=False)
+class Signature:
+    """What a model is compared by: numbers of a kind ("d2", "shape-dna", "star" or "paper")."""
+
+    kind: str
+    version: int
+    #: Read-only, without a copy.
+    numbers: Array
+    _handle: Any = field(repr=False)
+    _owner: Any = field(repr=False)
+
+    @classmethod
+    def _of(cls, handle: Any, owner: Any = None) -> Signature:
+        keeper = handle if owner is None else owner
+        return cls(text(lib.starg_signature_name(handle.kind)), handle.version,
+                   _arrays.view(keeper, handle.numbers, (handle.count,), np.float64), handle, keeper)
+
+    @classmethod
+    def restore(cls, kind: str, version: int, numbers: ArrayLike) -> Signature:
+        """A signature of numbers that were stored.
+
+        >>> import starguard
+        >>> a = starguard.signature(starguard.sample("star", vertex_count=500), "d2")
+        >>> b = starguard.Signature.restore(a.kind, a.version, a.numbers)
+        >>> starguard.match(a, b)
+        0.0
+        """
+        array = np.ascontiguousarray(numbers, dtype=np.float64).ravel()
+        session = Session()
+        return cls._of(session.make(
+            "starg_signature", lib.starg_signature_free, lib.starg_signature_restore, session.context,
+            choose("kind", kind, KINDS), version, _arrays.pointer("double[]", array), len(array),
+            shared=True, brief=True))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Signature.restore, (self.kind, self.version, np.array(self.numbers))
+
+
+def signature(model: Any, kind: str = "star", *, threads: int | None = None,
+              seed: int | None = None, time_limit: float | None = None,
+              progress: Progress | None = None) -> Signature:
+    """Computes a signature. It does not change when the model is moved, turned, scaled or mirrored.
+
+    >>> import starguard
+    >>> starguard.signature(starguard.sample("star", vertex_count=500), "shape-dna").numbers.shape
+    (50,)
+    """
+    mesh = as_mesh(model)
+    session = Session(threads, seed)
+    return Signature._of(session.make(
+        "starg_signature", lib.starg_signature_free, lib.starg_signature_create, session.context,
+        mesh._handle, choose("kind", kind, KINDS), shared=True, progress=progress,
+        time_limit=time_limit))
+
+
+def signatures(model: Any, *, threads: int | None = None, seed: int | None = None,
+               time_limit: float | None = None,
+               progress: Progress | None = None) -> dict[str, Signature]:
+    """The signatures of all kinds, for which a descriptor is made once.
+
+    >>> import starguard
+    >>> sorted(starguard.signatures(starguard.sample("l-room", vertex_count=500)))
+    ['d2', 'paper', 'shape-dna', 'star']
+    """
+    mesh = as_mesh(model)
+    session = Session(threads, seed)
+    out = ffi.new(f"starg_signature *[{lib.STARG_SIGNATURE_KINDS}]")
+    try:
+        session.call(lib.starg_signature_create_all, session.context, mesh._handle, out,
+                     progress=progress, time_limit=time_limit)
+    finally:
+        handles = [session.own(s, lib.starg_signature_free, shared=True) for s in out if s]
+    made = [Signature._of(handle) for handle in handles]
+    return {s.kind: s for s in made}
+
+
+def current_version(kind: str) -> int:
+    """The version of the signatures of a kind that the library makes.
+
+    >>> import starguard
+    >>> starguard.current_version("d2")
+    1
+    """
+    return int(lib.starg_signature_version(choose("kind", kind, KINDS)))
+
+
+Comparable = Union[Signature, Descriptor, Any]
+
+
+def _signature_of(thing: Comparable, kind: str, options: dict[str, Any]) -> Signature:
+    if isinstance(thing, Signature):
+        return thing
+    if isinstance(thing, (str, bytes, os.PathLike)) and is_descriptor(thing):
+        thing = Descriptor.read(thing)
+    if not isinstance(thing, Descriptor):
+        return signature(thing, kind, **options)
+    if not lib.starg_signature_needs_descriptor(choose("kind", kind, KINDS)):
+        raise ArgumentError(f"a descriptor does not tell '{kind}', which needs the model itself")
+    return thing.signature(kind)
+
+
+def is_descriptor(path: PathLike) -> bool:
+    """Does the content of a file say that it is a descriptor? No model begins like that.
+
+    >>> import starguard
+    >>> starguard.sample("star", vertex_count=500).write("star.off")
+    >>> starguard.is_descriptor("star.off")
+    False
+    """
+    try:
+        with open(path, "rb") as file:
+            head = file.read(_HEAD)
+    except OSError:
+        return False
+    return bool(lib.starg_descriptor_recognized(ffi.from_buffer(head) if head else ffi.NULL, len(head)))
+
+
+def match(a: Comparable, b: Comparable, kind: str = "star", *, threads: int | None = None,
+          seed: int | None = None, time_limit: float | None = None,
+          progress: Progress | None = None) -> float:
+    """How unlike two shapes are, from 0 on. Each is a model, a Descriptor, a Signature, or a file of
+    a model or a descriptor. `kind` is "star" (what guards see, whatever the pose), "paper",
+    "shape-dna" or "d2".
+
+    >>> import starguard
+    >>> star, room = (starguard.sample(name, vertex_count=500) for name in ("star", "l-room"))
+    >>> starguard.match(star, star, "d2"), starguard.match(star, room, "d2") > 0.1
+    (0.0, True)
+    """
+    options = {"threads": threads, "seed": seed, "time_limit": time_limit, "progress": progress}
+    first, second = _signature_of(a, kind, options), _signature_of(b, kind, options)
+    session = Session()
+    out = ffi.new("double *")
+    session.call(lib.starg_signature_distance, session.context, first._handle, second._handle, out,
+                 brief=True)
+    return float(out[0])
+
+
+def distances(signatures: Sequence[Signature], *, threads: int | None = None,
+              progress: Progress | None = None) -> Array:
+    """All distances between signatures of one kind: a symmetric matrix.
+
+    >>> import starguard
+    >>> rooms = [starguard.sample("l-room", vertex_count=n) for n in (500, 700)]
+    >>> models = rooms + [starguard.sample("star", vertex_count=500)]
+    >>> m = starguard.distances([starguard.signature(model, "d2") for model in models])
+    >>> m.shape, bool(m[0, 1] < m[0, 2])
+    ((3, 3), True)
+    """
+    session = Session(threads)
+    matrix = np.zeros((len(signatures), len(signatures)))
+    handles = ffi.new("starg_signature *[]", [s._handle for s in signatures])
+    session.call(lib.starg_signature_distances, session.context, handles, len(signatures),
+                 _arrays.pointer("double[]", matrix), progress=progress)
+    return matrix
+
+
+# ---- retrieval ----
+
+
+@dataclass(frozen=True, eq=False)
+class Retrieval:
+    """Means over queries, each in [0, 1]; 1 is perfect."""
+
+    models: int
+    queries: int
+    nearest_neighbour: float
+    first_tier: float
+    second_tier: float
+    e_measure: float
+    dcg: float
+    #: Largest precision at or beyond the recalls 1/20, 2/20, ..., 1.
+    precision: Array
+
+
+def retrieval(distances: ArrayLike, classes: Sequence[Any]) -> tuple[Retrieval, dict[Any, Retrieval]]:
+    """How well distances (n, n) find the models of the same class: over all, and by class. A model
+    whose class is None is neither a query nor ranked.
+
+    >>> import starguard
+    >>> d = [[0, 1, 5, 6], [1, 0, 7, 8], [5, 7, 0, 2], [6, 8, 2, 0]]
+    >>> overall, by_class = starguard.retrieval(d, ["dog", "dog", "cat", "cat"])
+    >>> overall.first_tier, sorted(by_class)
+    (1.0, ['cat', 'dog'])
+    """
+    matrix = np.ascontiguousarray(distances, dtype=np.float64)
+    if matrix.ndim != 2 or matrix.shape != (len(classes), len(classes)):
+        raise ArgumentError(f"distances of {len(classes)} models have the shape ({len(classes)}, "
+                            f"{len(classes)}), not {matrix.shape}")
+    names = sorted({c for c in classes if c is not None})
+    numbers = np.array([NO_CLASS if c is None else names.index(c) for c in classes], np.uint32)
+    return _measure(matrix, numbers, names)
+
+
+def _measure(matrix: Array, numbers: Array,
+             names: Sequence[Any]) -> tuple[Retrieval, dict[Any, Retrieval]]:
+    session = Session()
+    by_class = ffi.new("starg_retrieval[]", max(len(names), 1))
+    overall = ffi.new("starg_retrieval *")
+    session.call(lib.starg_retrieval_measure, session.context, _arrays.pointer("double[]", matrix),
+                 _arrays.pointer("uint32_t[]", numbers), len(matrix), len(names), by_class, overall)
+    return _retrieval_of(overall), {name: _retrieval_of(by_class[i]) for i, name in enumerate(names)}
+
+
+def _retrieval_of(r: Any) -> Retrieval:
+    return fill(Retrieval, r, precision=np.array(list(r.precision)))

@@ -1,0 +1,288 @@
+"""Two surfaces: a map from one to the other, and the shapes between them."""
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass, field
+from typing import Any, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arrays
+from ._choice import choose, give, word_of
+from ._fields import fill
+from ._library import ffi, lib
+from ._session import Session
+from ._types import Array, PathLike, Progress
+from .errors import ArgumentError
+from .mesh import Mesh, as_mesh
+
+_MAP_KINDS = {"same": lib.STARG_MAP_SAME, "sphere": lib.STARG_MAP_SPHERE, "given": lib.STARG_MAP_GIVEN}
+_METHODS = {"star": lib.STARG_MORPH_STAR, "arap": lib.STARG_MORPH_ARAP,
+            "linear": lib.STARG_MORPH_LINEAR, "spherical": lib.STARG_MORPH_SPHERICAL}
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceMap:
+    """Where each vertex of A lies on B. The arrays are read-only views of the library's memory."""
+
+    #: "same" (vertex i goes to vertex i), "sphere", or "given" (read from a file).
+    kind: str
+    target_vertices: int
+    target_faces: int
+    #: Per vertex of A a face of B, and barycentric coordinates in it, (n, 3).
+    faces: Array
+    coordinates: Array
+    #: How many landmarks it meets.
+    landmark_count: int
+    #: 1 is best.
+    mean_angle_distortion: float
+    mean_area_distortion: float
+    collapsed: int
+    #: B.
+    target: Mesh = field(repr=False)
+    _handle: Any = field(repr=False)
+
+    @classmethod
+    def _of(cls, m: Any, target: Mesh) -> SurfaceMap:
+        return fill(cls, m, _handle=m, target=target, kind=word_of(m.kind, _MAP_KINDS),
+                    faces=_arrays.view(m, m.faces, (m.vertex_count,), np.uint32),
+                    coordinates=_arrays.view(m, m.coordinates, (m.vertex_count, 3), np.float64))
+
+    def images(self) -> Array:
+        """The images of A's vertices, (n, 3)."""
+        rows = np.empty((len(self.faces), 3))
+        lib.starg_map_positions(self._handle, self.target._handle, _arrays.pointer("double[]", rows))
+        return rows
+
+    def write(self, path: PathLike) -> None:
+        """Writes MAP.json (docs/formats.md)."""
+        session = Session()
+        session.call(lib.starg_map_write, session.context, self._handle, _arrays.path(path))
+
+    @classmethod
+    def read(cls, path: PathLike, a: Any, b: Any) -> SurfaceMap:
+        """Reads MAP.json as a map from A to B and measures it."""
+        first, second = as_mesh(a), as_mesh(b)
+        session = Session()
+        return cls._of(session.make("starg_map", lib.starg_map_free, lib.starg_map_read,
+                                    session.context, _arrays.path(path), first._handle,
+                                    second._handle, shared=True), second)
+
+
+def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *,
+                threads: int | None = None, seed: int | None = None,
+                time_limit: float | None = None, progress: Progress | None = None) -> SurfaceMap:
+    """Maps A onto B. `landmarks` are pairs of vertices (k, 2), of A and of B, or a file of them.
+
+    >>> import starguard
+    >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+    >>> poses = starguard.map_surface(a, b)
+    >>> poses.kind, bool((poses.images() == b.vertices).all())
+    ('same', True)
+    """
+    first, second = as_mesh(a), as_mesh(b)
+    session = Session(threads, seed)
+    options = ffi.new("starg_map_options *")
+    lib.starg_map_options_default(options)
+    if landmarks is not None:
+        is_file = isinstance(landmarks, (str, bytes)) or hasattr(landmarks, "__fspath__")
+        pairs = (read_landmarks(landmarks, first, second) if is_file  # type: ignore[arg-type]
+                 else _arrays.indices(landmarks, 2, "landmarks"))  # type: ignore[arg-type]
+        pointer = _arrays.pointer("uint32_t[]", pairs)
+        options.landmarks = pointer
+        options.landmark_count = len(pairs)
+    return SurfaceMap._of(session.make(
+        "starg_map", lib.starg_map_free, lib.starg_map_create, session.context, first._handle,
+        second._handle, options, shared=True, progress=progress, time_limit=time_limit), second)
+
+
+def read_landmarks(path: PathLike, a: Any, b: Any) -> Array:
+    """Reads landmarks: a pair a line, two vertex numbers or six coordinates. Shape (k, 2).
+
+    >>> import pathlib, starguard
+    >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+    >>> _ = pathlib.Path("marks.txt").write_text("0 0\\n17 17\\n")
+    >>> starguard.read_landmarks("marks.txt", a, b).tolist()
+    [[0, 0], [17, 17]]
+    """
+    first, second = as_mesh(a), as_mesh(b)
+    session = Session()
+    out, number = ffi.new("uint32_t **"), ffi.new("size_t *")
+    try:
+        session.call(lib.starg_landmarks_read, session.context, _arrays.path(path), first._handle,
+                     second._handle, out, number)
+    finally:
+        owner = session.own(out[0], lib.starg_landmarks_free, shared=True) if out[0] else None
+    return _arrays.view(owner, out[0], (number[0], 2), np.uint32)
+
+
+@dataclass(frozen=True)
+class FrameMeasures:
+    """What a frame is like."""
+
+    #: Pairs of faces that pass through one another.
+    intersections: int
+    #: Faces folded over.
+    inverted: int
+    #: Faces of less than a millionth of their area at the ends.
+    collapsed: int
+    volume: float
+    area: float
+    #: Relative to the ends' values interpolated in t.
+    volume_drift: float
+    area_drift: float
+
+
+class Morph:
+    """The way from A to another shape of the same faces, ready for any moment. Several threads may
+    share one: one of them works with it at a time.
+
+    `target` is where A's vertices go: a SurfaceMap, positions (n, 3), or a model B, onto which A is
+    then mapped. `method` is "star" (pieces about corresponding guards), "arap" (as rigid as
+    possible), "linear" or "spherical".
+
+    >>> import starguard
+    >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+    >>> morph = starguard.Morph(a, b)
+    >>> morph.frame(0.5)
+    Mesh(500 vertices, 996 faces)
+    >>> morph.measure(0.5).intersections
+    0
+    """
+
+    def __init__(self, a: Any, target: Any, *, method: str = "star", candidates: int | None = None,
+                 threads: int | None = None, seed: int | None = None,
+                 time_limit: float | None = None, progress: Progress | None = None) -> None:
+        self.mesh: Mesh = as_mesh(a)  #: A
+        images = self._images(target, threads=threads, seed=seed, progress=progress)
+        self._session = Session(threads, seed)
+        self._lock = threading.Lock()
+        options = ffi.new("starg_morph_options *")
+        lib.starg_morph_options_default(options)
+        options.method = choose("method", method, _METHODS)
+        give(options, candidates=candidates)
+        self._handle = self._session.make(
+            "starg_morph", lib.starg_morph_free, lib.starg_morph_create, self._session.context,
+            self.mesh._handle, _arrays.pointer("double[]", images), options, progress=progress,
+            time_limit=time_limit)
+        m, count = self._handle, lib.starg_morph_guard_count(self._handle)
+        #: Guards of A and their counterparts, (k, 3) each; none for other methods than star and
+        #: spherical. Read-only, without a copy.
+        self.guards: tuple[Array, Array] = (
+            _arrays.view(m, lib.starg_morph_guards(m, 0), (count, 3), np.float64),
+            _arrays.view(m, lib.starg_morph_guards(m, 1), (count, 3), np.float64))
+        pieces = lib.starg_morph_pieces(m)
+        #: Per face of A the guard of its piece, or None.
+        self.pieces: Array | None = (
+            _arrays.view(m, pieces, (len(self.mesh.faces),), np.uint32) if pieces else None)
+        #: Faces whose guard is not seen to be on their inner side at both ends.
+        self.unguarded: int = lib.starg_morph_unguarded(m)
+
+    def _images(self, target: Any, **options: Any) -> Array:
+        if isinstance(target, (np.ndarray, list)):
+            images = _arrays.reals(target, 3, "target")
+        elif isinstance(target, SurfaceMap):
+            images = target.images()
+        else:
+            images = map_surface(self.mesh, target, **options).images()
+        if len(images) != len(self.mesh.vertices):
+            raise ArgumentError(f"A has {len(self.mesh.vertices)} vertices, but there are "
+                                f"{len(images)} images of them")
+        return images
+
+    def positions(self, t: float) -> Array:
+        """The positions of A's vertices at time t in [0, 1]: A itself at 0, the images at 1."""
+        rows = np.empty((len(self.mesh.vertices), 3))
+        with self._lock:
+            self._session.call(lib.starg_morph_frame, self._handle, float(t),
+                               _arrays.pointer("double[]", rows))
+        return rows
+
+    def frame(self, t: float) -> Mesh:
+        """The shape at time t in [0, 1]."""
+        return Mesh(self.positions(t), self.mesh.faces)
+
+    def measure(self, t: float, positions: ArrayLike | None = None) -> FrameMeasures:
+        """What the shape at time t is like; `positions` (n, 3) stand in for those of `positions(t)`."""
+        rows = self.positions(t) if positions is None else _arrays.reals(positions, 3, "positions")
+        if len(rows) != len(self.mesh.vertices):
+            raise ArgumentError(f"A has {len(self.mesh.vertices)} vertices, not {len(rows)}")
+        out = ffi.new("starg_frame_measures *")
+        with self._lock:
+            self._session.call(lib.starg_morph_measure, self._handle, float(t),
+                               _arrays.pointer("double[]", rows), out)
+        return fill(FrameMeasures, out)
+
+    def write_animation(self, path: PathLike, frames: int = 21, seconds: float = 2.0) -> None:
+        """Writes a .glb that plays the morph.
+
+        >>> import starguard
+        >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+        >>> starguard.Morph(a, b, method="linear").write_animation("dog.glb", frames=5)
+        """
+        moments = np.linspace(0, 1, frames)
+        write_animation(path, self.mesh, [self.positions(t) for t in moments], seconds)
+
+
+def write_animation(path: PathLike, model: Any, frames: Sequence[ArrayLike],
+                    seconds: float = 2.0) -> None:
+    """Writes a .glb of a mesh whose vertices move: frames of shape (n, 3), in equal steps.
+
+    >>> import starguard
+    >>> star = starguard.sample("star", vertex_count=500)
+    >>> starguard.write_animation("grow.glb", star, [star.vertices, 2 * star.vertices])
+    """
+    mesh = as_mesh(model)
+    rows = [_arrays.reals(frame, 3, "frames") for frame in frames]
+    for row in rows:
+        if len(row) != len(mesh.vertices):
+            raise ArgumentError(f"the mesh has {len(mesh.vertices)} vertices, a frame {len(row)}")
+    pointers = [_arrays.pointer("double[]", row) for row in rows]
+    session = Session()
+    session.call(lib.starg_animation_write, session.context, mesh._handle,
+                 ffi.new("double *[]", pointers), len(rows), float(seconds), _arrays.path(path))
+
+
+def read_animation(path: PathLike) -> list[Mesh]:
+    """Reads the frames of such a file: meshes of the same faces.
+
+    >>> import starguard
+    >>> star = starguard.sample("star", vertex_count=500)
+    >>> starguard.write_animation("grow.glb", star, [star.vertices, 2 * star.vertices])
+    >>> len(starguard.read_animation("grow.glb"))
+    2
+    """
+    session = Session()
+    return _read_animation(session, lib.starg_animation_read, _arrays.path(path))
+
+
+def animation_from_bytes(data: bytes, name: str = "memory") -> list[Mesh]:
+    """The same from the bytes of such a file; `name` stands in messages.
+
+    >>> import pathlib, starguard
+    >>> star = starguard.sample("star", vertex_count=500)
+    >>> starguard.write_animation("grow.glb", star, [star.vertices, 2 * star.vertices])
+    >>> len(starguard.animation_from_bytes(pathlib.Path("grow.glb").read_bytes()))
+    2
+    """
+    session = Session()
+    return _read_animation(session, lib.starg_animation_read_memory,
+                           ffi.from_buffer(data) if data else ffi.NULL, len(data),
+                           _arrays.path(name))
+
+
+def _read_animation(session: Session, function: Any, *arguments: Any) -> list[Mesh]:
+    out, number = ffi.new("starg_mesh ***"), ffi.new("size_t *")
+    try:
+        session.call(function, session.context, *arguments, out, number)
+        return [_copy(out[0][i]) for i in range(number[0])]
+    finally:
+        if out[0]:
+            lib.starg_animation_free(session.context, out[0], number[0])
+
+
+def _copy(mesh: Any) -> Mesh:
+    vertex_count, face_count = lib.starg_mesh_vertex_count(mesh), lib.starg_mesh_face_count(mesh)
+    return Mesh(_arrays.view(None, lib.starg_mesh_vertices(mesh), (vertex_count, 3), np.float64),
+                _arrays.view(None, lib.starg_mesh_faces(mesh), (face_count, 3), np.uint32))

@@ -1,0 +1,178 @@
+"""Star decomposition: few pieces, each wholly visible from its guard."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arrays
+from ._choice import choose, give, word_of
+from ._fields import fill
+from ._library import ffi, lib
+from ._session import Session, logger
+from ._types import Array, PathLike, Progress
+from .errors import MeshError
+from .guards import name_of
+from .mesh import Mesh
+from .tetra import TetMesh, TetraReport, as_shape, set_tetra
+
+MODES = {"strict": lib.STARG_DECOMPOSE_STRICT, "paper": lib.STARG_DECOMPOSE_PAPER}
+
+
+@dataclass(frozen=True, eq=False)
+class Decomposition:
+    """A solid in pieces. The arrays are read-only views of the library's memory."""
+
+    #: The model's path as given; None if there is none.
+    file: str | None
+    #: "strict" or "paper".
+    mode: str
+    #: Size of the model that was cut.
+    model_vertices: int
+    model_faces: int
+    model_tetrahedra: int
+    #: How the model was filled.
+    tetra: TetraReport
+    mesh: TetMesh
+    #: The piece of each tetrahedron, (m,).
+    labels: Array
+    #: Structured: `guard` (k, 3), `radius`, `tetrahedra`, `volume`, `star`.
+    pieces: Array
+    #: Pieces that share faces, structured: `first`, `second`, `area`.
+    contacts: Array
+    #: Pieces that are proven to be star-shaped.
+    strictly_star: int
+    #: Fraction of the vertices that the guards of their pieces see.
+    visible_vertices: float
+    flattest: float
+    flattest_given: float
+    time_limited: bool
+    _handle: Any = field(repr=False)
+
+    def __repr__(self) -> str:
+        return f"Decomposition({len(self)} pieces, {self.strictly_star} proven star-shaped)"
+
+    def __len__(self) -> int:
+        return len(self.pieces)
+
+    @property
+    def guards(self) -> Array:
+        """The guard of each piece, (k, 3)."""
+        return self.pieces["guard"]
+
+    def surfaces(self) -> list[Mesh]:
+        """The closed outward surface of each piece.
+
+        >>> import starguard
+        >>> room = starguard.sample("l-room", vertex_count=500)
+        >>> [piece.check().usable for piece in starguard.decompose(room, time_limit=5).surfaces()]
+        [True]
+        """
+        session = Session()
+        out, numbers = ffi.new("starg_mesh **"), ffi.new("uint32_t **")
+        try:
+            session.call(lib.starg_decomposition_surfaces, session.context, self._handle, out, numbers)
+        finally:
+            handle = session.own(out[0], lib.starg_mesh_free) if out[0] else None
+            owner = (session.own(numbers[0], lib.starg_tetmesh_map_free, shared=True)
+                     if numbers[0] else None)
+        whole = Mesh._of(handle)
+        first = _arrays.view(owner, numbers[0], (len(self) + 1,), np.uint32)
+        meshes = []
+        for begin, end in zip(first[:-1], first[1:]):
+            faces = whole.faces[begin:end]
+            low, high = faces.min(), faces.max()
+            meshes.append(Mesh(whole.vertices[low:high + 1], faces - low))
+        return meshes
+
+    def write(self, path: PathLike, *, binary: bool = False) -> None:
+        """Writes PIECES.vtk (docs/formats.md).
+
+        >>> import starguard
+        >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
+        >>> pieces.write("pieces.vtk")
+        >>> pieces.write_report("pieces.json")
+        """
+        session = Session()
+        session.call(lib.starg_decomposition_write, session.context, self._handle,
+                     _arrays.path(path), binary)
+
+    def write_report(self, path: PathLike, model_file: PathLike | None = None) -> None:
+        """Writes PIECES.json. `model_file` stands in it as the model's path; without it the one that
+        the model was read from, if any."""
+        session = Session()
+        name = model_file if model_file is not None else self.file
+        session.call(lib.starg_decomposition_write_report, session.context, self._handle,
+                     _arrays.path(name) if name is not None else ffi.NULL, _arrays.path(path))
+
+    def write_groups(self, path: PathLike) -> None:
+        """Writes the surfaces of all pieces as OBJ, a group for each."""
+        session = Session()
+        session.call(lib.starg_decomposition_write_groups, session.context, self._handle,
+                     _arrays.path(path))
+
+
+def decompose(model: Any, *, mode: str | None = None, guards: ArrayLike | None = None,
+              max_pieces: int | None = None, effort: int | None = None,
+              generator: str | None = None, density: float | None = None,
+              target: int | None = None, tetgen: PathLike | None = None,
+              tetgen_limit: float | None = None, threads: int | None = None,
+              seed: int | None = None, time_limit: float | None = 60,
+              progress: Progress | None = None) -> Decomposition:
+    """Cuts a solid into few pieces that each one guard sees as a whole.
+
+    With `mode` "strict" (default) every piece is proven to be star-shaped; "paper" grows pieces
+    from guards, as the paper does. The model is what `as_mesh` takes, or a TetMesh; a surface with
+    holes is filled with what it winds around, with a notice. `guards` (n, 3) are points to grow from
+    or to try first. The search stops after `time_limit` seconds (None: when it finds no more) with
+    the best that it has. The options of `tetrahedralize` tell how the solid is filled.
+
+    >>> import starguard
+    >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
+    >>> pieces, pieces.guards.shape, bool(pieces.pieces["star"].all())
+    (Decomposition(1 pieces, 1 proven star-shaped), (1, 3), True)
+    """
+    shape = as_shape(model)
+    session = Session(threads, seed)
+    options = ffi.new("starg_decompose_options *")
+    lib.starg_decompose_options_default(options)
+    fallback = options.tetra.density
+    keep = set_tetra(ffi.addressof(options, "tetra"), generator,
+                     fallback if density is None else density, target, tetgen, tetgen_limit)
+    if mode is not None:
+        options.mode = choose("mode", mode, MODES)
+    give(options, max_pieces=max_pieces, effort=effort)
+    if guards is not None:
+        places = _arrays.points(guards, "guards")
+        pointer = _arrays.pointer("double[]", places)
+        options.guards = pointer
+        options.guard_count = len(places)
+    function, handle = _subject(shape)
+    made = session.make("starg_decomposition", lib.starg_decomposition_free, function,
+                        session.context, handle, options, shared=True, progress=progress,
+                        time_limit=time_limit)
+    del keep
+    return _of(made, shape.file)
+
+
+def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
+    """What cuts a shape, and what it takes."""
+    if isinstance(shape, TetMesh):
+        return lib.starg_decompose_tetmesh, shape._handle
+    try:
+        return lib.starg_decompose, shape.solid._handle
+    except MeshError as error:
+        logger.info("%s; isosurface stuffing fills what the surface winds around, and closes holes "
+                    "of its own accord", error)
+        return lib.starg_decompose_open_mesh, shape._handle
+
+
+def _of(d: Any, file: PathLike | None) -> Decomposition:
+    mesh = TetMesh._of(d.mesh, owner=d)
+    return fill(Decomposition, d, _handle=d, file=name_of(file), mode=word_of(d.mode, MODES),
+                tetra=TetraReport._of(d.tetra), mesh=mesh,
+                labels=_arrays.view(d, d.labels, (len(mesh.tetrahedra),), np.int32),
+                pieces=_arrays.records(d, d.pieces, d.piece_count),
+                contacts=_arrays.records(d, d.contacts, d.contact_count))

@@ -1,0 +1,109 @@
+"""The curve skeleton of a solid: a graph that runs along its middle and has its topology."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from . import _arrays
+from ._choice import choose, give
+from ._fields import fill
+from ._library import ffi, lib
+from ._session import Session
+from ._types import Array, PathLike, Progress
+from .solid import as_solid
+
+_FORMATS = {"auto": lib.STARG_SKELETON_AUTO, "obj": lib.STARG_SKELETON_OBJ,
+            "cg": lib.STARG_SKELETON_CG, "vtk": lib.STARG_SKELETON_VTK}
+
+
+@dataclass(frozen=True, eq=False)
+class Skeleton:
+    """A graph of points strictly inside a solid. The arrays are read-only views of the library's
+    memory."""
+
+    #: (n, 3).
+    positions: Array
+    #: Distance of each node from the surface, (n,); None where a file does not tell.
+    radii: Array | None
+    #: (m, 2) uint32.
+    edges: Array
+    #: Of each of the solid's vertices: the node that stands for it; none when read from a file.
+    vertex_nodes: Array
+    components: int
+    loops: int
+    #: Nodes of three or more edges; of one.
+    joints: int
+    ends: int
+    cuts: int
+    mends: int
+    #: Parts and loops are those of the solid.
+    homotopic: bool
+    _handle: Any = field(repr=False)
+
+    def __repr__(self) -> str:
+        return (f"Skeleton({len(self.positions)} nodes, {len(self.edges)} edges, "
+                f"homotopic={self.homotopic})")
+
+    @classmethod
+    def _of(cls, s: Any) -> Skeleton:
+        return fill(cls, s, _handle=s,
+                    positions=_arrays.view(s, s.positions, (s.node_count, 3), np.float64),
+                    radii=_arrays.view(s, s.radii, (s.node_count,), np.float64) if s.radii else None,
+                    edges=_arrays.view(s, s.edges, (s.edge_count, 2), np.uint32),
+                    vertex_nodes=_arrays.view(s, s.vertex_nodes, (s.vertex_count,), np.uint32))
+
+    @classmethod
+    def read(cls, path: PathLike) -> Skeleton:
+        """Reads what `write` has written; the content tells the format.
+
+        >>> import starguard
+        >>> torus = starguard.sample("torus", vertex_count=500)
+        >>> starguard.skeleton(torus, node_count=50).write("torus.cg")
+        >>> starguard.Skeleton.read("torus.cg").loops
+        1
+        """
+        session = Session()
+        return cls._of(session.make("starg_skeleton", lib.starg_skeleton_free,
+                                    lib.starg_skeleton_read, session.context, _arrays.path(path),
+                                    shared=True))
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "memory") -> Skeleton:
+        """Reads the bytes of such a file; `name` stands in messages."""
+        session = Session()
+        return cls._of(session.make(
+            "starg_skeleton", lib.starg_skeleton_free, lib.starg_skeleton_read_memory,
+            session.context, ffi.from_buffer(data) if data else ffi.NULL, len(data),
+            _arrays.path(name), shared=True))
+
+    def write(self, path: PathLike, *, format: str = "auto") -> None:
+        """Writes the graph as "obj", "cg" or "vtk", by the name's ending or by `format`.
+
+        >>> import starguard
+        >>> starguard.skeleton(starguard.sample("dog", vertex_count=500)).write("dog.cg")
+        """
+        session = Session()
+        session.call(lib.starg_skeleton_write, session.context, self._handle, _arrays.path(path),
+                     choose("format", format, _FORMATS))
+
+
+def skeleton(model: Any, *, node_count: int | None = None, prune: float | None = None,
+             threads: int | None = None, seed: int | None = None, time_limit: float | None = None,
+             progress: Progress | None = None) -> Skeleton:
+    """Finds the curve skeleton, of about 1,000 nodes unless told otherwise.
+
+    >>> import starguard
+    >>> s = starguard.skeleton(starguard.sample("torus", vertex_count=500), node_count=50)
+    >>> s.loops, s.ends, s.homotopic
+    (1, 0, True)
+    """
+    solid = as_solid(model)
+    session = Session(threads, seed)
+    options = ffi.new("starg_skeleton_options *")
+    lib.starg_skeleton_options_default(options)
+    give(options, node_count=node_count, prune=prune)
+    return Skeleton._of(session.make(
+        "starg_skeleton", lib.starg_skeleton_free, lib.starg_skeleton_create, session.context,
+        solid._handle, options, shared=True, progress=progress, time_limit=time_limit))

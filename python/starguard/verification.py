@@ -1,0 +1,201 @@
+"""Independent checks of results: arithmetic and algorithms of their own, slow and simple."""
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any, Union
+
+import numpy as np
+
+from . import _arrays
+from ._choice import word_of
+from ._fields import fill
+from ._library import ffi, lib, text
+from ._session import Session
+from ._types import Array, PathLike, Progress
+from .errors import ArgumentError
+from .guards import Guards
+from .pieces import MODES, Decomposition
+from .tetra import TetMesh, as_shape
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One claim that was checked."""
+
+    text: str
+    holds: bool
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """All claims of a result; true when every one holds."""
+
+    passed: bool
+    claims: list[Claim]
+
+    def __bool__(self) -> bool:
+        return self.passed
+
+
+@dataclass(frozen=True, eq=False)
+class PiecesMesh:
+    """Labelled tetrahedra as they stand in PIECES.vtk; nothing about them is taken for granted."""
+
+    vertices: Array
+    tetrahedra: Array
+    labels: Array
+    _handle: Any = field(repr=False)
+    _owner: Any = field(repr=False)
+
+    @classmethod
+    def _of(cls, p: Any, owner: Any = None) -> PiecesMesh:
+        keeper = p if owner is None else owner
+        return cls(_arrays.view(keeper, p.vertices, (p.vertex_count, 3), np.float64),
+                   _arrays.view(keeper, p.tetrahedra, (p.count, 4), np.uint32),
+                   _arrays.view(keeper, p.labels, (p.count,), np.int32), p, keeper)
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "memory") -> PiecesMesh:
+        """Reads the bytes of a PIECES.vtk, with code that shares nothing with `TetMesh.read`."""
+        return cls._of(_read(data, name, "starg_pieces_mesh", lib.starg_pieces_mesh_free,
+                             lib.starg_pieces_mesh_read_memory))
+
+
+@dataclass(frozen=True, eq=False)
+class PiecesReport:
+    """What PIECES.json says about them."""
+
+    mode: str
+    tetrahedra: int
+    #: Structured, as of a Decomposition.
+    pieces: Array
+    contacts: Array
+    strictly_star: int
+    visible_vertices: float
+    #: The boundary is near the model's surface only; then how near, and back.
+    approximated: bool
+    distance: float
+    distance_back: float
+    _handle: Any = field(repr=False)
+    _owner: Any = field(repr=False)
+
+    @classmethod
+    def _of(cls, r: Any, owner: Any = None) -> PiecesReport:
+        keeper = r if owner is None else owner
+        return fill(cls, r, _handle=r, _owner=keeper, mode=word_of(r.mode, MODES),
+                    pieces=_arrays.records(keeper, r.pieces, r.piece_count),
+                    contacts=_arrays.records(keeper, r.contacts, r.contact_count))
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "memory") -> PiecesReport:
+        """Reads the bytes of a PIECES.json."""
+        return cls._of(_read(data, name, "starg_pieces_report", lib.starg_pieces_report_free,
+                             lib.starg_pieces_report_read_memory))
+
+
+def _read(data: bytes, name: str, kind: str, free: Any, function: Any) -> Any:
+    session = Session()
+    return session.make(kind, free, function, session.context,
+                        ffi.from_buffer(data) if data else ffi.NULL, len(data), _arrays.path(name),
+                        shared=True)
+
+
+Result = Union[Guards, Decomposition, PiecesMesh, PiecesReport]
+
+
+def read_result(path: PathLike) -> Guards | PiecesMesh | PiecesReport:
+    """Reads GUARDS.json, PIECES.vtk or PIECES.json; the content tells which.
+
+    >>> import starguard
+    >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
+    >>> pieces.write_report("pieces.json")
+    >>> starguard.read_result("pieces.json").strictly_star
+    1
+    """
+    session = Session()
+    result = session.make("starg_result", lib.starg_result_free, lib.starg_result_read,
+                          session.context, _arrays.path(path), shared=True)
+    if result.guards:
+        return Guards._of(result.guards, owner=result)
+    if result.pieces:
+        return PiecesMesh._of(result.pieces, result)
+    return PiecesReport._of(result.report, result)
+
+
+def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
+           seed: int | None = None, progress: Progress | None = None) -> Verdict:
+    """Checks what results claim about a model, by means that share nothing with those that made
+    them. A result is what `guard` or `decompose` gave, or the name of a file; a PIECES.vtk and its
+    PIECES.json are checked together.
+
+    >>> import starguard
+    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> verdict = starguard.verify(room, starguard.guard(room), starguard.decompose(room, time_limit=5))
+    >>> verdict.passed, all(claim.holds for claim in verdict.claims)
+    (True, True)
+    """
+    shape = as_shape(model)
+    given = [read_result(r) if isinstance(r, (str, bytes, os.PathLike)) else r for r in results]
+    if not given:
+        raise ArgumentError("name a result to verify")
+    session = Session(threads, seed)
+    claims: list[Claim] = []
+    for result in given:
+        if isinstance(result, Guards):
+            surface = shape.surface()[0] if isinstance(shape, TetMesh) else shape
+            claims += _claims(session, lib.starg_verify_guards, surface, result._handle,
+                              progress=progress)
+    for mesh, report in _decompositions(given):
+        function = (lib.starg_verify_pieces_of_tetmesh if isinstance(shape, TetMesh)
+                    else lib.starg_verify_pieces)
+        claims += _claims(session, function, shape, mesh, report, progress=progress)
+    return Verdict(all(claim.holds for claim in claims), claims)
+
+
+def _claims(session: Session, function: Any, shape: Any, *arguments: Any,
+            progress: Progress | None) -> list[Claim]:
+    verdict = session.make("starg_verdict", lib.starg_verdict_free, function, session.context,
+                           shape._handle, *arguments, shared=True, progress=progress)
+    return [Claim(text(c.text), c.holds) for c in (verdict.claims[i] for i in range(verdict.count))]
+
+
+def _decompositions(results: list[Any]) -> list[tuple[Any, Any]]:
+    """Tetrahedra with their report: of Decompositions, and of the two files of one."""
+    meshes = [r for r in results if isinstance(r, PiecesMesh)]
+    reports = [r for r in results if isinstance(r, PiecesReport)]
+    if len(meshes) > 1 or len(reports) > 1:
+        raise ArgumentError("these are files of several decompositions; verify one at a time")
+    if reports and not meshes:
+        raise ArgumentError("a PIECES.json only reports; give the PIECES.vtk that it belongs to too")
+    pairs = [(pieces_mesh_of(r), pieces_report_of(r)) for r in results if isinstance(r, Decomposition)]
+    if meshes:
+        pairs.append((meshes[0]._handle, reports[0]._handle if reports else ffi.NULL))
+    return pairs
+
+
+def pieces_mesh_of(d: Decomposition) -> Any:
+    """The tetrahedra of a decomposition as the verifier takes them: the same arrays."""
+    mesh = ffi.new("starg_pieces_mesh *")
+    mesh.vertex_count = len(d.mesh.vertices)
+    mesh.count = len(d.labels)
+    mesh.vertices = ffi.cast("double *", lib.starg_tetmesh_vertices(d.mesh._handle))
+    mesh.tetrahedra = ffi.cast("uint32_t *", lib.starg_tetmesh_tetrahedra(d.mesh._handle))
+    mesh.labels = d._handle.labels
+    return mesh
+
+
+def pieces_report_of(d: Decomposition) -> Any:
+    """What a decomposition says about itself, as the verifier takes it."""
+    own = d._handle
+    report = ffi.new("starg_pieces_report *")
+    report.mode = own.mode
+    report.tetrahedra = len(d.labels)
+    report.piece_count, report.pieces = own.piece_count, own.pieces
+    report.contact_count, report.contacts = own.contact_count, own.contacts
+    report.strictly_star = own.strictly_star
+    report.visible_vertices = own.visible_vertices
+    report.approximated = not own.tetra.surface_kept
+    report.distance = own.tetra.to_surface + own.tetra.step
+    report.distance_back = own.tetra.from_surface + own.tetra.step
+    return report

@@ -1,0 +1,131 @@
+"""Results to look at: a page for browsers, and files for other programs."""
+from __future__ import annotations
+
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arrays
+from ._choice import choose
+from ._library import ffi, lib
+from ._session import Session
+from ._types import PathLike, Progress
+from .errors import ArgumentError
+from .guards import Guards
+from .mesh import Mesh, as_mesh
+from .pieces import Decomposition
+from .skeletons import Skeleton
+from .verification import PiecesMesh, PiecesReport, pieces_mesh_of, pieces_report_of
+from .visibility import Bits, visible
+
+_FORMATS = {"auto": lib.STARG_SCENE_AUTO, "glb": lib.STARG_SCENE_GLB, "vtu": lib.STARG_SCENE_VTU,
+            "ply": lib.STARG_SCENE_PLY, "obj": lib.STARG_SCENE_OBJ}
+
+
+def _seen(mesh: Mesh, guards: Guards) -> Bits:
+    """What every guard sees, by the options that they were placed with."""
+    names = ("face_rule", "range", "cone")
+    return visible(mesh, guards.positions, directions=guards.directions,
+                   **{name: guards.options[name] for name in names})
+
+
+def _fill(target: Any, model: Any, guards: Guards | None,
+          pieces: Decomposition | PiecesMesh | None, report: PiecesReport | None,
+          skeleton: Skeleton | None) -> list[Any]:
+    """Fills the parts that a page and a scene have in common; what comes back must live as long."""
+    keep: list[Any] = []
+    if model is not None:
+        mesh = as_mesh(model)
+        keep.append(mesh)
+        target.model = mesh._handle
+    if guards is not None:
+        target.guards = guards._handle
+        if model is not None:
+            keep.append(_seen(mesh, guards))
+            target.seen = keep[-1]._handle
+    if isinstance(pieces, Decomposition):
+        keep += [pieces_mesh_of(pieces), pieces_report_of(pieces)]
+        target.pieces, target.report = keep[-2:]
+    elif pieces is not None:
+        target.pieces = pieces._handle
+    if report is not None:
+        target.report = report._handle
+    if skeleton is not None:
+        target.skeleton = skeleton._handle
+    return keep
+
+
+def write_scene(path: PathLike, model: Any = None, *, guards: Guards | None = None,
+                pieces: Decomposition | PiecesMesh | None = None, report: PiecesReport | None = None,
+                skeleton: Skeleton | None = None, format: str = "auto") -> None:
+    """Writes a model and results in one file, by the name's ending or by `format`: "glb" (Blender,
+    browsers), "vtu" (ParaView), "ply" (MeshLab) or "obj" (docs/formats.md).
+
+    >>> import starguard
+    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> starguard.write_scene("room.glb", room, guards=starguard.guard(room),
+    ...                       pieces=starguard.decompose(room, time_limit=5))
+    """
+    session = Session()
+    scene = ffi.new("starg_scene *")
+    keep = _fill(scene, model, guards, pieces, report, skeleton)
+    session.call(lib.starg_scene_write, session.context, scene, _arrays.path(path),
+                 choose("format", format, _FORMATS))
+    del keep
+
+
+def page_available() -> bool:
+    """Was the viewer there when the library was built? If not, no page can be written.
+
+    >>> import starguard
+    >>> starguard.page_available() in (True, False)
+    True
+    """
+    return bool(lib.starg_page_available())
+
+
+def write_page(path: PathLike, model: Any = None, *, title: str | None = None,
+               guards: Guards | None = None, pieces: Decomposition | PiecesMesh | None = None,
+               report: PiecesReport | None = None, skeleton: Skeleton | None = None,
+               frames: Sequence[Any] = (), shapes: Mapping[str, bytes] | None = None,
+               distances: ArrayLike | None = None, progress: Progress | None = None) -> None:
+    """Writes one HTML file to look at results in any browser, without network (docs/viewer.md).
+    `frames` are the shapes of a morph; `shapes` are names with small pictures (PNG, or b""), and
+    `distances` those between them.
+
+    >>> import starguard
+    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> if starguard.page_available():
+    ...     starguard.write_page("room.html", room, guards=starguard.guard(room))
+    """
+    session = Session()
+    page = ffi.new("starg_page *")
+    keep = _fill(page, model, guards, pieces, report, skeleton)
+    if title is not None:
+        keep.append(ffi.new("char[]", title.encode()))
+        page.title = keep[-1]
+    meshes = [as_mesh(frame) for frame in frames]
+    keep += [meshes, ffi.new("starg_mesh *[]", [mesh._handle for mesh in meshes])]
+    page.frames, page.frame_count = keep[-1], len(meshes)
+    keep.append(_fill_shapes(page, shapes or {}, distances))
+    session.call(lib.starg_page_write, session.context, page, _arrays.path(path), progress=progress)
+    del keep
+
+
+def _fill_shapes(page: Any, shapes: Mapping[str, bytes], distances: ArrayLike | None) -> list[Any]:
+    """Fills the table of shapes; what comes back must live as long."""
+    matrix = np.ascontiguousarray(np.empty((0, 0)) if distances is None else distances, np.float64)
+    if matrix.shape != (len(shapes), len(shapes)):
+        raise ArgumentError(f"distances of {len(shapes)} shapes have the shape ({len(shapes)}, "
+                            f"{len(shapes)}), not {matrix.shape}")
+    if not shapes:
+        return []
+    keep: list[Any] = [ffi.new("starg_page_shape[]", len(shapes)), _arrays.pointer("double[]", matrix)]
+    page.shapes, page.distances = keep
+    page.shape_count = len(shapes)
+    for shape, (name, png) in zip(keep[0], shapes.items()):
+        keep += [ffi.new("char[]", name.encode()), ffi.from_buffer(png) if png else ffi.NULL]
+        shape.name, shape.png = keep[-2:]
+        shape.png_size = len(png)
+    return keep

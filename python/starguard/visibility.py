@@ -1,0 +1,156 @@
+"""What points inside a solid see, as rows of bits."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _arrays
+from ._choice import choose, give
+from ._library import ffi, lib
+from ._session import Session
+from ._types import Array, Progress
+from .errors import ArgumentError
+from .solid import as_solid
+
+ENGINES = {"grid": lib.STARG_VISIBILITY_GRID, "bvh": lib.STARG_VISIBILITY_BVH,
+           "sweep": lib.STARG_VISIBILITY_SWEEP, "contours": lib.STARG_VISIBILITY_CONTOURS,
+           "fastest": lib.STARG_VISIBILITY_FASTEST}
+TARGETS = {"faces": lib.STARG_TARGET_FACES, "vertices": lib.STARG_TARGET_VERTICES}
+FACE_RULES = {"vertices": lib.STARG_FACES_VERTICES, "whole": lib.STARG_FACES_WHOLE}
+
+
+class Bits:
+    """A matrix of bits, packed; `bits[i]` is row i as bools, `numpy.asarray(bits)` is all of it.
+
+    >>> import starguard
+    >>> bits = starguard.Bits.of([[True, False, True], [False, True, True]])
+    >>> bits.shape, bits.indices(0), bits.counts()
+    ((2, 3), array([0, 2]), array([2, 2]))
+    """
+
+    def __init__(self, handle: Any) -> None:
+        self._handle = handle
+        #: Rows and columns.
+        self.shape: tuple[int, int] = (lib.starg_bits_rows(handle), lib.starg_bits_columns(handle))
+        words = lib.starg_bits_words(handle)
+        first = lib.starg_bits_row(handle, 0) if self.shape[0] > 0 else ffi.NULL
+        #: (rows, words) uint64, read-only, without a copy: bit j of a row is bit j % 64 of word j // 64.
+        self.words: Array = _arrays.view(handle, first, (self.shape[0], words), np.uint64)
+
+    @classmethod
+    def of(cls, matrix: ArrayLike) -> Bits:
+        """Packs a matrix of bools."""
+        given = np.asarray(matrix, bool)
+        if given.ndim != 2:
+            raise ArgumentError(f"a matrix of bits has two dimensions, not {given.ndim}")
+        session = Session()
+        handle = session.make("starg_bits", lib.starg_bits_free, lib.starg_bits_create,
+                              session.context, *given.shape, brief=True)
+        _fill(handle, np.packbits(given, axis=1, bitorder="little"))
+        return cls(handle)
+
+    def __repr__(self) -> str:
+        return f"Bits({self.shape[0]} x {self.shape[1]})"
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, key: Any) -> Any:
+        """A row, or what else NumPy takes for a key of rows and columns."""
+        if isinstance(key, tuple):
+            rows, columns = key
+            if isinstance(rows, (int, np.integer)) and isinstance(columns, (int, np.integer)):
+                return self._bit(int(rows), int(columns))
+            return self[rows][..., columns]
+        return self._unpack(self.words[key])
+
+    def _bit(self, row: int, column: int) -> Any:
+        if not (-self.shape[0] <= row < self.shape[0] and -self.shape[1] <= column < self.shape[1]):
+            raise IndexError(f"({row}, {column}) is beyond {self.shape}")
+        return np.bool_(lib.starg_bits_test(self._handle, row % self.shape[0], column % self.shape[1]))
+
+    def _unpack(self, words: Array) -> Array:
+        little = np.ascontiguousarray(words).astype("<u8", copy=False).view(np.uint8)
+        return np.unpackbits(little, axis=-1, count=self.shape[1], bitorder="little").view(bool)
+
+    def __array__(self, dtype: Any = None) -> Array:
+        return self._unpack(self.words).astype(dtype or bool, copy=False)
+
+    def indices(self, row: int) -> Array:
+        """The columns of the ones of a row, ascending."""
+        return np.flatnonzero(self[row])
+
+    def counts(self) -> Array:
+        """The number of ones in each row."""
+        return np.array([lib.starg_bits_count(self._handle, i) for i in range(len(self))], np.int64)
+
+
+def _fill(handle: Any, packed: Array) -> None:
+    """Sets the bits of a matrix that was just made, so that nobody else has seen it."""
+    bytes_per_row = 8 * lib.starg_bits_words(handle)
+    rows = np.zeros((len(packed), bytes_per_row), np.uint8)
+    rows[:, :packed.shape[1]] = packed
+    words = rows.view("<u8").astype(np.uint64, copy=False)
+    if words.size > 0:
+        ffi.memmove(ffi.cast("uint64_t *", lib.starg_bits_row(handle, 0)), words, words.nbytes)
+
+
+def set_view(options: Any, *, engine: str | None, target: str | None,
+             face_rule: str | None, range: float | None, cone: float | None) -> None:
+    """Fills starg_visibility_options."""
+    if engine is not None:
+        options.engine = choose("engine", engine, ENGINES)
+    if target is not None:
+        options.target = choose("target", target, TARGETS)
+    if face_rule is not None:
+        options.face_rule = choose("face_rule", face_rule, FACE_RULES)
+    give(options, range=range, cone=cone)
+
+
+def visible(model: Any, points: ArrayLike, *, engine: str | None = None, target: str | None = None,
+            face_rule: str | None = None, range: float | None = None, cone: float | None = None,
+            directions: ArrayLike | None = None, threads: int | None = None,
+            time_limit: float | None = None, progress: Progress | None = None) -> Bits:
+    """Which faces (or, with target="vertices", vertices) of a solid each point sees, exactly.
+
+    A point that is not inside sees nothing. `face_rule` "whole" asks that every point of a face is
+    seen, not its corners only. `range` limits the distance, `cone` the full opening angle in
+    degrees about the `directions` (one for each point). Engines ("grid", "bvh", "sweep",
+    "contours", "fastest") give the same bits.
+
+    >>> import starguard
+    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> seen = starguard.visible(room, [[0.5, 0.5, 0.5], [-1, 0, 0]])
+    >>> seen.shape, bool(seen[1].any())
+    ((2, 1008), False)
+    """
+    solid = as_solid(model)
+    rows = _arrays.points(points, "points")
+    session = Session(threads)
+    options = ffi.new("starg_visibility_options *")
+    lib.starg_visibility_options_default(options)
+    set_view(options, engine=engine, target=target, face_rule=face_rule, range=range, cone=cone)
+    looks = None
+    if directions is not None:
+        looks = _arrays.points(directions, "directions")
+        if len(looks) != len(rows):
+            raise ArgumentError(f"there are {len(rows)} points and {len(looks)} directions")
+        looks = _arrays.pointer("double[]", looks)
+        options.directions = looks
+    elif options.cone < 360:
+        raise ArgumentError("a cone needs directions, one for each point")
+    return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility, session.context,
+                             solid._handle, _arrays.pointer("double[]", rows), len(rows), options,
+                             progress=progress, time_limit=time_limit))
+
+
+def cone_cosine(degrees: float) -> float:
+    """The cosine of half an opening angle: the number that decides what a cone holds.
+
+    >>> import starguard
+    >>> round(starguard.cone_cosine(90), 6)
+    0.707107
+    """
+    return float(lib.starg_cone_cosine(degrees))

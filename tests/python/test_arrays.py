@@ -1,0 +1,202 @@
+"""Arrays in and out: shapes, types, values; what is copied, what is not, and who keeps whom."""
+import gc
+import pickle
+import types
+
+import numpy as np
+
+import starguard
+from support import FACES, VERTICES, Case, main
+
+
+class Into(Case):
+    def test_shapes(self):
+        for vertices in ([0, 1, 2], [[0, 1]], np.zeros((2, 3, 3)), np.zeros((4, 2))):
+            self.fails(starguard.ArgumentError, "vertices must have the shape (n, 3)",
+                       starguard.Mesh, vertices, [])
+        for faces in ([[0, 1, 2, 3]], [0, 1, 2], np.zeros((1, 1, 3), int)):
+            self.fails(starguard.ArgumentError, "faces must have the shape (m, 3)",
+                       starguard.Mesh, VERTICES, faces)
+
+    def test_types(self):
+        self.fails(starguard.ArgumentError, "vertices must be numbers", starguard.Mesh, "abc", FACES)
+        self.fails(starguard.ArgumentError, "vertices must be numbers", starguard.Mesh, [[1, 2], [3]],
+                   FACES)
+        self.fails(starguard.ArgumentError, "faces must be integers", starguard.Mesh, VERTICES,
+                   np.asarray(FACES, float))
+        self.fails(starguard.ArgumentError, "faces must be integers", starguard.Mesh, VERTICES,
+                   np.asarray(FACES, bool))
+
+    def test_values(self):
+        for bad in (np.nan, np.inf, -np.inf, 1e100):
+            rows = np.array(VERTICES, float)
+            rows[2, 1] = bad
+            error = self.fails(starguard.RangeError, "", starguard.Mesh, rows, FACES)
+            self.assertEqual((error.element, error.elements.tolist()), ("vertex", [2]))
+        self.fails(starguard.ArgumentError, "there is -1", starguard.Mesh, VERTICES, [[0, 1, -1]])
+        self.fails(starguard.ArgumentError, "there is 4294967296", starguard.Mesh, VERTICES,
+                   np.array([[0, 1, 2**32]]))
+        self.fails(starguard.ArgumentError, "", starguard.Mesh, VERTICES, [[0, 1, 4]])
+
+    def test_every_integer_type(self):
+        for kind in ("i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", ">i4", ">u8"):
+            mesh = starguard.Mesh(VERTICES, np.array(FACES, kind))
+            self.assertEqual(mesh.faces.tolist(), FACES, kind)
+
+    def test_every_layout(self):
+        rows = np.array(VERTICES, np.float32)
+        for vertices in (rows, np.asfortranarray(rows), np.repeat(rows, 2, axis=0)[::2],
+                         rows.astype(">f8"), [tuple(row) for row in rows]):
+            for faces in (np.asfortranarray(FACES), np.repeat(FACES, 2, axis=0)[::2]):
+                mesh = starguard.Mesh(vertices, faces)
+                self.assertEqual(mesh.vertices.tolist(), rows.tolist())
+                self.assertEqual(mesh.faces.tolist(), FACES)
+
+    def test_nothing(self):
+        for empty in ([], np.empty((0, 3)), np.empty(0)):
+            mesh = starguard.Mesh(empty, np.empty((0, 3), int))
+            self.assertEqual((mesh.vertices.shape, mesh.faces.shape), ((0, 3), (0, 3)))
+            self.assertEqual(mesh.bounds.tolist(), [[0, 0, 0], [0, 0, 0]])
+
+    def test_what_the_caller_does_later_changes_nothing(self):
+        rows, corners = np.array(VERTICES, float), np.array(FACES, np.uint32)
+        mesh = starguard.Mesh(rows, corners)
+        rows[:], corners[:] = 7, 0
+        self.assertEqual(mesh.vertices.tolist(), VERTICES)
+        self.assertEqual(mesh.faces.tolist(), FACES)
+
+    def test_a_single_point(self):
+        room = starguard.sample("l-room", vertex_count=500)
+        self.assertEqual(starguard.visible(room, [0.5, 0.5, 0.5]).shape[0], 1)
+        self.fails(starguard.ArgumentError, "points must have the shape", starguard.visible, room,
+                   [1.0, 2.0])
+
+    def test_tetrahedra(self):
+        self.fails(starguard.ArgumentError, "tetrahedra must have the shape (m, 4)",
+                   starguard.TetMesh, VERTICES, FACES)
+        self.fails(starguard.ArgumentError, "regions must have the shape (1,)", starguard.TetMesh,
+                   VERTICES, [[0, 1, 2, 3]], [1, 2])
+        tets = starguard.TetMesh(VERTICES, [[0, 2, 1, 3]], [5])
+        self.assertEqual((tets.turned, tets.tetrahedra.tolist()), (1, [[0, 2, 3, 1]]))
+        self.assertEqual(tets.neighbours.tolist(), [[starguard.NO_NEIGHBOUR] * 4])
+        self.assertAlmostEqual(tets.volume, 1 / 6)
+
+    def test_colors(self):
+        mesh = starguard.Mesh(VERTICES, FACES)
+        for colors in ([[0, 0, 0]], [[0, 0, 256]] * 4, [[-1, 0, 0]] * 4, [[0.5, 0, 0]] * 4):
+            self.fails(starguard.ArgumentError, "face_colors must be whole numbers", mesh.write,
+                       "m.ply", face_colors=colors)
+
+
+class Out(Case):
+    def test_read_only_views_of_one_memory(self):
+        mesh = starguard.sample("l-room", vertex_count=500)
+        again = starguard.Solid(mesh).mesh
+        for array, kind in ((mesh.vertices, np.float64), (mesh.faces, np.uint32)):
+            self.assertEqual((array.dtype, array.ndim, array.shape[1]), (kind, 2, 3))
+            self.assertFalse(array.flags.writeable or array.flags.owndata)
+            self.assertTrue(array.flags.c_contiguous and array.flags.aligned)
+            with self.assertRaises(ValueError):
+                array[0] = 0
+            with self.assertRaises(ValueError):
+                array.flags.writeable = True
+        self.assertFalse(np.shares_memory(mesh.vertices, again.vertices))
+        self.assertTrue(np.shares_memory(mesh.vertices, starguard.as_mesh(mesh).vertices))
+
+    def test_arrays_keep_their_owner(self):
+        kept, wanted = [], []
+        for pose in range(3):
+            mesh = starguard.sample("dog", pose=pose, vertex_count=500)
+            kept.append(mesh.vertices[10:20])
+            wanted.append(mesh.vertices[10:20].copy())
+            del mesh
+        pieces = starguard.decompose(starguard.sample("star", vertex_count=500), time_limit=5)
+        tets, guards = pieces.mesh.tetrahedra[:5], pieces.guards
+        expected = tets.copy(), guards.copy()
+        del pieces
+        gc.collect()
+        churn = [starguard.sample("star", vertex_count=600) for _ in range(20)]
+        for array, copy in zip(kept, wanted):
+            self.assertTrue((array == copy).all())
+        self.assertTrue((tets == expected[0]).all() and (guards == expected[1]).all())
+        self.assertEqual(len(churn), 20)
+
+    def test_a_solid_keeps_its_mesh(self):
+        mesh = starguard.sample("star", vertex_count=500).solid.mesh
+        gc.collect()
+        self.assertGreater(mesh.volume, 0)
+        self.assertGreater(float(mesh.vertices.max()), 0)
+
+    def test_structured_arrays(self):
+        pieces = starguard.decompose(starguard.sample("gallery", vertex_count=1000), time_limit=5)
+        self.assertGreater(len(pieces), 1)
+        records = pieces.pieces
+        self.assertEqual(records.dtype.names, ("guard", "radius", "tetrahedra", "volume", "star"))
+        self.assertTrue(records["star"].all())
+        self.assertEqual(records["tetrahedra"].sum(), len(pieces.labels))
+        self.assertAlmostEqual(records["volume"].sum(), pieces.mesh.volume)
+        self.assertFalse(records.flags.writeable)
+        self.assertTrue((pieces.contacts["first"] < pieces.contacts["second"]).all())
+        self.assertEqual(sorted(set(pieces.labels.tolist())), list(range(len(pieces))))
+
+    def test_bits(self):
+        rng = np.random.default_rng(1)
+        for shape in ((1, 1), (3, 64), (4, 65), (7, 200), (0, 5), (5, 0)):
+            matrix = rng.random(shape) < 0.5
+            bits = starguard.Bits.of(matrix)
+            self.assertEqual(bits.shape, shape)
+            self.assertTrue((np.asarray(bits) == matrix).all())
+            self.assertEqual(bits.counts().tolist(), matrix.sum(axis=1).tolist())
+            for i, j in np.ndindex(*shape):
+                self.assertEqual(bool(bits[i, j]), matrix[i, j])
+        self.assertEqual(bits[1:3].shape, (2, 0))
+        with self.assertRaises(IndexError):
+            starguard.Bits.of([[True]])[0, 1]
+        self.fails(starguard.ArgumentError, "two dimensions", starguard.Bits.of, [True])
+
+    def test_pickles(self):
+        mesh = starguard.sample("star", vertex_count=500)
+        again = pickle.loads(pickle.dumps(mesh))
+        self.assertTrue((again.vertices == mesh.vertices).all() and (again.faces == mesh.faces).all())
+        tets = starguard.TetMesh([*VERTICES, [1, 1, 1]], [[0, 1, 2, 3], [1, 2, 3, 4]], [4, 5])
+        again = pickle.loads(pickle.dumps(tets))
+        self.assertEqual(again.regions.tolist(), [4, 5])
+        self.assertEqual(again.tetrahedra.tolist(), tets.tetrahedra.tolist())
+        signature = starguard.signature(mesh, "d2")
+        self.assertEqual(starguard.match(signature, pickle.loads(pickle.dumps(signature))), 0)
+
+
+class Conventions(Case):
+    """Objects of other packages."""
+
+    def test_vertices_and_faces(self):
+        like = types.SimpleNamespace(vertices=np.array(VERTICES, float), faces=np.array(FACES))
+        self.assertEqual(starguard.as_mesh(like).faces.tolist(), FACES)
+        self.assertEqual(starguard.as_mesh((VERTICES, FACES)).faces.tolist(), FACES)
+
+    def test_pyvista(self):
+        flat = np.array([[3, *face] for face in FACES]).ravel()
+        like = types.SimpleNamespace(points=np.array(VERTICES, np.float32), faces=flat)
+        self.assertEqual(starguard.as_mesh(like).faces.tolist(), FACES)
+        like.faces = np.array([4, 0, 1, 2, 3])
+        self.fails(starguard.ArgumentError, "no triangles", starguard.as_mesh, like)
+
+    def test_meshio(self):
+        try:
+            import meshio
+        except ImportError:
+            self.skipTest("meshio is not installed")
+        mesh = meshio.Mesh(np.array(VERTICES, float), [("triangle", np.array(FACES))])
+        self.assertTrue(starguard.as_mesh(mesh).check().usable)
+        ours = starguard.sample("star", vertex_count=500)
+        meshio.write("star.vtk", meshio.Mesh(ours.vertices, [("triangle", ours.faces)]))
+        back = starguard.as_mesh(meshio.read("star.vtk"))
+        self.assertTrue((back.vertices == ours.vertices).all() and (back.faces == ours.faces).all())
+
+    def test_what_is_none(self):
+        for model in (None, 7, [1, 2], object()):
+            self.fails(starguard.ArgumentError, "is no mesh", starguard.as_mesh, model)
+
+
+if __name__ == "__main__":
+    main()
