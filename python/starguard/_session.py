@@ -13,9 +13,10 @@ from __future__ import annotations
 
 import collections
 import logging
+import operator
 import threading
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, SupportsIndex
 
 from . import errors
 from ._library import ffi, lib, text
@@ -64,10 +65,11 @@ def _on_log(user: Any, level: int, message: Any) -> None:
     logger.log(_LEVELS.get(level, logging.WARNING), "%s", text(message))
 
 
-def _whole(name: str, value: int, most: int) -> int:
-    if not isinstance(value, int) or not 0 <= value <= most:
+def _whole(name: str, value: SupportsIndex, most: int) -> int:
+    number = operator.index(value) if hasattr(value, "__index__") else -1
+    if not 0 <= number <= most:
         raise errors.ArgumentError(f"{name} is {value!r}; it must be a whole number from 0 to {most}")
-    return value
+    return number
 
 
 # What objects and contexts need when they are freed, by address. It stands here and not in a closure,
@@ -158,9 +160,10 @@ class Session:
             if not begun.wait(1):
                 raise
             interruption = error
-        while interruption is None and not done.is_set():
+        finished = False
+        while interruption is None and not finished:
             try:
-                done.wait(_TICK if progress is not None else None)
+                finished = done.wait(_TICK if progress is not None else None)
                 self._deliver(reports, progress)
             except BaseException as error:
                 interruption = error

@@ -65,6 +65,14 @@ class Into(Case):
         self.assertEqual(mesh.vertices.tolist(), VERTICES)
         self.assertEqual(mesh.faces.tolist(), FACES)
 
+    def test_numbers_of_numpy(self):
+        mesh = starguard.Mesh(VERTICES, FACES)
+        guards = starguard.guard(mesh, threads=np.int64(1), seed=np.uint64(2**64 - 1),
+                                 candidate_count=np.int32(10), coverage=np.float32(0.5),
+                                 max_guards=np.uint8(1), refine=np.bool_(False))
+        self.assertEqual(guards.options["max_guards"], 1)
+        self.assertIs(guards.options["refine"], False)
+
     def test_a_single_point(self):
         room = starguard.sample("l-room", vertex_count=500)
         self.assertEqual(starguard.visible(room, [0.5, 0.5, 0.5]).shape[0], 1)
