@@ -309,6 +309,24 @@ done:
     return status;
 }
 
+static void improver_free(improver *m) {
+    region_scratch_free(&m->scratch);
+    STARG_ARRAY_FREE(m->p->context, &m->neighbours);
+    STARG_ARRAY_FREE(m->p->context, &m->met);
+    STARG_ARRAY_FREE(m->p->context, &m->first);
+}
+
+starg_status improve_join(partition *p) {
+    starg_status status = STARG_OK;
+    improve_report report = {.trials = 0};
+    improver m = {.p = p, .report = &report, .scratch = {.context = p->context}};
+    STARG_TRY(find_contacts(&m));
+    STARG_TRY(join_all(&m));
+done:
+    improver_free(&m);
+    return status;
+}
+
 starg_status improve(partition *p, const improve_options *options, improve_report *report) {
     starg_status status = STARG_OK;
     improver m = {
@@ -323,9 +341,6 @@ starg_status improve(partition *p, const improve_options *options, improve_repor
     STARG_TRY(apply_centers(p, &m.scratch));
 done:
     starg_progress_end(p->context);
-    region_scratch_free(&m.scratch);
-    STARG_ARRAY_FREE(p->context, &m.neighbours);
-    STARG_ARRAY_FREE(p->context, &m.met);
-    STARG_ARRAY_FREE(p->context, &m.first);
+    improver_free(&m);
     return status;
 }

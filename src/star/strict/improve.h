@@ -14,6 +14,10 @@ typedef struct improve_report {
     bool time_limited;
 } improve_report;
 
+/* Joins neighbours whose union is star-shaped, until there are none or the time is over. Errors:
+ * MEMORY, CANCELLED. */
+starg_status improve_join(partition *p);
+
 /* Joins pieces whose union is star-shaped and cuts unions again into fewer pieces, until no trial
  * helps for long, or the trials or the time are used up; then every guard goes where
  * it is farthest from all planes. The partition is valid at all times.

@@ -420,6 +420,36 @@ done:
     return status;
 }
 
+/* Distances of vertices from a point in the place of heights. */
+static starg_status find_distances(const region *r, const double center[3],
+                                   region_scratch *scratch) {
+    starg_status status = STARG_OK;
+    size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
+    STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
+    STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
+    double *distance = scratch->heights.data;
+    for (size_t i = 0; i < vertices; i++)
+        distance[i] = vec3_distance_squared(center, r->vertices.data + 3 * i);
+    for (size_t i = 0; i < r->triangles.count; i++) {
+        const region_triangle *t = &r->triangles.data[i];
+        double *lowest = &scratch->lowest.data[t->row];
+        for (int k = 0; k < 3; k++)
+            *lowest = fmin(*lowest, distance[t->corners[k]]);
+    }
+done:
+    return status;
+}
+
+starg_status region_find_reach_about(const region *r, const double center[3], double margin,
+                                     region_scratch *scratch, region_reach *out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_distances(r, center, scratch));
+    ball_search w = {.r = r, .lowest = scratch->lowest.data, .bound = INFINITY};
+    find_reach(&w, margin, out);
+done:
+    return status;
+}
+
 starg_status region_find_center(const region *r, const double *normal, double height,
                                 region_scratch *scratch, double center[3], double *radius) {
     starg_status status = STARG_OK;

@@ -61,6 +61,11 @@ double region_volume_above(const region *part, const double normal[3], double he
 starg_status region_find_reach(const region *r, const double normal[3], double margin,
                                region_scratch *scratch, region_reach *up, region_reach *down);
 
+/* A place inside of all rows that come nearer to `center` than the height of `out`, a squared
+ * distance; the height is as large as can be. Errors: MEMORY. */
+starg_status region_find_reach_about(const region *r, const double center[3], double margin,
+                                     region_scratch *scratch, region_reach *out);
+
 /* Centre and radius of the largest ball inside of all rows, or of those with a vertex below a
  * plane and the plane itself, if `normal` is not NULL. The radius is negative when there is none.
  * Errors: MEMORY. */

@@ -1,9 +1,11 @@
 /* Cutting a piece of a partition by a plane.
  *
- * Stages: on which side of the plane each vertex of the piece lies; a new vertex on every edge of
- * the piece that the plane crosses; all facets at those edges are split, so that the partition
- * stays conforming; facets of the piece above the plane change hands; the segments in which the
- * plane meets the piece's facets are joined to loops, and the loops filled (star/strict/cap.c).
+ * Stages: on which side of the plane each vertex of the piece lies, or whether it is on it, as
+ * those of an edge that the plane was laid through; a new vertex on every edge of the piece that
+ * the plane crosses; all facets at those edges are split, so that the partition stays conforming;
+ * facets of the piece above the plane change hands; the segments in which the plane meets the
+ * piece's facets, and edges on the plane between a facet below and one above, are joined to loops,
+ * and the loops filled (star/strict/cap.c).
  *
  * Invariants: a split edge is split in all its facets; every new vertex is where the two ends of
  * its edge say, whichever facet asks; every surface stays closed.
@@ -12,6 +14,7 @@
 #include "star/strict/slice.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/rng.h"
@@ -32,21 +35,23 @@ void partition_join(partition *p, const uint32_t *pieces, size_t count) {
     p->facets.count = kept;
 }
 
-/* An edge that the plane crosses. */
+/* An edge that the plane crosses, or a vertex that lies on it. */
 typedef struct crossing {
-    uint32_t ends[2]; /* ascending */
+    uint32_t ends[2]; /* ascending; of a vertex twice the same */
     uint32_t vertex;  /* on the plane */
-    uint32_t facets;  /* of the piece that have the edge */
-    uint32_t next;    /* the loop goes on at this vertex's crossing */
+    uint32_t facets;  /* of the piece that have the edge; of a vertex: segments that end there */
+    uint32_t next;    /* the loop goes on at this crossing */
 } crossing;
 
 typedef struct slicer {
     partition *p;
     uint32_t low, high;
     partition_plane plane;
-    double *height; /* per vertex: above the plane; 0: not a vertex of the piece */
+    double *height; /* per vertex: above the plane; 0: on it, or not a vertex of the piece */
     size_t old_vertices;
     STARG_ARRAY(crossing) crossings;
+    STARG_ARRAY(uint64_t) brinks; /* edges on the plane of facets above it, ascending */
+    bool broken;                  /* a loop goes on in two ways */
     uint32_t *table; /* 1 + crossing by edge; open addressing */
     size_t table_size;
     cap_indices corners, starts, triangles;
@@ -65,26 +70,45 @@ static double height_of(const slicer *s, uint32_t vertex) {
     return vec3_dot(s->plane.normal, partition_unit(s->p, vertex)) - s->plane.offset;
 }
 
-/* False when a vertex is too near to the plane, or all are on one side. */
-static bool find_heights(slicer *s, size_t *edges) {
+/* Returns false when it is neither on the plane nor well away from it. */
+static bool find_height(slicer *s, uint32_t vertex) {
+    double height = height_of(s, vertex);
+    s->height[vertex] = fabs(height) < SLICE_ON ? 0 : height;
+    return s->height[vertex] == 0 || fabs(height) >= SLICE_CLEARANCE;
+}
+
+static int corners_above(const slicer *s, const facet *f) {
+    int above = 0;
+    for (int k = 0; k < 3; k++)
+        above += s->height[f->corners[k]] > 0;
+    return above;
+}
+
+static int corners_below(const slicer *s, const facet *f) {
+    int below = 0;
+    for (int k = 0; k < 3; k++)
+        below += s->height[f->corners[k]] < 0;
+    return below;
+}
+
+/* False when a vertex is too near to the plane, a facet lies in it, or all are on one side. `nodes`
+ * is at least as many as crossings will be. */
+static bool find_heights(slicer *s, size_t *nodes) {
     bool above = false, below = false;
-    *edges = 0;
+    *nodes = 0;
     for (size_t i = 0; i < s->p->facets.count; i++) {
         const facet *f = &s->p->facets.data[i];
         if (side_of_piece(s, f) < 0)
             continue;
-        int high = 0;
-        for (int k = 0; k < 3; k++) {
-            double *height = &s->height[f->corners[k]];
-            if (*height == 0)
-                *height = height_of(s, f->corners[k]);
-            if (fabs(*height) < SLICE_CLEARANCE)
+        for (int k = 0; k < 3; k++)
+            if (s->height[f->corners[k]] == 0 && !find_height(s, f->corners[k]))
                 return false;
-            high += *height > 0;
-        }
+        int high = corners_above(s, f), low = corners_below(s, f);
+        if (high + low == 0)
+            return false;
         above = above || high > 0;
-        below = below || high < 3;
-        *edges += high == 1 || high == 2;
+        below = below || low > 0;
+        *nodes += (high > 0 && low > 0) || high + low < 3 ? 2 : 0;
     }
     return above && below;
 }
@@ -126,6 +150,19 @@ done:
     return status;
 }
 
+/* A vertex on the plane. */
+static starg_status add_touch(slicer *s, uint32_t vertex) {
+    starg_status status = STARG_OK;
+    const crossing fresh = {.ends = {vertex, vertex}, .vertex = vertex, .next = UINT32_MAX};
+    size_t slot = slot_of(s, vertex, vertex);
+    if (s->table[slot] != 0)
+        goto done;
+    STARG_PUSH(s->p->context, PARTITION_STAGE, &s->crossings, fresh);
+    s->table[slot] = (uint32_t)s->crossings.count;
+done:
+    return status;
+}
+
 static starg_status find_crossings(slicer *s) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < s->p->facets.count; i++) {
@@ -133,6 +170,8 @@ static starg_status find_crossings(slicer *s) {
         if (side_of_piece(s, &f) < 0)
             continue;
         for (int k = 0; k < 3; k++) {
+            if (s->height[f.corners[k]] == 0)
+                STARG_TRY(add_touch(s, f.corners[k]));
             uint32_t a = f.corners[k], b = f.corners[(k + 1) % 3];
             if (!is_crossed(s, a, b))
                 continue;
@@ -180,16 +219,25 @@ done:
     return status;
 }
 
-/* The plane enters a facet of the piece over one edge and leaves it over another: a segment of the
- * cap, whose direction is against that of the part below the plane. */
-static void link_crossings(slicer *s, const facet *f, int k, crossing *m, crossing *n) {
-    bool apex_low = s->height[f->corners[k]] < 0;
+/* A segment of the cap: the boundary of the part of a facet below the plane runs from one crossing
+ * to the other, in the order of the facet's corners; the cap's runs against it. */
+static void link_crossings(slicer *s, const facet *f, crossing *from, crossing *to) {
     bool outward = side_of_piece(s, f) == FACET_INNER;
-    /* below an apex that is low, the facet's own boundary runs from m to n */
-    if (apex_low == outward)
-        n->next = (uint32_t)(m - s->crossings.data);
-    else
-        m->next = (uint32_t)(n - s->crossings.data);
+    crossing *begin = outward ? to : from, *end = outward ? from : to;
+    s->broken = s->broken || begin->next != UINT32_MAX;
+    begin->next = (uint32_t)(end - s->crossings.data);
+    begin->facets += begin->ends[0] == begin->ends[1];
+    end->facets += end->ends[0] == end->ends[1];
+}
+
+/* The plane crosses edge k of the facet, and its opposite corner may lie on the plane. */
+static void link_corner(slicer *s, const facet *f, int k, crossing *m) {
+    uint32_t corner = f->corners[(k + 2) % 3];
+    crossing *n = find_crossing(s, corner, corner);
+    if (side_of_piece(s, f) < 0 || n == NULL)
+        return;
+    bool low = s->height[f->corners[k]] < 0;
+    link_crossings(s, f, low ? m : n, low ? n : m);
 }
 
 static starg_status split_facet(slicer *s, size_t i, bool *split) {
@@ -207,14 +255,16 @@ static starg_status split_facet(slicer *s, size_t i, bool *split) {
     *split = count > 0;
     if (count == 1) {
         uint32_t m = on[edge]->vertex, c = f.corners[(edge + 2) % 3];
+        link_corner(s, &f, edge, on[edge]);
         STARG_TRY(add_facet(s, &f, f.corners[edge], m, c));
         STARG_TRY(add_facet(s, &f, m, f.corners[(edge + 1) % 3], c));
     } else if (count == 2) {
         while (on[apex] == NULL || on[(apex + 2) % 3] == NULL)
             apex++;
         crossing *m = on[apex], *n = on[(apex + 2) % 3];
+        bool low = s->height[f.corners[apex]] < 0;
         if (side_of_piece(s, &f) >= 0)
-            link_crossings(s, &f, apex, m, n);
+            link_crossings(s, &f, low ? m : n, low ? n : m);
         STARG_TRY(split_in_three(s, &f, apex, m->vertex, n->vertex));
     }
 done:
@@ -239,6 +289,59 @@ done:
     return status;
 }
 
+/* ---- edges on the plane ---- */
+
+static int compare_edges(const void *a, const void *b) {
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The edge of a facet that lies on the plane, or -1. */
+static int edge_on_plane(const slicer *s, const facet *f) {
+    for (int k = 0; k < 3; k++)
+        if (s->height[f->corners[k]] == 0 && s->height[f->corners[(k + 1) % 3]] == 0)
+            return k;
+    return -1;
+}
+
+static uint64_t edge_key(const facet *f, int k) {
+    uint64_t a = f->corners[k], b = f->corners[(k + 1) % 3];
+    return a < b ? a << 32 | b : b << 32 | a;
+}
+
+static starg_status find_brinks(slicer *s) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < s->p->facets.count; i++) {
+        const facet *f = &s->p->facets.data[i];
+        int k = side_of_piece(s, f) < 0 ? -1 : edge_on_plane(s, f);
+        if (k >= 0 && corners_above(s, f) > 0)
+            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->brinks, edge_key(f, k));
+    }
+    if (s->brinks.count > 1)
+        qsort(s->brinks.data, s->brinks.count, sizeof *s->brinks.data, compare_edges);
+done:
+    return status;
+}
+
+/* Edges where a facet below the plane meets one above are segments of the cap. */
+static starg_status link_brinks(slicer *s) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_brinks(s));
+    for (size_t i = 0; i < s->p->facets.count && s->brinks.count > 0; i++) {
+        const facet *f = &s->p->facets.data[i];
+        int k = side_of_piece(s, f) < 0 ? -1 : edge_on_plane(s, f);
+        if (k < 0 || corners_below(s, f) == 0)
+            continue;
+        uint64_t key = edge_key(f, k);
+        if (bsearch(&key, s->brinks.data, s->brinks.count, sizeof key, compare_edges) == NULL)
+            continue;
+        uint32_t a = f->corners[k], b = f->corners[(k + 1) % 3];
+        link_crossings(s, f, find_crossing(s, a, a), find_crossing(s, b, b));
+    }
+done:
+    return status;
+}
+
 static void hand_over(slicer *s) {
     for (size_t i = 0; i < s->p->facets.count; i++) {
         facet *f = &s->p->facets.data[i];
@@ -253,12 +356,20 @@ static void hand_over(slicer *s) {
 
 /* ---- cap ---- */
 
-/* False where the surface is no manifold: an edge has not two facets of the piece. */
+/* A vertex on the plane may be one that the surface touches it with. */
+static bool is_passed_once(const crossing *c) {
+    if (c->ends[0] == c->ends[1] && c->facets == 0)
+        return true;
+    return c->facets == 2 && c->next != UINT32_MAX;
+}
+
+/* False where the surface is no manifold: an edge has not two facets of the piece, or loops
+ * meet. */
 static starg_status trace_loops(slicer *s, bool *done) {
     starg_status status = STARG_OK;
-    *done = true;
+    *done = !s->broken;
     for (size_t i = 0; i < s->crossings.count && *done; i++)
-        *done = s->crossings.data[i].facets == 2 && s->crossings.data[i].next != UINT32_MAX;
+        *done = is_passed_once(&s->crossings.data[i]);
     STARG_PUSH(s->p->context, PARTITION_STAGE, &s->starts, 0);
     for (size_t i = 0; i < s->crossings.count && *done; i++) {
         if (s->crossings.data[i].facets == 0)
@@ -299,15 +410,16 @@ starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
                 .plane = *plane,
                 .old_vertices = p->points.count / 3,
                 .table_size = 64};
-    size_t edges;
+    size_t nodes;
     *done = false;
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, s.height, s.old_vertices);
-    if (!find_heights(&s, &edges))
+    if (!find_heights(&s, &nodes))
         goto done;
-    while (s.table_size < 3 * edges)
+    while (s.table_size < 3 * nodes)
         s.table_size *= 2;
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, s.table, s.table_size);
     STARG_TRY(find_crossings(&s));
+    STARG_TRY(link_brinks(&s));
     STARG_TRY(split_facets(&s));
     hand_over(&s);
     STARG_TRY(add_cap(&s, done));
@@ -315,6 +427,7 @@ done:
     starg_release(p->context, s.height);
     starg_release(p->context, s.table);
     STARG_ARRAY_FREE(p->context, &s.crossings);
+    STARG_ARRAY_FREE(p->context, &s.brinks);
     STARG_ARRAY_FREE(p->context, &s.corners);
     STARG_ARRAY_FREE(p->context, &s.starts);
     STARG_ARRAY_FREE(p->context, &s.triangles);

@@ -16,7 +16,9 @@ void partition_join(partition *p, const uint32_t *pieces, size_t count);
 starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
                              const partition_plane *plane, bool *done);
 
-/* How near to a plane of a slice no vertex may be, in unit coordinates. */
+/* How near to a plane of a slice no vertex may be, in unit coordinates, but for those so near that
+ * they count as on it: so a plane can be laid through an edge. */
 #define SLICE_CLEARANCE 1e-9
+#define SLICE_ON 1e-12
 
 #endif

@@ -1,15 +1,17 @@
 /* Strict star decomposition: few pieces, each proven to be star-shaped.
  *
- * Stages: the tetrahedra are claimed by guards, set after set (claim.c): a valid start; only the
- * surfaces of the sets go on (partition.c); pieces are joined, and unions of neighbours cut again
- * by planes into fewer pieces, every step with an exact certificate (improve.c); at the end each
+ * Stages: two starts, each with its neighbours joined where that can be done, and the better one is
+ * taken: the tetrahedra claimed by guards, set after set (claim.c), which always succeeds, and only
+ * the surfaces of the sets go on (partition.c); and the whole surface cut by planes until every
+ * part is star-shaped (bisect.c), as a rule with fewer pieces by far. Then unions of neighbours are
+ * cut again into fewer pieces, every step with an exact certificate (improve.c); at the end each
  * piece is made of tetrahedra about its guard (cone.c).
  *
- * The start decides only how long the search takes; measured against others in
- * docs/decomposition.md. */
+ * Starts are compared in docs/decomposition.md. */
 #include "star/strict/strict.h"
 
 #include "star/decomposition.h"
+#include "star/strict/bisect.h"
 #include "star/strict/claim.h"
 #include "star/strict/cone.h"
 #include "star/strict/improve.h"
@@ -42,22 +44,70 @@ done:
     return status;
 }
 
+/* ---- starts ---- */
+
+static starg_status start_by_claims(const starg_tetmesh *mesh,
+                                    const starg_decompose_options *options, partition *p) {
+    starg_status status = STARG_OK;
+    starg_context *context = p->context;
+    claims start = {.count = 0};
+    STARG_TRY(claim_all(context, mesh, options->guards, options->guard_count, &start));
+    STARG_TRY(partition_create(context, mesh, start.labels, start.guards.data, start.count, p));
+    STARG_TRY(improve_join(p));
+done:
+    claims_free(context, &start);
+    return status;
+}
+
+/* All in one piece, then cut. */
+static starg_status start_by_planes(const starg_tetmesh *mesh, partition *p, bool *done) {
+    starg_status status = STARG_OK;
+    static const double nowhere[3] = {0, 0, 0};
+    uint32_t *labels = NULL;
+    *done = false;
+    STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(mesh));
+    STARG_TRY(partition_create(p->context, mesh, labels, nowhere, 1, p));
+    STARG_TRY(bisect(p, done));
+    if (*done)
+        STARG_TRY(improve_join(p));
+done:
+    starg_release(p->context, labels);
+    return status;
+}
+
+/* Guards that were given are what the claims begin with. */
+static starg_status begin(const starg_tetmesh *mesh, const starg_decompose_options *options,
+                          partition *p) {
+    starg_status status = STARG_OK;
+    partition other = {.context = p->context};
+    bool done;
+    STARG_TRY(start_by_claims(mesh, options, p));
+    if (options->guard_count > 0 || p->pieces.count < 2 || starg_time_is_over(p->context))
+        goto done;
+    STARG_TRY(start_by_planes(mesh, &other, &done));
+    if (done && other.pieces.count < p->pieces.count) {
+        partition before = *p;
+        *p = other;
+        other = before;
+    }
+done:
+    partition_free(&other);
+    return status;
+}
+
 starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
                               const starg_decompose_options *options, starg_decomposition **out) {
     starg_status status = STARG_OK;
-    claims start = {.count = 0};
     partition p = {.context = context};
     improve_report report;
     const improve_options wanted = {.trials = options->effort > 0 ? options->effort : UINT64_MAX,
                                     .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
-    STARG_TRY(claim_all(context, mesh, options->guards, options->guard_count, &start));
-    STARG_TRY(partition_create(context, mesh, start.labels, start.guards.data, start.count, &p));
+    STARG_TRY(begin(mesh, options, &p));
     STARG_TRY(improve(&p, &wanted, &report));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = report.time_limited;
 done:
     partition_free(&p);
-    claims_free(context, &start);
     return status;
 }

@@ -1,0 +1,298 @@
+/* A start by planes: cuts until every piece is star-shaped.
+ *
+ * Problem: a partition of a solid into few star-shaped pieces with flat borders, found fast.
+ *
+ * Method: as a decision tree is grown. A piece with a kernel is done; any other is cut by the plane
+ * after which two guards miss the least of it (star/strict/divide.c), into connected parts, and
+ * each of these goes on. All open pieces are looked at at once, then cut one after the other.
+ *
+ * A piece that resists (no plane gains, or the cut fails, or leaves a crumb that nothing sees) is
+ * tried again with more effort and with less room for its guard, and is then halved: a plane that
+ * is right where the trouble is may cost more elsewhere in a large piece.
+ *
+ * Invariants: what a cut does to other pieces is nothing but split facets; every guard is certified
+ * on the finished partition, and where that fails the piece is opened again. The result does not
+ * depend on the number of threads. Cost: each round that of divide.c for all open pieces; about as
+ * many rounds as twice the depth of the tree. */
+#include "star/strict/bisect.h"
+
+#include <math.h>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "geometry/vec3.h"
+#include "star/strict/divide.h"
+#include "star/strict/separate.h"
+#include "star/strict/slice.h"
+
+enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3, JOBS_MOST = 4000 };
+
+static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9, CRUMB = 1e-7; /* unit coordinates */
+static const double TURN = 1e-5, TURN_MOST = 0.1; /* radians, about */
+
+/* A piece that is not known to be star-shaped. */
+typedef struct job {
+    uint32_t number;
+    int attempts;
+    double radius, guard[3]; /* of the ball in its kernel; unit coordinates */
+    partition_plane plane;
+    bool found;
+} job;
+
+typedef struct bisector {
+    partition *p;
+    region_scratch scratch; /* of the calling thread */
+    STARG_ARRAY(job) jobs;
+    STARG_ARRAY(job) next;
+    size_t done; /* jobs so far */
+    bool hopeless;
+} bisector;
+
+/* Each attempt asks for less. */
+static double ease_of(const job *j) {
+    return pow(0.25, j->attempts);
+}
+
+static double margin_of(const job *j) {
+    return fmax(MARGIN * ease_of(j), MARGIN_LEAST);
+}
+
+/* ---- looking at open pieces ---- */
+
+static starg_status look_at(starg_context *context, void *shared, void *scratch, size_t item) {
+    starg_status status = STARG_OK;
+    bisector *b = shared;
+    job *j = &b->jobs.data[item];
+    region r = {.vertices = {0}};
+    starg_rng rng = starg_rng_make(context->seed, 78, b->done + item);
+    const divide_options options = {
+        .margin = margin_of(j),
+        .effort = j->attempts < EFFORT_MOST ? j->attempts + 1 : EFFORT_MOST,
+        .demand = j->attempts < FAIR_FROM    ? DIVIDE_GAIN
+                  : j->attempts < HALVE_FROM ? DIVIDE_FAIR
+                                             : DIVIDE_HALVE};
+    j->found = false;
+    STARG_TRY(region_gather(b->p, &j->number, 1, scratch, &r));
+    STARG_TRY(region_find_center(&r, NULL, 0, scratch, j->guard, &j->radius));
+    if (j->radius < options.margin)
+        STARG_TRY(divide_find(&r, &options, &rng, scratch, &j->plane, &j->found));
+done:
+    region_free(context, &r);
+    return status;
+}
+
+static starg_status make_scratch(starg_context *context, void *shared, void **out) {
+    starg_status status = STARG_OK;
+    region_scratch *scratch = NULL;
+    (void)shared;
+    STARG_NEW_ZERO(context, PARTITION_STAGE, scratch, 1);
+    scratch->context = context;
+done:
+    *out = scratch;
+    return status;
+}
+
+static void free_scratch(starg_context *context, void *scratch) {
+    if (scratch != NULL)
+        region_scratch_free(scratch);
+    starg_release(context, scratch);
+}
+
+/* ---- cutting ---- */
+
+/* A part so small that no later cut will make anything of it. */
+static starg_status is_crumb(bisector *b, partition *p, uint32_t number, const job *j,
+                             bool *crumb) {
+    starg_status status = STARG_OK;
+    region r = {.vertices = {0}};
+    double center[3], radius;
+    *crumb = false;
+    if (p->pieces.data[number].volume >= CRUMB * ease_of(j))
+        goto done;
+    STARG_TRY(region_gather(p, &number, 1, &b->scratch, &r));
+    STARG_TRY(region_find_center(&r, NULL, 0, &b->scratch, center, &radius));
+    *crumb = radius < margin_of(j);
+done:
+    region_free(p->context, &r);
+    return status;
+}
+
+/* Facets that a cut has made keep the plane of what they were part of; where rounding has turned
+ * one out of it, it may be that no guard will be certified. */
+static bool is_flat(const partition *p, size_t old_points, double most) {
+    for (size_t i = 0; i < p->facets.count; i++) {
+        const facet *f = &p->facets.data[i];
+        const uint32_t *c = f->corners;
+        double normal[3], across[3];
+        if (c[0] < old_points && c[1] < old_points && c[2] < old_points)
+            continue;
+        vec3_triangle_normal(partition_unit(p, c[0]), partition_unit(p, c[1]),
+                             partition_unit(p, c[2]), normal);
+        const double *expected = p->planes.data[f->plane].normal;
+        vec3_cross(normal, expected, across);
+        double along = vec3_dot(normal, expected);
+        if (!(along > 0 && vec3_length(across) <= most * along))
+            return false;
+    }
+    return true;
+}
+
+/* On a copy: the piece cut, and both sides parted into what is connected. */
+static starg_status cut(bisector *b, const job *j, partition *copy, bool *done) {
+    starg_status status = STARG_OK;
+    const piece fresh = {.stamp = ++b->p->stamps};
+    STARG_TRY(partition_copy(b->p, copy));
+    uint32_t first = (uint32_t)copy->pieces.count;
+    STARG_PUSH(copy->context, PARTITION_STAGE, &copy->pieces, fresh);
+    STARG_TRY(partition_slice(copy, j->number, first, &j->plane, done));
+    *done = *done && is_flat(copy, b->p->points.count / 3, fmin(TURN / ease_of(j), TURN_MOST));
+    if (!*done)
+        goto done;
+    STARG_TRY(partition_build_index(copy));
+    STARG_TRY(partition_separate(copy, j->number));
+    STARG_TRY(partition_separate(copy, first));
+    for (uint32_t i = j->number; i < copy->pieces.count && *done; i = i < first ? first : i + 1) {
+        bool crumb;
+        STARG_TRY(is_crumb(b, copy, i, j, &crumb));
+        *done = !crumb;
+    }
+done:
+    return status;
+}
+
+static starg_status open_piece(bisector *b, uint32_t number, int attempts) {
+    starg_status status = STARG_OK;
+    const job fresh = {.number = number, .attempts = attempts};
+    STARG_PUSH(b->p->context, PARTITION_STAGE, &b->next, fresh);
+done:
+    return status;
+}
+
+static starg_status try_again(bisector *b, const job *j) {
+    b->hopeless = b->hopeless || j->attempts >= ATTEMPTS_MOST;
+    return open_piece(b, j->number, j->attempts + 1);
+}
+
+static starg_status carry_out(bisector *b, const job *j) {
+    starg_status status = STARG_OK;
+    partition copy = {.context = b->p->context};
+    bool done = false;
+    if (j->found)
+        STARG_TRY(cut(b, j, &copy, &done));
+    if (!done) {
+        STARG_TRY(try_again(b, j));
+        goto done;
+    }
+    uint32_t first = (uint32_t)b->p->pieces.count;
+    partition before = *b->p;
+    *b->p = copy;
+    copy = before;
+    STARG_TRY(open_piece(b, j->number, j->attempts / 2));
+    for (uint32_t i = first; i < b->p->pieces.count; i++)
+        STARG_TRY(open_piece(b, i, j->attempts / 2));
+done:
+    partition_free(&copy);
+    return status;
+}
+
+static void settle(partition *p, const job *j) {
+    partition_from_unit(p, j->guard, p->pieces.data[j->number].guard);
+    p->pieces.data[j->number].radius = j->radius;
+}
+
+/* ---- rounds ---- */
+
+static starg_status run_round(bisector *b) {
+    starg_status status = STARG_OK;
+    const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
+                                      .count = b->jobs.count,
+                                      .shared = b,
+                                      .item = look_at,
+                                      .make_scratch = make_scratch,
+                                      .free_scratch = free_scratch,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(b->p->context, &loop));
+    b->done += b->jobs.count;
+    b->next.count = 0;
+    for (size_t i = 0; i < b->jobs.count; i++) {
+        const job *j = &b->jobs.data[i];
+        STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
+        if (j->radius >= margin_of(j))
+            settle(b->p, j);
+        else
+            STARG_TRY(carry_out(b, j));
+    }
+done:
+    return status;
+}
+
+static void swap_lists(bisector *b) {
+    bisector before = *b;
+    b->jobs.data = before.next.data;
+    b->jobs.count = before.next.count;
+    b->jobs.capacity = before.next.capacity;
+    b->next.data = before.jobs.data;
+    b->next.count = 0;
+    b->next.capacity = before.jobs.capacity;
+}
+
+static bool may_go_on(const bisector *b) {
+    return b->jobs.count > 0 && !b->hopeless && b->done < JOBS_MOST &&
+           !starg_time_is_over(b->p->context);
+}
+
+/* ---- proofs ---- */
+
+/* Pieces whose guard does not see them: neighbours' cuts have split their facets since. */
+static starg_status certify(bisector *b) {
+    starg_status status = STARG_OK;
+    partition_triangles triangles = {0};
+    partition *p = b->p;
+    b->next.count = 0;
+    for (uint32_t i = 0; i < p->pieces.count; i++) {
+        triangles.count = 0;
+        STARG_TRY(partition_gather(p, i, &triangles));
+        size_t count = triangles.count / 3;
+        p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
+        p->pieces.data[i].stamp = ++p->stamps;
+        if (!partition_certify(p, triangles.data, count, p->pieces.data[i].guard))
+            STARG_TRY(open_piece(b, i, (int)(b->done % 3)));
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
+}
+
+static starg_status open_all(bisector *b) {
+    starg_status status = STARG_OK;
+    uint32_t given = (uint32_t)b->p->pieces.count;
+    for (uint32_t i = 0; i < given; i++)
+        STARG_TRY(partition_separate(b->p, i));
+    for (uint32_t i = 0; i < b->p->pieces.count; i++)
+        STARG_TRY(open_piece(b, i, 0));
+done:
+    return status;
+}
+
+starg_status bisect(partition *p, bool *done) {
+    starg_status status = STARG_OK;
+    bisector b = {.p = p, .scratch = {.context = p->context}};
+    *done = false;
+    STARG_TRY(open_all(&b));
+    while (b.next.count > 0) {
+        swap_lists(&b);
+        while (may_go_on(&b)) {
+            STARG_TRY(run_round(&b));
+            swap_lists(&b);
+        }
+        if (b.jobs.count > 0)
+            goto done;
+        STARG_TRY(certify(&b));
+    }
+    *done = true;
+done:
+    region_scratch_free(&b.scratch);
+    STARG_ARRAY_FREE(p->context, &b.jobs);
+    STARG_ARRAY_FREE(p->context, &b.next);
+    return status;
+}

@@ -1,0 +1,12 @@
+/* A start by planes: cuts until every piece is star-shaped. */
+#ifndef STARG_STAR_STRICT_BISECT_H
+#define STARG_STAR_STRICT_BISECT_H
+
+#include "star/strict/partition.h"
+
+/* Cuts the pieces of a partition, whose guards need not see anything, until each has a certified
+ * guard. *done is false, and the partition of no use, when some piece resists, or when the time is
+ * over. Errors: MEMORY, CANCELLED. */
+starg_status bisect(partition *p, bool *done);
+
+#endif
