@@ -275,6 +275,73 @@ static void test_reach(void **state) {
     assert_true(whole > 20 && part > 20);
 }
 
+/* The nearest that a row comes to a place, by its triangles' corners; squared. */
+static void find_nearest(const region *r, const double center[3], double *nearest) {
+    for (size_t i = 0; i < r->rows.count / 4; i++)
+        nearest[i] = INFINITY;
+    for (size_t i = 0; i < r->triangles.count; i++)
+        for (int k = 0; k < 3; k++) {
+            const double *v = vertex_of(r, &r->triangles.data[i], k);
+            double squared = 0;
+            for (int c = 0; c < 3; c++)
+                squared += (v[c] - center[c]) * (v[c] - center[c]);
+            nearest[r->triangles.data[i].row] = fmin(nearest[r->triangles.data[i].row], squared);
+        }
+}
+
+/* All rows of a distance below the one found have the guard inside, and with the next rows there
+ * would be no room. */
+static void check_reach_about(const region *r, const double center[3], double margin,
+                              const region_reach *reach) {
+    size_t count = r->rows.count / 4;
+    double *nearest = malloc((count + 1) * sizeof *nearest), next = INFINITY;
+    double *scaled = malloc((count + 1) * sizeof *scaled);
+    assert_non_null(nearest);
+    assert_non_null(scaled);
+    find_nearest(r, center, nearest);
+    assert_true(reach->height > -INFINITY);
+    for (size_t i = 0; i < count; i++) {
+        const double *row = r->rows.data + 4 * i;
+        if (nearest[i] < reach->height - 1e-12)
+            assert_true(row[3] - dot(row, reach->guard) > 0.5 * margin - 1e-12);
+        else if (nearest[i] < INFINITY)
+            next = fmin(next, nearest[i]);
+    }
+    for (size_t i = 0; i < count; i++)
+        scaled[i] = nearest[i] <= next + 1e-12 ? 0 : 2;
+    static const double away[3] = {1, 0, 0};
+    /* a plane far off, and only the rows marked with 0 count */
+    if (reach->height < INFINITY)
+        assert_true(radius_below(r, away, scaled, 1) < margin + 1e-9);
+    free(nearest);
+    free(scaled);
+}
+
+static void test_reach_about(void **state) {
+    (void)state;
+    static const double margins[] = {1e-5, 1e-3, 2e-2};
+    size_t whole = 0, part = 0;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        setting s = make(seed);
+        starg_rng rng = starg_rng_make(seed, 84, 0);
+        for (int turn = 0; turn < (seed % 4 == 3 ? 4 : 20); turn++) {
+            double margin = margins[turn % 3], center[3];
+            region_reach reach;
+            choose_union(&s, &rng);
+            const region_triangle *t =
+                &s.r.triangles.data[starg_rng_below(&rng, s.r.triangles.count)];
+            for (int k = 0; k < 3; k++)
+                center[k] = vertex_of(&s.r, t, 0)[k] + 0.1 * (starg_rng_unit(&rng) - 0.5);
+            test_ok(s.context, region_find_reach_about(&s.r, center, margin, &s.scratch, &reach));
+            check_reach_about(&s.r, center, margin, &reach);
+            whole += reach.height == INFINITY;
+            part += reach.height < INFINITY;
+        }
+        release(&s);
+    }
+    assert_true(whole > 20 && part > 10);
+}
+
 /* ---- centres ---- */
 
 static void check_center(const setting *s, const double *normal, double height, size_t *empty) {
@@ -385,7 +452,8 @@ static void test_clip(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scan),   cmocka_unit_test(test_gather), cmocka_unit_test(test_reach),
+        cmocka_unit_test(test_scan),   cmocka_unit_test(test_gather),
+        cmocka_unit_test(test_reach),  cmocka_unit_test(test_reach_about),
         cmocka_unit_test(test_center), cmocka_unit_test(test_clip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -28,7 +28,7 @@
 enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3, JOBS_MOST = 4000 };
 
 static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9, CRUMB = 1e-7; /* unit coordinates */
-static const double TURN = 1e-5, TURN_MOST = 0.1; /* radians, about */
+static const double TURN = 1e-5, TURN_MOST = 0.1;                     /* radians, about */
 
 /* A piece that is not known to be star-shaped. */
 typedef struct job {
@@ -65,12 +65,12 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     job *j = &b->jobs.data[item];
     region r = {.vertices = {0}};
     starg_rng rng = starg_rng_make(context->seed, 78, b->done + item);
-    const divide_options options = {
-        .margin = margin_of(j),
-        .effort = j->attempts < EFFORT_MOST ? j->attempts + 1 : EFFORT_MOST,
-        .demand = j->attempts < FAIR_FROM    ? DIVIDE_GAIN
-                  : j->attempts < HALVE_FROM ? DIVIDE_FAIR
-                                             : DIVIDE_HALVE};
+    const divide_options options = {.margin = margin_of(j),
+                                    .effort =
+                                        j->attempts < EFFORT_MOST ? j->attempts + 1 : EFFORT_MOST,
+                                    .demand = j->attempts < FAIR_FROM    ? DIVIDE_GAIN
+                                              : j->attempts < HALVE_FROM ? DIVIDE_FAIR
+                                                                         : DIVIDE_HALVE};
     j->found = false;
     STARG_TRY(region_gather(b->p, &j->number, 1, scratch, &r));
     STARG_TRY(region_find_center(&r, NULL, 0, scratch, j->guard, &j->radius));
@@ -268,6 +268,8 @@ static starg_status open_all(bisector *b) {
     uint32_t given = (uint32_t)b->p->pieces.count;
     for (uint32_t i = 0; i < given; i++)
         STARG_TRY(partition_separate(b->p, i));
+    for (uint32_t i = 0; i < b->p->pieces.count && !b->hopeless; i++)
+        STARG_TRY(partition_touches_itself(b->p, i, &b->hopeless));
     for (uint32_t i = 0; i < b->p->pieces.count; i++)
         STARG_TRY(open_piece(b, i, 0));
 done:

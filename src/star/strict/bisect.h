@@ -5,8 +5,8 @@
 #include "star/strict/partition.h"
 
 /* Cuts the pieces of a partition, whose guards need not see anything, until each has a certified
- * guard. *done is false, and the partition of no use, when some piece resists, or when the time is
- * over. Errors: MEMORY, CANCELLED. */
+ * guard. *done is false, and the partition of no use, when some piece resists (as one whose surface
+ * touches itself along an edge does), or when the time is over. Errors: MEMORY, CANCELLED. */
 starg_status bisect(partition *p, bool *done);
 
 #endif

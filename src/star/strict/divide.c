@@ -15,8 +15,8 @@
  *
  * Large regions are searched by a sample of their triangles.
  *
- * Invariants: rounded throughout; a plane through no edge keeps to the widest gap between heights of
- * vertices near the best place. Cost: guards x triangles missed x directions, a few million. */
+ * Invariants: rounded throughout; a plane through no edge keeps to the widest gap between heights
+ * of vertices near the best place. Cost: guards x triangles missed x directions, a few million. */
 #include "star/strict/divide.h"
 
 #include <math.h>
@@ -35,7 +35,8 @@ enum {
     SAMPLE = 12000 /* triangles */
 };
 
-static const double FAIR_LEAST = 0.3, FAIR_MOST = 0.7, EDGE_GAIN = 0.97, EDGE_HOPE = 1.2, EDGE_ROOM = 1e-5;
+static const double FAIR_LEAST = 0.3, FAIR_MOST = 0.7, EDGE_GAIN = 0.97, EDGE_HOPE = 1.2,
+                    EDGE_ROOM = 1e-5;
 
 enum { BELOW = 1, ABOVE = 2 };
 
@@ -58,8 +59,8 @@ typedef struct divider {
     const divide_options *options;
     starg_rng *rng;
     region_scratch *scratch;
-    double size;                     /* diagonal of the box */
-    region_values areas;             /* of triangles */
+    double size;         /* diagonal of the box */
+    region_values areas; /* of triangles */
     STARG_ARRAY(unsigned char) row_is_missed;
     STARG_ARRAY(unsigned char) sides; /* scratch: of vertices */
     STARG_ARRAY(unsigned char) bins;  /* scratch: of triangles, lowest and highest */
@@ -196,8 +197,8 @@ static starg_status add_reach_needed(divider *d, bool nearby) {
     random_direction(d->rng, offset);
     for (int k = 0; k < 3; k++)
         offset[k] *= far;
-    return add_reach_about(
-        d, d->missed.data[from->first + starg_rng_below(d->rng, from->count)], offset);
+    return add_reach_about(d, d->missed.data[from->first + starg_rng_below(d->rng, from->count)],
+                           offset);
 }
 
 static starg_status add_places(divider *d) {
@@ -218,8 +219,8 @@ done:
 /* ---- all heights along a direction ---- */
 
 typedef struct histogram {
-    double low, scale;          /* bin of height h: (h - low) * scale */
-    double area_to[BINS];       /* of triangles that begin before the bin */
+    double low, scale;               /* bin of height h: (h - low) * scale */
+    double area_to[BINS];            /* of triangles that begin before the bin */
     double below[BINS], above[BINS]; /* cost of what is below and above the bin's lower limit */
 } histogram;
 
@@ -414,8 +415,7 @@ static void try_edges(divider *d) {
         if (p->count == 0)
             continue;
         const region_triangle *t =
-            &d->r->triangles
-                 .data[d->missed.data[p->first + starg_rng_below(d->rng, p->count)]];
+            &d->r->triangles.data[d->missed.data[p->first + starg_rng_below(d->rng, p->count)]];
         int k = (int)starg_rng_below(d->rng, 3);
         try_edge(d, corner(d, t, k), corner(d, t, (k + 1) % 3));
     }
@@ -449,8 +449,7 @@ static double widest_gap_near(const divider *d, const cut *c) {
 
 static void choose(const divider *d, partition_plane *plane, bool *found) {
     const cut *c = &d->best;
-    *found = d->options->demand != DIVIDE_HALVE &&
-             c->cost < d->places.data[d->best_place].missed;
+    *found = d->options->demand != DIVIDE_HALVE && c->cost < d->places.data[d->best_place].missed;
     if (!*found && d->options->demand != DIVIDE_GAIN) {
         c = &d->fair;
         *found = c->cost < INFINITY;

@@ -1,10 +1,12 @@
-/* Making the connected parts of a piece pieces of their own.
+/* How the surface of a piece hangs together; connected parts made pieces of their own.
  *
  * Stages: vertices of a facet are in one part (union-find); parts numbered in the order of the
  * facets; their volumes: a negative one is the surface of a cavity; facets change hands.
  *
  * Cost: linear in the facets of the piece but for the clearing of an array over the points. */
 #include "star/strict/separate.h"
+
+#include <stdlib.h>
 
 #include "geometry/vec3.h"
 
@@ -44,9 +46,9 @@ static starg_status number_parts(separator *s) {
             STARG_PUSH(p->context, PARTITION_STAGE, &s->volumes, 0);
             *part = (uint32_t)s->volumes.count;
         }
-        s->volumes.data[*part - 1] += vec3_triple(partition_unit(p, c[0]), partition_unit(p, c[1]),
-                                                  partition_unit(p, c[2])) /
-                                      6;
+        s->volumes.data[*part - 1] +=
+            vec3_triple(partition_unit(p, c[0]), partition_unit(p, c[1]), partition_unit(p, c[2])) /
+            6;
     }
 done:
     return status;
@@ -95,5 +97,31 @@ done:
     starg_release(p->context, s.leader);
     starg_release(p->context, s.part);
     STARG_ARRAY_FREE(p->context, &s.volumes);
+    return status;
+}
+
+static int compare_edges(const void *a, const void *b) {
+    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+starg_status partition_touches_itself(const partition *p, uint32_t number, bool *touches) {
+    starg_status status = STARG_OK;
+    STARG_ARRAY(uint64_t) edges = {0};
+    *touches = false;
+    for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
+        const uint32_t *c = p->facets.data[p->index.data[k] / 2].corners;
+        for (int i = 0; i < 3; i++) {
+            uint64_t a = c[i], b = c[(i + 1) % 3];
+            STARG_PUSH(p->context, PARTITION_STAGE, &edges, a < b ? a << 32 | b : b << 32 | a);
+        }
+    }
+    if (edges.count > 0)
+        qsort(edges.data, edges.count, sizeof *edges.data, compare_edges);
+    for (size_t i = 0; i < edges.count && !*touches; i += 2)
+        *touches = i + 1 == edges.count || edges.data[i] != edges.data[i + 1] ||
+                   (i + 2 < edges.count && edges.data[i] == edges.data[i + 2]);
+done:
+    STARG_ARRAY_FREE(p->context, &edges);
     return status;
 }

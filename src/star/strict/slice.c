@@ -52,7 +52,7 @@ typedef struct slicer {
     STARG_ARRAY(crossing) crossings;
     STARG_ARRAY(uint64_t) brinks; /* edges on the plane of facets above it, ascending */
     bool broken;                  /* a loop goes on in two ways */
-    uint32_t *table; /* 1 + crossing by edge; open addressing */
+    uint32_t *table;              /* 1 + crossing by edge; open addressing */
     size_t table_size;
     cap_indices corners, starts, triangles;
 } slicer;
@@ -323,21 +323,26 @@ done:
     return status;
 }
 
-/* Edges where a facet below the plane meets one above are segments of the cap. */
+/* Edges where a facet below the plane meets one above are segments of the cap. Where both are on
+ * one side the surface touches the plane: perhaps inside of the cap, which would pinch it. */
 static starg_status link_brinks(slicer *s) {
     starg_status status = STARG_OK;
+    size_t linked = 0;
     STARG_TRY(find_brinks(s));
-    for (size_t i = 0; i < s->p->facets.count && s->brinks.count > 0; i++) {
+    for (size_t i = 0; i < s->p->facets.count; i++) {
         const facet *f = &s->p->facets.data[i];
         int k = side_of_piece(s, f) < 0 ? -1 : edge_on_plane(s, f);
         if (k < 0 || corners_below(s, f) == 0)
             continue;
         uint64_t key = edge_key(f, k);
-        if (bsearch(&key, s->brinks.data, s->brinks.count, sizeof key, compare_edges) == NULL)
-            continue;
+        s->broken =
+            s->broken || s->brinks.count == 0 ||
+            bsearch(&key, s->brinks.data, s->brinks.count, sizeof key, compare_edges) == NULL;
         uint32_t a = f->corners[k], b = f->corners[(k + 1) % 3];
         link_crossings(s, f, find_crossing(s, a, a), find_crossing(s, b, b));
+        linked++;
     }
+    s->broken = s->broken || linked != s->brinks.count;
 done:
     return status;
 }
@@ -356,20 +361,13 @@ static void hand_over(slicer *s) {
 
 /* ---- cap ---- */
 
-/* A vertex on the plane may be one that the surface touches it with. */
-static bool is_passed_once(const crossing *c) {
-    if (c->ends[0] == c->ends[1] && c->facets == 0)
-        return true;
-    return c->facets == 2 && c->next != UINT32_MAX;
-}
-
-/* False where the surface is no manifold: an edge has not two facets of the piece, or loops
- * meet. */
+/* False where the surface is no manifold: an edge has not two facets of the piece; or where it
+ * touches the plane, or loops meet. */
 static starg_status trace_loops(slicer *s, bool *done) {
     starg_status status = STARG_OK;
     *done = !s->broken;
     for (size_t i = 0; i < s->crossings.count && *done; i++)
-        *done = is_passed_once(&s->crossings.data[i]);
+        *done = s->crossings.data[i].facets == 2 && s->crossings.data[i].next != UINT32_MAX;
     STARG_PUSH(s->p->context, PARTITION_STAGE, &s->starts, 0);
     for (size_t i = 0; i < s->crossings.count && *done; i++) {
         if (s->crossings.data[i].facets == 0)

@@ -19,6 +19,6 @@ starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
 /* How near to a plane of a slice no vertex may be, in unit coordinates, but for those so near that
  * they count as on it: so a plane can be laid through an edge. */
 #define SLICE_CLEARANCE 1e-9
-#define SLICE_ON 1e-12
+#define SLICE_ON        1e-12
 
 #endif
