@@ -12,7 +12,7 @@
 
 typedef struct values {
     const char *output, *reconstruct, *picture, *histograms;
-    uint64_t directions, effort;
+    uint64_t directions, effort, detail;
 } values;
 
 static const cli_option options[] = {
@@ -23,6 +23,10 @@ static const cli_option options[] = {
     CLI_COUNT_OPTION("effort", effort, "N", 1, INT64_MAX,
                      "Trials of the star decomposition that places the guards. Default 200: a "
                      "quick one; more give fewer guards."),
+    CLI_COUNT_OPTION("detail", detail, "N", 0, INT32_MAX / 8,
+                     "Bring the model down to N vertices first, smooth and free of local "
+                     "self-intersections, so that noise and resolution count little; 0 describes "
+                     "it as it is. Default 2000."),
     CLI_TEXT_OPTION("reconstruct", reconstruct, "FILE.ply",
                     "Write the boundary as the descriptor knows it: a point where each look ends."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the model and its guards."),
@@ -34,7 +38,8 @@ static const cli_option options[] = {
 static void set_defaults(void *data) {
     starg_descriptor_options library;
     starg_descriptor_options_default(&library);
-    *(values *)data = (values){.directions = library.direction_count, .effort = library.effort};
+    *(values *)data = (values){
+        .directions = library.direction_count, .effort = library.effort, .detail = library.detail};
 }
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -71,6 +76,7 @@ static void report(cli_session *session, const starg_descriptor *d, const starg_
     cli_put(session, json, "guards", json_integer((json_int_t)d->guard_count));
     cli_put(session, json, "edges", json_integer((json_int_t)d->edge_count));
     cli_put(session, json, "directions", json_integer((json_int_t)d->direction_count));
+    cli_put(session, json, "detail", json_integer((json_int_t)d->detail));
     cli_put(session, json, "effort", json_integer((json_int_t)d->effort));
     cli_put(session, json, "time_limited", json_boolean(d->time_limited));
     cli_put(session, json, "reconstruction",
@@ -196,7 +202,8 @@ static starg_status run(cli_session *session, void *data) {
     starg_status status = STARG_OK;
     starg_descriptor *descriptor = NULL;
     starg_reconstruction reconstruction;
-    const starg_descriptor_options wanted = {.direction_count = v->directions, .effort = v->effort};
+    const starg_descriptor_options wanted = {
+        .direction_count = v->directions, .effort = v->effort, .detail = v->detail};
     CLI_TRY(starg_descriptor_create(context, session->mesh, &wanted, &descriptor));
     CLI_TRY(starg_descriptor_reconstruct(context, descriptor, session->mesh, &reconstruction));
     CLI_TRY(write_files(session, descriptor, v));
@@ -217,10 +224,11 @@ const cli_command cli_command_describe = {
         "the pieces touch, and how far it is from each guard to the boundary in all directions. "
         "That is what 'starguard match' compares. The surface can be had back of it: how far the "
         "points that guards see are from the surface, and the surface from them, is told.",
-    .examples = "# a descriptor, and what it knows of the surface\n"
-                "starguard describe model.off -o model.json --reconstruct points.ply\n"
-                "# a finer one\n"
-                "starguard describe model.off -o model.json --directions 2048 --effort 2000",
+    .examples =
+        "# a descriptor, and what it knows of the surface\n"
+        "starguard describe model.off -o model.json --reconstruct points.ply\n"
+        "# a finer one\n"
+        "starguard describe model.off -o model.json --detail 0 --directions 2048 --effort 2000",
     .input = CLI_INPUT_MESH,
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),

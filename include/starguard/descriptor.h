@@ -28,10 +28,13 @@ typedef struct starg_descriptor_edge {
     double gate[3];         /* their centroid: the way between guards */
 } starg_descriptor_edge;
 
+enum { STARG_DESCRIPTOR_VIEW = 8, STARG_DESCRIPTOR_SPREAD = 16, STARG_DESCRIPTOR_EIGENVALUES = 30 };
+
 typedef struct starg_descriptor {
     char *file; /* as given to the writer; NULL if there is none */
     size_t model_vertices, model_faces;
     double diagonal;   /* of the model's bounding box             */
+    size_t detail;     /* vertices that the model was brought down to; 0: described as it is */
     uint64_t effort;   /* trials that the decomposition was given */
     bool time_limited; /* the time limit cut it short             */
     size_t guard_count;
@@ -40,14 +43,29 @@ typedef struct starg_descriptor {
     starg_descriptor_edge *edges;
     size_t direction_count;
     double *distances; /* guard_count x direction_count: to the first point of the boundary */
+    /* What is seen from points spread evenly over the solid: row k holds quantiles, over the
+     * points, of the k-th quantile of a point's distances to the boundary. Rows and columns ascend.
+     */
+    double views[STARG_DESCRIPTOR_VIEW][STARG_DESCRIPTOR_SPREAD];
+    /* The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area,
+     * ascending: as a surface, and as a shell as thick as the solid is wide there. */
+    double surface_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
+    double solid_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
 } starg_descriptor;
 
-enum { STARG_DESCRIPTOR_DIRECTIONS = 256, STARG_DESCRIPTOR_EFFORT = 200 };
+enum {
+    STARG_DESCRIPTOR_DIRECTIONS = 256,
+    STARG_DESCRIPTOR_EFFORT = 200,
+    STARG_DESCRIPTOR_DETAIL = 2000
+};
 
 typedef struct starg_descriptor_options {
     size_t direction_count; /* 12 to 65536                                        */
     uint64_t effort;        /* trials of the strict decomposition, 1 or more: more give fewer
                                guards, and take longer */
+    size_t detail;          /* vertices: the model is smoothed, brought down to no more than that,
+                               and mended where it meets itself, so that noise and resolution count
+                               little. 0: it is described as it is. Default 2,000 */
 } starg_descriptor_options;
 
 STARG_API void starg_descriptor_options_default(starg_descriptor_options *options);
@@ -55,9 +73,9 @@ STARG_API void starg_descriptor_options_default(starg_descriptor_options *option
 /* Direction `index` of `count` that cover the sphere evenly: points of a Fibonacci lattice. */
 STARG_API void starg_descriptor_direction(size_t count, size_t index, double out[3]);
 
-/* Describes a model. A mesh with holes is filled with what it winds around, as starg_decompose
- * does. `options` may be NULL. Errors: ARGUMENT, MESH (encloses nothing), SOLVER, MEMORY,
- * CANCELLED, TIME. */
+/* Describes a model. A mesh with holes is described as it is, whatever `detail` says, and filled
+ * with what it winds around, as starg_decompose does. `options` may be NULL. Errors: ARGUMENT, MESH
+ * (encloses nothing), SOLVER, MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_descriptor_create(starg_context *context, const starg_mesh *mesh,
                                                const starg_descriptor_options *options,
                                                starg_descriptor **out);

@@ -19,7 +19,7 @@ extern "C" {
 typedef enum starg_signature_kind {
     STARG_SIGNATURE_D2 = 0,        /* distribution of distances between points of the surface */
     STARG_SIGNATURE_SHAPE_DNA = 1, /* eigenvalues of the surface's Laplacian                 */
-    STARG_SIGNATURE_STAR = 2,      /* guards, what they see, and ways between them           */
+    STARG_SIGNATURE_STAR = 2,      /* what is seen from a star decomposition, and its spectra   */
     STARG_SIGNATURE_PAPER = 3      /* the guarding graph and histograms of [YL11]            */
 } starg_signature_kind;
 

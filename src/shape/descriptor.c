@@ -1,38 +1,44 @@
 /* The descriptor of a shape [YL11, section 5.1]: what its guards see, and how they are joined.
  *
- * Stages: a strict star decomposition within a budget of trials; its guards with the volumes of
- * their pieces; an edge for each two pieces that touch, with the centroid of what they share; from
- * each guard the distance to the boundary in directions that cover the sphere evenly.
+ * Stages: the model at a standard level of detail (level.c); a strict star decomposition of it
+ * within a budget of trials; its guards with the volumes of their pieces; an edge for each two
+ * pieces that touch, with the centroid of what they share; from each guard the distance to the
+ * boundary in directions that cover the sphere evenly; the widths of the solid and the spectrum
+ * that they give its boundary (thickness.c), which unlike all else do not depend on where guards
+ * came to stand.
  *
  * The paper's graph follows the curve skeleton on which its guards lie. Here guards lie anywhere in
  * the kernels of their pieces and the edges are the contacts of pieces, so that the graph has a
  * component for each component of the solid, whatever the skeleton.
  *
- * Invariants: rays are cast against the boundary of the tetrahedra, which is closed and has each
- * guard strictly inside; which triangles a ray meets is decided exactly, so that none slips through
- * between two of them. Only the length is rounded.
+ * Invariants: rays (rays.c) are cast against the boundary of the tetrahedra, which is closed and
+ * has each guard strictly inside.
  *
- * Cost: that of the decomposition, and O(log n) a ray. */
+ * Cost: that of the decomposition, of the spectra, and O(log n) a ray. */
 #include "starguard/descriptor.h"
 
 #include <math.h>
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "geometry/intersect.h"
 #include "geometry/vec3.h"
+#include "mesh/mesh.h"
+#include "shape/level.h"
+#include "shape/rays.h"
+#include "shape/thickness.h"
+#include "shape/views.h"
 #include "star/piece_faces.h"
-#include "star/sight.h"
 #include "starguard/decompose.h"
 #include "starguard/solid.h"
 
 static const char STAGE[] = "descriptor";
 
-enum { LEAST_DIRECTIONS = 12, MOST_DIRECTIONS = 65536, FIRST_STEP = -5, LAST_STEP = 1 };
+enum { LEAST_DIRECTIONS = 12, MOST_DIRECTIONS = 65536, LEAST_DETAIL = 100 };
 
 void starg_descriptor_options_default(starg_descriptor_options *options) {
     *options = (starg_descriptor_options){.direction_count = STARG_DESCRIPTOR_DIRECTIONS,
-                                          .effort = STARG_DESCRIPTOR_EFFORT};
+                                          .effort = STARG_DESCRIPTOR_EFFORT,
+                                          .detail = STARG_DESCRIPTOR_DETAIL};
 }
 
 /* Equal steps in height give equal areas; the golden angle keeps neighbours apart. */
@@ -48,8 +54,9 @@ void starg_descriptor_direction(size_t count, size_t index, double out[3]) {
 /* ---- guards ---- */
 
 /* A mesh that encloses no solid by itself is filled with what it winds around. */
-static starg_status decompose(starg_context *context, const starg_mesh *mesh,
-                              const starg_descriptor_options *options, starg_decomposition **out) {
+static starg_status decompose_mesh(starg_context *context, const starg_mesh *mesh,
+                                   const starg_descriptor_options *options,
+                                   starg_decomposition **out) {
     starg_decompose_options wanted;
     starg_solid *solid = NULL;
     starg_decompose_options_default(&wanted);
@@ -60,6 +67,22 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
     if (status == STARG_OK)
         status = starg_decompose(context, solid, &wanted, out);
     starg_solid_free(solid);
+    return status;
+}
+
+/* A model of which nothing is left at its level of detail is taken as it is. */
+static starg_status decompose(starg_context *context, const starg_mesh *mesh,
+                              const starg_descriptor_options *options, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_mesh *level = NULL;
+    if (options->detail > 0)
+        STARG_TRY(level_create(context, mesh, options->detail, &level));
+    if (level != NULL)
+        status = decompose_mesh(context, level, options, out);
+    if (level == NULL || status == STARG_ERROR_MESH || status == STARG_ERROR_SOLVER)
+        status = decompose_mesh(context, mesh, options, out);
+done:
+    starg_mesh_free(level);
     return status;
 }
 
@@ -140,88 +163,34 @@ done:
 
 /* ---- rays ---- */
 
-typedef struct caster {
-    const bvh *tree;
-    double length; /* beyond the boundary from anywhere inside */
-    double scale;  /* differences times it are at most 1       */
+typedef struct viewer {
+    const ray_caster *caster;
     starg_descriptor *result;
-} caster;
-
-typedef struct ray {
-    const caster *c;
-    const double *from;
-    double to[3], direction[3];
-    double nearest; /* of the boundary met so far */
-} ray;
-
-/* How far along the ray is a triangle that it meets? Where the ray lies in its plane, its nearest
- * corner stands for it. */
-static double reach(const ray *r, const double *const corner[3]) {
-    double p[3][3], normal[3], least = INFINITY;
-    for (int c = 0; c < 3; c++) {
-        vec3_subtract(corner[c], r->from, p[c]);
-        for (int k = 0; k < 3; k++)
-            p[c][k] *= r->c->scale;
-        least = fmin(least, vec3_dot(p[c], r->direction));
-    }
-    vec3_triangle_normal(p[0], p[1], p[2], normal);
-    double along = vec3_dot(normal, r->direction), t = vec3_dot(normal, p[0]) / along;
-    return fmax(0, isfinite(t) && t > least ? t : least) / r->c->scale;
-}
-
-static bool meet(void *user, size_t rank) {
-    ray *r = user;
-    const bvh *tree = r->c->tree;
-    const uint32_t *face = tree->faces + 3 * (size_t)tree->order[rank];
-    const double *corner[3];
-    for (int k = 0; k < 3; k++)
-        corner[k] = tree->vertices + 3 * (size_t)face[k];
-    if (segment_meets_triangle(r->from, r->to, corner[0], corner[1], corner[2]))
-        r->nearest = fmin(r->nearest, reach(r, corner));
-    return true;
-}
-
-/* The boundary is mostly near: short segments first. */
-static double cast(const caster *c, const double from[3], const double direction[3]) {
-    ray r = {.c = c, .from = from, .nearest = INFINITY};
-    vec3_copy(direction, r.direction);
-    for (int step = FIRST_STEP; step <= LAST_STEP && r.nearest > c->length; step++) {
-        vec3_along(from, ldexp(c->length, step), direction, r.to);
-        bvh_query_segment(c->tree, from, r.to, meet, &r);
-    }
-    return fmin(r.nearest, c->length);
-}
+} viewer;
 
 static starg_status cast_from_guard(starg_context *context, void *shared, void *scratch,
                                     size_t guard) {
-    const caster *c = shared;
-    starg_descriptor *d = c->result;
+    const viewer *v = shared;
+    starg_descriptor *d = v->result;
     (void)context, (void)scratch;
     for (size_t i = 0; i < d->direction_count; i++) {
         double direction[3];
         starg_descriptor_direction(d->direction_count, i, direction);
         d->distances[guard * d->direction_count + i] =
-            cast(c, d->guards[guard].position, direction);
+            ray_length(v->caster, d->guards[guard].position, direction);
     }
     return STARG_OK;
 }
 
-static starg_status add_distances(starg_context *context, const starg_tetmesh *mesh,
+static starg_status add_distances(starg_context *context, const ray_caster *caster,
                                   starg_descriptor *d) {
     starg_status status = STARG_OK;
-    tet_sight sight = {0};
-    STARG_TRY(tet_sight_create(context, mesh, &sight));
-    STARG_NEW_ZERO(context, STAGE, d->distances, d->guard_count * d->direction_count);
-    const bvh_box *box = &sight.tree->nodes[0].box;
-    caster c = {.tree = sight.tree,
-                .length = vec3_distance(box->lower, box->upper),
-                .scale = ldexp(1, -tetmesh_exponent(mesh)),
-                .result = d};
+    viewer v = {.caster = caster, .result = d};
     const starg_parallel_loop loop = {
-        .stage = STAGE, .count = d->guard_count, .shared = &c, .item = cast_from_guard};
+        .stage = STAGE, .count = d->guard_count, .shared = &v, .item = cast_from_guard};
+    STARG_NEW_ZERO(context, STAGE, d->distances, d->guard_count * d->direction_count);
     STARG_TRY(starg_parallel_for(context, &loop));
 done:
-    tet_sight_free(context, &sight);
     return status;
 }
 
@@ -235,7 +204,25 @@ static starg_status check_options(starg_context *context, const starg_descriptor
     if (o->effort == 0 || o->effort > INT64_MAX) /* more has no place in a file */
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "the effort must be 1 to 2^63 - 1 trials");
+    if (o->detail != 0 && (o->detail < LEAST_DETAIL || o->detail > STARG_MESH_LIMIT / 8))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a detail of %zu vertices was asked for; choose %d or more, or 0 to "
+                          "describe the model as it is",
+                          o->detail, LEAST_DETAIL);
     return STARG_OK;
+}
+
+static void add_head(const starg_mesh *mesh, const starg_descriptor_options *options,
+                     const starg_decomposition *pieces, starg_descriptor *d) {
+    double lower[3], upper[3];
+    starg_mesh_bounds(mesh, lower, upper);
+    d->model_vertices = starg_mesh_vertex_count(mesh);
+    d->model_faces = starg_mesh_face_count(mesh);
+    d->diagonal = vec3_distance(lower, upper);
+    d->detail = options->detail;
+    d->effort = options->effort;
+    d->time_limited = pieces->time_limited;
+    d->direction_count = options->direction_count;
 }
 
 starg_status starg_descriptor_create(starg_context *context, const starg_mesh *mesh,
@@ -245,7 +232,7 @@ starg_status starg_descriptor_create(starg_context *context, const starg_mesh *m
     starg_descriptor_options defaults;
     starg_decomposition *pieces = NULL;
     starg_descriptor *d = NULL;
-    double lower[3], upper[3];
+    ray_caster caster = {0};
     starg_descriptor_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
@@ -253,18 +240,17 @@ starg_status starg_descriptor_create(starg_context *context, const starg_mesh *m
     STARG_TRY(check_options(context, options));
     STARG_TRY(decompose(context, mesh, options, &pieces));
     STARG_NEW_ZERO(context, STAGE, d, 1);
-    starg_mesh_bounds(mesh, lower, upper);
-    d->model_vertices = starg_mesh_vertex_count(mesh);
-    d->model_faces = starg_mesh_face_count(mesh);
-    d->diagonal = vec3_distance(lower, upper);
-    d->effort = options->effort;
-    d->time_limited = pieces->time_limited;
-    d->direction_count = options->direction_count;
+    add_head(mesh, options, pieces, d);
     STARG_TRY(add_guards(context, pieces, d));
     STARG_TRY(add_edges(context, pieces, d));
-    STARG_TRY(add_distances(context, pieces->mesh, d));
+    STARG_TRY(ray_caster_create(context, pieces->mesh, &caster));
+    STARG_TRY(add_distances(context, &caster, d));
+    STARG_TRY(views_measure(context, pieces->mesh, &caster, &d->views[0][0]));
+    STARG_TRY(
+        thickness_spectra(context, pieces->mesh, &caster, d->surface_spectrum, d->solid_spectrum));
     *out = d;
 done:
+    ray_caster_free(context, &caster);
     starg_decomposition_free(context, pieces);
     if (status != STARG_OK)
         starg_descriptor_free(context, d);

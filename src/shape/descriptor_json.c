@@ -11,21 +11,36 @@
 
 static const char STAGE[] = "descriptor file";
 static const char FORMAT[] = "starguard-descriptor";
-enum { VERSION = 1 };
+enum {
+    VERSION = 2,
+    VIEWS = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
+    EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES
+};
 
 /* ---- writing ---- */
 
-static json_t *guard_json(const starg_descriptor *d, size_t i) {
-    const starg_descriptor_guard *g = &d->guards[i];
-    json_t *distances = json_array();
-    int failed = distances == NULL;
-    for (size_t k = 0; k < d->direction_count && !failed; k++)
-        failed =
-            json_array_append_new(distances, json_real(d->distances[i * d->direction_count + k]));
+static json_t *numbers_json(const double *numbers, size_t count) {
+    json_t *array = json_array();
+    int failed = array == NULL;
+    for (size_t i = 0; i < count && !failed; i++)
+        failed = json_array_append_new(array, json_real(numbers[i]));
     if (failed) {
-        json_decref(distances);
+        json_decref(array);
         return NULL;
     }
+    return array;
+}
+
+static bool put_numbers(FILE *stream, const char *key, const double *numbers, size_t count) {
+    return fprintf(stream, "\"%s\": ", key) > 0 &&
+           starg_json_put(stream, "", numbers_json(numbers, count), ",\n");
+}
+
+static json_t *guard_json(const starg_descriptor *d, size_t i) {
+    const starg_descriptor_guard *g = &d->guards[i];
+    json_t *distances = numbers_json(d->distances + i * d->direction_count, d->direction_count);
+    if (distances == NULL)
+        return NULL;
     return json_pack("{s:[f, f, f], s:f, s:o}", "position", g->position[0], g->position[1],
                      g->position[2], "volume", g->volume, "distances", distances);
 }
@@ -43,10 +58,14 @@ static bool put_head(FILE *stream, const starg_descriptor *d, const char *file) 
     return starg_json_put(stream, "{\n\"format\": ", json_string(FORMAT), ",\n") &&
            starg_json_put(stream, "\"version\": ", json_integer(VERSION), ",\n") &&
            starg_json_put(stream, "\"model\": ", model, ",\n") &&
+           starg_json_put(stream, "\"detail\": ", json_integer((json_int_t)d->detail), ",\n") &&
            starg_json_put(stream, "\"effort\": ", json_integer((json_int_t)d->effort), ",\n") &&
            starg_json_put(stream, "\"time_limited\": ", json_boolean(d->time_limited), ",\n") &&
            starg_json_put(stream, "\"directions\": ", json_integer((json_int_t)d->direction_count),
-                          ",\n");
+                          ",\n") &&
+           put_numbers(stream, "views", &d->views[0][0], VIEWS) &&
+           put_numbers(stream, "surface_spectrum", d->surface_spectrum, EIGENVALUES) &&
+           put_numbers(stream, "solid_spectrum", d->solid_spectrum, EIGENVALUES);
 }
 
 static bool put_all(FILE *stream, const void *result, const char *file) {
@@ -117,6 +136,21 @@ static starg_status read_point(const json_reader *r, json_t *object, const char 
         out[k] = json_number_value(x);
     }
     return good ? STARG_OK : reject(r, key, "an array of three numbers below 1e100");
+}
+
+static starg_status read_numbers(const json_reader *r, json_t *object, const char *key,
+                                 size_t count, double *out) {
+    json_t *array = json_object_get(object, key);
+    bool good = json_array_size(array) == count;
+    for (size_t k = 0; k < count && good; k++) {
+        json_t *x = json_array_get(array, k);
+        out[k] = json_is_number(x) ? json_number_value(x) : -1;
+        good = out[k] >= 0 && isfinite(out[k]);
+    }
+    return good ? STARG_OK
+                : reject(r, key,
+                         "an array of finite numbers, zero or more, as many as the format "
+                         "says");
 }
 
 static starg_status read_guard(const json_reader *r, json_t *object, size_t i) {
@@ -220,12 +254,17 @@ static starg_status read_document(const json_reader *r, json_t *root) {
         return reject(r, "format", "\"starguard-descriptor\"");
     STARG_TRY(read_count(r, root, "version", SIZE_MAX, &version));
     if (version != VERSION)
-        return reject(r, "version", "1, the only one that is known");
+        return reject(r, "version",
+                      "2, the only one that is known; describe the model anew with this program");
     STARG_TRY(read_model(r, root));
+    STARG_TRY(read_count(r, root, "detail", STARG_MESH_LIMIT, &d->detail));
     STARG_TRY(read_count(r, root, "effort", SIZE_MAX, &effort));
     d->effort = effort;
     d->time_limited = json_is_true(json_object_get(root, "time_limited"));
     STARG_TRY(read_count(r, root, "directions", UINT32_MAX, &d->direction_count));
+    STARG_TRY(read_numbers(r, root, "views", VIEWS, &d->views[0][0]));
+    STARG_TRY(read_numbers(r, root, "surface_spectrum", EIGENVALUES, d->surface_spectrum));
+    STARG_TRY(read_numbers(r, root, "solid_spectrum", EIGENVALUES, d->solid_spectrum));
     STARG_TRY(read_guards(r, root));
     STARG_TRY(read_edges(r, root));
 done:

@@ -16,12 +16,23 @@ typedef struct laplacian {
     int64_t *rows;
     double *values;
     double *masses;
+    uint32_t *row_of; /* of each vertex of the mesh: its row, or LAPLACIAN_NO_ROW */
+    double *field;    /* of each row: what was given, interpolated; else 1 */
 } laplacian;
+
+#define LAPLACIAN_NO_ROW UINT32_MAX
 
 /* Of a mesh that is closed or not; vertices that no face with an extent uses are left out. A mesh
  * of few vertices is subdivided first, which leaves the surface as it is: a spectrum needs a
- * resolution. Errors: MESH (no area), MEMORY, CANCELLED. */
-starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, laplacian *out);
+ * resolution. `field`: NULL or a number for each vertex. Errors: MESH (no area), MEMORY,
+ * CANCELLED. */
+starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, const double *field,
+                              laplacian *out);
+
+/* The same of a shell, thin but of a thickness that varies (positive, for each vertex): where it is
+ * thicker it holds more and lets more through, in proportion. Only ratios count. */
+starg_status laplacian_create_shell(starg_context *context, const starg_mesh *mesh,
+                                    const double *thickness, laplacian *out);
 void laplacian_free(starg_context *context, laplacian *l);
 
 #endif

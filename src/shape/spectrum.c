@@ -1,31 +1,27 @@
 /* The smallest eigenvalues of a Laplacian by shifted inversion.
  *
  * Implicitly restarted Lanczos iterations (ARPACK) on M^1/2 (L + M)^-1 M^1/2, whose largest
- * eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is positive definite, because
- * the masses are positive: an LDL' factorisation without pivoting (LDL, in the order of AMD) is
- * stable and done once; each step costs one solution with it.
+ * eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is factorised once (factor.c);
+ * each step costs one solution with it.
  *
  * ARPACK keeps its state in static variables: one run at a time, behind a lock. Its start vector is
- * given, so that the result depends on the matrix only. AMD takes its memory from malloc; all other
- * memory is the context's.
+ * given, so that the result depends on the matrix only.
  *
- * Cost: the fill-in of the factor, about 30 n to 60 n numbers for surfaces, for each of some 2 to 4
- * steps per eigenvalue. */
+ * Cost: some 2 to 4 steps per eigenvalue. */
 #include "shape/spectrum.h"
 
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <suitesparse/amd.h>
-#include <suitesparse/ldl.h>
 #include <threads.h>
 
 #include <arpack/arpack.h>
 
 #include "core/memory.h"
 #include "core/rng.h"
+#include "shape/factor.h"
 
-static const char STAGE[] = "shape-dna";
+static const char STAGE[] = "spectrum";
 
 enum { ITERATIONS = 300, SPARE_VECTORS = 20 };
 static const double SHIFT = 1, TOLERANCE = 1e-10;
@@ -38,89 +34,6 @@ static void make_lock(void) {
     lock_made = mtx_init(&arpack_lock, mtx_plain) == thrd_success;
 }
 
-/* ---- factorisation ---- */
-
-typedef struct factor {
-    int64_t count;
-    int64_t *order, *inverse; /* of the rows */
-    int64_t *parents, *sizes, *flags, *pattern;
-    int64_t *starts, *rows;
-    double *values, *diagonal, *row;
-} factor;
-
-static void factor_free(starg_context *context, factor *f) {
-    void *const blocks[] = {f->order,  f->inverse, f->parents, f->sizes,    f->flags, f->pattern,
-                            f->starts, f->rows,    f->values,  f->diagonal, f->row};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
-        starg_release(context, blocks[i]);
-}
-
-static starg_status make_room(starg_context *context, factor *f) {
-    starg_status status = STARG_OK;
-    size_t n = (size_t)f->count;
-    int64_t **const lists[] = {&f->order, &f->inverse, &f->parents,
-                               &f->sizes, &f->flags,   &f->pattern};
-    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
-        STARG_NEW(context, STAGE, *lists[i], n);
-    STARG_NEW(context, STAGE, f->starts, n + 1);
-    STARG_NEW(context, STAGE, f->diagonal, n);
-    STARG_NEW(context, STAGE, f->row, n);
-done:
-    return status;
-}
-
-/* L + SHIFT M: the same entries with the masses on the diagonal, which comes first by column. */
-static starg_status shifted(starg_context *context, const laplacian *l, double **values) {
-    starg_status status = STARG_OK;
-    size_t entries = (size_t)l->starts[l->count];
-    STARG_NEW(context, STAGE, *values, entries);
-    memcpy(*values, l->values, entries * sizeof **values);
-    for (size_t i = 0; i < l->count; i++)
-        (*values)[l->starts[i]] += SHIFT * l->masses[i];
-done:
-    return status;
-}
-
-static starg_status order_rows(starg_context *context, const laplacian *l, factor *f) {
-    double information[AMD_INFO];
-    SuiteSparse_long result =
-        amd_l_order(f->count, l->starts, l->rows, f->order, NULL, information);
-    if (result == AMD_OUT_OF_MEMORY)
-        return starg_fail_memory(context, STAGE);
-    if (result != AMD_OK && result != AMD_OK_BUT_JUMBLED)
-        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "the matrix cannot be ordered");
-    return STARG_OK;
-}
-
-static starg_status fail_extreme(starg_context *context) {
-    return starg_fail(
-        context, STARG_ERROR_SOLVER, STAGE,
-        "the spectrum cannot be found: the faces' shapes are too extreme; 'repair' may "
-        "help");
-}
-
-static starg_status factorise(starg_context *context, const laplacian *l, factor *f) {
-    starg_status status = STARG_OK;
-    double *values = NULL;
-    f->count = (int64_t)l->count;
-    STARG_TRY(make_room(context, f));
-    STARG_TRY(order_rows(context, l, f));
-    STARG_TRY(shifted(context, l, &values));
-    ldl_l_symbolic(f->count, l->starts, l->rows, f->starts, f->parents, f->sizes, f->flags,
-                   f->order, f->inverse);
-    STARG_NEW(context, STAGE, f->rows, (size_t)f->starts[f->count]);
-    STARG_NEW(context, STAGE, f->values, (size_t)f->starts[f->count]);
-    if (ldl_l_numeric(f->count, l->starts, l->rows, values, f->starts, f->parents, f->sizes,
-                      f->rows, f->values, f->diagonal, f->row, f->pattern, f->flags, f->order,
-                      f->inverse) != f->count)
-        status = fail_extreme(context);
-done:
-    starg_release(context, values);
-    return status;
-}
-
-/* ---- iteration ---- */
-
 typedef struct iteration {
     const laplacian *l;
     const factor *f;
@@ -131,14 +44,9 @@ typedef struct iteration {
 
 /* y = M^1/2 (L + SHIFT M)^-1 M^1/2 x */
 static void apply(const iteration *it, const double *x, double *y) {
-    const factor *f = it->f;
     for (size_t i = 0; i < it->l->count; i++)
         y[i] = it->roots[i] * x[i];
-    ldl_l_perm(f->count, it->solution, y, f->order);
-    ldl_l_lsolve(f->count, it->solution, f->starts, f->rows, f->values);
-    ldl_l_dsolve(f->count, it->solution, f->diagonal);
-    ldl_l_ltsolve(f->count, it->solution, f->starts, f->rows, f->values);
-    ldl_l_permt(f->count, y, it->solution, f->order);
+    factor_solve(it->f, y, it->solution);
     for (size_t i = 0; i < it->l->count; i++)
         y[i] *= it->roots[i];
 }
@@ -206,7 +114,7 @@ starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_
         return starg_fail(context, STARG_ERROR_MESH, STAGE,
                           "a mesh of %zu vertices has too %s for its spectrum", n,
                           wanted >= n ? "few" : "many");
-    STARG_TRY(factorise(context, l, &f));
+    STARG_TRY(factor_create(context, l, SHIFT, &f));
     STARG_NEW(context, STAGE, it.roots, n);
     STARG_NEW(context, STAGE, it.solution, n);
     STARG_NEW(context, STAGE, it.residual, n);
@@ -220,7 +128,7 @@ starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_
     for (size_t i = 0; i < wanted; i++) {
         eigenvalues[i] = 1 / eigenvalues[i] - SHIFT;
         if (!(isfinite(eigenvalues[i]) && eigenvalues[i] > -0.5 * SHIFT)) {
-            status = fail_extreme(context);
+            status = factor_fail(context);
             goto done;
         }
     }

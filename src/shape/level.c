@@ -1,0 +1,108 @@
+/* A model at a standard level of detail, so that noise, resolution and small faults of its mesh
+ * count little in what is measured next.
+ *
+ * Stages: a very fine mesh is simplified to some times the wanted vertices, which noise survives;
+ * smoothing that keeps the volume [Taub95], in rounds in proportion to the vertices, which makes
+ * it reach equally far on fine and on coarse meshes of a shape (coarse ones are hardly touched);
+ * simplification; repair of what intersects itself, so that limbs that touch do not become one.
+ *
+ * Invariants: closed 2-manifolds of the same topology throughout, but for what the repair drops.
+ *
+ * Cost: O(n log n), most of it the simplification. */
+#include "shape/level.h"
+
+#include "core/memory.h"
+#include "mesh/mesh.h"
+#include "starguard/repair.h"
+#include "starguard/simplify.h"
+
+static const char STAGE[] = "level of detail";
+
+enum { MOST = 5, ROUNDS = 4 }; /* times the wanted vertices; rounds at the wanted vertices */
+
+/* Steps inward and outward [Taub95]: what is as fine as the mesh goes, what varies over more than
+ * about ten edges (below the pass band of 0.1) stays. */
+static const double INWARD = 0.5, OUTWARD = -0.5 / (1 - 0.1 * 0.5);
+
+/* ---- smoothing ---- */
+
+typedef struct smoother {
+    const uint32_t *faces;
+    size_t vertex_count, face_count;
+    double *positions, *sums;
+    uint32_t *neighbours; /* how many */
+} smoother;
+
+/* Each vertex goes a part of the way to the mean of its neighbours: in a closed, oriented mesh each
+ * of them follows it in exactly one face. */
+static void step(smoother *s, double part) {
+    memset(s->sums, 0, 3 * s->vertex_count * sizeof *s->sums);
+    for (size_t i = 0; i < s->face_count; i++)
+        for (size_t k = 0; k < 3; k++) {
+            size_t from = s->faces[3 * i + k], to = s->faces[3 * i + (k + 1) % 3];
+            for (size_t c = 0; c < 3; c++)
+                s->sums[3 * from + c] +=
+                    (s->positions[3 * to + c] - s->positions[3 * from + c]) / s->neighbours[from];
+        }
+    for (size_t i = 0; i < 3 * s->vertex_count; i++)
+        s->positions[i] += part * s->sums[i];
+}
+
+static starg_status smooth(starg_context *context, const starg_mesh *mesh, size_t rounds,
+                           starg_mesh **out) {
+    starg_status status = STARG_OK;
+    smoother s = {.faces = starg_mesh_faces(mesh),
+                  .vertex_count = starg_mesh_vertex_count(mesh),
+                  .face_count = starg_mesh_face_count(mesh)};
+    STARG_NEW(context, STAGE, s.positions, 3 * s.vertex_count);
+    STARG_NEW(context, STAGE, s.sums, 3 * s.vertex_count);
+    STARG_NEW_ZERO(context, STAGE, s.neighbours, s.vertex_count);
+    memcpy(s.positions, starg_mesh_vertices(mesh), 3 * s.vertex_count * sizeof *s.positions);
+    for (size_t i = 0; i < 3 * s.face_count; i++)
+        s.neighbours[s.faces[i]]++;
+    for (size_t i = 0; i < rounds; i++) {
+        STARG_TRY(starg_check_cancel(context, STAGE));
+        step(&s, INWARD);
+        step(&s, OUTWARD);
+    }
+    STARG_TRY(starg_mesh_create(context, s.positions, s.vertex_count, s.faces, s.face_count, out));
+done:
+    starg_release(context, s.positions);
+    starg_release(context, s.sums);
+    starg_release(context, s.neighbours);
+    return status;
+}
+
+/* ---- all of it ---- */
+
+/* Puts a mesh in the place of another. */
+static void replace(starg_mesh **mesh, starg_mesh *by) {
+    starg_mesh_free(*mesh);
+    *mesh = by;
+}
+
+static starg_status refine(starg_context *context, const starg_mesh *mesh, size_t vertices,
+                           starg_mesh **out) {
+    starg_status status = STARG_OK;
+    starg_mesh *level = NULL, *next = NULL;
+    STARG_TRY(starg_mesh_simplify(context, mesh, MOST * vertices, NULL, NULL, &level));
+    size_t rounds = (ROUNDS * starg_mesh_vertex_count(level) + vertices / 2) / vertices;
+    STARG_TRY(smooth(context, level, rounds, &next));
+    replace(&level, next);
+    STARG_TRY(starg_mesh_simplify(context, level, vertices, NULL, NULL, &next));
+    replace(&level, next);
+    STARG_TRY(starg_mesh_repair(context, level, NULL, &next, &(starg_repair_report){0}));
+    replace(&level, next);
+    *out = level;
+    level = NULL;
+done:
+    starg_mesh_free(level);
+    return status;
+}
+
+starg_status level_create(starg_context *context, const starg_mesh *mesh, size_t vertices,
+                          starg_mesh **out) {
+    *out = NULL;
+    starg_status status = refine(context, mesh, vertices, out);
+    return status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE ? STARG_OK : status;
+}

@@ -1,0 +1,13 @@
+/* How something would spread on the boundary of a solid, and through the solid. */
+#ifndef STARG_SHAPE_THICKNESS_H
+#define STARG_SHAPE_THICKNESS_H
+
+#include "shape/rays.h"
+
+/* The smallest STARG_DESCRIPTOR_EIGENVALUES eigenvalues behind 0, ascending, times the area: of the
+ * surface, and of the shell that stands for the solid. Errors: MESH (no area), SOLVER, MEMORY,
+ * CANCELLED. */
+starg_status thickness_spectra(starg_context *context, const starg_tetmesh *mesh,
+                               const ray_caster *caster, double *surface, double *solid);
+
+#endif
