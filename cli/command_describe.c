@@ -26,7 +26,7 @@ static const cli_option options[] = {
     CLI_COUNT_OPTION("detail", detail, "N", 0, INT32_MAX / 8,
                      "Bring the model down to N vertices first, smooth and free of local "
                      "self-intersections, so that noise and resolution count little; 0 describes "
-                     "it as it is. Default 2000."),
+                     "it as it is. Default 3000."),
     CLI_TEXT_OPTION("reconstruct", reconstruct, "FILE.ply",
                     "Write the boundary as the descriptor knows it: a point where each look ends."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the model and its guards."),

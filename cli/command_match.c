@@ -10,7 +10,8 @@ typedef struct values {
 
 static const cli_option options[] = {CLI_CHOICE_OPTION(
     "distance", distance, cli_distance_words, "star|paper|shape-dna|d2",
-    "star (default): what guards see, whatever the pose. paper: the deformation of one guarding "
+    "star (default): what is seen from the pieces and how they conduct, whatever the pose. paper: "
+    "the deformation of one guarding "
     "graph into the other. shape-dna: the spectrum of the surface. d2: the distances between "
     "points of the surface.")};
 

@@ -11,10 +11,11 @@ extern const char *const cli_distance_words[];
 
 #define CLI_DISTANCE_OPTION                                                                        \
     CLI_CHOICE_OPTION(                                                                             \
-        "distance", distance, cli_distance_words, "shape-dna|star|paper|d2",                       \
-        "What models are compared by: shape-dna (default), the spectrum of the surface, which "    \
-        "bending hardly changes; star, what guards see, likewise; paper, the deformation of one "  \
-        "guarding graph into the other; or d2, the distances between points of the surface.")
+        "distance", distance, cli_distance_words, "star|shape-dna|paper|d2",                       \
+        "What models are compared by: star (default), what is seen from the pieces of a star "     \
+        "decomposition and how they conduct, whatever the pose; shape-dna, the spectrum of the "   \
+        "surface; paper, the deformation of one guarding graph into the other; or d2, the "        \
+        "distances between points of the surface.")
 
 /* Opens the database that the first operand names. */
 starg_status cli_database_open(cli_session *session, starg_database **out);

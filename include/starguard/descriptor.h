@@ -56,7 +56,7 @@ typedef struct starg_descriptor {
 enum {
     STARG_DESCRIPTOR_DIRECTIONS = 256,
     STARG_DESCRIPTOR_EFFORT = 200,
-    STARG_DESCRIPTOR_DETAIL = 2000
+    STARG_DESCRIPTOR_DETAIL = 3000
 };
 
 typedef struct starg_descriptor_options {
@@ -65,7 +65,7 @@ typedef struct starg_descriptor_options {
                                guards, and take longer */
     size_t detail;          /* vertices: the model is smoothed, brought down to no more than that,
                                and mended where it meets itself, so that noise and resolution count
-                               little. 0: it is described as it is. Default 2,000 */
+                               little. 0: it is described as it is. Default 3,000 */
 } starg_descriptor_options;
 
 STARG_API void starg_descriptor_options_default(starg_descriptor_options *options);

@@ -23,7 +23,7 @@ typedef enum starg_signature_kind {
     STARG_SIGNATURE_PAPER = 3      /* the guarding graph and histograms of [YL11]            */
 } starg_signature_kind;
 
-enum { STARG_SIGNATURE_KINDS = 4, STARG_SIGNATURE_DEFAULT = STARG_SIGNATURE_SHAPE_DNA };
+enum { STARG_SIGNATURE_KINDS = 4, STARG_SIGNATURE_DEFAULT = STARG_SIGNATURE_STAR };
 
 /* What a model is compared by. Signatures compare with those of the same kind and version only; a
  * version changes whenever the numbers do. */

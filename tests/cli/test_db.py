@@ -66,7 +66,7 @@ class Contract(Database):
 
     def test_query(self):
         self.filled()
-        for distance in "d2", "shape-dna":
+        for distance in "d2", "shape-dna", "star":
             found = self.db("query", "shapes.db", "rod_1.off", "-k", "3", "--distance", distance)
             self.assertEqual(found["distance"], distance)
             self.assertEqual(found["models"][0]["name"], "rod_1.off")

@@ -11,12 +11,12 @@ class Describe(support.Case):
         return report, json.loads(self.read(f"{name}.json"))
 
     def test_files(self):
-        report, file = self.describe("torus", "--directions", "100", "--reconstruct", "points.ply",
+        report, file = self.describe("torus", "--detail", "0", "--directions", "100", "--reconstruct", "points.ply",
                                      "--picture", "guards.png",
                                      "--histograms", "seen.svg")
         self.assertEqual(report["format"], "starguard-describe")
         self.assertEqual(file["format"], "starguard-descriptor")
-        self.assertEqual(file["version"], 1)
+        self.assertEqual(file["version"], 2)
         self.assertEqual(file["model"]["file"], "torus.off")
         self.assertEqual(report["guards"], len(file["guards"]))
         self.assertEqual(report["edges"], len(file["edges"]))

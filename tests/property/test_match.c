@@ -8,9 +8,10 @@
 #include "models.h"
 #include "starguard/descriptor.h"
 #include "starguard/sample.h"
+#include "starguard/simplify.h"
 
 /* The layouts of docs/formats.md. */
-enum { STAR_GUARD = 33, PAPER_HEAD = 2, PAPER_GUARD = 68 };
+enum { STAR_SPECTRUM = 30, STAR_VIEWS = 128, STAR = 188, PAPER_HEAD = 2, PAPER_GUARD = 68 };
 
 static starg_signature *signature_of(starg_context *context, const starg_mesh *mesh,
                                      starg_signature_kind kind) {
@@ -29,23 +30,15 @@ static double distance(starg_context *context, const starg_signature *a, const s
 
 /* ---- star ---- */
 
-/* From the definition: every guard to its cheapest counterpart. */
+/* From the definition in docs/retrieval.md. */
 static double star_by_definition(const starg_signature *a, const starg_signature *b) {
-    const starg_signature *both[2] = {a, b};
     double sum = 0;
-    for (size_t way = 0; way < 2; way++) {
-        const starg_signature *from = both[way], *to = both[1 - way];
-        for (size_t i = 0; i < from->count / STAR_GUARD; i++) {
-            const double *p = from->numbers + STAR_GUARD * i;
-            double least = INFINITY;
-            for (size_t j = 0; j < to->count / STAR_GUARD; j++) {
-                double cost = 0;
-                for (size_t k = 1; k < STAR_GUARD; k++)
-                    cost += fabs(p[k] - to->numbers[STAR_GUARD * j + k]) / (STAR_GUARD - 1);
-                least = fmin(least, cost);
-            }
-            sum += 0.5 * p[0] * least;
-        }
+    for (int i = 0; i < STAR; i++) {
+        double difference = fabs(a->numbers[i] - b->numbers[i]), place = i % STAR_SPECTRUM + 1;
+        if (i >= 2 * STAR_SPECTRUM)
+            sum += difference / (3 * 0.146 * STAR_VIEWS);
+        else
+            sum += difference / (place * 3 * (i < STAR_SPECTRUM ? 1.27 : 1.19) * STAR_SPECTRUM);
     }
     return sum;
 }
@@ -72,10 +65,8 @@ static void poses_are_nearer_than_classes(void **state) {
         starg_mesh_free(mesh);
     }
     for (size_t i = 0; i < 6; i++) {
-        double mass = 0, own = distance(context, s[i], s[i ^ 1]);
-        for (size_t g = 0; g < s[i]->count; g += STAR_GUARD)
-            mass += s[i]->numbers[g];
-        assert_true(fabs(mass - 1) < 1e-12);
+        double own = distance(context, s[i], s[i ^ 1]);
+        assert_int_equal(s[i]->count, STAR);
         assert_true(distance(context, s[i], s[i]) == 0);
         for (size_t j = 0; j < 6; j++) {
             double other = distance(context, s[i], s[j]);
@@ -86,6 +77,59 @@ static void poses_are_nearer_than_classes(void **state) {
     }
     for (size_t i = 0; i < 6; i++)
         starg_signature_free(context, s[i]);
+    test_context_free(context);
+}
+
+/* ---- copies ---- */
+
+/* Every coordinate moved at random, by up to half a percent of the diagonal either way. */
+static starg_mesh *shaken(starg_context *context, const starg_mesh *mesh) {
+    double lower[3], upper[3], diagonal = 0;
+    starg_rng rng = starg_rng_make(16, 0, 0);
+    starg_mesh *out = NULL;
+    size_t count = 3 * starg_mesh_vertex_count(mesh);
+    double *moved = malloc(count * sizeof *moved);
+    assert_non_null(moved);
+    starg_mesh_bounds(mesh, lower, upper);
+    for (int k = 0; k < 3; k++)
+        diagonal += pow(upper[k] - lower[k], 2);
+    for (size_t i = 0; i < count; i++)
+        moved[i] =
+            starg_mesh_vertices(mesh)[i] + 0.01 * sqrt(diagonal) * (starg_rng_unit(&rng) - 0.5);
+    test_ok(context, starg_mesh_create(context, moved, count / 3, starg_mesh_faces(mesh),
+                                       starg_mesh_face_count(mesh), &out));
+    free(moved);
+    return out;
+}
+
+/* Noise and resolution count for less than the figure. */
+static void copies_find_their_original(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    const char *names[] = {"human", "giraffe", "bird"};
+    starg_signature *originals[3];
+    starg_mesh *meshes[3];
+    for (size_t i = 0; i < 3; i++) {
+        meshes[i] = posed(context, names[i], 0);
+        originals[i] = signature_of(context, meshes[i], STARG_SIGNATURE_STAR);
+    }
+    for (size_t i = 0; i < 6; i++) {
+        starg_mesh *copy = NULL;
+        if (i < 3)
+            copy = shaken(context, meshes[i]);
+        else
+            test_ok(context, starg_mesh_simplify(context, meshes[i - 3], 750, NULL, NULL, &copy));
+        starg_signature *s = signature_of(context, copy, STARG_SIGNATURE_STAR);
+        double own = distance(context, s, originals[i % 3]);
+        for (size_t k = 0; k < 3; k++)
+            assert_true(k == i % 3 || distance(context, s, originals[k]) > 2 * own);
+        starg_signature_free(context, s);
+        starg_mesh_free(copy);
+    }
+    for (size_t i = 0; i < 3; i++) {
+        starg_signature_free(context, originals[i]);
+        starg_mesh_free(meshes[i]);
+    }
     test_context_free(context);
 }
 
@@ -102,6 +146,8 @@ static starg_descriptor disguise(const starg_descriptor *d, double angle, double
     out.edges = calloc(d->edge_count + 1, sizeof *out.edges);
     out.distances = calloc(n * width, sizeof *out.distances);
     assert_true(out.guards != NULL && out.edges != NULL && out.distances != NULL);
+    for (size_t i = 0; i < STAR_VIEWS; i++)
+        (&out.views[0][0])[i] *= scale;
     for (size_t i = 0; i < n; i++) {
         const double *p = d->guards[n - 1 - i].position;
         out.guards[i].position[0] = scale * (c * p[0] - s * p[1] + 3);
@@ -178,7 +224,9 @@ static void absurd_descriptors(void **state) {
                                             {{1e99, 0, -1e99}, sizes[round / 6 % 6]}};
         for (size_t i = 0; i < 24; i++)
             distances[i] = sizes[(round / 36 + i * (round % 7)) % 6];
-        starg_descriptor d = {.diagonal = sizes[(round + round / 6) % 6],
+        starg_descriptor d = {.views = {{sizes[round % 5], sizes[round % 6]}},
+                              .surface_spectrum = {sizes[round / 2 % 6], sizes[round / 3 % 6]},
+                              .diagonal = sizes[(round + round / 6) % 6],
                               .guard_count = 2,
                               .guards = guards,
                               .direction_count = 12,
@@ -229,7 +277,7 @@ static void join(const made_up *g, size_t edge, size_t a, size_t b) {
 static starg_signature *paper_of(starg_context *context, const made_up *g) {
     starg_signature *s = NULL;
     test_ok(context,
-            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 1, g->numbers,
+            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 2, g->numbers,
                                     PAPER_HEAD + PAPER_GUARD * g->guards + 2 * g->edges, &s));
     return s;
 }
@@ -352,28 +400,32 @@ static void damaged_numbers_are_refused(void **state) {
         double kept = g.numbers[damages[i].place];
         g.numbers[damages[i].place] = damages[i].value;
         assert_int_equal(
-            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 1, g.numbers, count, &s),
+            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 2, g.numbers, count, &s),
             STARG_ERROR_FORMAT);
         g.numbers[damages[i].place] = kept;
     }
     for (size_t cut = 0; cut < count; cut += 7)
         assert_int_equal(
-            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 1, g.numbers, cut, &s),
+            starg_signature_restore(context, STARG_SIGNATURE_PAPER, 2, g.numbers, cut, &s),
             STARG_ERROR_FORMAT);
-    double star[2 * STAR_GUARD] = {1};
-    for (size_t cut = 0; cut < 2 * STAR_GUARD; cut++)
-        if (cut != STAR_GUARD)
-            assert_int_equal(
-                starg_signature_restore(context, STARG_SIGNATURE_STAR, 1, star, cut, &s),
-                STARG_ERROR_FORMAT);
-    star[7] = NAN;
-    assert_int_equal(
-        starg_signature_restore(context, STARG_SIGNATURE_STAR, 1, star, STAR_GUARD, &s),
-        STARG_ERROR_FORMAT);
-    star[7] = 0, star[0] = -1;
-    assert_int_equal(
-        starg_signature_restore(context, STARG_SIGNATURE_STAR, 1, star, STAR_GUARD, &s),
-        STARG_ERROR_FORMAT);
+    double star[STAR + 1] = {0};
+    for (size_t cut = 0; cut <= STAR; cut++)
+        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 2, star,
+                                                 cut < STAR ? cut : STAR + 1, &s),
+                         STARG_ERROR_FORMAT);
+    const struct {
+        size_t place;
+        double value;
+    } star_damages[] = {{0, -1},     {3, 1},    {29, NAN}, {59, INFINITY},
+                        {59, 1e101}, {60, 1e4}, {187, NAN}};
+    for (size_t i = 0; i < sizeof star_damages / sizeof *star_damages; i++) {
+        star[star_damages[i].place] = star_damages[i].value;
+        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 2, star, STAR, &s),
+                         STARG_ERROR_FORMAT);
+        star[star_damages[i].place] = 0;
+    }
+    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 1, star, STAR, &s),
+                     STARG_ERROR_FORMAT);
     assert_null(s);
     free(g.numbers);
     test_context_free(context);
@@ -406,6 +458,7 @@ static void memory_may_give_out(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(poses_are_nearer_than_classes),
+        cmocka_unit_test(copies_find_their_original),
         cmocka_unit_test(motions_hardly_count),
         cmocka_unit_test(absurd_descriptors),
         cmocka_unit_test(deforming_never_costs_more_than_resting),

@@ -16,8 +16,10 @@ static starg_descriptor *describe(starg_context *context, const starg_mesh *mesh
     starg_descriptor_options_default(&options);
     options.direction_count = directions;
     options.effort = 1;
+    options.detail = 0;
     test_ok(context, starg_descriptor_create(context, mesh, &options, &d));
     assert_int_equal(d->direction_count, directions);
+    assert_int_equal(d->detail, 0);
     return d;
 }
 
@@ -127,6 +129,91 @@ static void reconstruction_gets_closer(void **state) {
     test_context_free(context);
 }
 
+/* ---- what does not depend on guards ---- */
+
+/* From points of a ball of radius 1, even in its volume, the boundary is 3/4 away on average. Its
+ * width is the same all over, so that the shell has the spectrum of the sphere: l (l + 1) times 4
+ * pi, 2 l + 1 times each. */
+static void views_and_spectra_of_a_ball(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_mesh *mesh = test_sample_mesh(context, "sphere", 3000);
+    starg_descriptor *d = describe(context, mesh, 12);
+    double radius = d->diagonal / sqrt(12), mean = 0;
+    for (size_t k = 0; k < STARG_DESCRIPTOR_VIEW; k++)
+        for (size_t i = 0; i < STARG_DESCRIPTOR_SPREAD; i++) {
+            double length = d->views[k][i];
+            mean += length / radius / (STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD);
+            assert_true(length > 0 && length < 2 * radius);
+            assert_true(i == 0 || length >= d->views[k][i - 1]);
+            assert_true(k == 0 || length >= d->views[k - 1][i]);
+        }
+    assert_true(fabs(mean - 0.75) < 0.02);
+    for (size_t l = 1, i = 0; l <= 4; l++)
+        for (size_t k = 0; k < 2 * l + 1; k++, i++) {
+            double expected = 4 * 3.14159265358979323846 * (double)(l * (l + 1));
+            assert_true(fabs(d->surface_spectrum[i] / expected - 1) < 0.01);
+            assert_true(fabs(d->solid_spectrum[i] / expected - 1) < 0.02);
+        }
+    starg_descriptor_free(context, d);
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
+/* A square bar of length 4 QUARTER, twice as thick in its outer quarters as between them, with
+ * pointed ends. */
+static shape dumbbell(void) {
+    enum { QUARTER = 24, RINGS = 4 * QUARTER + 1, RING = 4 };
+    shape s = {.vertex_count = RING * RINGS + 2, .face_count = 2 * RING * RINGS};
+    s.vertices = calloc(3 * s.vertex_count, sizeof *s.vertices);
+    s.faces = calloc(3 * s.face_count, sizeof *s.faces);
+    assert_true(s.vertices != NULL && s.faces != NULL);
+    for (size_t i = 0; i < RINGS; i++)
+        for (size_t k = 0; k < RING; k++) {
+            double *p = s.vertices + 3 * (RING * i + k);
+            double half = i > QUARTER && i < 3 * QUARTER ? 0.5 : 1;
+            p[0] = (double)i;
+            p[1] = k == 0 || k == 3 ? -half : half;
+            p[2] = k < 2 ? -half : half;
+        }
+    s.vertices[3 * (s.vertex_count - 2)] = -1;
+    s.vertices[3 * (s.vertex_count - 1)] = 4 * QUARTER + 1;
+    uint32_t *f = s.faces, first = (uint32_t)s.vertex_count - 2, far = RING * (RINGS - 1);
+    for (uint32_t i = 0; i < RINGS - 1; i++)
+        for (uint32_t k = 0; k < RING; k++, f += 6) {
+            uint32_t one = RING * i + k, two = RING * i + (k + 1) % RING;
+            const uint32_t both[6] = {one, one + RING, two, two, one + RING, two + RING};
+            memcpy(f, both, sizeof both);
+        }
+    for (uint32_t k = 0; k < RING; k++, f += 6) {
+        uint32_t next = (k + 1) % RING;
+        const uint32_t both[6] = {first, k, next, first + 1, far + next, far + k};
+        memcpy(f, both, sizeof both);
+    }
+    return s;
+}
+
+/* Slow modes of a bar are those of a line that holds and conducts in proportion to what counts: the
+ * perimeter for the surface, the section for the solid. With thick quarters at the ends, q being
+ * what counts in the middle by what counts there, the first mode has the wave number 2 atan(sqrt
+ * q), the second one pi, in units of half the length. */
+static void spectra_of_a_dumbbell(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape s = dumbbell();
+    starg_mesh *mesh = test_mesh_of(context, &s);
+    starg_descriptor *d = describe(context, mesh, 12);
+    const double pi = 3.14159265358979323846;
+    double of_surface = pow(2 * atan(sqrt(1.0 / 2)) / pi, 2);
+    double of_solid = pow(2 * atan(sqrt(1.0 / 4)) / pi, 2);
+    assert_true(fabs(d->surface_spectrum[0] / d->surface_spectrum[1] / of_surface - 1) < 0.05);
+    assert_true(fabs(d->solid_spectrum[0] / d->solid_spectrum[1] / of_solid - 1) < 0.1);
+    starg_descriptor_free(context, d);
+    starg_mesh_free(mesh);
+    shape_free(&s);
+    test_context_free(context);
+}
+
 /* ---- files ---- */
 
 static const char *scratch_path(void) {
@@ -171,6 +258,9 @@ static void there_and_back(void **state) {
     assert_int_equal(back->guard_count, d->guard_count);
     assert_int_equal(back->edge_count, d->edge_count);
     assert_int_equal(back->effort, 1);
+    assert_memory_equal(back->views, d->views, sizeof d->views);
+    assert_memory_equal(back->surface_spectrum, d->surface_spectrum, sizeof d->surface_spectrum);
+    assert_memory_equal(back->solid_spectrum, d->solid_spectrum, sizeof d->solid_spectrum);
     assert_memory_equal(back->guards, d->guards, d->guard_count * sizeof *d->guards);
     assert_memory_equal(back->distances, d->distances,
                         d->guard_count * d->direction_count * sizeof *d->distances);
@@ -212,14 +302,21 @@ static void broken_files(void **state) {
     for (size_t cut = 0; cut + 2 < size; cut += 1 + size / 400)
         refuse(context, text, cut);
     const char *changes[][2] = {
-        {"\"version\": 1", "\"version\": 2"},
-        {"\"version\": 1", "\"version\": \"1\""},
+        {"\"version\": 2", "\"version\": 1"},
+        {"\"version\": 2", "\"version\": 3"},
+        {"\"version\": 2", "\"version\": \"2\""},
         {"starguard-descriptor", "starguard-guards"},
         {"\"directions\": 12", "\"directions\": 13"},
         {"\"directions\": 12", "\"directions\": 0"},
         {"\"directions\": 12", "\"directions\": 1e99"},
         {"\"directions\": 12", "\"directions\": 4294967295"},
+        {"\"detail\": 0", "\"detail\": -1"},
         {"\"effort\": 1", "\"effort\": -1"},
+        {"\"views\": [", "\"views\": [1, "},
+        {"\"views\": [", "\"views\": [-"},
+        {"\"views\": [", "\"others\": ["},
+        {"\"surface_spectrum\": [", "\"surface_spectrum\": [null, "},
+        {"\"solid_spectrum\": [", "\"solid_spectrum\": [0, "},
         {"\"diagonal\":", "\"diagonal\":-"},
         {"\"position\":[", "\"position\":[1,"},
         {"\"position\":[", "\"position\":[1e101,"},
@@ -269,6 +366,9 @@ static void refused(void **state) {
     }
     options.direction_count = 12;
     options.effort = 0;
+    assert_int_equal(starg_descriptor_create(context, mesh, &options, &d), STARG_ERROR_ARGUMENT);
+    options.effort = 1;
+    options.detail = 99;
     assert_int_equal(starg_descriptor_create(context, mesh, &options, &d), STARG_ERROR_ARGUMENT);
     test_ok(context, starg_mesh_create(context, points, 3, face, 1, &flat));
     assert_int_equal(starg_descriptor_create(context, flat, NULL, &d), STARG_ERROR_MESH);
@@ -343,6 +443,8 @@ int main(void) {
         cmocka_unit_test(distances_in_a_box),
         cmocka_unit_test(pieces_of_figures),
         cmocka_unit_test(reconstruction_gets_closer),
+        cmocka_unit_test(views_and_spectra_of_a_ball),
+        cmocka_unit_test(spectra_of_a_dumbbell),
         cmocka_unit_test(there_and_back),
         cmocka_unit_test(broken_files),
         cmocka_unit_test(refused),
