@@ -5,7 +5,7 @@
  *
  * A piece is coned from its guard: each face of the solid's boundary spans a tetrahedron with it.
  * From a point in that cone, near the face, one looks both ways along the face's normal: the sum is
- * the width there, the local diameter of [GSC07, docs/retrieval.md]. Limbs keep their widths when they move.
+ * the width there, the local diameter of [GSC07]. Limbs keep their widths when they move.
  *
  * In a limb of width w, slow diffusion does not notice what is inside: it is that on a shell of the
  * boundary which holds w times the area and conducts w times as well. So the eigenvalues of
