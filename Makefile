@@ -5,7 +5,7 @@ SECONDS ?= 60
 CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
-.PHONY: build demo check check-long lint sanitize fuzz bench install deps deps-check clean
+.PHONY: build demo check check-long lint sanitize fuzz bench install package deps deps-check clean
 
 build: deps
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=OFF > /dev/null
@@ -28,7 +28,7 @@ sanitize: deps-check
 	@cmake --build $(BUILD)-sanitize -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
-# What takes too long for every change: a clang build, the thread sanitizer.
+# What takes too long for every change: a clang build, the thread sanitizer, the package on a clean root.
 check-long: check
 	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
 	@cmake --build $(BUILD)-clang -j $(JOBS)
@@ -36,6 +36,7 @@ check-long: check
 	@$(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
+	@scripts/package-test.sh $(BUILD)
 
 lint: deps-check
 	@scripts/lint.sh
@@ -54,6 +55,10 @@ bench: build
 
 install: build
 	@cmake --install $(BUILD)
+
+# The Debian package, installed on a clean root and used there.
+package: build
+	@scripts/package-test.sh $(BUILD)
 
 deps:
 	@scripts/install-deps.sh build

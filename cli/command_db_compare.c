@@ -95,7 +95,9 @@ const cli_command cli_command_db_matrix = {
         "Computes the distance of every stored model to every other, in the order of their "
         "file names.",
     .examples = "# a table, and the picture of it\n"
-                "starguard db matrix shapes.db -o distances.csv --picture distances.png",
+                "starguard db matrix shapes.db -o distances.csv --picture distances.png\n"
+                "# by what guards see\n"
+                "starguard db matrix shapes.db -o seen.csv --distance star",
     .options = matrix_options,
     .option_count = sizeof matrix_options / sizeof *matrix_options,
     .values_size = sizeof(values),

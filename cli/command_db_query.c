@@ -71,7 +71,9 @@ const cli_command cli_command_db_query = {
         "Compares a model, which need not be stored, with all that are, and lists the "
         "nearest ones with their distances. Distances of different kinds do not compare.",
     .examples = "# the five nearest\n"
-                "starguard db query shapes.db new.off -k 5",
+                "starguard db query shapes.db new.off -k 5\n"
+                "# the nearest by what guards see, for a script\n"
+                "starguard db query shapes.db new.off -k 1 --distance star --json | jq .models[0]",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),
     .defaults = set_defaults,

@@ -141,8 +141,10 @@ const cli_command cli_command_db_remove = {
         "Removes models, all that are named or none. A model is named by its path as it was "
         "added, by the file name at the end of it, or as id:N with the number that 'db "
         "list' shows.",
-    .examples = "# by name, and by number\n"
-                "starguard db remove shapes.db cat_01.off id:7",
+    .examples = "# by name\n"
+                "starguard db remove shapes.db cat_1.off\n"
+                "# by path, and by number\n"
+                "starguard db remove shapes.db models/cat_2.off id:3",
     CLI_OPERANDS(2, SIZE_MAX),
     .run = run_remove,
 };
@@ -187,7 +189,9 @@ const cli_command cli_command_db_list = {
     .summary = "what is stored",
     .description = "Lists the models of a database by their file names.",
     .examples = "# what is in it\n"
-                "starguard db list shapes.db",
+                "starguard db list shapes.db\n"
+                "# the file names, for a script\n"
+                "starguard db list shapes.db --json | jq -r '.models[].name'",
     CLI_OPERANDS(1, 1),
     .run = list,
 };

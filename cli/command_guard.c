@@ -195,8 +195,8 @@ static void say_guards(cli_session *session, const starg_guards *g) {
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
         cli_say(session, "              %g %% of the vertices\n", percent(g->coverage_vertices));
     if (g->options.max_guards > 0)
-        cli_say(session, "area bound    %g %% with %zu guards\n", percent(g->area_bound),
-                g->options.max_guards);
+        cli_say(session, "area bound    %g %% with %s\n", percent(g->area_bound),
+                cli_count_of(g->options.max_guards, "guard", "guards").text);
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
     size_t hidden = g->face_count - g->coverable_faces;
     if (hidden > 0)

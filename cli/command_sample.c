@@ -30,6 +30,11 @@ static void set_defaults(void *data) {
     v->vertices = library.vertex_count;
 }
 
+static const char *sample_word(size_t index) {
+    const starg_sample_info *info = starg_sample_at(index);
+    return info != NULL ? info->name : NULL;
+}
+
 static starg_status list_samples(cli_session *session) {
     json_t *list = json_array();
     cli_report_head(session, "starguard-samples", NULL, NULL);
@@ -103,6 +108,7 @@ const cli_command cli_command_sample = {
                 "starguard sample gallery -o - | starguard check -",
     CLI_OPTIONS(options),
     CLI_OPERANDS(0, 1),
+    .operand_word = sample_word,
     .defaults = set_defaults,
     .run = run,
 };

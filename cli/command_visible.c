@@ -39,12 +39,12 @@ typedef struct look {
     json_t *points;
 } look;
 
+/* Exactly 1 when all is seen, never more. */
 static double area_seen(const look *l, size_t row) {
-    double sum = 0;
+    double seen = 0, hidden = 0;
     for (size_t face = 0; face < starg_bits_columns(l->seen); face++)
-        if (starg_bits_test(l->seen, row, face))
-            sum += l->fractions[face];
-    return sum;
+        *(starg_bits_test(l->seen, row, face) ? &seen : &hidden) += l->fractions[face];
+    return seen / (seen + hidden);
 }
 
 static void tell_point(cli_session *session, const look *l, size_t row) {

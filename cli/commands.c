@@ -19,6 +19,7 @@ const cli_command *const cli_commands[] = {
     &cli_command_db,
     &cli_command_view,
     &cli_command_export,
+    &cli_command_completion,
     NULL,
 };
 

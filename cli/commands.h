@@ -25,6 +25,8 @@ struct cli_command {
     const cli_option *options;
     size_t option_count;
     size_t least_operands, most_operands;
+    /* Words that the first operand may be, for completion: NULL behind the last. Else: files. */
+    const char *(*operand_word)(size_t index);
     size_t values_size; /* of the struct that the options fill */
     cli_input input;
     /* In this order; all but `run` may be NULL. */
@@ -54,6 +56,7 @@ extern const cli_command cli_command_view;
 extern const cli_command cli_command_export;
 extern const cli_command cli_command_map;
 extern const cli_command cli_command_morph;
+extern const cli_command cli_command_completion;
 extern const cli_command cli_command_db;
 extern const cli_command cli_command_db_create;
 extern const cli_command cli_command_db_add;

@@ -6,6 +6,32 @@
 
 enum { WIDTH = 79, OPTION_INDENT = 24 };
 
+const char *const cli_about_program =
+    "Places the fewest guards inside a solid that together see its whole boundary (the art "
+    "gallery problem in 3D), with exact visibility and a proven bound on how few could do.";
+const char *const cli_about_files =
+    "A MODEL is a triangle mesh: OFF, OBJ, PLY or STL, known by its content. '-' reads "
+    "standard input, or writes standard output. Coordinates have whatever unit the model "
+    "has; lengths in options are in the same unit. An output file appears whole or not at "
+    "all, and only when the command has done its work.";
+const char *const cli_first_steps =
+    "# a horse of 5,000 vertices, its guards, a picture of them, and the proof\n"
+    "starguard sample horse -o horse.off\n"
+    "starguard guard horse.off -o guards.json --picture guards.png\n"
+    "starguard verify horse.off guards.json";
+
+const cli_exit_text cli_exit_texts[] = {
+    {CLI_EXIT_DONE, "done"},
+    {CLI_EXIT_USAGE, "the command line is wrong"},
+    {CLI_EXIT_INPUT, "an input is missing, unreadable or not usable"},
+    {CLI_EXIT_UNFINISHED,
+     "could not finish: output unwritable, disk full, out of memory, or time over with nothing "
+     "found"},
+    {CLI_EXIT_FAILED, "verification failed"},
+    {CLI_EXIT_CANCELLED, "cancelled"},
+};
+const size_t cli_exit_text_count = sizeof cli_exit_texts / sizeof *cli_exit_texts;
+
 static void heading(FILE *stream, const char *text) {
     fprintf(stream, "\n%s%s%s\n", cli_style_on(stream, CLI_BOLD), text, cli_style_off(stream));
 }
@@ -60,41 +86,6 @@ void cli_help_short(FILE *stream) {
     fprintf(stream, "\n'starguard help' tells more, 'starguard help COMMAND' all about one.\n");
 }
 
-void cli_help_program(FILE *stream) {
-    fprintf(stream, "Usage: starguard COMMAND ... [options]\n\n");
-    wrap(stream,
-         "Places the fewest guards inside a solid that together see its whole boundary (the art "
-         "gallery problem in 3D), with exact visibility and a proven bound on how few could do.",
-         0, 0);
-    heading(stream, "Commands");
-    print_commands(stream, cli_commands);
-    fprintf(stream, "  %-10s %s\n", "help", "all about a command: starguard help COMMAND");
-    heading(stream, "Options of every command");
-    print_options(stream, cli_common_options, cli_common_option_count);
-    heading(stream, "Models and files");
-    wrap(stream,
-         "A MODEL is a triangle mesh: OFF, OBJ, PLY or STL, known by its content. '-' reads "
-         "standard input, or writes standard output. Coordinates have whatever unit the model "
-         "has; lengths in options are in the same unit. An output file appears whole or not at "
-         "all, and only when the command has done its work.",
-         2, 0);
-    heading(stream, "First steps");
-    fputs("  # a horse of 5,000 vertices, its guards, a picture of them, and the proof\n"
-          "  starguard sample horse -o horse.off\n"
-          "  starguard guard horse.off -o guards.json --picture guards.png\n"
-          "  starguard verify horse.off guards.json\n",
-          stream);
-    heading(stream, "Exit status");
-    fputs("  0    done\n"
-          "  1    the command line is wrong\n"
-          "  2    an input is missing, unreadable or not usable\n"
-          "  3    could not finish: output unwritable, disk full, out of memory,\n"
-          "       or time over with nothing found\n"
-          "  4    verification failed\n"
-          "  130  cancelled\n",
-          stream);
-}
-
 /* Lines that begin with '#' say what the next one does. */
 static void print_examples(FILE *stream, const char *examples) {
     while (*examples != '\0') {
@@ -103,6 +94,28 @@ static void print_examples(FILE *stream, const char *examples) {
         examples += size;
         examples += *examples == '\n';
     }
+}
+
+static void print_exit_texts(FILE *stream) {
+    for (size_t i = 0; i < cli_exit_text_count; i++)
+        wrap(stream, cli_exit_texts[i].text, 7,
+             fprintf(stream, "  %d", (int)cli_exit_texts[i].status));
+}
+
+void cli_help_program(FILE *stream) {
+    fprintf(stream, "Usage: starguard COMMAND ... [options]\n\n");
+    wrap(stream, cli_about_program, 0, 0);
+    heading(stream, "Commands");
+    print_commands(stream, cli_commands);
+    fprintf(stream, "  %-10s %s\n", "help", "all about a command: starguard help COMMAND");
+    heading(stream, "Options of every command");
+    print_options(stream, cli_common_options, cli_common_option_count);
+    heading(stream, "Models and files");
+    wrap(stream, cli_about_files, 2, 0);
+    heading(stream, "First steps");
+    print_examples(stream, cli_first_steps);
+    heading(stream, "Exit status");
+    print_exit_texts(stream);
 }
 
 void cli_help_command(FILE *stream, const cli_command *command) {

@@ -6,6 +6,18 @@
 
 #include "commands.h"
 
+/* Texts about the program as a whole, for the help and the manual. */
+extern const char *const cli_about_program;
+extern const char *const cli_about_files;
+extern const char *const cli_first_steps; /* like the examples of a command */
+
+typedef struct cli_exit_text {
+    cli_exit status;
+    const char *text;
+} cli_exit_text;
+extern const cli_exit_text cli_exit_texts[];
+extern const size_t cli_exit_text_count;
+
 /* A few lines for somebody who typed too little. */
 void cli_help_short(FILE *stream);
 
@@ -14,5 +26,8 @@ void cli_help_program(FILE *stream);
 
 /* All about one command. */
 void cli_help_command(FILE *stream, const cli_command *command);
+
+/* All commands and options as one JSON object (docs/formats.md). False when memory is out. */
+bool cli_help_json(FILE *stream);
 
 #endif

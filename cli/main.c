@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "help.h"
+#include "manual.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/version.h"
@@ -55,21 +56,52 @@ static int reject_option(const char *word) {
     return reject("option", word, near.best);
 }
 
-static int print_help(int argc, char **argv) {
-    const cli_command *command = argc > 0 ? cli_command_find(cli_commands, argv[0]) : NULL;
-    if (argc == 2 && command != NULL && command->members != NULL) {
-        const cli_command *member = cli_command_find(command->members, argv[1]);
-        if (member == NULL)
-            return reject_command(command->members, argv[1]);
-        command = member;
-    } else if (argc > 1) {
+/* The command that the words of `help` name; NULL for the program. False with a complaint. */
+static bool find_topic(int argc, char **argv, const cli_command **command, int *result) {
+    *command = argc > 0 ? cli_command_find(cli_commands, argv[0]) : NULL;
+    if (argc == 2 && *command != NULL && (*command)->members != NULL) {
+        const cli_command *group = *command;
+        *command = cli_command_find(group->members, argv[1]);
+        if (*command == NULL)
+            *result = reject_command(group->members, argv[1]);
+        return *command != NULL;
+    }
+    if (argc > 1) {
         fputs("starguard help: takes one command\n", stderr);
+        *result = CLI_EXIT_USAGE;
+        return false;
+    }
+    if (argc == 0 || *command != NULL || strcmp(argv[0], "help") == 0 ||
+        strcmp(argv[0], "--help") == 0)
+        return true;
+    *result = reject_command(cli_commands, argv[0]);
+    return false;
+}
+
+static int print_table(int argc) {
+    if (argc > 0) {
+        fputs("starguard help --json: takes nothing more\n", stderr);
         return CLI_EXIT_USAGE;
     }
-    if (argc == 1 && command == NULL && strcmp(argv[0], "help") != 0 &&
-        strcmp(argv[0], "--help") != 0)
-        return reject_command(cli_commands, argv[0]);
-    if (command != NULL)
+    if (!cli_help_json(stdout)) {
+        fputs("starguard help: cannot write the table of commands\n", stderr);
+        return CLI_EXIT_UNFINISHED;
+    }
+    return finish_text();
+}
+
+/* help [--man] [COMMAND], help --json */
+static int print_help(int argc, char **argv) {
+    const cli_command *command;
+    int result = CLI_EXIT_DONE;
+    if (argc > 0 && strcmp(argv[0], "--json") == 0)
+        return print_table(argc - 1);
+    bool manual = argc > 0 && strcmp(argv[0], "--man") == 0;
+    if (!find_topic(argc - manual, argv + manual, &command, &result))
+        return result;
+    if (manual)
+        cli_manual_page(stdout, command);
+    else if (command != NULL)
         cli_help_command(stdout, command);
     else
         cli_help_program(stdout);

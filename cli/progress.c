@@ -40,13 +40,14 @@ static void format_time(double seconds, char *text, size_t size) {
 
 static void draw(cli_progress *progress, const cli_stage *stage, double fraction, double now) {
     char cells[BAR + 1], left[16];
+    double elapsed = now - stage->began;
     int full = (int)(fraction * BAR);
     memset(cells, ' ', BAR);
     memset(cells, '#', (size_t)full);
     cells[BAR] = '\0';
-    format_time((now - stage->began) * (1 - fraction) / fraction, left, sizeof left);
-    fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%  %s left", stage->name, cells, 100 * fraction,
-            left);
+    format_time(elapsed * (1 - fraction) / fraction, left, sizeof left);
+    fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%  %.2g %%/s  %s left", stage->name, cells,
+            100 * fraction, 100 * fraction / elapsed, left);
     fflush(stderr);
     progress->drawn = true;
     progress->drawn_at = now;

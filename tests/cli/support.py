@@ -10,7 +10,8 @@ SHARED = os.environ.get("STARGUARD_SHARED", "../shared")
 # Programs under a sanitizer are several times slower; limits on time grow with them.
 SLOWNESS = 8 if os.environ.get("STARGUARD_SANITIZE") else 1
 
-COMMANDS = ["sample", "check", "repair", "visible", "kernel", "guard", "decompose", "verify"]
+COMMANDS = ["sample", "check", "repair", "skeleton", "visible", "kernel", "guard", "decompose",
+            "describe", "match", "verify", "map", "morph", "completion"]
 
 TETRAHEDRON = """OFF
 4 4 6

@@ -14,9 +14,11 @@
 
 enum { LANES = 8 };
 
+/* Static: gcc gives an external function of several versions default visibility, whatever the
+ * library hides. */
 SEVERAL_VERSIONS
-size_t scan_block(const double *block, const double *lowest, double bound, const double point[3],
-                  double room) {
+static size_t scan(const double *block, const double *lowest, double bound, const double point[3],
+                   double room) {
     const double *nx = block, *ny = nx + SCAN_BLOCK, *nz = ny + SCAN_BLOCK, *b = nz + SCAN_BLOCK;
     const double x = point[0], y = point[1], z = point[2];
     double inside[SCAN_BLOCK], least[LANES];
@@ -38,4 +40,9 @@ size_t scan_block(const double *block, const double *lowest, double bound, const
     while (inside[at] != worst)
         at++;
     return at;
+}
+
+size_t scan_block(const double *block, const double *lowest, double bound, const double point[3],
+                  double room) {
+    return scan(block, lowest, bound, point, room);
 }

@@ -1,0 +1,57 @@
+/* starguard completion: what shells need to complete command lines. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "commands.h"
+#include "completion.h"
+#include "report.h"
+
+static const char *const shells[] = {[CLI_BASH] = "bash", [CLI_ZSH] = "zsh", [CLI_FISH] = "fish"};
+enum { SHELLS = sizeof shells / sizeof *shells };
+
+static const char *shell_word(size_t index) {
+    return index < SHELLS ? shells[index] : NULL;
+}
+
+static starg_status run(cli_session *session, void *values) {
+    (void)values;
+    const char *word = session->operands[0];
+    char *script = NULL;
+    size_t shell = 0, size;
+    while (shell < SHELLS && strcmp(word, shells[shell]) != 0)
+        shell++;
+    if (shell == SHELLS)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "completion is there for bash, zsh and fish, not for '%.100s'", word);
+    FILE *stream = open_memstream(&script, &size);
+    if (stream == NULL)
+        return cli_fail_memory(session);
+    cli_completion_write(stream, (cli_shell)shell);
+    bool complete = fclose(stream) == 0;
+    if (complete && session->report != NULL) {
+        cli_report_head(session, "starguard-completion", NULL, NULL);
+        cli_put(session, session->report, "shell", json_string(word));
+        cli_put(session, session->report, "script", json_string(script));
+    } else if (complete) {
+        session->stdout_taken = true;
+        fputs(script, stdout);
+    }
+    free(script);
+    return complete ? STARG_OK : cli_fail_memory(session);
+}
+
+const cli_command cli_command_completion = {
+    .name = "completion",
+    .usage = "bash|zsh|fish",
+    .summary = "write what a shell needs to complete command lines",
+    .description =
+        "Writes a script that teaches a shell the commands, the options and their words. An "
+        "installed starguard has put it where shells look; this is for one that is not.",
+    .examples = "# for this bash\n"
+                "source <(starguard completion bash)\n"
+                "# for every fish of yours\n"
+                "starguard completion fish > ~/.config/fish/completions/starguard.fish",
+    CLI_OPERANDS(1, 1),
+    .operand_word = shell_word,
+    .run = run,
+};

@@ -1,0 +1,81 @@
+/* Each script is a table in the shell's own words: for every command its options, what each of them
+ * takes, and what the operands are. What an option takes is known by its kind: a choice has its
+ * words, text is a file or one of the lower-case words of its form ("skeleton|medial|FILE"), and
+ * for a number nothing can be offered. */
+#include "completion.h"
+
+#include <ctype.h>
+#include <string.h>
+
+#include "completion_parts.h"
+
+/* ---- what can be offered ---- */
+
+void completion_visit_words(FILE *stream, const cli_option *o, completion_word_fn *visit) {
+    if (o->kind == CLI_CHOICE)
+        for (size_t i = 0; o->choices[i] != NULL; i++)
+            visit(stream, o->choices[i], (int)strlen(o->choices[i]));
+    if (o->kind != CLI_TEXT)
+        return;
+    for (const char *word = o->value; *word != '\0';) {
+        size_t size = strcspn(word, "|");
+        if (islower((unsigned char)*word))
+            visit(stream, word, (int)size);
+        word += size;
+        word += *word == '|';
+    }
+}
+
+void completion_put_word(FILE *stream, const char *word, int size) {
+    fprintf(stream, " %.*s", size, word);
+}
+
+void completion_put_brief(FILE *stream, const char *text, const char *special) {
+    for (const char *c = text; *c != '\0'; c++) {
+        bool end = (*c == '.' || *c == ';') && (c[1] == ' ' || c[1] == '\0');
+        if (end || *c == '\n')
+            return;
+        if (*c == '\'') {
+            fputs("'\\''", stream);
+            continue;
+        }
+        if (strchr(special, *c) != NULL)
+            fputc('\\', stream);
+        fputc(*c, stream);
+    }
+}
+
+/* ---- all commands, the members of groups too ---- */
+
+void completion_visit_commands(FILE *stream, const cli_command *const *table,
+                               completion_command_fn *visit) {
+    for (size_t i = 0; table[i] != NULL; i++) {
+        visit(stream, table[i]);
+        if (table[i]->members != NULL)
+            completion_visit_commands(stream, table[i]->members, visit);
+    }
+}
+
+void completion_put_table_words(FILE *stream, const cli_command *const *table) {
+    for (size_t i = 0; table[i] != NULL; i++)
+        fprintf(stream, " %s", cli_command_word(table[i]));
+}
+
+void completion_put_operand_words(FILE *stream, const cli_command *command) {
+    for (size_t i = 0; command->operand_word(i) != NULL; i++)
+        fprintf(stream, " %s", command->operand_word(i));
+}
+
+void cli_completion_write(FILE *stream, cli_shell shell) {
+    switch (shell) {
+    case CLI_BASH:
+        completion_bash(stream);
+        break;
+    case CLI_ZSH:
+        completion_zsh(stream);
+        break;
+    case CLI_FISH:
+        completion_fish(stream);
+        break;
+    }
+}

@@ -1,0 +1,77 @@
+/* fish: one line for each thing that can be offered, and the condition under which it is. */
+#include "completion_parts.h"
+
+/* A line that applies behind these words. */
+static void fish_begin(FILE *stream, const char *words) {
+    fprintf(stream, "complete -c starguard -n '__starguard_behind %s'", words);
+}
+
+static void fish_options(FILE *stream, const cli_command *command, const cli_option *options,
+                         size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const cli_option *o = &options[i];
+        fish_begin(stream, command->name);
+        if (o->letter != 0)
+            fprintf(stream, " -s %c", o->letter);
+        fprintf(stream, " -l %s", o->name);
+        if (o->kind != CLI_FLAG) {
+            fprintf(stream, " %s -a '", o->kind == CLI_TEXT ? "-rF" : "-x");
+            completion_visit_words(stream, o, completion_put_word);
+            fputc('\'', stream);
+        }
+        fputs(" -d '", stream);
+        completion_put_brief(stream, o->help, "");
+        fputs("'\n", stream);
+    }
+}
+
+static void fish_word(FILE *stream, const char *word, const char *summary) {
+    fprintf(stream, " -f -a %s -d '", word);
+    completion_put_brief(stream, summary, "");
+    fputs("'\n", stream);
+}
+
+/* The commands of a table as what comes next behind some words. */
+static void fish_table(FILE *stream, const char *words, const cli_command *const *table) {
+    for (size_t i = 0; table[i] != NULL; i++) {
+        fprintf(stream, "complete -c starguard -n '__starguard_behind --next %s'", words);
+        fish_word(stream, cli_command_word(table[i]), table[i]->summary);
+    }
+}
+
+static void fish_command(FILE *stream, const cli_command *command) {
+    if (command->members != NULL) {
+        fish_table(stream, command->name, command->members);
+        return;
+    }
+    fish_options(stream, command, command->options, command->option_count);
+    fish_options(stream, command, cli_common_options, cli_common_option_count);
+    if (command->operand_word == NULL)
+        return;
+    fish_begin(stream, command->name);
+    fputs(" -f -a '", stream);
+    completion_put_operand_words(stream, command);
+    fputs("'\n", stream);
+}
+
+void completion_fish(FILE *stream) {
+    fputs("# fish completion for starguard; made by 'starguard completion fish'\n"
+          "# Does the command line, up to the cursor, begin with these words? With --next, and no "
+          "more?\n"
+          "function __starguard_behind\n"
+          "    set -l typed (commandline -opc)[2..-1]\n"
+          "    if test \"$argv[1]\" = --next\n"
+          "        set -e argv[1]\n"
+          "        test (count $typed) -eq (count $argv); or return 1\n"
+          "    end\n"
+          "    for i in (seq (count $argv))\n"
+          "        test \"$typed[$i]\" = $argv[$i]; or return 1\n"
+          "    end\n"
+          "end\n",
+          stream);
+    fish_table(stream, "", cli_commands);
+    fish_begin(stream, "--next");
+    fish_word(stream, "help", "all about a command");
+    fish_table(stream, "help", cli_commands);
+    completion_visit_commands(stream, cli_commands, fish_command);
+}

@@ -1,0 +1,77 @@
+/* The table of commands as JSON, for whoever makes something of it: manual pages, documentation, a
+ * graphical front. */
+#include <jansson.h>
+
+#include "help.h"
+#include "starguard/version.h"
+
+/* What an option takes. */
+static const char *kind_name(cli_kind kind) {
+    static const char *const names[] = {
+        [CLI_FLAG] = "flag", [CLI_TEXT] = "text",     [CLI_COUNT] = "count",
+        [CLI_REAL] = "real", [CLI_CHOICE] = "choice", [CLI_POINTS] = "points"};
+    return names[kind];
+}
+
+/* A list without all of its members is none: NULL. */
+static void append(json_t **list, json_t *value) {
+    if (json_array_append_new(*list, value) == 0)
+        return;
+    json_decref(*list);
+    *list = NULL;
+}
+
+static json_t *words_json(const char *const *words) {
+    json_t *list = json_array();
+    for (size_t i = 0; words[i] != NULL; i++)
+        append(&list, json_string(words[i]));
+    return list;
+}
+
+static json_t *option_json(const cli_option *o) {
+    const char letter[] = {o->letter, '\0'};
+    json_t *option = json_pack("{s:s, s:s*, s:s, s:s*, s:s}", "name", o->name, "letter",
+                               o->letter != 0 ? letter : NULL, "kind", kind_name(o->kind), "value",
+                               o->value, "help", o->help);
+    if (o->kind != CLI_CHOICE ||
+        json_object_set_new(option, "choices", words_json(o->choices)) == 0)
+        return option;
+    json_decref(option);
+    return NULL;
+}
+
+static json_t *options_json(const cli_option *options, size_t count) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < count; i++)
+        append(&list, option_json(&options[i]));
+    return list;
+}
+
+static json_t *command_json(const cli_command *c) {
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:b, s:o}", "name", c->name, "usage", c->usage,
+                     "summary", c->summary, "description", c->description, "examples", c->examples,
+                     "group", c->members != NULL, "options",
+                     options_json(c->options, c->option_count));
+}
+
+/* Appends the commands of a table; the members of a group follow it. */
+static void append_commands(json_t **list, const cli_command *const *table) {
+    for (size_t i = 0; table[i] != NULL; i++) {
+        append(list, command_json(table[i]));
+        if (table[i]->members != NULL)
+            append_commands(list, table[i]->members);
+    }
+}
+
+bool cli_help_json(FILE *stream) {
+    json_t *commands = json_array();
+    append_commands(&commands, cli_commands);
+    json_t *table = json_pack("{s:s, s:i, s:s, s:o, s:o}", "format", "starguard-help", "version", 1,
+                              "program", starg_version(), "commands", commands, "common_options",
+                              options_json(cli_common_options, cli_common_option_count));
+    bool written = table != NULL && json_dumpf(table, stream, JSON_INDENT(1)) == 0;
+    if (written)
+        fputc('\n', stream);
+    json_decref(table);
+    return written;
+}

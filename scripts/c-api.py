@@ -1,0 +1,108 @@
+#!/usr/bin/python3
+"""Writes docs/c-api.md from the comments of the public headers.
+
+Usage: c-api.py [--check]   (--check: is the file what would be written? Status 1 if not.)
+
+A header is a comment about it, then blocks parted by empty lines: a comment, if there is one, and the
+declarations that it is about. "/* ---- name ---- */" begins a section."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+HEADERS = ROOT / "include" / "starguard"
+OUTPUT = ROOT / "docs" / "c-api.md"
+
+HEAD = """# C reference
+
+Made from the headers in `include/starguard/` by `scripts/c-api.py`; do not edit. `#include
+<starguard/starguard.h>` takes in all of them; each also stands alone, as C11 and as C++11. How a
+program is compiled and linked stands in [examples](../examples/README.md).
+
+Rules that hold for every call:
+
+- Calls that can fail return a `starg_status`, 0 for success; `starg_context_error` has the detail:
+  what, where (indices), and what to do. Outputs come last and are NULL after a failure.
+- Every `..._free` takes NULL. An object is freed before the context that it was made with.
+- One thread at a time uses a context. Finished objects never change and may be shared by threads.
+- Options are structs that `..._options_default` fills; NULL in their place means the defaults.
+- Arrays of points are count x 3 doubles, of faces count x 3 indices, from 0.
+- The same input, options and seed give the same result at any number of threads.
+"""
+
+
+def plain(comment):
+    """The text of a comment, paragraphs as single lines."""
+    text = re.sub(r"^/\*\s*|\s*\*/$", "", comment.strip())
+    lines = [re.sub(r"^\s*\* ?", "", line).strip() for line in text.split("\n")]
+    paragraphs = re.split(r"\n\s*\n", "\n".join(lines))
+    return "\n\n".join(" ".join(part.split()) for part in paragraphs)
+
+
+def without_frame(text):
+    """What stands between the includes and the end of the include guard."""
+    text = re.sub(r"#ifdef __cplusplus\n.*?#endif\n", "", text, flags=re.S)
+    text = re.sub(r"^#(ifndef STARGUARD_|define STARGUARD_\w+_H|include).*\n", "", text, flags=re.M)
+    return re.sub(r"#endif\s*$", "", text)
+
+
+def blocks(text):
+    """(comment, declarations) of each block; either may be empty."""
+    token = re.compile(r"/\*.*?\*/|[^;{/#]*\{[^}]*\}[^;]*;|[^;{/#]*;|#[^\n]*\n(?:[^\n]*\\\n[^\n]*\n)*",
+                       re.S)
+    comment, code, end = "", "", 0
+    for match in token.finditer(text):
+        gap = "\n\n" in text[end:match.start()] + match.group()[:2]
+        piece, end = match.group().strip("\n"), match.end()
+        if piece.startswith("/*") and not text[:match.start()].split("\n")[-1].strip():
+            if comment or code:
+                yield comment, code
+            comment, code = piece, ""
+        elif gap and code:
+            yield comment, code
+            comment, code = "", piece.strip()
+        else:
+            code += (" " if piece.startswith("/*") else "\n" if code else "") + piece.strip()
+    if comment or code:
+        yield comment, code
+
+
+def section(path):
+    text = path.read_text(encoding="utf-8")
+    about, rest = text.split("*/", 1)
+    yield f"\n## {path.name}\n"
+    yield plain(about + "*/") + "\n"
+    for comment, code in blocks(without_frame(rest)):
+        title = re.fullmatch(r"/\* -+ (.*?) -+ \*/", comment)
+        if title:
+            yield f"\n### {title.group(1)}\n"
+            comment = ""
+        if code:
+            if "STARG_API " in code:
+                code = re.sub(r"^ {10}", "", code.replace("STARG_API ", ""), flags=re.M)
+            yield f"```c\n{code}\n```\n"
+        if comment:
+            yield plain(comment) + "\n"
+
+
+def document():
+    names = [name for name in re.findall(r'#include "(\w+\.h)"',
+                                         (HEADERS / "starguard.h").read_text(encoding="utf-8"))]
+    parts = [HEAD, "\n" + " · ".join(f"[{n[:-2]}](#{n.replace('.', '')})" for n in names) + "\n"]
+    for name in names:
+        parts += section(HEADERS / name)
+    return "\n".join(part.rstrip("\n") + "\n" for part in parts).replace("\n\n\n", "\n\n")
+
+
+def main():
+    text = document()
+    if "--check" in sys.argv:
+        current = OUTPUT.is_file() and OUTPUT.read_text(encoding="utf-8") == text
+        if not current:
+            print("docs/c-api.md is not what the headers say: run scripts/c-api.py", file=sys.stderr)
+        sys.exit(0 if current else 1)
+    OUTPUT.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

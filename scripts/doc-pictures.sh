@@ -1,0 +1,34 @@
+#!/bin/sh
+# Draws the pictures of docs/ that show single results: what one guard sees, a morph by three methods,
+# distances of shapes. All of samples. Needs ImageMagick. Usage: doc-pictures.sh STARGUARD
+set -eu
+starguard=$(readlink -f "$1")
+pictures=$(cd "$(dirname "$0")/../docs/pictures" && pwd)
+scratch=$(mktemp -d "${TMPDIR:-/tmp}/starguard-pictures.XXXXXX")
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch"
+
+# Few colours are enough, and half the size.
+keep() {
+    convert "$1" -trim +repage -bordercolor white -border 12 -resize "$2" -colors 64 "PNG8:$pictures/$1"
+}
+
+"$starguard" sample gallery --vertices 3000 -o gallery.off
+"$starguard" guard gallery.off --max-guards 1 -o guard.json --picture visibility.png
+keep visibility.png 900x
+
+for pose in 0 2; do
+    "$starguard" sample horse --pose $pose --vertices 2000 -o morph_$pose.off
+done
+"$starguard" morph morph_0.off morph_2.off --frames 5 -o frames --picture morph.png
+keep morph.png 1200x
+
+for animal in bird cat dog giraffe horse human; do
+    for pose in 0 1 2; do
+        "$starguard" sample $animal --pose $pose --vertices 1000 -o ${animal}_$pose.off
+    done
+done
+"$starguard" db create shapes.db
+"$starguard" db add shapes.db ./*_?.off
+"$starguard" db matrix shapes.db -o matrix.csv --picture matrix.png --distance star
+cp matrix.png "$pictures"
