@@ -19,12 +19,11 @@
 #include "morph/relax.h"
 
 static const char STAGE[] = "landmarks";
-enum { ROUNDS = 400, PATIENCE = 12, SWEEPS = 3, FINAL_SWEEPS = 200, HALVINGS = 5 };
+enum { ROUNDS = 400, PATIENCE = 12, SWEEPS = 3, HALVINGS = 5 };
 static const double STEP = 0.12; /* radians */
 static const double WIDTH = 0.5; /* of the radial functions */
 
 typedef struct warp {
-    starg_context *context;
     sphere *from;
     const sphere *to;
     const landmark_list *marks;
@@ -113,21 +112,24 @@ static void advance(const warp *w, const double x[3], double step, double out[3]
 
 /* All vertices by the same step; a whole step ends exactly at the goals. */
 static bool step_all(warp *w, double step) {
-    size_t count = w->from->mesh->vertex_count;
-    for (size_t v = 0; v < count; v++)
-        advance(w, w->before + 3 * v, step, w->from->directions + 3 * v);
+    const sphere *s = w->from;
+    for (size_t i = 0; i < s->rings->left; i++) {
+        size_t v = s->alive[i];
+        advance(w, w->before + 3 * v, step, s->directions + 3 * v);
+    }
     for (size_t i = 0; step == 1 && i < w->marks->count; i++)
         vec3_copy(goal_of(w, i), mark_of(w, i));
-    if (sphere_is_positive(w->from))
+    if (sphere_is_positive(s))
         return true;
-    memcpy(w->from->directions, w->before, 3 * count * sizeof *w->before);
+    memcpy(s->directions, w->before, 3 * s->mesh->vertex_count * sizeof *w->before);
     return false;
 }
 
 /* Each vertex as far as its own triangles allow. */
 static bool step_each(warp *w, double step) {
     bool moved = false;
-    for (size_t v = 0; v < w->from->mesh->vertex_count; v++) {
+    for (size_t k = 0; k < w->from->rings->left; k++) {
+        size_t v = w->from->alive[k];
         double part = step, at[3];
         for (int i = 0; i < HALVINGS; i++, part *= 0.5) {
             advance(w, w->before + 3 * v, part, at);
@@ -141,75 +143,68 @@ static bool step_each(warp *w, double step) {
     return moved;
 }
 
-static void relax(warp *w, int sweeps) {
-    const relaxation r = {.rings = w->from->rings,
-                          .directions = w->from->directions,
-                          .alive = w->from->alive,
-                          .alive_count = w->from->mesh->vertex_count,
-                          .pinned = w->pinned,
-                          .floor = w->from->floor};
-    for (int i = 0; i < sweeps; i++)
-        relax_sweep(&r);
-}
-
-/* One round; false when nothing could move. */
-static bool advance_round(warp *w, double longest) {
+/* One round; `moved` tells whether a landmark did. */
+static starg_status advance_round(warp *w, double longest, bool *moved) {
     size_t size = 3 * w->from->mesh->vertex_count * sizeof *w->before;
     double step = fmin(1, STEP / longest);
     memcpy(w->before, w->from->directions, size);
-    bool moved = false;
-    for (int i = 0; i < HALVINGS && !moved; i++, step *= 0.5)
-        moved = step_all(w, step);
-    if (!moved)
-        moved = step_each(w, step);
-    relax(w, SWEEPS);
-    return moved;
+    *moved = false;
+    for (int i = 0; i < HALVINGS && !*moved; i++, step *= 0.5)
+        *moved = step_all(w, step);
+    if (!*moved)
+        *moved = step_each(w, step);
+    return sphere_relax(w->from, w->pinned, SWEEPS);
 }
 
-static starg_status approach(warp *w) {
+static starg_status approach(warp *w, bool *met) {
     starg_status status = STARG_OK;
     int stuck = 0;
     for (int round = 0; round < ROUNDS && stuck < PATIENCE; round++) {
-        STARG_TRY(starg_check_cancel(w->context, STAGE));
+        bool moved;
         double longest = make_field(w);
-        if (longest < 0)
+        *met = longest == 0;
+        if (*met || longest < 0)
             break;
-        if (longest == 0)
-            return STARG_OK;
-        stuck = advance_round(w, longest) ? 0 : stuck + 1;
+        STARG_TRY(advance_round(w, longest, &moved));
+        stuck = moved ? 0 : stuck + 1;
     }
-    size_t worst = 0;
-    for (size_t i = 1; i < w->marks->count; i++)
-        if (vec3_distance(mark_of(w, i), goal_of(w, i)) >
-            vec3_distance(mark_of(w, worst), goal_of(w, worst)))
-            worst = i;
-    uint64_t vertex = w->marks->from[worst];
-    status = starg_fail_at(w->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, &vertex, 1,
-                           "the landmarks cannot all be met without folding the surface; the worst "
-                           "is pair %zu (vertices %u and %u). They may contradict one another, or "
-                           "mirror the model: check their order, or leave that pair out",
-                           worst, w->marks->from[worst], w->marks->to[worst]);
 done:
     return status;
 }
 
-starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list *landmarks) {
+starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list *landmarks,
+                            bool *met) {
     starg_context *context = from->context;
     starg_status status = STARG_OK;
-    warp w = {.context = context, .from = from, .to = to, .marks = landmarks};
+    warp w = {.from = from, .to = to, .marks = landmarks};
     size_t n = landmarks->count, count = from->mesh->vertex_count;
-    if (n == 0)
+    *met = n == 0;
+    if (*met)
         return STARG_OK;
     STARG_NEW(context, STAGE, w.matrix, n * (n + 3));
     STARG_NEW(context, STAGE, w.before, 3 * count);
     STARG_NEW_ZERO(context, STAGE, w.pinned, count);
     for (size_t i = 0; i < n; i++)
         w.pinned[landmarks->from[i]] = 1;
-    STARG_TRY(approach(&w));
-    relax(&w, FINAL_SWEEPS);
+    STARG_TRY(approach(&w, met));
 done:
     starg_release(context, w.matrix);
     starg_release(context, w.before);
     starg_release(context, w.pinned);
     return status;
+}
+
+starg_status landmarks_contradict(sphere *from, const sphere *to, const landmark_list *landmarks) {
+    const warp w = {.from = from, .to = to, .marks = landmarks};
+    size_t worst = 0;
+    for (size_t i = 1; i < landmarks->count; i++)
+        if (vec3_distance(mark_of(&w, i), goal_of(&w, i)) >
+            vec3_distance(mark_of(&w, worst), goal_of(&w, worst)))
+            worst = i;
+    uint64_t vertex = landmarks->from[worst];
+    return starg_fail_at(from->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, &vertex, 1,
+                         "the landmarks cannot all be met without folding the surface; the worst "
+                         "is pair %zu (vertices %u and %u). They may contradict one another, or "
+                         "mirror the model: check their order, or leave that pair out",
+                         worst, landmarks->from[worst], landmarks->to[worst]);
 }

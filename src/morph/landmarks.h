@@ -4,9 +4,13 @@
 
 #include "morph/align.h"
 
-/* Moves the directions of `from` until each landmark lies exactly where its counterpart is on `to`,
- * every triangle positive all the way. Errors: MESH (they cannot be met: contradicting), MEMORY,
- * CANCELLED. */
-starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list *landmarks);
+/* Moves the directions of what is not out of `from` until each landmark, none of which may be out,
+ * lies exactly where its counterpart is on `to`, every triangle positive all the way. `met` tells
+ * whether that was reached. Errors: MEMORY, CANCELLED. */
+starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list *landmarks,
+                            bool *met);
+
+/* Fails with MESH and names the landmark that is farthest from its counterpart. */
+starg_status landmarks_contradict(sphere *from, const sphere *to, const landmark_list *landmarks);
 
 #endif

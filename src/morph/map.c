@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
+#include "morph/compose.h"
 #include "morph/landmarks.h"
 #include "starguard/solid.h"
 
@@ -264,20 +265,25 @@ done:
     return status;
 }
 
-/* Brings the ends of limbs together where that can be done; they are a guess, so that what they
- * contradict is no error. */
-static starg_status meet_features(sphere *from, const sphere *to, const feature_pairs *features) {
+/* Composes both spreads. Without landmarks the ends of limbs are brought together where that can be
+ * done; they are a guess, so that what they contradict is no error. */
+static starg_status compose(sphere *from, const locator *to, const landmark_list *marks,
+                            const feature_pairs *features) {
     starg_status status = STARG_OK;
     double *before = NULL;
     size_t size = 3 * from->mesh->vertex_count;
-    landmark_list list = {features->from, features->to, features->count};
+    const landmark_list tips = {features->from, features->to, features->count};
+    bool met = false;
     STARG_NEW(from->context, STAGE, before, size);
     memcpy(before, from->directions, size * sizeof *before);
-    status = landmarks_meet(from, to, &list);
-    if (status == STARG_ERROR_MESH) {
-        memcpy(from->directions, before, size * sizeof *before);
-        status = STARG_OK;
-    }
+    if (tips.count > 0)
+        STARG_TRY(compose_spheres(from, to, &tips, &met));
+    if (met)
+        goto done;
+    memcpy(from->directions, before, size * sizeof *before);
+    STARG_TRY(compose_spheres(from, to, marks, &met));
+    if (!met)
+        status = landmarks_contradict(from, to->sphere, marks);
 done:
     starg_release(from->context, before);
     return status;
@@ -296,8 +302,7 @@ static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, c
     STARG_TRY(spread_surface(context, b, "B", &to));
     STARG_TRY(locator_create(context, to.sphere, &where));
     STARG_TRY(align_spheres(from.sphere, &where, &marks, &features));
-    STARG_TRY(meet_features(from.sphere, to.sphere, &features));
-    STARG_TRY(landmarks_meet(from.sphere, to.sphere, &marks));
+    STARG_TRY(compose(from.sphere, &where, &marks, &features));
     STARG_TRY(map_make(context, a, b, STARG_MAP_SPHERE, out));
     STARG_TRY(place_vertices(from.sphere, &where, b, &marks, *out));
 done:

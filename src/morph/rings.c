@@ -14,12 +14,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "mesh/heap.h"
 #include "mesh/topology.h"
 
 static const char STAGE[] = "sphere";
-enum { DEGREE = 24, BASE = 4 };
+enum { DEGREE = 24 };
 
 static size_t ring_find(const ring *r, uint32_t vertex) {
     size_t i = 0;
@@ -93,12 +94,26 @@ static size_t count_marked(const rings *r, uint32_t a) {
     return count;
 }
 
+/* Are the triangles that fill the hole of a vertex from one of its neighbours positive? Exact. */
+static bool is_positive_fan(const ring *around, size_t from, const double *directions) {
+    static const double origin[3];
+    size_t count = around->count;
+    const double *a = directions + 3 * (size_t)around->data[from];
+    for (size_t i = 1; i + 1 < count; i++) {
+        const double *p = directions + 3 * (size_t)around->data[(from + i) % count];
+        const double *q = directions + 3 * (size_t)around->data[(from + i + 1) % count];
+        if (orient3d(a, p, q, origin) != 1)
+            return false;
+    }
+    return true;
+}
+
 /* The best neighbour to merge b into and its cost; infinite when b must wait. */
-static double choose_target(rings *r, uint32_t b, uint32_t *target) {
+static double choose_target(rings *r, const rings_limits *limits, uint32_t b, uint32_t *target) {
     const ring *own = &r->of[b];
     double least = INFINITY;
     *target = b;
-    if (own->count > DEGREE)
+    if (own->count > DEGREE || (limits->kept != NULL && limits->kept[b]))
         return least;
     set_marks(r, own, 1);
     for (size_t i = 0; i < own->count; i++) {
@@ -106,7 +121,8 @@ static double choose_target(rings *r, uint32_t b, uint32_t *target) {
         double cost = vec3_distance(r->positions + 3 * (size_t)a, r->positions + 3 * (size_t)b);
         double degree = (double)(r->of[a].count + own->count - 4);
         cost *= fmax(1, degree / 8); /* round neighbourhoods are easier to embed */
-        if (cost < least && count_marked(r, a) == 2) {
+        if (cost < least && count_marked(r, a) == 2 &&
+            (limits->directions == NULL || is_positive_fan(own, i, limits->directions))) {
             least = cost;
             *target = a;
         }
@@ -172,30 +188,30 @@ done:
     return status;
 }
 
-static void enqueue(rings *r, mesh_heap *heap, uint32_t vertex) {
+static void enqueue(rings *r, const rings_limits *limits, mesh_heap *heap, uint32_t vertex) {
     uint32_t target;
-    double cost = choose_target(r, vertex, &target);
+    double cost = choose_target(r, limits, vertex, &target);
     if (cost < INFINITY)
         heap_set(heap, vertex, cost);
     else
         heap_remove(heap, vertex);
 }
 
-starg_status rings_reduce(rings *r) {
+starg_status rings_reduce(rings *r, const rings_limits *limits) {
     starg_status status = STARG_OK;
     mesh_heap *heap = NULL;
     uint32_t b, a;
     STARG_TRY(heap_create(r->context, r->vertex_count, &heap));
     for (uint32_t v = 0; v < r->vertex_count; v++)
-        enqueue(r, heap, v);
-    while (r->left > BASE && heap_pop(heap, &b)) {
+        enqueue(r, limits, heap, v);
+    while (r->left > limits->least && heap_pop(heap, &b)) {
         STARG_TRY(starg_check_cancel(r->context, STAGE));
-        if (choose_target(r, b, &a) == INFINITY)
+        if (choose_target(r, limits, b, &a) == INFINITY)
             continue;
         STARG_TRY(merge(r, b, a));
         const ring_removal *last = &r->removals.data[r->removals.count - 1];
         for (size_t i = 0; i < last->count; i++)
-            enqueue(r, heap, r->removed.data[last->ring + i]);
+            enqueue(r, limits, heap, r->removed.data[last->ring + i]);
     }
 done:
     heap_free(heap);
@@ -225,6 +241,7 @@ starg_status rings_restore(rings *r) {
     if (count > 3)
         ring_drop(center, ring_find(center, p[2]), count - 3);
     STARG_TRY(ring_insert(r->context, center, ring_find(center, p[1]) + 1, b));
+    r->removed.count = last.ring;
     r->removals.count--;
     r->left++;
 done:

@@ -31,8 +31,15 @@ typedef struct rings {
 starg_status rings_create(starg_context *context, const starg_mesh *mesh, rings **out);
 void rings_free(rings *r);
 
-/* Takes vertices out, short edges first, until four are left. Errors: MEMORY, CANCELLED. */
-starg_status rings_reduce(rings *r);
+/* What reducing must leave; without any of these (NULL) it ends with a tetrahedron. */
+typedef struct rings_limits {
+    size_t least;             /* as many vertices stay, at least 4                          */
+    const uint8_t *kept;      /* per vertex: stays; or NULL                                 */
+    const double *directions; /* an embedding in the sphere that must stay valid; or NULL   */
+} rings_limits;
+
+/* Takes vertices out, short edges first, as far as the limits allow. Errors: MEMORY, CANCELLED. */
+starg_status rings_reduce(rings *r, const rings_limits *limits);
 
 /* Puts the last removed vertex back. Errors: MEMORY. */
 starg_status rings_restore(rings *r);

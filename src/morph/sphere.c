@@ -19,20 +19,13 @@
 #include <math.h>
 
 #include "geometry/linear_program.h"
-#include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "morph/relax.h"
 
 static const char STAGE[] = "sphere";
-enum { LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40, HALVINGS = 40 };
+enum { BASE = 4, LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40, HALVINGS = 40 };
 static const double GROWTH = 1.2;
 static const double FLOOR = 0.02; /* of the mean area of a face, added to squared edges */
-
-/* Memory that grows with the largest polygon. */
-typedef struct workspace {
-    STARG_ARRAY(double) rows;
-    STARG_ARRAY(uint32_t) order;
-} workspace;
 
 /* ---- base ---- */
 
@@ -66,7 +59,7 @@ static void side_row(const double p[3], const double q[3], double row[5]) {
     row[4] = 0;
 }
 
-static starg_status kernel_middle(const sphere *s, workspace *work, const ring *around,
+static starg_status kernel_middle(const sphere *s, sphere_work *work, const ring *around,
                                   double out[3]) {
     starg_status status = STARG_OK;
     linear_solution solution;
@@ -113,7 +106,12 @@ static bool place_near(const sphere *s, const ring *around, double out[3]) {
     return false;
 }
 
-static starg_status insert(sphere *s, workspace *work) {
+void sphere_work_free(starg_context *context, sphere_work *work) {
+    STARG_ARRAY_FREE(context, &work->rows);
+    STARG_ARRAY_FREE(context, &work->order);
+}
+
+starg_status sphere_insert(sphere *s, sphere_work *work) {
     starg_status status = STARG_OK;
     uint32_t b = s->rings->removals.data[s->rings->removals.count - 1].vertex;
     double *x = s->directions + 3 * (size_t)b;
@@ -135,18 +133,14 @@ done:
 
 /* ---- levels ---- */
 
-static relaxation relaxation_of(const sphere *s, size_t sweep_vertices) {
-    return (relaxation){.rings = s->rings,
-                        .directions = s->directions,
-                        .alive = s->alive,
-                        .alive_count = sweep_vertices,
-                        .floor =
-                            s->floor * (double)s->rings->vertex_count / (double)sweep_vertices};
-}
-
-static starg_status relax(sphere *s, int sweeps) {
+starg_status sphere_relax(sphere *s, const uint8_t *pinned, int sweeps) {
     starg_status status = STARG_OK;
-    relaxation r = relaxation_of(s, s->rings->left);
+    const relaxation r = {.rings = s->rings,
+                          .directions = s->directions,
+                          .alive = s->alive,
+                          .alive_count = s->rings->left,
+                          .pinned = pinned,
+                          .floor = s->floor * (double)s->rings->vertex_count / (double)s->rings->left};
     for (int i = 0; i < sweeps; i++) {
         STARG_TRY(starg_check_cancel(s->context, STAGE));
         relax_sweep(&r);
@@ -155,41 +149,44 @@ done:
     return status;
 }
 
-static starg_status refine(sphere *s, workspace *work) {
+static starg_status refine(sphere *s, sphere_work *work) {
     starg_status status = STARG_OK;
     double next = 4;
     starg_progress_begin(s->context, STAGE);
     while (s->rings->removals.count > 0) {
-        STARG_TRY(insert(s, work));
+        STARG_TRY(sphere_insert(s, work));
         if ((double)s->rings->left >= next) {
-            STARG_TRY(relax(s, LEVEL_SWEEPS));
+            STARG_TRY(sphere_relax(s, NULL, LEVEL_SWEEPS));
             next = GROWTH * (double)s->rings->left;
         }
         starg_progress_step(s->context, s->rings->left, s->rings->vertex_count);
     }
-    STARG_TRY(relax(s, FINAL_SWEEPS));
-    for (size_t v = 0; v < s->rings->vertex_count; v++)
-        s->alive[v] = (uint32_t)v;
+    STARG_TRY(sphere_relax(s, NULL, FINAL_SWEEPS));
+    sphere_list_alive(s);
 done:
     starg_progress_end(s->context);
     return status;
 }
 
+void sphere_list_alive(sphere *s) {
+    size_t count = 0;
+    for (size_t v = 0; v < s->rings->vertex_count; v++)
+        if (s->rings->of[v].count > 0)
+            s->alive[count++] = (uint32_t)v;
+}
+
 bool sphere_is_positive(const sphere *s) {
-    static const double origin[3];
-    for (size_t f = 0; f < s->mesh->face_count; f++) {
-        const uint32_t *corner = s->mesh->faces + 3 * f;
-        if (orient3d(s->directions + 3 * (size_t)corner[0], s->directions + 3 * (size_t)corner[1],
-                     s->directions + 3 * (size_t)corner[2], origin) != 1)
+    for (size_t i = 0; i < s->rings->left; i++)
+        if (!relax_is_positive(&s->rings->of[s->alive[i]], s->directions,
+                               s->directions + 3 * (size_t)s->alive[i]))
             return false;
-    }
     return true;
 }
 
 starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out) {
     starg_status status = STARG_OK;
     sphere *s = NULL;
-    workspace work = {0};
+    sphere_work work = {0};
     *out = NULL;
     STARG_NEW_ZERO(context, STAGE, s, 1);
     s->context = context;
@@ -198,7 +195,7 @@ starg_status sphere_create(starg_context *context, const starg_mesh *mesh, spher
     STARG_NEW_ZERO(context, STAGE, s->directions, 3 * mesh->vertex_count);
     STARG_NEW(context, STAGE, s->alive, mesh->vertex_count);
     STARG_TRY(rings_create(context, mesh, &s->rings));
-    STARG_TRY(rings_reduce(s->rings));
+    STARG_TRY(rings_reduce(s->rings, &(rings_limits){.least = BASE}));
     place_base(s);
     STARG_TRY(refine(s, &work));
     if (!sphere_is_positive(s)) {
@@ -209,8 +206,7 @@ starg_status sphere_create(starg_context *context, const starg_mesh *mesh, spher
     *out = s;
     s = NULL;
 done:
-    STARG_ARRAY_FREE(context, &work.rows);
-    STARG_ARRAY_FREE(context, &work.order);
+    sphere_work_free(context, &work);
     sphere_free(s);
     return status;
 }

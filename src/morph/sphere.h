@@ -10,8 +10,8 @@
 typedef struct sphere {
     starg_context *context;
     const starg_mesh *mesh; /* borrowed; every coordinate within about a unit */
-    rings *rings;           /* with all vertices                              */
-    uint32_t *alive;        /* 0, 1, ..: all vertices                         */
+    rings *rings;           /* with all vertices, but while it is changed     */
+    uint32_t *alive;        /* rings->left vertices: those that are not out   */
     double *directions;     /* vertex_count x 3, of length about 1            */
     double floor;           /* of its relaxation                              */
 } sphere;
@@ -21,7 +21,24 @@ typedef struct sphere {
 starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out);
 void sphere_free(sphere *s);
 
-/* Is every face positively oriented? Exact. */
+/* Is every face positively oriented, of what is not out? Exact. */
 bool sphere_is_positive(const sphere *s);
+
+/* Lists the vertices that are not out, in ascending order. */
+void sphere_list_alive(sphere *s);
+
+/* Evens out what is not out, but for the vertices that are pinned (NULL: none). Errors: CANCELLED. */
+starg_status sphere_relax(sphere *s, const uint8_t *pinned, int sweeps);
+
+/* Memory that grows with the largest polygon; zero at first. */
+typedef struct sphere_work {
+    STARG_ARRAY(double) rows;
+    STARG_ARRAY(uint32_t) order;
+} sphere_work;
+void sphere_work_free(starg_context *context, sphere_work *work);
+
+/* Puts the last removed vertex back, into the middle of the kernel of its polygon, and at the end
+ * of `alive`. Errors: SOLVER (no room in doubles), MEMORY. */
+starg_status sphere_insert(sphere *s, sphere_work *work);
 
 #endif

@@ -1,0 +1,14 @@
+/* The map from one spread surface to another, with all that is known about both. */
+#ifndef STARG_MORPH_COMPOSE_H
+#define STARG_MORPH_COMPOSE_H
+
+#include "morph/align.h"
+
+/* Moves the directions of `from` until the landmarks lie exactly on their counterparts and the map
+ * from surface to surface, by way of the sphere, distorts little; every triangle stays positive.
+ * `met` tells whether all landmarks were met. Errors: SOLVER (no room in doubles), MEMORY,
+ * CANCELLED. */
+starg_status compose_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
+                             bool *met);
+
+#endif

@@ -1,0 +1,26 @@
+/* Straight lines on a triangulated surface. */
+#ifndef STARG_MORPH_WALK_H
+#define STARG_MORPH_WALK_H
+
+#include "mesh/topology.h"
+
+/* A point of a surface: barycentric coordinates in a face, each at least 0, with the sum 1. */
+typedef struct surface_point {
+    uint32_t face;
+    double coordinates[3];
+} surface_point;
+
+/* Its place in space. */
+void surface_place(const starg_mesh *mesh, const surface_point *point, double out[3]);
+
+/* The vector in the point's face along which a function grows that has these slopes along the three
+ * coordinates; false for a face without area. */
+bool surface_gradient(const starg_mesh *mesh, const surface_point *point, const double slopes[3],
+                      double out[3]);
+
+/* Goes from a point by a vector in its face's plane, unfolded over the edges that come in the way;
+ * stops short at a face without area, at a border and after a great many faces. */
+void surface_walk(const starg_mesh *mesh, const mesh_topology *topology, const double step[3],
+                  surface_point *point);
+
+#endif
