@@ -13,6 +13,7 @@ typedef struct values {
     const char *output, *map, *landmarks, *glb, *picture;
     uint64_t frames, candidates;
     int method;
+    bool guards;
 } values;
 
 enum { SHEET_COLUMNS = 5, TILE_WIDTH = 480, TILE_HEIGHT = 360 };
@@ -37,6 +38,11 @@ static const cli_option options[] = {
                     "The frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Draw five moments by the methods star, arap and linear, a row each."),
+    CLI_FLAG_OPTION(
+        "guards", guards,
+        "Write guards_a.json and guards_b.json into DIR as well, guards of A and of the "
+        "last frame that correspond one by one, and tell how many each shape alone "
+        "would need (star and spherical)."),
     CLI_COUNT_OPTION("candidates", candidates, "N", 1, 100000,
                      "About how many places are tried for guards. Default 1,000."),
 };
@@ -60,6 +66,10 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(
             session, STARG_ERROR_ARGUMENT,
             "--landmarks are for a map that is made, --map gives one; name one of them");
+    if (v->guards && v->method != STARG_MORPH_STAR && v->method != STARG_MORPH_SPHERICAL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--guards: the method %s has no guards; take star or spherical",
+                        methods[v->method]);
     CLI_TRY(cli_announce_with_ending(session, "--glb", v->glb, ".glb"));
     CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
     if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
@@ -206,6 +216,64 @@ done:
     return status;
 }
 
+/* ---- guards ---- */
+
+/* How many guards each end would need alone, with the proven bounds. */
+typedef struct separate {
+    size_t count[2], bound[2];
+} separate;
+
+/* B is the model itself where it has A's faces, else the last frame. */
+static starg_status write_end(cli_session *session, const values *v, const subject *s,
+                              const starg_morph *morph, int end) {
+    starg_status status = STARG_OK;
+    starg_guards *guards = NULL;
+    size_t size = strlen(v->output) + 64;
+    char *name = malloc(size), *frame = malloc(size);
+    const char *model = session->operands[end];
+    if (name == NULL || frame == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    snprintf(name, size, "%s/guards_%c.json", v->output, end == 0 ? 'a' : 'b');
+    snprintf(frame, size, "%s/frame_%04llu.off", v->output, (unsigned long long)(v->frames - 1));
+    if (end == 1 && s->map->kind != STARG_MAP_SAME)
+        model = frame;
+    CLI_TRY(starg_morph_guards_result(morph, end, &guards));
+    CLI_TRY(cli_announce(session, name));
+    CLI_TRY(starg_guards_write(session->context, guards, model,
+                               cli_outputs_place(&session->outputs, name)));
+done:
+    starg_guards_free(session->context, guards);
+    free(name);
+    free(frame);
+    return status;
+}
+
+static starg_status write_guards(cli_session *session, const values *v, const subject *s,
+                                 const starg_morph *morph, separate *out) {
+    starg_status status = STARG_OK;
+    for (int end = 0; end < 2; end++) {
+        starg_guards *guards = NULL;
+        CLI_TRY(write_end(session, v, s, morph, end));
+        CLI_TRY(starg_morph_guards_separate(morph, end, &guards));
+        out->count[end] = guards->count;
+        out->bound[end] = guards->lower_bound;
+        starg_guards_free(session->context, guards);
+    }
+done:
+    return status;
+}
+
+static json_t *separate_json(cli_session *session, const separate *found) {
+    json_t *list = json_array();
+    for (int end = 0; end < 2; end++)
+        cli_append(session, list,
+                   json_pack("{s:I, s:I}", "guards", (json_int_t)found->count[end], "lower_bound",
+                             (json_int_t)found->bound[end]));
+    return list;
+}
+
 /* ---- picture ---- */
 
 static starg_status draw_row(cli_session *session, const subject *s, starg_morph_options wanted,
@@ -264,7 +332,7 @@ static json_t *guards_json(cli_session *session, const starg_morph *morph, int e
 }
 
 static void report_morph(cli_session *session, const values *v, const starg_morph *morph,
-                         json_t *frames) {
+                         const separate *alone, json_t *frames) {
     json_t *report = session->report;
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
@@ -273,14 +341,20 @@ static void report_morph(cli_session *session, const values *v, const starg_morp
     cli_put(session, report, "counterparts", guards_json(session, morph, 1));
     cli_put(session, report, "unguarded_faces",
             json_integer((json_int_t)starg_morph_unguarded(morph)));
+    if (v->guards)
+        cli_put(session, report, "separate", separate_json(session, alone));
     cli_put(session, report, "frames", json_incref(frames));
 }
 
 static void say_morph(cli_session *session, const values *v, const starg_morph *morph,
-                      const totals *sum) {
+                      const separate *alone, const totals *sum) {
     cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
     if (starg_morph_guard_count(morph) > 0)
         cli_say(session, "guards        %zu in each shape\n", starg_morph_guard_count(morph));
+    if (v->guards)
+        cli_say(session,
+                "alone         %zu guards for A (at least %zu), %zu for B (at least %zu)\n",
+                alone->count[0], alone->bound[0], alone->count[1], alone->bound[1]);
     cli_say(session, "intersecting  %zu pairs of faces, at most %zu in a frame\n",
             sum->intersections, sum->most_intersections);
     cli_say(session, "folded        %zu faces\n", sum->inverted);
@@ -293,19 +367,22 @@ static starg_status run(cli_session *session, void *data) {
     subject s = {0};
     starg_morph *morph = NULL;
     totals sum = {0};
+    separate alone = {0};
     const starg_morph_options wanted = {.method = (starg_morph_method)v->method,
                                         .candidates = (size_t)v->candidates};
     json_t *frames = json_array();
     CLI_TRY(read_subject(session, v, &s));
     CLI_TRY(starg_morph_create(session->context, session->mesh, s.images, &wanted, &morph));
     CLI_TRY(write_frames(session, v, morph, frames, &sum));
+    if (v->guards)
+        CLI_TRY(write_guards(session, v, &s, morph, &alone));
     if (v->glb != NULL)
         CLI_TRY(write_animation(session, v, morph));
     if (v->picture != NULL)
         CLI_TRY(write_picture(session, v, &s));
-    say_morph(session, v, morph, &sum);
+    say_morph(session, v, morph, &alone, &sum);
     if (session->report != NULL)
-        report_morph(session, v, morph, frames);
+        report_morph(session, v, morph, &alone, frames);
 done:
     json_decref(frames);
     starg_morph_free(morph);
@@ -325,6 +402,10 @@ const cli_command cli_command_morph = {
         "and the drift of the volume are told.",
     .examples = "# two poses of one model\n"
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames\n"
+                "# with the guards that correspond; both files verify\n"
+                "starguard morph horse_0.off horse_1.off --frames 21 -o frames --guards\n"
+                "starguard verify horse_0.off frames/guards_a.json\n"
+                "starguard verify horse_1.off frames/guards_b.json\n"
                 "# two animals by a map of landmarks, and the plain method to compare with\n"
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json\n"
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o frames\n"

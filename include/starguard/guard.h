@@ -120,6 +120,12 @@ typedef struct starg_guards {
  * they are listed. Errors: ARGUMENT, MESH (no candidate inside), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_guard(starg_context *context, const starg_solid *solid,
                                    const starg_guard_options *options, starg_guards **out);
+/* What guards see that stand already, `count` points in this order: a result whose candidates they
+ * are. The lower bound is 0: nothing is chosen. Errors: ARGUMENT (one is not strictly inside),
+ * MEMORY, CANCELLED. */
+STARG_API starg_status starg_guards_given(starg_context *context, const starg_solid *solid,
+                                          const double *points, size_t count, starg_guards **out);
+
 STARG_API void starg_guards_free(starg_context *context, starg_guards *guards);
 
 /* Points where guards may stand: count x 3 doubles in a block that starg_points_free frees, every

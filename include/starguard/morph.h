@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "guard.h"
 #include "mesh.h"
 
 #ifdef __cplusplus
@@ -121,6 +122,18 @@ STARG_API const double *starg_morph_guards(const starg_morph *morph, int end);
 STARG_API const uint32_t *starg_morph_pieces(const starg_morph *morph);
 /* Faces whose guard is not seen to be on their inner side at both ends: no candidate is. */
 STARG_API size_t starg_morph_unguarded(const starg_morph *morph);
+
+/* The guards of one end (0: A, else the images) as a result of their own, in the order of
+ * starg_morph_guards; its model has A's faces. `candidate_count`, `lower_bound` and `optimal` are
+ * those of the common problem: no fewer pairs of candidates see at both ends all faces that some
+ * pair sees at both. Errors: ARGUMENT (a method without guards), MEMORY, CANCELLED. */
+STARG_API starg_status starg_morph_guards_result(const starg_morph *morph, int end,
+                                                 starg_guards **out);
+
+/* What an end alone would need: guards chosen of the same candidates that see all that some
+ * candidate sees there. Errors: as above. */
+STARG_API starg_status starg_morph_guards_separate(const starg_morph *morph, int end,
+                                                   starg_guards **out);
 
 /* What a frame is like. */
 typedef struct starg_frame_measures {

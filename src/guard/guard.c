@@ -275,6 +275,43 @@ done:
     return status;
 }
 
+static starg_status choose_all(guard_job *job) {
+    starg_status status = STARG_OK;
+    for (uint32_t i = 0; i < pool_count(&job->pool); i++) {
+        STARG_PUSH(job->context, STAGE, &job->chosen, i);
+        STARG_PUSH(job->context, STAGE, &job->levels, 0);
+    }
+    if (job->chosen.count != job->options->point_count)
+        status =
+            starg_fail(job->context, STARG_ERROR_ARGUMENT, STAGE,
+                       "%zu of %zu given guards are not strictly inside the solid",
+                       job->options->point_count - job->chosen.count, job->options->point_count);
+done:
+    return status;
+}
+
+starg_status starg_guards_given(starg_context *context, const starg_solid *solid,
+                                const double *points, size_t count, starg_guards **out) {
+    starg_status status = STARG_OK;
+    starg_guard_options used;
+    starg_guard_options_default(&used);
+    used.method = STARG_GUARD_ILP;
+    used.candidates = STARG_CANDIDATES_GIVEN;
+    used.candidate_count = used.point_count = count;
+    used.points = points;
+    guard_job job = {.context = context, .solid = solid, .options = &used};
+    *out = NULL;
+    set_defaults(&used, solid->mesh->vertex_count);
+    STARG_TRY(pool_create(context, solid, job.options, &job.pool));
+    STARG_TRY(column_weights_create(context, solid->mesh, used.visibility.target, &job.weights));
+    STARG_TRY(make_candidates(&job));
+    STARG_TRY(choose_all(&job));
+    STARG_TRY(report(&job, out));
+done:
+    job_free(&job);
+    return status;
+}
+
 void starg_guards_free(starg_context *context, starg_guards *guards) {
     if (guards == NULL)
         return;

@@ -64,8 +64,7 @@ done:
 static starg_status meet(composer *p) {
     if (p->met)
         return STARG_OK;
-    starg_status status =
-        landmarks_meet(p->c.from, p->c.to->sphere, p->landmarks, &p->met);
+    starg_status status = landmarks_meet(p->c.from, p->c.to->sphere, p->landmarks, &p->met);
     composition_locate_all(&p->c);
     return status;
 }

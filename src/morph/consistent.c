@@ -26,34 +26,27 @@
 #include "starguard/visibility.h"
 
 static const char STAGE[] = "consistent guards";
-enum { COVER_NODES = 2000 };
 static const double WHOLE = 1e-3; /* share of the whole's motion in a counterpart's */
 
 typedef struct guarding {
     starg_morph *morph;
     starg_solid *solids[2];
     starg_skeleton *skeleton;
-    size_t count;      /* candidates */
-    double *places[2]; /* count x 3, in the inputs' coordinates */
-    starg_bits *seen;  /* count x faces, by both */
+    starg_bits *seen; /* count x faces, by both */
     starg_cover *cover;
 } guarding;
 
 /* ---- ends ---- */
 
-static starg_status make_solids(guarding *g) {
-    starg_status status = STARG_OK;
-    starg_morph *m = g->morph;
-    for (int end = 0; end < 2; end++) {
-        starg_mesh *mesh = NULL;
-        status = starg_mesh_create(m->context, end ? m->target : m->source, m->mesh->vertex_count,
-                                   m->mesh->faces, m->mesh->face_count, &mesh);
-        if (status == STARG_OK)
-            status = starg_solid_create(m->context, mesh, &g->solids[end]);
-        starg_mesh_free(mesh);
-        if (status != STARG_OK)
-            break;
-    }
+starg_status morph_solid(const starg_morph *m, int end, starg_solid **out) {
+    starg_mesh *mesh = NULL;
+    *out = NULL;
+    starg_status status =
+        starg_mesh_create(m->context, end ? m->target : m->source, m->mesh->vertex_count,
+                          m->mesh->faces, m->mesh->face_count, &mesh);
+    if (status == STARG_OK)
+        status = starg_solid_create(m->context, mesh, out);
+    starg_mesh_free(mesh);
     return status;
 }
 
@@ -168,16 +161,17 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
     size_t nodes = g->skeleton->node_count;
     STARG_NEW_ZERO(context, STAGE, own, nodes);
     STARG_NEW_ZERO(context, STAGE, all, nodes + 1);
-    STARG_NEW(context, STAGE, g->places[0], 3 * nodes);
-    STARG_NEW(context, STAGE, g->places[1], 3 * nodes);
+    STARG_NEW(context, STAGE, g->morph->candidates[0], 3 * nodes);
+    STARG_NEW(context, STAGE, g->morph->candidates[1], 3 * nodes);
     gather_moments(g, own, all);
     for (size_t i = 0; i < nodes; i++) {
         const double *node = g->skeleton->positions + 3 * i;
-        if (!counterpart(g, &all[i], &all[nodes], node, g->places[1] + 3 * g->count))
+        if (!counterpart(g, &all[i], &all[nodes], node,
+                         g->morph->candidates[1] + 3 * g->morph->candidate_count))
             continue;
-        vec3_copy(node, g->places[0] + 3 * g->count++);
+        vec3_copy(node, g->morph->candidates[0] + 3 * g->morph->candidate_count++);
     }
-    if (g->count == 0)
+    if (g->morph->candidate_count == 0)
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,
                             "no node of A's skeleton has a counterpart inside of B; the map may be "
                             "too distorted. --method arap needs no guards");
@@ -194,10 +188,11 @@ static starg_status see(guarding *g) {
     starg_context *context = g->morph->context;
     starg_bits *seen[2] = {NULL, NULL};
     for (int end = 0; end < 2; end++)
-        STARG_TRY(
-            starg_visibility(context, g->solids[end], g->places[end], g->count, NULL, &seen[end]));
-    STARG_TRY(starg_bits_create(context, g->count, g->morph->mesh->face_count, &g->seen));
-    for (size_t i = 0; i < g->count; i++)
+        STARG_TRY(starg_visibility(context, g->solids[end], g->morph->candidates[end],
+                                   g->morph->candidate_count, NULL, &seen[end]));
+    STARG_TRY(starg_bits_create(context, g->morph->candidate_count, g->morph->mesh->face_count,
+                                &g->seen));
+    for (size_t i = 0; i < g->morph->candidate_count; i++)
         for (size_t f = 0; f < g->morph->mesh->face_count; f++)
             if (starg_bits_test(seen[0], i, f) && starg_bits_test(seen[1], i, f))
                 starg_bits_set(g->seen, i, f);
@@ -215,9 +210,10 @@ static starg_status choose(guarding *g) {
     starg_cover_problem_default(&problem);
     starg_cover_options_default(&options);
     problem.rows = g->seen;
-    options.max_nodes = COVER_NODES;
+    options.max_nodes = MORPH_COVER_NODES;
     STARG_TRY(starg_cover_solve(m->context, &problem, &options, &g->cover));
     m->guard_count = g->cover->count;
+    m->lower_bound = g->cover->lower_bound;
     if (m->guard_count == 0)
         return starg_fail(m->context, STARG_ERROR_MESH, STAGE,
                           "no candidate sees a face of A and its image in B; the map may be too "
@@ -226,7 +222,7 @@ static starg_status choose(guarding *g) {
         STARG_NEW(m->context, STAGE, m->guards[end], 3 * m->guard_count);
         STARG_NEW(m->context, STAGE, m->places[end], 3 * m->guard_count);
         for (size_t i = 0; i < m->guard_count; i++) {
-            const double *from = g->places[end] + 3 * (size_t)g->cover->rows[i];
+            const double *from = g->morph->candidates[end] + 3 * (size_t)g->cover->rows[i];
             vec3_copy(from, m->guards[end] + 3 * i);
             scale(m, end, from, m->places[end] + 3 * i);
         }
@@ -297,9 +293,11 @@ static starg_status cut(guarding *g) {
     starg_status status = STARG_OK;
     starg_morph *m = g->morph;
     STARG_NEW(m->context, STAGE, m->pieces, m->mesh->face_count);
+    STARG_NEW(m->context, STAGE, m->guarded, m->mesh->face_count);
     for (size_t f = 0; f < m->mesh->face_count; f++) {
         m->pieces[f] = nearest_viewer(g, f);
-        m->unguarded += m->pieces[f] == UINT32_MAX;
+        m->guarded[f] = m->pieces[f] != UINT32_MAX;
+        m->unguarded += !m->guarded[f];
     }
     STARG_TRY(spread_pieces(m));
 done:
@@ -309,7 +307,8 @@ done:
 starg_status morph_guard(starg_morph *m, size_t candidates) {
     starg_status status = STARG_OK;
     guarding g = {.morph = m};
-    STARG_TRY(make_solids(&g));
+    for (int end = 0; end < 2; end++)
+        STARG_TRY(morph_solid(m, end, &g.solids[end]));
     STARG_TRY(find_candidates(&g, candidates));
     STARG_TRY(see(&g));
     STARG_TRY(choose(&g));
@@ -318,8 +317,6 @@ done:
     starg_solid_free(g.solids[0]);
     starg_solid_free(g.solids[1]);
     starg_skeleton_free(m->context, g.skeleton);
-    starg_release(m->context, g.places[0]);
-    starg_release(m->context, g.places[1]);
     starg_bits_free(g.seen);
     starg_cover_free(g.cover);
     return status;

@@ -1,9 +1,9 @@
 /* How much a composed map distorts about a vertex.
  *
  * Energy of a triangle of area S: S (s^2 + r^2 + 1/s^2 + 1/r^2) for the singular values s, r of the
- * linear map to the flat triangle of its corners' images (symmetric Dirichlet), both surfaces scaled
- * to equal area; plus a small share of the roundness of its spherical triangle, squared edges over
- * area, which is infinite where that turns over: it keeps room for moves. */
+ * linear map to the flat triangle of its corners' images (symmetric Dirichlet), both surfaces
+ * scaled to equal area; plus a small share of the roundness of its spherical triangle, squared
+ * edges over area, which is infinite where that turns over: it keeps room for moves. */
 #include <math.h>
 #include <string.h>
 

@@ -2,8 +2,8 @@
  *
  * Stages: the rotation R0 that brings the whole of A closest to B; for each face the Jacobian J of
  * the affine map between its two shapes, about the two guards of its piece, or, where there are
- * none or they are nearly in its plane, with its normals; the polar decomposition R0^T J = R S; the
- * rotation vectors of R.
+ * none, they do not see it, or see it at a slant, with its normals; the polar decomposition R0^T J
+ * = R S; the rotation vectors of R.
  *
  * A rotation has many vectors, which differ by whole turns. Neighbours must take the same way
  * round, or the surface tears itself apart between them: the vectors are fixed face by face along a
@@ -23,7 +23,7 @@
 #include "morph/rotation.h"
 
 static const char STAGE[] = "morph";
-static const double GRAZING = 0.3; /* least sine of the angle at which a guard sees a face */
+static const double GRAZING = 0.6; /* least sine of the angle at which a guard sees a face */
 
 /* ---- Jacobians ---- */
 
@@ -81,7 +81,7 @@ static bool jacobian(const starg_morph *m, size_t face, double out[9]) {
     const uint32_t *corner = m->mesh->faces + 3 * face;
     const double *source = m->mesh->vertices;
     double p[9], q[9], inverse[9];
-    if (m->guard_count > 0) {
+    if (m->guard_count > 0 && m->guarded[face]) {
         const double *g = m->places[0] + 3 * (size_t)m->pieces[face];
         const double *h = m->places[1] + 3 * (size_t)m->pieces[face];
         if (sees_well(source, corner, g) && sees_well(m->images, corner, h)) {

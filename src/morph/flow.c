@@ -50,9 +50,9 @@ static bool triangle_at(const sphere *s, uint32_t v, size_t i, uint32_t corner[3
 /* The cotangent at a corner, for the edge of the other two. */
 static double cotangent(const flow *f, const uint32_t corner[3], int at) {
     const double *x = f->c->from->mesh->vertices;
-    const triangle_form form = triangle_form_of(x + 3 * (size_t)corner[at],
-                                                x + 3 * (size_t)corner[(at + 1) % 3],
-                                                x + 3 * (size_t)corner[(at + 2) % 3], f->c->floor);
+    const triangle_form form =
+        triangle_form_of(x + 3 * (size_t)corner[at], x + 3 * (size_t)corner[(at + 1) % 3],
+                         x + 3 * (size_t)corner[(at + 2) % 3], f->c->floor);
     return form.area > 0 ? form.f / sqrt(form.area) : 0;
 }
 
@@ -85,8 +85,7 @@ static starg_status make_system(flow *f) {
             if (triangle_at(s, v, i, corner))
                 next = put_triangle(f, corner, next);
     }
-    STARG_TRY(
-        cholesky_create(s->context, f->count, entries, (size_t)(next - entries), &f->system));
+    STARG_TRY(cholesky_create(s->context, f->count, entries, (size_t)(next - entries), &f->system));
 done:
     starg_release(s->context, entries);
     return status;
@@ -131,7 +130,8 @@ static bool fit_triangle(const flow *f, const uint32_t corner[3], fit *out) {
         return false;
     in_plane(out->from, a.w, q);
     in_plane(out->to, b.w, r);
-    p[0] = vec3_length(b.u) / vec3_length(a.u); /* columns of the linear map: (p0, 0), (p1, r1/q1) */
+    p[0] =
+        vec3_length(b.u) / vec3_length(a.u); /* columns of the linear map: (p0, 0), (p1, r1/q1) */
     p[1] = (r[0] - p[0] * q[0]) / q[1];
     double cosine = p[0] + r[1] / q[1], sine = -p[1], length = hypot(cosine, sine);
     out->turn[0] = cosine / length;

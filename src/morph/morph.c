@@ -118,9 +118,10 @@ done:
 void starg_morph_free(starg_morph *m) {
     if (m == NULL)
         return;
-    void *const blocks[] = {m->source,    m->target,    m->images,     m->faces,     m->weights,
-                            m->component, m->remainder, m->guards[0],  m->guards[1], m->places[0],
-                            m->places[1], m->pieces,    m->guard_paths};
+    void *const blocks[] = {m->source,        m->target,    m->images,    m->faces,
+                            m->weights,       m->component, m->remainder, m->candidates[0],
+                            m->candidates[1], m->guards[0], m->guards[1], m->places[0],
+                            m->places[1],     m->pieces,    m->guarded,   m->guard_paths};
     starg_mesh_free(m->mesh);
     cholesky_free(m->system);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)

@@ -5,6 +5,10 @@
 #include "mesh/mesh.h"
 #include "morph/cholesky.h"
 #include "starguard/morph.h"
+#include "starguard/solid.h"
+
+/* Branch-and-bound nodes for guards. */
+enum { MORPH_COVER_NODES = 2000 };
 
 /* How a face gets from A to B about a reference: A(t) = R0(t) R(t) ((1 - t) I + t S), with
  * R0(t) = exp(t w0) for all faces and R(t) = exp(t w). */
@@ -43,14 +47,20 @@ struct starg_morph {
     double *remainder; /* vertex_count x 3: what the least squares leave at 1  */
 
     size_t guard_count, unguarded;
-    double *guards[2]; /* guard_count x 3, as the inputs  */
-    double *places[2]; /* the same, scaled as the mesh    */
-    uint32_t *pieces;  /* per face                        */
+    size_t candidate_count, lower_bound; /* of the common problem */
+    double *candidates[2];               /* candidate_count x 3, as the inputs */
+    double *guards[2];                   /* guard_count x 3, as the inputs  */
+    double *places[2];                   /* the same, scaled as the mesh    */
+    uint32_t *pieces;                    /* per face                        */
+    uint8_t *guarded;                    /* per face: its guard sees it at both ends */
     guard_path *guard_paths;
 };
 
 /* Chooses guards and pieces that correspond (consistent.c). */
 starg_status morph_guard(starg_morph *m, size_t candidates);
+
+/* One end as a solid. Errors: MESH, MEMORY. */
+starg_status morph_solid(const starg_morph *m, int end, starg_solid **out);
 
 /* Finds the whole's and the faces' paths (face_paths.c). */
 starg_status morph_prepare_faces(starg_morph *m);

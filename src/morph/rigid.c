@@ -2,10 +2,10 @@
  *
  * Energy: for each face with the wanted Jacobian A(t), its cotangents times the squared errors of
  * its three edges, which is the error of its Jacobian within its plane, weighted by area; with
- * guards also the error along the direction from the guard to the face's middle c, weighted by the
- * face's area over the square of that distance: the middle less the guard shall be A(t) (c - g).
- * Guards are unknowns as vertices are; links of the guarding graph want their offsets (see
- * guard_paths.c), each with the weight of one cotangent.
+ * guards, for faces that theirs see, also the error along the direction from the guard to the
+ * face's middle c, weighted by the face's area over the square of that distance: the middle less
+ * the guard shall be A(t) (c - g). Guards are unknowns as vertices are; links of the guarding graph
+ * want their offsets (see guard_paths.c), each with the weight of one cotangent.
  *
  * The matrix does not depend on t: it is factorised once. It knows differences only; one unknown of
  * each connected part is held, and the part is then moved so that its mean goes straight.
@@ -52,7 +52,7 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[WEIGHTS
         return;
     for (int k = 0; k < 3; k++)
         weights[k] = -vec3_dot(e[(k + 1) % 3], e[(k + 2) % 3]) / (4 * area);
-    if (m->method != STARG_MORPH_STAR)
+    if (m->method != STARG_MORPH_STAR || !m->guarded[face])
         return;
     double middle[3];
     middle_of(m->mesh->vertices, corner, middle);

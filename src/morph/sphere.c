@@ -140,7 +140,8 @@ starg_status sphere_relax(sphere *s, const uint8_t *pinned, int sweeps) {
                           .alive = s->alive,
                           .alive_count = s->rings->left,
                           .pinned = pinned,
-                          .floor = s->floor * (double)s->rings->vertex_count / (double)s->rings->left};
+                          .floor =
+                              s->floor * (double)s->rings->vertex_count / (double)s->rings->left};
     for (int i = 0; i < sweeps; i++) {
         STARG_TRY(starg_check_cancel(s->context, STAGE));
         relax_sweep(&r);

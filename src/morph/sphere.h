@@ -27,7 +27,8 @@ bool sphere_is_positive(const sphere *s);
 /* Lists the vertices that are not out, in ascending order. */
 void sphere_list_alive(sphere *s);
 
-/* Evens out what is not out, but for the vertices that are pinned (NULL: none). Errors: CANCELLED. */
+/* Evens out what is not out, but for the vertices that are pinned (NULL: none). Errors: CANCELLED.
+ */
 starg_status sphere_relax(sphere *s, const uint8_t *pinned, int sweeps);
 
 /* Memory that grows with the largest polygon; zero at first. */

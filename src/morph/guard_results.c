@@ -1,0 +1,48 @@
+/* The guards of a morph's ends as results of their own, and what each end alone would need.
+ *
+ * Both use the candidates of the common problem, so that what differs is only that a pair must see
+ * at both ends. Cost: that of guarding with so many given candidates. */
+#include "morph/morph.h"
+
+static const char STAGE[] = "consistent guards";
+
+static starg_status check_method(const starg_morph *m) {
+    if (morph_has_guards(m))
+        return STARG_OK;
+    return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE,
+                      "the methods arap and linear have no guards; take star or spherical");
+}
+
+starg_status starg_morph_guards_result(const starg_morph *m, int end, starg_guards **out) {
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    *out = NULL;
+    STARG_TRY(check_method(m));
+    STARG_TRY(morph_solid(m, end, &solid));
+    STARG_TRY(starg_guards_given(m->context, solid, m->guards[end != 0], m->guard_count, out));
+    (*out)->candidate_count = m->candidate_count;
+    (*out)->lower_bound = m->lower_bound;
+    (*out)->optimal = m->lower_bound == m->guard_count;
+done:
+    starg_solid_free(solid);
+    return status;
+}
+
+starg_status starg_morph_guards_separate(const starg_morph *m, int end, starg_guards **out) {
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    starg_guard_options options;
+    *out = NULL;
+    STARG_TRY(check_method(m));
+    starg_guard_options_default(&options);
+    options.method = STARG_GUARD_ILP;
+    options.candidates = STARG_CANDIDATES_GIVEN;
+    options.points = m->candidates[end != 0];
+    options.point_count = options.candidate_count = m->candidate_count;
+    options.max_nodes = MORPH_COVER_NODES;
+    STARG_TRY(morph_solid(m, end, &solid));
+    STARG_TRY(starg_guard(m->context, solid, &options, out));
+done:
+    starg_solid_free(solid);
+    return status;
+}
