@@ -32,6 +32,22 @@ class Morph(Case):
             self.assertEqual(len(report["guards"]), len(report["counterparts"]))
             self.assertEqual(len(report["guards"]) > 0, method in ("star", "spherical"))
 
+    def test_guards(self):
+        """Both files verify, and no fewer guards see both shapes than one alone."""
+        for target, last in ("cat1.off", "cat1.off"), ("ball.off", "out/frame_0001.off"):
+            report = self.run_json("morph", "cat0.off", target, "--frames", "2", "-o", "out",
+                                   "--guards")
+            results = [json.loads(self.read(f"out/guards_{end}.json")) for end in "ab"]
+            for key, result in zip(("guards", "counterparts"), results):
+                self.assertEqual([g["position"] for g in result["guards"]], report[key])
+            self.assertEqual(results[1]["model"]["file"], last)
+            self.run_text("verify", "cat0.off", "out/guards_a.json")
+            self.run_text("verify", last, "out/guards_b.json")
+            self.assertEqual(len(report["separate"]), 2)
+        report = self.run_json("morph", "cat0.off", "cat1.off", "--frames", "2", "-o", "plain")
+        self.assertNotIn("separate", report)
+        self.assertNotIn("guards_a.json", os.listdir(self.path("plain")))
+
     def test_threads(self):
         for threads in "1", "3":
             self.run_text("morph", "cat0.off", "ball.off", "--frames", "3", "-o", threads,
@@ -109,6 +125,8 @@ class Morph(Case):
         self.usage_error("map", "cat0.off", "-o", "m.json", says="too few")
         self.usage_error("morph", "cat0.off", "cat1.off", says="-o DIR")
         self.usage_error("morph", "cat0.off", "cat1.off", "-o", "-", says="folder")
+        self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--guards", "--method", "arap",
+                         says="no guards")
         self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--frames", "1", says="frames")
         self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--method", "x", says="star")
         self.usage_error("morph", "cat0.off", "cat1.off", "-o", "o", "--glb", "x.gltf", says=".glb")

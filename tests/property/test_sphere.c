@@ -6,6 +6,7 @@
 
 #include "core/rng.h"
 #include "models.h"
+#include "morph/compose.h"
 #include "morph/landmarks.h"
 #include "morph/map.h"
 #include "morph/sphere.h"
@@ -114,6 +115,20 @@ static void test_special(void **state) {
     test_context_free(context);
 }
 
+static uint32_t nearest_vertex(const starg_mesh *mesh, const double *p) {
+    uint32_t best = 0;
+    double least = INFINITY;
+    for (uint32_t v = 0; v < starg_mesh_vertex_count(mesh); v++) {
+        const double *q = starg_mesh_vertices(mesh) + 3 * (size_t)v;
+        double d = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+        if (d < least) {
+            least = d;
+            best = v;
+        }
+    }
+    return best;
+}
+
 /* Random pairs of vertices as landmarks, as far as they are met: exactly, and without a fold. */
 static void test_landmarks(void **state) {
     (void)state;
@@ -152,6 +167,58 @@ static void test_landmarks(void **state) {
         sphere_free(to);
     }
     assert_true(met >= 4);
+    starg_mesh_free(unit_a);
+    starg_mesh_free(unit_b);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    test_context_free(context);
+}
+
+/* One shape, meshed twice: with a few landmarks the map comes near to the identity, and is a
+ * bijection. Without any relaxation of the composed map, angles are off by far more. */
+static void test_composed(void **state) {
+    (void)state;
+    enum { MARKS = 8 };
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_sample_mesh(context, "cat", 700),
+               *b = test_sample_mesh(context, "cat", 1100);
+    starg_mesh *unit_a, *unit_b;
+    starg_map *map;
+    uint32_t pairs[2 * MARKS];
+    for (uint32_t i = 0; i < MARKS; i++) {
+        pairs[2 * i] = i * (uint32_t)(starg_mesh_vertex_count(a) / MARKS);
+        pairs[2 * i + 1] = nearest_vertex(b, starg_mesh_vertices(a) + 3 * (size_t)pairs[2 * i]);
+    }
+    const starg_map_options options = {.landmarks = pairs, .landmark_count = MARKS};
+    test_ok(context, starg_map_create(context, a, b, &options, &map));
+    assert_true(map->mean_angle_distortion < 1.15);
+    assert_true(map->mean_area_distortion < 1.15);
+    assert_int_equal(map->collapsed, 0);
+    starg_map_free(context, map);
+
+    sphere *from, *to;
+    locator where;
+    bool met;
+    uint32_t lists[2][MARKS];
+    for (size_t i = 0; i < 2 * MARKS; i++)
+        lists[i % 2][i / 2] = pairs[i];
+    const landmark_list marks = {lists[0], lists[1], MARKS};
+    feature_pairs features;
+    test_ok(context, map_unit_copy(context, a, &unit_a));
+    test_ok(context, map_unit_copy(context, b, &unit_b));
+    test_ok(context, sphere_create(context, unit_a, &from));
+    test_ok(context, sphere_create(context, unit_b, &to));
+    test_ok(context, locator_create(context, to, &where));
+    test_ok(context, align_spheres(from, &where, &marks, &features));
+    test_ok(context, compose_spheres(from, &where, &marks, &met));
+    assert_true(met);
+    assert_bijective(from);
+    for (size_t i = 0; i < MARKS; i++)
+        assert_memory_equal(from->directions + 3 * (size_t)lists[0][i],
+                            to->directions + 3 * (size_t)lists[1][i], 3 * sizeof *from->directions);
+    locator_free(&where);
+    sphere_free(from);
+    sphere_free(to);
     starg_mesh_free(unit_a);
     starg_mesh_free(unit_b);
     starg_mesh_free(a);
@@ -213,9 +280,9 @@ static void test_shared(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples),   cmocka_unit_test(test_special),
-        cmocka_unit_test(test_landmarks), cmocka_unit_test(test_map_landmarks),
-        cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_samples),       cmocka_unit_test(test_special),
+        cmocka_unit_test(test_landmarks),     cmocka_unit_test(test_composed),
+        cmocka_unit_test(test_map_landmarks), cmocka_unit_test(test_shared),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
