@@ -112,12 +112,12 @@ static void gather_moments(const guarding *g, moments *own, moments *all) {
 /* From scaled coordinates to those of an input, and back. */
 static void unscale(const starg_morph *m, int end, const double p[3], double out[3]) {
     for (int k = 0; k < 3; k++)
-        out[k] = m->centers[end][k] + m->size * p[k];
+        out[k] = m->centers[end][k] + m->sizes[end] * p[k];
 }
 
 static void scale(const starg_morph *m, int end, const double p[3], double out[3]) {
     for (int k = 0; k < 3; k++)
-        out[k] = (p[k] - m->centers[end][k]) / m->size;
+        out[k] = (p[k] - m->centers[end][k]) / m->sizes[end];
 }
 
 /* The similar motion of the node's surroundings; a little of that of the whole is mixed in, which

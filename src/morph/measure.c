@@ -76,13 +76,13 @@ starg_status starg_morph_measure(const starg_morph *m, double t, const double *p
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     starg_check *check = NULL;
-    double *scaled = NULL, volumes[3], areas[3];
+    double *scaled = NULL, volumes[3], areas[3], size = morph_size(m, t);
     size_t count = 3 * m->mesh->vertex_count;
     *out = (starg_frame_measures){0};
     STARG_NEW(m->context, STAGE, scaled, count);
     for (size_t i = 0; i < count; i++)
         scaled[i] =
-            (positions[i] - (1 - t) * m->centers[0][i % 3] - t * m->centers[1][i % 3]) / m->size;
+            (positions[i] - (1 - t) * m->centers[0][i % 3] - t * m->centers[1][i % 3]) / size;
     STARG_TRY(count_faces(m, scaled, out));
     STARG_TRY(size_of(m, m->mesh->vertices, &volumes[0], &areas[0]));
     STARG_TRY(size_of(m, m->images, &volumes[1], &areas[1]));
@@ -91,8 +91,13 @@ starg_status starg_morph_measure(const starg_morph *m, double t, const double *p
                                 m->mesh->face_count, &mesh));
     STARG_TRY(starg_mesh_check(m->context, mesh, &check));
     out->intersections = check->findings[STARG_FINDING_SELF_INTERSECTION].count;
-    out->volume = volumes[2] * m->size * m->size * m->size;
-    out->area = areas[2] * m->size * m->size;
+    for (int i = 0; i < 3; i++) {
+        double own = (i < 2 ? m->sizes[i] : size) / m->sizes[0];
+        volumes[i] *= own * own * own;
+        areas[i] *= own * own;
+    }
+    out->volume = volumes[2] * m->sizes[0] * m->sizes[0] * m->sizes[0];
+    out->area = areas[2] * m->sizes[0] * m->sizes[0];
     out->volume_drift = drift(volumes[2], volumes[0], volumes[1], t);
     out->area_drift = drift(areas[2], areas[0], areas[1], t);
 done:

@@ -4,8 +4,9 @@
  * (consistent.c); for the rigid ones, the paths of the faces (face_paths.c) and guards
  * (guard_paths.c), and the factorised system (rigid.c). Every frame is then independent of others.
  *
- * All work is done about the middle of each end's box and over the larger extent, so that models of
- * any size are alike; the middle itself goes straight. */
+ * All work is done about the middle of each end's box, and in units of which closed ends have equal
+ * volumes: what the whole grows by is no stretch of single faces. The unit goes such that its cube,
+ * as a volume does, changes in proportion to t; the middle itself goes straight. */
 #include "morph/morph.h"
 
 #include <math.h>
@@ -13,9 +14,11 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
+#include "mesh/topology.h"
 
 static const char STAGE[] = "morph";
 enum { CANDIDATES = 1000, CANDIDATES_MOST = 100000 };
+static const double GROWTH_MOST = 1e6; /* of volumes that are brought to one size */
 
 void starg_morph_options_default(starg_morph_options *options) {
     *options = (starg_morph_options){.method = STARG_MORPH_STAR, .candidates = CANDIDATES};
@@ -56,11 +59,42 @@ static double box_of(const double *positions, size_t count, double center[3]) {
     return extent;
 }
 
+static bool is_closed(const mesh_topology *topology) {
+    for (size_t h = 0; h < 3 * topology->face_count; h++)
+        if (topology->twin[h] == TOPOLOGY_NONE)
+            return false;
+    return true;
+}
+
+/* The scale that brings A to the volume of the images; 1 where either has none to speak of. */
+static starg_status find_growth(starg_morph *m, double *growth) {
+    starg_status status = STARG_OK;
+    starg_mesh *other = NULL;
+    mesh_topology *topology = NULL;
+    *growth = 1;
+    STARG_TRY(starg_mesh_create(m->context, m->images, m->mesh->vertex_count, m->mesh->faces,
+                                m->mesh->face_count, &other));
+    STARG_TRY(topology_create(m->context, m->mesh, &topology));
+    double ratio = starg_mesh_volume(other) / starg_mesh_volume(m->mesh);
+    if (is_closed(topology) && starg_mesh_volume(m->mesh) > 0 && ratio * GROWTH_MOST > 1 &&
+        ratio < GROWTH_MOST)
+        *growth = cbrt(ratio);
+done:
+    topology_free(topology);
+    starg_mesh_free(other);
+    return status;
+}
+
+double morph_size(const starg_morph *m, double t) {
+    double growth = m->sizes[1] / m->sizes[0];
+    return m->sizes[0] * cbrt(1 - t + t * growth * growth * growth);
+}
+
 static starg_status take_ends(starg_morph *m, const starg_mesh *a, const double *images) {
     starg_status status = STARG_OK;
     starg_context *context = m->context;
     size_t count = 3 * a->vertex_count;
-    double *scaled = NULL;
+    double *scaled = NULL, growth;
     STARG_NEW(context, STAGE, m->source, count);
     STARG_NEW(context, STAGE, m->target, count);
     STARG_NEW(context, STAGE, m->images, count);
@@ -69,18 +103,23 @@ static starg_status take_ends(starg_morph *m, const starg_mesh *a, const double 
     memcpy(m->target, images, count * sizeof *m->target);
     double own = box_of(m->source, a->vertex_count, m->centers[0]);
     double other = box_of(m->target, a->vertex_count, m->centers[1]);
-    m->size = fmax(own, other);
+    double size = fmax(own, other);
     if (!(own > 0 && other > 0)) {
         status =
             starg_fail(context, STARG_ERROR_MESH, STAGE, "one of the two shapes is a single point");
         goto done;
     }
     for (size_t i = 0; i < count; i++) {
-        scaled[i] = (m->source[i] - m->centers[0][i % 3]) / m->size;
-        m->images[i] = (m->target[i] - m->centers[1][i % 3]) / m->size;
+        scaled[i] = (m->source[i] - m->centers[0][i % 3]) / size;
+        m->images[i] = (m->target[i] - m->centers[1][i % 3]) / size;
     }
     STARG_TRY(
         starg_mesh_create(context, scaled, a->vertex_count, a->faces, a->face_count, &m->mesh));
+    STARG_TRY(find_growth(m, &growth));
+    m->sizes[0] = size;
+    m->sizes[1] = size * growth;
+    for (size_t i = 0; i < count; i++)
+        m->images[i] /= growth;
 done:
     starg_release(context, scaled);
     return status;
@@ -132,9 +171,10 @@ void starg_morph_free(starg_morph *m) {
 /* ---- frames ---- */
 
 static void unscale(const starg_morph *m, double t, double *positions) {
+    double size = morph_size(m, t);
     for (size_t i = 0; i < 3 * m->mesh->vertex_count; i++)
         positions[i] =
-            (1 - t) * m->centers[0][i % 3] + t * m->centers[1][i % 3] + m->size * positions[i];
+            (1 - t) * m->centers[0][i % 3] + t * m->centers[1][i % 3] + size * positions[i];
 }
 
 starg_status starg_morph_frame(const starg_morph *m, double t, double *positions) {

@@ -31,11 +31,11 @@ typedef struct guard_path {
 struct starg_morph {
     starg_context *context;
     starg_morph_method method;
-    starg_mesh *mesh;        /* A about its center, over the size                 */
+    starg_mesh *mesh;        /* A about its center, over its size                 */
     double centers[2][3];    /* of the boxes of A and of the images               */
-    double size;             /* the larger extent                                 */
+    double sizes[2];         /* units of both: A and the images have one volume   */
     double *source, *target; /* vertex_count x 3, the inputs as they are          */
-    double *images;          /* vertex_count x 3, about their center, over the size  */
+    double *images;          /* vertex_count x 3, about their center, over their size */
     double turn[3];          /* w0                                                   */
     face_path *faces;        /* per face                                             */
     double *weights;         /* per face: cotangents at its corners, anchor's weight */
@@ -61,6 +61,9 @@ starg_status morph_guard(starg_morph *m, size_t candidates);
 
 /* One end as a solid. Errors: MESH, MEMORY. */
 starg_status morph_solid(const starg_morph *m, int end, starg_solid **out);
+
+/* The unit of length at t: volumes go in proportion to t. */
+double morph_size(const starg_morph *m, double t);
 
 /* Finds the whole's and the faces' paths (face_paths.c). */
 starg_status morph_prepare_faces(starg_morph *m);
