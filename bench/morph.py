@@ -2,11 +2,13 @@
 """Measures morphs: a row for each pair and method, and the means at the end.
 
 usage: morph.py STARGUARD [--shared FOLDER] [--frames N] [--samples-only] [--only WORD]
+                [--methods star,arap,...]
 
 Pairs are the samples in two poses, and where the shared data is there poses of it, and different
-animals by the landmarks in bench/landmarks; for these the map's time and distortion come first. Told are pairs of
-faces that intersect on the way (those of both ends are no fault of a method, so frames between them
-are counted, and the one at t = 0.5), folded faces, and the largest and mean drift of the volume.
+animals by the landmarks in bench/landmarks; for these the map's time and distortion come first on
+standard error. Told are pairs of faces that intersect at both ends, which are no fault of a method, on
+the way (summed over the frames between) and at t = 0.5, folded faces, and the largest and mean drift
+of the volume.
 """
 import argparse
 import json
@@ -88,10 +90,12 @@ def main():
     parser.add_argument("--shared", default="../shared")
     parser.add_argument("--frames", type=int, default=11)
     parser.add_argument("--samples-only", action="store_true")
+    parser.add_argument("--methods", default=",".join(METHODS))
     parser.add_argument("--only", default="", help="pairs whose names hold this word")
     arguments = parser.parse_args()
     if arguments.frames < 3 or arguments.frames % 2 == 0:
         parser.error("--frames must be odd and 3 or more, so that t = 0.5 is one of them")
+    methods = arguments.methods.split(",")
     rows = []
     print("| pair | method | guards | ends | intersections | at t = 0.5 | folded | volume drift | "
           "mean |")
@@ -100,13 +104,14 @@ def main():
         for name, words in pairs(arguments, folder):
             if arguments.only not in name:
                 continue
-            for method in METHODS:
+            for method in methods:
                 row = measure(arguments, folder, words, method)
                 rows.append((method, row))
                 print(f"| {name} | {method} | {row['guards'] or ''} | {row['ends'][0]}, "
-                      f"{row['ends'][1]} | {row['intersections']} | {row['half']} | {row['folded']} | {100 * row['drift']:.2f} % | "
-                      f"{100 * row['mean']:.2f} % |", flush=True)
-    for method in METHODS:
+                      f"{row['ends'][1]} | {row['intersections']} | {row['half']} | "
+                      f"{row['folded']} | {100 * row['drift']:.2f} % | {100 * row['mean']:.2f} % |",
+                      flush=True)
+    for method in methods:
         own = [row for m, row in rows if m == method]
         means = {key: sum(row[key] for row in own) / len(own) for key in own[0] if key != "ends"}
         print(f"| mean | {method} |  |  | {means['intersections']:.1f} | {means['half']:.1f} | "

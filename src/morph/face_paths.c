@@ -9,7 +9,9 @@
  * round, or the surface tears itself apart between them: the vectors are fixed face by face along a
  * spanning tree of the dual graph, the most alike neighbours first (Prim), each nearest to that of
  * the face before. Angles beyond pi are then possible: a limb may turn further than half-way round
- * against the trunk.
+ * against the trunk. Where faces of a poor map turn wildly, the tree can wind a limb about a fold
+ * that does not turn at all: the vectors shorter than pi are taken if they tear less over all
+ * edges.
  *
  * Cost: O(faces log faces). */
 #include <math.h>
@@ -240,6 +242,46 @@ done:
     return status;
 }
 
+/* How much rotation vectors differ across the edges, by length. */
+static double tear(const starg_morph *m, const mesh_topology *topology, const double *vectors) {
+    double sum = 0;
+    for (uint32_t h = 0; h < 3 * m->mesh->face_count; h++) {
+        uint32_t twin = topology->twin[h];
+        if (twin == TOPOLOGY_NONE || twin < h)
+            continue;
+        const double *p = m->mesh->vertices + 3 * (size_t)m->mesh->faces[h];
+        const double *q = m->mesh->vertices + 3 * (size_t)m->mesh->faces[corner_next(h)];
+        sum += vec3_distance(p, q) *
+               vec3_distance(vectors + 3 * (size_t)(h / 3), vectors + 3 * (size_t)(twin / 3));
+    }
+    return sum;
+}
+
+/* Takes the shortest vectors where those along the tree tear more. */
+static starg_status keep_smoother(starg_morph *m) {
+    starg_status status = STARG_OK;
+    static const double zero[3];
+    mesh_topology *topology = NULL;
+    double *along = NULL, *shortest = NULL;
+    size_t count = m->mesh->face_count;
+    STARG_TRY(topology_create(m->context, m->mesh, &topology));
+    STARG_NEW(m->context, STAGE, along, 3 * count);
+    STARG_NEW(m->context, STAGE, shortest, 3 * count);
+    for (size_t f = 0; f < count; f++) {
+        vec3_copy(m->faces[f].rotation, along + 3 * f);
+        vec3_copy(m->faces[f].rotation, shortest + 3 * f);
+        rotation_vector_near(zero, shortest + 3 * f);
+    }
+    if (tear(m, topology, shortest) < tear(m, topology, along))
+        for (size_t f = 0; f < count; f++)
+            vec3_copy(shortest + 3 * f, m->faces[f].rotation);
+done:
+    topology_free(topology);
+    starg_release(m->context, along);
+    starg_release(m->context, shortest);
+    return status;
+}
+
 starg_status morph_prepare_faces(starg_morph *m) {
     starg_status status = STARG_OK;
     double whole[9];
@@ -249,6 +291,7 @@ starg_status morph_prepare_faces(starg_morph *m) {
     for (size_t f = 0; f < m->mesh->face_count; f++)
         decompose(m, whole, f, &m->faces[f]);
     STARG_TRY(unwrap(m));
+    STARG_TRY(keep_smoother(m));
 done:
     return status;
 }
