@@ -277,15 +277,16 @@ done:
 
 static starg_status choose_all(guard_job *job) {
     starg_status status = STARG_OK;
+    size_t given = job->options->point_count;
     for (uint32_t i = 0; i < pool_count(&job->pool); i++) {
         STARG_PUSH(job->context, STAGE, &job->chosen, i);
         STARG_PUSH(job->context, STAGE, &job->levels, 0);
     }
-    if (job->chosen.count != job->options->point_count)
-        status =
-            starg_fail(job->context, STARG_ERROR_ARGUMENT, STAGE,
-                       "%zu of %zu given guards are not strictly inside the solid",
-                       job->options->point_count - job->chosen.count, job->options->point_count);
+    if (given == 0 || job->chosen.count != given)
+        status = starg_fail(job->context, STARG_ERROR_ARGUMENT, STAGE,
+                            "%zu of %zu given guards are strictly inside the solid; there must be "
+                            "guards, and all of them inside",
+                            job->chosen.count, given);
 done:
     return status;
 }
@@ -300,6 +301,8 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     used.candidate_count = used.point_count = count;
     used.points = points;
     guard_job job = {.context = context, .solid = solid, .options = &used};
+    double deadline = context->deadline;
+    context->deadline = 0; /* what stands already is measured in full */
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
     STARG_TRY(pool_create(context, solid, job.options, &job.pool));
@@ -308,6 +311,7 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     STARG_TRY(choose_all(&job));
     STARG_TRY(report(&job, out));
 done:
+    context->deadline = deadline;
     job_free(&job);
     return status;
 }

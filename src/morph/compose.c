@@ -11,8 +11,9 @@
  * embedding stays valid; bring landmarks to their counterparts, which few triangles hinder; move
  * all together (flow.c) and each by itself (descend.c); put vertices back, each into the middle of
  * the kernel of its polygon, and move them whenever there are a third more. Where landmarks could
- * not be met they are tried again on each finer level. A further cycle unwinds what the one before
- * left; the map of least energy among the cycles' ends is kept.
+ * not be met they are tried again on each finer level; those that the first cycle does not meet
+ * contradict one another. A further cycle unwinds what the one before left; the map of least energy
+ * among the cycles' ends is kept.
  *
  * Invariant: all spherical triangles are positive by the exact predicate: the map is a bijection at
  * all times. Cost: all levels of a cycle together are some sweeps of the finest. */
@@ -135,7 +136,7 @@ starg_status compose_spheres(sphere *from, const locator *to, const landmark_lis
     for (size_t i = 0; i < landmarks->count; i++)
         p.c.kept[landmarks->from[i]] = 1;
     memcpy(p.best, from->directions, 3 * count * sizeof *p.best);
-    for (int i = 0; i < CYCLES; i++)
+    for (int i = 0; i < CYCLES && (i == 0 || p.met); i++)
         STARG_TRY(cycle(&p));
     memcpy(from->directions, p.best, 3 * count * sizeof *p.best);
     *met = p.met;

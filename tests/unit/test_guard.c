@@ -10,6 +10,7 @@
 #include "models.h"
 #include "starguard/guard.h"
 #include "starguard/sample.h"
+#include "starguard/verify.h"
 
 static starg_guard_options small_options(void) {
     starg_guard_options options;
@@ -307,11 +308,46 @@ static void test_memory(void **state) {
     test_context_free(plain);
 }
 
+/* Guards that stand already, in any order and twice: what they see is told, and verifies. A point
+ * that is not inside is refused. */
+static void test_given_guards(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_guard_options options = small_options();
+    starg_solid *solid = test_sample(context, "dog", 600);
+    starg_guards *best = test_guard(context, solid, &options), *again;
+    starg_verdict *verdict;
+    size_t count = best->count + 1;
+    double *points = malloc(3 * count * sizeof *points);
+    assert_non_null(points);
+    for (size_t i = 0; i < count; i++)
+        memcpy(points + 3 * i, best->positions + 3 * ((count - 1 - i) % best->count),
+               3 * sizeof *points);
+    test_ok(context, starg_guards_given(context, solid, points, count, &again));
+    assert_int_equal(again->count, count);
+    assert_memory_equal(again->positions, points, 3 * count * sizeof *points);
+    assert_int_equal(again->seen_faces[0], again->seen_faces[count - 1]);
+    assert_int_equal(again->uncovered_count, best->uncovered_count);
+    test_ok(context, starg_verify_guards(context, starg_solid_mesh(solid), again, &verdict));
+    assert_true(verdict->passed);
+    starg_verdict_free(context, verdict);
+    starg_guards_free(context, again);
+    assert_int_equal(starg_guards_given(context, solid, points, 0, &again), STARG_ERROR_ARGUMENT);
+    points[1] = 1e6;
+    assert_int_equal(starg_guards_given(context, solid, points, count, &again),
+                     STARG_ERROR_ARGUMENT);
+    assert_null(again);
+    free(points);
+    starg_guards_free(context, best);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_sample), cmocka_unit_test(test_sphere_takes_one),
         cmocka_unit_test(test_options),      cmocka_unit_test(test_file),
         cmocka_unit_test(test_bad_files),    cmocka_unit_test(test_bad_options),
-        cmocka_unit_test(test_memory)};
+        cmocka_unit_test(test_memory),       cmocka_unit_test(test_given_guards)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
