@@ -35,19 +35,20 @@ done:
 /* What there is to see, as the page's tabs name it. */
 static void tell(cli_session *session, const values *v, const starg_page *page) {
     const struct {
-        const char *key;
+        const char *name, *key;
         size_t count;
-    } parts[] = {{"guards", page->guards != NULL ? page->guards->count : 0},
-                 {"pieces", page->report != NULL ? page->report->piece_count : 0},
-                 {"tetrahedra", page->pieces != NULL ? page->pieces->count : 0},
-                 {"skeleton nodes", page->skeleton != NULL ? page->skeleton->node_count : 0},
-                 {"morph frames", page->frame_count},
-                 {"shapes", page->shape_count}};
+    } parts[] = {{"guards", "guards", page->guards != NULL ? page->guards->count : 0},
+                 {"pieces", "pieces", page->report != NULL ? page->report->piece_count : 0},
+                 {"tetrahedra", "tetrahedra", page->pieces != NULL ? page->pieces->count : 0},
+                 {"skeleton nodes", "skeleton_nodes",
+                  page->skeleton != NULL ? page->skeleton->node_count : 0},
+                 {"morph frames", "morph_frames", page->frame_count},
+                 {"shapes", "shapes", page->shape_count}};
     json_t *shown = json_object();
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         if (parts[i].count == 0)
             continue;
-        cli_say(session, "%-14s %zu\n", parts[i].key, parts[i].count);
+        cli_say(session, "%-14s %zu\n", parts[i].name, parts[i].count);
         cli_put(session, shown, parts[i].key, json_integer((json_int_t)parts[i].count));
     }
     if (session->report == NULL) {
