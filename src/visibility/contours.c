@@ -135,7 +135,9 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
 const contours_form *contours_choose_form(visibility_form wanted) {
     static const contours_form *const forms[] = {
         &contours_plain,
-#if defined(__x86_64__)
+#if defined(__aarch64__)
+        &contours_neon,
+#elif defined(__x86_64__)
         &contours_avx2,
         &contours_avx512,
 #endif

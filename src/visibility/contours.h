@@ -98,7 +98,9 @@ typedef struct contours_scratch {
 
 /* The stages for several instruction sets. */
 extern const contours_form contours_plain;
-#if defined(__x86_64__)
+#if defined(__aarch64__)
+extern const contours_form contours_neon;
+#elif defined(__x86_64__)
 extern const contours_form contours_avx2, contours_avx512;
 #endif
 

@@ -7,14 +7,15 @@ bool form_is_supported(visibility_form form) {
     bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl");
     return form == FORM_PLAIN || (avx2 && (form == FORM_AVX2 || avx512));
 #else
-    return form == FORM_PLAIN;
+    return form < FORM_WIDEST; /* NEON is part of every aarch64 */
 #endif
 }
 
 visibility_form form_resolve(visibility_form wanted) {
     if (wanted != FORM_WIDEST)
         return wanted;
-    return form_is_supported(FORM_AVX512) ? FORM_AVX512
-           : form_is_supported(FORM_AVX2) ? FORM_AVX2
-                                          : FORM_PLAIN;
+    while (--wanted > FORM_PLAIN)
+        if (form_is_supported(wanted))
+            return wanted;
+    return FORM_PLAIN;
 }

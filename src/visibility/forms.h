@@ -6,7 +6,17 @@
 
 #include <stdbool.h>
 
-typedef enum visibility_form { FORM_PLAIN, FORM_AVX2, FORM_AVX512, FORM_WIDEST } visibility_form;
+/* Those that can be compiled for the processor's kind stand in this order after the plain one. */
+typedef enum visibility_form {
+    FORM_PLAIN,
+#if defined(__aarch64__)
+    FORM_NEON,
+#elif defined(__x86_64__)
+    FORM_AVX2,
+    FORM_AVX512,
+#endif
+    FORM_WIDEST
+} visibility_form;
 
 /* The form itself, or for FORM_WIDEST the best one that the processor has. */
 visibility_form form_resolve(visibility_form wanted);

@@ -91,7 +91,9 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
 grid_run *grid_choose_form(visibility_form wanted) {
     static grid_run *const forms[] = {
         grid_run_plain,
-#if defined(__x86_64__)
+#if defined(__aarch64__)
+        grid_run_neon,
+#elif defined(__x86_64__)
         grid_run_avx2,
         grid_run_avx512,
 #endif

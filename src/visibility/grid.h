@@ -66,7 +66,9 @@ static inline uint32_t cell_of(const grid_row *row, float u) {
 
 /* The stages for several instruction sets. */
 grid_run grid_run_plain;
-#if defined(__x86_64__)
+#if defined(__aarch64__)
+grid_run grid_run_neon;
+#elif defined(__x86_64__)
 grid_run grid_run_avx2, grid_run_avx512;
 #endif
 

@@ -1,6 +1,6 @@
 /* Eight doubles or WIDE floats at a time, in the form that the including file has chosen by
- * LANES_PLAIN, LANES_AVX2 or LANES_AVX512. Bit k of a mask stands for lane k; comparisons with NaN
- * are false. */
+ * LANES_PLAIN, LANES_NEON, LANES_AVX2 or LANES_AVX512. Bit k of a mask stands for lane k;
+ * comparisons with NaN are false. */
 #ifndef STARG_VISIBILITY_LANES_H
 #define STARG_VISIBILITY_LANES_H
 
@@ -218,6 +218,167 @@ static inline uint32_t wide_marked(const uint32_t *p, uint32_t bit) {
     high = _mm256_cmpeq_epi32(_mm256_and_si256(high, all), all);
     return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(low)) |
            (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(high)) << 8;
+}
+
+#elif defined(LANES_NEON)
+
+#include <arm_neon.h>
+
+typedef struct lanes {
+    float64x2_t part[4];
+} lanes;
+
+static inline lanes lanes_load(const double *p) {
+    lanes a;
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vld1q_f64(p + 2 * k);
+    return a;
+}
+
+static inline lanes lanes_dot(const double w[3], lanes x, lanes y, lanes z) {
+    for (int k = 0; k < 4; k++) {
+        float64x2_t sum = vmulq_n_f64(x.part[k], w[0]);
+        sum = vfmaq_n_f64(sum, y.part[k], w[1]);
+        x.part[k] = vfmaq_n_f64(sum, z.part[k], w[2]);
+    }
+    return x;
+}
+
+static inline lanes lanes_beyond(lanes a, lanes b, lanes c, double d) {
+    float64x2_t all = vdupq_n_f64(d);
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vsubq_f64(vaddq_f64(vaddq_f64(a.part[k], b.part[k]), c.part[k]), all);
+    return a;
+}
+
+/* The second where they do not compare, as the others do. */
+static inline lanes lanes_min(lanes a, lanes b) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vbslq_f64(vcltq_f64(a.part[k], b.part[k]), a.part[k], b.part[k]);
+    return a;
+}
+
+static inline uint64_t lanes_mask(const uint64x2_t part[4]) {
+    static const uint64_t bits[2] = {1, 2};
+    uint64x2_t weights = vld1q_u64(bits);
+    uint64_t mask = 0;
+    for (int k = 0; k < 4; k++)
+        mask |= vaddvq_u64(vandq_u64(part[k], weights)) << (2 * k);
+    return mask;
+}
+
+static inline uint64_t lanes_above(lanes a, double limit) {
+    uint64x2_t above[4];
+    for (int k = 0; k < 4; k++)
+        above[k] = vcgtq_f64(a.part[k], vdupq_n_f64(limit));
+    return lanes_mask(above);
+}
+
+static inline uint64_t lanes_beyond_either(lanes a, double limit) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vabsq_f64(a.part[k]);
+    return lanes_above(a, limit);
+}
+
+static inline lanes lanes_add(lanes a, lanes b) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vaddq_f64(a.part[k], b.part[k]);
+    return a;
+}
+
+/* True is -1: below minus above. */
+static inline void lanes_store_signs(lanes a, double limit, int8_t *out) {
+    for (int k = 0; k < 4; k++) {
+        uint64x2_t above = vcgtq_f64(a.part[k], vdupq_n_f64(limit));
+        uint64x2_t below = vcltq_f64(a.part[k], vdupq_n_f64(-limit));
+        int64x2_t signs = vsubq_s64(vreinterpretq_s64_u64(below), vreinterpretq_s64_u64(above));
+        out[2 * k] = (int8_t)vgetq_lane_s64(signs, 0);
+        out[2 * k + 1] = (int8_t)vgetq_lane_s64(signs, 1);
+    }
+}
+
+typedef struct wide {
+    float32x4_t part[4];
+} wide;
+
+static inline wide wide_load(const float *p) {
+    wide a;
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vld1q_f32(p + 4 * k);
+    return a;
+}
+
+static inline wide wide_set(float a) {
+    wide all;
+    for (int k = 0; k < 4; k++)
+        all.part[k] = vdupq_n_f32(a);
+    return all;
+}
+
+static inline wide wide_add(wide a, wide b) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vaddq_f32(a.part[k], b.part[k]);
+    return a;
+}
+
+static inline wide wide_subtract(wide a, wide b) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vsubq_f32(a.part[k], b.part[k]);
+    return a;
+}
+
+static inline wide wide_multiply(wide a, wide b) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vmulq_f32(a.part[k], b.part[k]);
+    return a;
+}
+
+static inline wide wide_abs(wide a) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vabsq_f32(a.part[k]);
+    return a;
+}
+
+static inline wide wide_min(wide a, wide b) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vbslq_f32(vcltq_f32(a.part[k], b.part[k]), a.part[k], b.part[k]);
+    return a;
+}
+
+static inline wide wide_max(wide a, wide b) {
+    for (int k = 0; k < 4; k++)
+        a.part[k] = vbslq_f32(vcgtq_f32(a.part[k], b.part[k]), a.part[k], b.part[k]);
+    return a;
+}
+
+static inline uint32_t wide_mask(const uint32x4_t part[4]) {
+    static const uint32_t bits[4] = {1, 2, 4, 8};
+    uint32x4_t weights = vld1q_u32(bits);
+    uint32_t mask = 0;
+    for (int k = 0; k < 4; k++)
+        mask |= vaddvq_u32(vandq_u32(part[k], weights)) << (4 * k);
+    return mask;
+}
+
+static inline uint32_t wide_above(wide a, wide b) {
+    uint32x4_t above[4];
+    for (int k = 0; k < 4; k++)
+        above[k] = vcgtq_f32(a.part[k], b.part[k]);
+    return wide_mask(above);
+}
+
+static inline uint32_t wide_equal(const uint32_t *p, uint32_t value) {
+    uint32x4_t equal[4];
+    for (int k = 0; k < 4; k++)
+        equal[k] = vceqq_u32(vld1q_u32(p + 4 * k), vdupq_n_u32(value));
+    return wide_mask(equal);
+}
+
+static inline uint32_t wide_marked(const uint32_t *p, uint32_t bit) {
+    uint32x4_t marked[4];
+    for (int k = 0; k < 4; k++)
+        marked[k] = vtstq_u32(vld1q_u32(p + 4 * k), vdupq_n_u32(bit));
+    return wide_mask(marked);
 }
 
 #else

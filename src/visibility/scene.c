@@ -61,7 +61,9 @@ static void compute_planes(visibility_scene *scene) {
 static sides_run *choose_sides(void) {
     static sides_run *const forms[] = {
         sides_run_plain,
-#if defined(__x86_64__)
+#if defined(__aarch64__)
+        sides_run_neon,
+#elif defined(__x86_64__)
         sides_run_avx2,
         sides_run_avx512,
 #endif

@@ -6,7 +6,9 @@
 #include "visibility/scene.h"
 
 sides_run sides_run_plain;
-#if defined(__x86_64__)
+#if defined(__aarch64__)
+sides_run sides_run_neon;
+#elif defined(__x86_64__)
 sides_run sides_run_avx2, sides_run_avx512;
 #endif
 

@@ -1,0 +1,4 @@
+/* The stages of the direction grid for NEON. */
+#define GRID_RUN grid_run_neon
+#define LANES_NEON
+#include "visibility/grid_stages.h"

@@ -1,0 +1,4 @@
+/* The sides of faces for NEON. */
+#define SIDES_RUN sides_run_neon
+#define LANES_NEON
+#include "visibility/sides_stages.h"
