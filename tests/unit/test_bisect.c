@@ -177,7 +177,7 @@ static void test_cubes(void **state) {
         partition first = cubes(context, solids[i].places, solids[i].count);
         partition p = partition_oracle_copy(&first);
         bool done = false;
-        test_ok(context, bisect(&p, &done));
+        test_ok(context, bisect(&p, 0, &done));
         assert_true(done);
         check_bisected(&first, &p);
         assert_true(p.pieces.count >= solids[i].least && p.pieces.count <= solids[i].most);
@@ -217,7 +217,7 @@ static bool bisect_sample(starg_context *context, const char *name, size_t targe
     test_ok(context, partition_touches_itself(first, 0, &touches));
     assert_int_equal(touches, touching);
     *after = partition_oracle_copy(first);
-    test_ok(context, bisect(after, &done));
+    test_ok(context, bisect(after, 0, &done));
     assert_true(done || touching);
     if (done) {
         check_bisected(first, after);
@@ -262,7 +262,7 @@ static void test_crumbs(void **state) {
         join_everything(&first);
         partition p = partition_oracle_copy(&first);
         bool done = false;
-        test_ok(context, bisect(&p, &done));
+        test_ok(context, bisect(&p, 0, &done));
         if (done)
             check_bisected(&first, &p);
         finished += done;
@@ -281,7 +281,7 @@ static void test_no_time(void **state) {
     bool done = true;
     join_everything(&p);
     starg_context_set_time_limit(context, 1e-9);
-    test_ok(context, bisect(&p, &done));
+    test_ok(context, bisect(&p, 0, &done));
     assert_false(done);
     partition_free(&p);
     test_context_free(context);

@@ -27,6 +27,9 @@
 
 enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3, JOBS_MOST = 4000 };
 
+/* Numbers of stages are below. */
+static const uint64_t STREAMS = 1000;
+
 static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9, CRUMB = 1e-7; /* unit coordinates */
 static const double TURN = 1e-5, TURN_MOST = 0.1;                     /* radians, about */
 
@@ -44,6 +47,7 @@ typedef struct bisector {
     region_scratch scratch; /* of the calling thread */
     STARG_ARRAY(job) jobs;
     STARG_ARRAY(job) next;
+    uint64_t stream;
     size_t done; /* jobs so far */
     bool hopeless;
 } bisector;
@@ -64,7 +68,7 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     bisector *b = shared;
     job *j = &b->jobs.data[item];
     region r = {.vertices = {0}};
-    starg_rng rng = starg_rng_make(context->seed, 78, b->done + item);
+    starg_rng rng = starg_rng_make(context->seed, 78 + STREAMS * b->stream, b->done + item);
     const divide_options options = {.margin = margin_of(j),
                                     .effort =
                                         j->attempts < EFFORT_MOST ? j->attempts + 1 : EFFORT_MOST,
@@ -276,9 +280,9 @@ done:
     return status;
 }
 
-starg_status bisect(partition *p, bool *done) {
+starg_status bisect(partition *p, uint64_t stream, bool *done) {
     starg_status status = STARG_OK;
-    bisector b = {.p = p, .scratch = {.context = p->context}};
+    bisector b = {.p = p, .stream = stream, .scratch = {.context = p->context}};
     *done = false;
     STARG_TRY(open_all(&b));
     while (b.next.count > 0) {

@@ -6,7 +6,8 @@
 
 /* Cuts the pieces of a partition, whose guards need not see anything, until each has a certified
  * guard. *done is false, and the partition of no use, when some piece resists (as one whose surface
- * touches itself along an edge does), or when the time is over. Errors: MEMORY, CANCELLED. */
-starg_status bisect(partition *p, bool *done);
+ * touches itself along an edge does), or when the time is over. Another stream of random numbers
+ * gives another result. Errors: MEMORY, CANCELLED. */
+starg_status bisect(partition *p, uint64_t stream, bool *done);
 
 #endif

@@ -24,8 +24,8 @@
 enum {
     BATCH = 16,
     UNION_MOST = APPLY_MOST,
-    PATIENCE = 300, /* trials for each piece without a piece less, after which the search ends */
-    PATIENCE_LEAST = 3000
+    PATIENCE = 150, /* trials for each piece without a piece less, after which the search ends */
+    PATIENCE_LEAST = 2000
 };
 
 static const double MARGIN = 4e-6; /* of guards to planes; the diagonal is at least 1/2 */
@@ -42,6 +42,7 @@ typedef struct improver {
     partition *p;
     improve_report *report;
     double began;     /* clock */
+    uint64_t offset;  /* number of the first trial */
     uint64_t stalled; /* trials since the last success */
     size_t crowded;   /* facets from which on it is time to tidy up */
     trial trials[BATCH];
@@ -164,7 +165,7 @@ static starg_status run_trial(starg_context *context, void *shared, void *scratc
     improver *m = shared;
     trial *t = &m->trials[item];
     region r = {.vertices = {0}};
-    starg_rng rng = starg_rng_make(context->seed, 77, m->report->trials + item);
+    starg_rng rng = starg_rng_make(context->seed, 77, m->offset + m->report->trials + item);
     static const size_t sizes[8] = {2, 2, 3, 3, 3, 4, 4, 5};
     *t = (trial){.found = false};
     choose_union(m, &rng, sizes[starg_rng_below(&rng, 8)], t);
@@ -329,8 +330,11 @@ done:
 
 starg_status improve(partition *p, const improve_options *options, improve_report *report) {
     starg_status status = STARG_OK;
-    improver m = {
-        .p = p, .report = report, .scratch = {.context = p->context}, .began = starg_clock()};
+    improver m = {.p = p,
+                  .report = report,
+                  .scratch = {.context = p->context},
+                  .began = starg_clock(),
+                  .offset = options->first};
     *report = (improve_report){.trials = 0};
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(find_contacts(&m));

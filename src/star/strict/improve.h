@@ -7,6 +7,7 @@
 typedef struct improve_options {
     uint64_t trials; /* to be made at most                             */
     size_t enough;   /* stop when there are no more pieces than that   */
+    uint64_t first;  /* number of the first trial: others try other things */
 } improve_options;
 
 typedef struct improve_report {

@@ -4,8 +4,9 @@
  * taken: the tetrahedra claimed by guards, set after set (claim.c), which always succeeds, and only
  * the surfaces of the sets go on (partition.c); and the whole surface cut by planes until every
  * part is star-shaped (bisect.c), as a rule with fewer pieces by far. Then unions of neighbours are
- * cut again into fewer pieces, every step with an exact certificate (improve.c); at the end each
- * piece is made of tetrahedra about its guard (cone.c).
+ * cut again into fewer pieces, every step with an exact certificate (improve.c), until nothing is
+ * found any more; then the same from the other start and from more by planes, and the best result
+ * is kept. At the end each piece is made of tetrahedra about its guard (cone.c).
  *
  * Starts are compared in docs/decomposition.md. */
 #include "star/strict/strict.h"
@@ -15,6 +16,8 @@
 #include "star/strict/claim.h"
 #include "star/strict/cone.h"
 #include "star/strict/improve.h"
+
+enum { SEARCHES = 6 };
 
 static starg_status collect_guards(const partition *p, double **guards) {
     starg_status status = STARG_OK;
@@ -60,14 +63,15 @@ done:
 }
 
 /* All in one piece, then cut. */
-static starg_status start_by_planes(const starg_tetmesh *mesh, partition *p, bool *done) {
+static starg_status start_by_planes(const starg_tetmesh *mesh, uint64_t stream, partition *p,
+                                    bool *done) {
     starg_status status = STARG_OK;
     static const double nowhere[3] = {0, 0, 0};
     uint32_t *labels = NULL;
     *done = false;
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(mesh));
     STARG_TRY(partition_create(p->context, mesh, labels, nowhere, 1, p));
-    STARG_TRY(bisect(p, done));
+    STARG_TRY(bisect(p, stream, done));
     if (*done)
         STARG_TRY(improve_join(p));
 done:
@@ -75,39 +79,93 @@ done:
     return status;
 }
 
-/* Guards that were given are what the claims begin with. */
+static void keep_better(partition *p, partition *other) {
+    if (other->pieces.count >= p->pieces.count)
+        return;
+    partition before = *p;
+    *p = *other;
+    *other = before;
+}
+
+/* Both starts, the better one first; `other` is without pieces where one will do. Guards that were
+ * given are what the claims begin with. */
 static starg_status begin(const starg_tetmesh *mesh, const starg_decompose_options *options,
-                          partition *p) {
+                          partition *p, partition *other) {
     starg_status status = STARG_OK;
-    partition other = {.context = p->context};
     bool done;
     STARG_TRY(start_by_claims(mesh, options, p));
     if (options->guard_count > 0 || p->pieces.count < 2 || starg_time_is_over(p->context))
         goto done;
-    STARG_TRY(start_by_planes(mesh, &other, &done));
-    if (done && other.pieces.count < p->pieces.count) {
-        partition before = *p;
-        *p = other;
-        other = before;
+    STARG_TRY(start_by_planes(mesh, 0, other, &done));
+    if (done)
+        keep_better(p, other);
+    else
+        partition_free(other);
+done:
+    return status;
+}
+
+/* ---- searches ---- */
+
+typedef struct searches {
+    const starg_tetmesh *mesh;
+    uint64_t trials_left;
+    size_t enough;
+    uint64_t count; /* searches so far */
+    bool time_limited;
+} searches;
+
+static starg_status run_search(searches *s, partition *p) {
+    improve_report report;
+    const improve_options wanted = {
+        .trials = s->trials_left, .enough = s->enough, .first = s->count << 40};
+    starg_status status = improve(p, &wanted, &report);
+    s->trials_left -= report.trials;
+    s->time_limited = report.time_limited;
+    s->count++;
+    return status;
+}
+
+/* Two pieces are as few as can be when one was not enough. */
+static bool may_search_again(const searches *s, const partition *p) {
+    return s->count < SEARCHES && s->trials_left > 0 && !s->time_limited &&
+           p->pieces.count > (s->enough > 2 ? s->enough : 2);
+}
+
+/* From the other start, or one more by planes; the better result stays. */
+static starg_status search_again(searches *s, partition *p, partition *other) {
+    starg_status status = STARG_OK;
+    bool done = other->pieces.count > 0;
+    if (!done)
+        STARG_TRY(start_by_planes(s->mesh, s->count, other, &done));
+    if (done) {
+        STARG_TRY(run_search(s, other));
+        keep_better(p, other);
+    } else {
+        s->count = SEARCHES;
+        s->time_limited = starg_time_is_over(p->context);
     }
 done:
-    partition_free(&other);
+    partition_free(other);
     return status;
 }
 
 starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
                               const starg_decompose_options *options, starg_decomposition **out) {
     starg_status status = STARG_OK;
-    partition p = {.context = context};
-    improve_report report;
-    const improve_options wanted = {.trials = options->effort > 0 ? options->effort : UINT64_MAX,
-                                    .enough = options->max_pieces > 0 ? options->max_pieces : 1};
+    partition p = {.context = context}, other = {.context = context};
+    searches s = {.mesh = mesh,
+                  .trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
+                  .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
-    STARG_TRY(begin(mesh, options, &p));
-    STARG_TRY(improve(&p, &wanted, &report));
+    STARG_TRY(begin(mesh, options, &p, &other));
+    STARG_TRY(run_search(&s, &p));
+    while (options->guard_count == 0 && may_search_again(&s, &p))
+        STARG_TRY(search_again(&s, &p, &other));
     STARG_TRY(finish(&p, out));
-    (*out)->time_limited = report.time_limited;
+    (*out)->time_limited = s.time_limited;
 done:
     partition_free(&p);
+    partition_free(&other);
     return status;
 }
