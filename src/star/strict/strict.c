@@ -120,7 +120,7 @@ static starg_status run_search(searches *s, partition *p) {
     const improve_options wanted = {
         .trials = s->trials_left, .enough = s->enough, .first = s->count << 40};
     starg_status status = improve(p, &wanted, &report);
-    s->trials_left -= report.trials;
+    s->trials_left -= report.trials < s->trials_left ? report.trials : s->trials_left;
     s->time_limited = report.time_limited;
     s->count++;
     return status;
