@@ -18,7 +18,6 @@ demo: build
 check: deps-check lint
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=ON > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
-	@scripts/tidy.sh $(BUILD)
 	@$(CTEST) --test-dir $(BUILD)
 	@$(MAKE) --no-print-directory sanitize
 
