@@ -27,8 +27,11 @@ sanitize: deps-check
 	@cmake --build $(BUILD)-sanitize -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
-# What takes too long for every change: a clang build, the thread sanitizer, the package on a clean root.
+# What takes too long for every change: static analysis, the tests that sanitizers make slow, a clang
+# build, the thread sanitizer, the package on a clean root.
 check-long: check
+	@scripts/tidy.sh $(BUILD)
+	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
 	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
 	@cmake --build $(BUILD)-clang -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-clang
