@@ -85,23 +85,6 @@ done:
     return status;
 }
 
-static starg_status make_scratch(starg_context *context, void *shared, void **out) {
-    starg_status status = STARG_OK;
-    region_scratch *scratch = NULL;
-    (void)shared;
-    STARG_NEW_ZERO(context, PARTITION_STAGE, scratch, 1);
-    scratch->context = context;
-done:
-    *out = scratch;
-    return status;
-}
-
-static void free_scratch(starg_context *context, void *scratch) {
-    if (scratch != NULL)
-        region_scratch_free(scratch);
-    starg_release(context, scratch);
-}
-
 /* ---- cutting ---- */
 
 /* A part so small that no later cut will make anything of it. */
@@ -212,8 +195,8 @@ static starg_status run_round(bisector *b) {
                                       .count = b->jobs.count,
                                       .shared = b,
                                       .item = look_at,
-                                      .make_scratch = make_scratch,
-                                      .free_scratch = free_scratch,
+                                      .make_scratch = region_make_scratch,
+                                      .free_scratch = region_free_scratch,
                                       .silent = true};
     STARG_TRY(starg_parallel_for(b->p->context, &loop));
     b->done += b->jobs.count;

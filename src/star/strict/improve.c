@@ -185,23 +185,6 @@ done:
     return status;
 }
 
-static starg_status make_scratch(starg_context *context, void *shared, void **out) {
-    starg_status status = STARG_OK;
-    region_scratch *scratch = NULL;
-    (void)shared;
-    STARG_NEW_ZERO(context, PARTITION_STAGE, scratch, 1);
-    scratch->context = context;
-done:
-    *out = scratch;
-    return status;
-}
-
-static void free_scratch(starg_context *context, void *scratch) {
-    if (scratch != NULL)
-        region_scratch_free(scratch);
-    starg_release(context, scratch);
-}
-
 static starg_status carry_out(improver *m, const trial *t, apply_effect *effect) {
     starg_status status = STARG_OK;
     bool fewer = (size_t)t->parts < t->count;
@@ -269,8 +252,8 @@ static starg_status run_batch(improver *m) {
                                       .count = BATCH,
                                       .shared = m,
                                       .item = run_trial,
-                                      .make_scratch = make_scratch,
-                                      .free_scratch = free_scratch,
+                                      .make_scratch = region_make_scratch,
+                                      .free_scratch = region_free_scratch,
                                       .silent = true};
     STARG_TRY(starg_parallel_for(m->p->context, &loop));
     m->stalled += BATCH;

@@ -37,6 +37,23 @@ void region_scratch_free(region_scratch *scratch) {
     STARG_ARRAY_FREE(scratch->context, &scratch->lowest_back);
 }
 
+starg_status region_make_scratch(starg_context *context, void *shared, void **out) {
+    starg_status status = STARG_OK;
+    region_scratch *scratch = NULL;
+    (void)shared;
+    STARG_NEW_ZERO(context, PARTITION_STAGE, scratch, 1);
+    scratch->context = context;
+done:
+    *out = scratch;
+    return status;
+}
+
+void region_free_scratch(starg_context *context, void *scratch) {
+    if (scratch != NULL)
+        region_scratch_free(scratch);
+    starg_release(context, scratch);
+}
+
 void region_free(starg_context *context, region *r) {
     STARG_ARRAY_FREE(context, &r->vertices);
     STARG_ARRAY_FREE(context, &r->triangles);

@@ -41,6 +41,10 @@ typedef struct region_scratch {
 
 void region_scratch_free(region_scratch *scratch);
 
+/* For the threads of a parallel loop (core/parallel.h); nothing is shared. Errors: MEMORY. */
+starg_status region_make_scratch(starg_context *context, void *shared, void **out);
+void region_free_scratch(starg_context *context, void *scratch);
+
 /* The union of `count` pieces of a partition with an index. `region` may hold an older one.
  * Errors: MEMORY. */
 starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
