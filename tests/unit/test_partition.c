@@ -598,7 +598,8 @@ static void test_tidy_after_search(void **state) {
         const improve_options options = {.trials = 320, .enough = 1};
         improve_report report;
         test_ok(context, improve(&p, &options, &report));
-        assert_int_equal(p.pieces.count, first.pieces.count - report.joins - report.recuts);
+        assert_int_equal(p.pieces.count,
+                         first.pieces.count - report.joins - report.recuts - report.dissolved);
         joins += report.joins, recuts += report.recuts, moves += report.moves;
         partition_oracle_check_guards(&p);
         partition before = partition_oracle_copy(&p);

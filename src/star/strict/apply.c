@@ -13,9 +13,11 @@
 #include "geometry/vec3.h"
 #include "star/strict/slice.h"
 
+enum { PARTS_MOST = FAN_TAKERS_MOST }; /* more than a cut makes */
+
 typedef struct change {
     partition *p; /* the copy */
-    uint32_t parts[RECUT_PARTS_MOST];
+    uint32_t parts[PARTS_MOST];
     size_t part_count;
     size_t old_points;
     double margin;
@@ -125,6 +127,23 @@ static bool check_others(const change *c) {
     return true;
 }
 
+/* Certified guards for all parts. */
+static starg_status settle_parts(change *c, bool *done) {
+    starg_status status = STARG_OK;
+    STARG_TRY(partition_build_index(c->p));
+    *done = true;
+    for (size_t i = 0; i < c->part_count && *done; i++)
+        STARG_TRY(settle_piece(c, c->parts[i], done));
+done:
+    return status;
+}
+
+static void swap(partition *p, partition *other) {
+    partition before = *p;
+    *p = *other;
+    *other = before;
+}
+
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, const recut_plan *plan,
                         double margin, double least, region_scratch *scratch,
                         apply_effect *effect) {
@@ -141,15 +160,31 @@ starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, cons
     STARG_TRY(cut(&c, pieces, count, plan, &done));
     if (!done)
         goto done;
-    STARG_TRY(partition_build_index(&copy));
-    for (size_t i = 0; i < c.part_count && done; i++)
-        STARG_TRY(settle_piece(&c, c.parts[i], &done));
+    STARG_TRY(settle_parts(&c, &done));
     effect->done = done && sum_of_squares(&copy, c.parts, c.part_count) > least && check_others(&c);
-    if (!effect->done)
-        goto done;
-    partition before = *p;
-    *p = copy;
-    copy = before;
+    if (effect->done)
+        swap(p, &copy);
+done:
+    partition_free(&copy);
+    return status;
+}
+
+/* ---- sharing out ---- */
+
+starg_status apply_fan(partition *p, const fan_plan *plan, double margin, region_scratch *scratch,
+                       apply_effect *effect) {
+    starg_status status = STARG_OK;
+    partition copy = {.context = p->context};
+    change c = {.p = &copy, .margin = margin, .scratch = scratch, .effect = effect};
+    *effect = (apply_effect){.done = false};
+    STARG_TRY(partition_copy(p, &copy));
+    STARG_TRY(partition_fan(&copy, plan));
+    for (size_t i = 0; i < plan->taker_count; i++)
+        c.parts[c.part_count++] = plan->takers[i];
+    drop_pieces(&c, plan->pieces + plan->kept, plan->piece_count - plan->kept);
+    STARG_TRY(settle_parts(&c, &effect->done));
+    if (effect->done)
+        swap(p, &copy);
 done:
     partition_free(&copy);
     return status;

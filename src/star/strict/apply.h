@@ -2,6 +2,7 @@
 #ifndef STARG_STAR_STRICT_APPLY_H
 #define STARG_STAR_STRICT_APPLY_H
 
+#include "star/strict/fan.h"
 #include "star/strict/recut.h"
 
 enum { APPLY_MOST = RECUT_PARTS_MOST };
@@ -24,6 +25,10 @@ typedef struct apply_effect {
  * is built again. Errors: MEMORY. */
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, const recut_plan *plan,
                         double margin, double least, region_scratch *scratch, apply_effect *effect);
+
+/* Shares out pieces as planned; proofs, `margin` and index as above. Errors: MEMORY. */
+starg_status apply_fan(partition *p, const fan_plan *plan, double margin, region_scratch *scratch,
+                       apply_effect *effect);
 
 /* Makes pieces a and b one, with number a (or b, if a is the last piece), if it has a kernel with
  * such a margin (certified); the last piece takes the number b. Errors: MEMORY. */

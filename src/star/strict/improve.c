@@ -4,9 +4,10 @@
  *
  * Method: large neighbourhood search. First every two neighbours whose union is star-shaped are
  * joined, small pieces first. Then trials: some neighbouring pieces at random, their union to be
- * cut flat into one piece less (star/strict/recut.c), or, now and then, into as many pieces at
- * another place, which is kept when it makes large pieces larger and small ones smaller, so that
- * the small ones vanish in the end.
+ * cut flat into one piece less (star/strict/recut.c), or dissolved into the pieces around
+ * (star/strict/dissolve.c). Now and then a trial is a move instead: as many pieces as before, which
+ * are kept when large pieces get larger and small ones smaller, so that the small ones vanish in
+ * the end.
  *
  * Invariants: trials come in batches that look at the same partition, each with random numbers of
  * its own, and are carried out in their order unless an earlier one of the batch has changed a
@@ -19,6 +20,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "star/strict/apply.h"
+#include "star/strict/dissolve.h"
 #include "star/strict/tidy.h"
 
 enum {
@@ -28,15 +30,20 @@ enum {
     PATIENCE_LEAST = 2000
 };
 
-static const double MARGIN = 4e-6; /* of guards to planes; the diagonal is at least 1/2 */
+/* Of guards to planes, in unit coordinates; the diagonal is at least 1/2. Searches ask for more
+ * than proofs do, for they are rounded. */
+static const double MARGIN = 4e-6, RECUT_MARGIN = 1e-5, DISSOLVE_MARGIN = 5e-6;
 
 typedef struct trial {
     uint32_t pieces[UNION_MOST];
-    size_t count;
-    int parts;
-    recut_plan plan;
+    size_t count, parts; /* pieces before and after */
+    bool dissolves;
+    recut_plan plan; /* if it does not */
+    fan_plan fan;    /* if it does     */
     bool found;
 } trial;
+
+typedef STARG_ARRAY(uint32_t) numbers;
 
 typedef struct improver {
     partition *p;
@@ -48,9 +55,9 @@ typedef struct improver {
     trial trials[BATCH];
     region_scratch scratch; /* of the calling thread */
     /* neighbours of piece i: neighbours[first[i]] to neighbours[first[i + 1] - 1] */
-    STARG_ARRAY(uint32_t) neighbours;
-    STARG_ARRAY(uint32_t) first;
-    STARG_ARRAY(uint32_t) met; /* by piece: 1 + the last piece that met it */
+    numbers neighbours;
+    numbers first;
+    numbers met; /* by piece: 1 + the last piece that met it */
 } improver;
 
 /* ---- neighbours ---- */
@@ -160,53 +167,115 @@ done:
     return status;
 }
 
-static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
+static starg_status try_recut(const improver *m, starg_rng *rng, region_scratch *scratch,
+                              trial *t) {
     starg_status status = STARG_OK;
-    improver *m = shared;
-    trial *t = &m->trials[item];
-    region r = {.vertices = {0}};
-    starg_rng rng = starg_rng_make(context->seed, 77, m->offset + m->report->trials + item);
     static const size_t sizes[8] = {2, 2, 3, 3, 3, 4, 4, 5};
-    *t = (trial){.found = false};
-    choose_union(m, &rng, sizes[starg_rng_below(&rng, 8)], t);
+    region r = {.vertices = {0}};
+    choose_union(m, rng, sizes[starg_rng_below(rng, 8)], t);
     if (t->count < 2)
         goto done;
-    bool move = t->count == 2 || starg_rng_below(&rng, 4) == 0;
-    t->parts = move ? 2 : (int)t->count - 1;
+    bool move = t->count == 2 || starg_rng_below(rng, 4) == 0;
+    t->parts = move ? 2 : t->count - 1;
     if (move)
         t->count = 2;
-    const recut_options options = {.margin = 1e-5, .directions = 24, .steps = 16, .anywhere = move};
+    const recut_options options = {
+        .margin = RECUT_MARGIN, .directions = 24, .steps = 16, .anywhere = move};
     STARG_TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
-    STARG_TRY(recut_find(&r, t->parts, &options, &rng, scratch, &t->plan, &t->found));
+    STARG_TRY(recut_find(&r, (int)t->parts, &options, rng, scratch, &t->plan, &t->found));
     if (move && t->found)
         STARG_TRY(is_uneven(m, &r, t, &t->found));
 done:
-    region_free(context, &r);
+    region_free(m->p->context, &r);
     return status;
+}
+
+/* What touches the pieces of a trial. */
+static starg_status gather_around(const improver *m, const trial *t, numbers *out) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < t->count; i++)
+        for (uint32_t k = m->first.data[t->pieces[i]]; k < m->first.data[t->pieces[i] + 1]; k++) {
+            uint32_t next = m->neighbours.data[k];
+            bool known = is_in(t, next);
+            for (size_t n = 0; n < out->count && !known; n++)
+                known = out->data[n] == next;
+            if (!known)
+                STARG_PUSH(m->p->context, PARTITION_STAGE, out, next);
+        }
+done:
+    return status;
+}
+
+static starg_status try_dissolve(const improver *m, starg_rng *rng, region_scratch *scratch,
+                                 trial *t) {
+    starg_status status = STARG_OK;
+    numbers around = {0};
+    choose_union(m, rng, starg_rng_below(rng, 4) == 0 ? 2 : 1, t);
+    t->dissolves = true;
+    t->parts = t->count == 1 ? starg_rng_below(rng, 2) : 1;
+    STARG_TRY(gather_around(m, t, &around));
+    const dissolve_task task = {.pieces = t->pieces,
+                                .piece_count = t->count,
+                                .kept = t->parts,
+                                .neighbours = around.data,
+                                .neighbour_count = around.count,
+                                .margin = DISSOLVE_MARGIN};
+    STARG_TRY(dissolve_find(m->p, &task, rng, scratch, &t->fan, &t->found));
+done:
+    STARG_ARRAY_FREE(m->p->context, &around);
+    return status;
+}
+
+static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
+    improver *m = shared;
+    trial *t = &m->trials[item];
+    starg_rng rng = starg_rng_make(context->seed, 77, m->offset + m->report->trials + item);
+    *t = (trial){.found = false};
+    if (starg_rng_below(&rng, 2) == 0)
+        return try_recut(m, &rng, scratch, t);
+    return try_dissolve(m, &rng, scratch, t);
+}
+
+static bool saves(const trial *t) {
+    return t->parts < t->count;
 }
 
 static starg_status carry_out(improver *m, const trial *t, apply_effect *effect) {
     starg_status status = STARG_OK;
-    bool fewer = (size_t)t->parts < t->count;
-    double least = fewer ? -1 : sum_of_squares(m->p, t->pieces, t->count);
-    STARG_TRY(apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, least, &m->scratch, effect));
+    double least = saves(t) ? -1 : sum_of_squares(m->p, t->pieces, t->count);
+    if (t->dissolves)
+        STARG_TRY(apply_fan(m->p, &t->fan, MARGIN, &m->scratch, effect));
+    else
+        STARG_TRY(
+            apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, least, &m->scratch, effect));
     if (!effect->done)
         m->report->refused++;
-    else if (fewer)
-        m->report->recuts++, m->stalled = 0;
-    else
+    else if (!saves(t))
         m->report->moves++;
+    else if (t->dissolves)
+        m->report->dissolved += t->count - t->parts, m->stalled = 0;
+    else
+        m->report->recuts++, m->stalled = 0;
 done:
     return status;
 }
 
-/* Trials of the batch that have a piece of a trial that was carried out are void, the others may
- * find pieces under other numbers. */
-static void follow(improver *m, size_t count, const trial *done, const apply_effect *effect) {
+static bool have_common(const trial *t, const uint32_t *pieces, size_t count) {
     for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < done->count; k++)
-            if (&m->trials[i] != done && is_in(&m->trials[i], done->pieces[k]))
-                m->trials[i].found = false;
+        if (is_in(t, pieces[i]))
+            return true;
+    return false;
+}
+
+/* Trials of the batch that have a piece of a trial that was carried out are void, and so are those
+ * that know facets by their numbers; the others may find pieces under other numbers. */
+static void follow(improver *m, size_t count, const trial *done, const apply_effect *effect) {
+    for (size_t i = 0; i < count; i++) {
+        trial *t = &m->trials[i];
+        if (t->dissolves || have_common(t, done->pieces, done->count) ||
+            have_common(t, done->fan.takers, done->fan.taker_count))
+            t->found = false;
+    }
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < effect->move_count; k++)
             for (size_t n = 0; n < m->trials[i].count; n++)
@@ -230,7 +299,7 @@ static starg_status carry_out_batch(improver *m, size_t count) {
         for (size_t i = 0; i < count; i++) {
             trial *t = &m->trials[i];
             apply_effect effect;
-            if (!t->found || ((size_t)t->parts < t->count) != fewer)
+            if (!t->found || saves(t) != (fewer == 1))
                 continue;
             STARG_TRY(carry_out(m, t, &effect));
             t->found = false;
@@ -260,6 +329,8 @@ static starg_status run_batch(improver *m) {
     STARG_TRY(carry_out_batch(m, BATCH));
     m->report->trials += BATCH;
 done:
+    for (int i = 0; i < BATCH; i++)
+        fan_plan_free(m->p->context, &m->trials[i].fan);
     return status;
 }
 
@@ -322,6 +393,8 @@ starg_status improve(partition *p, const improve_options *options, improve_repor
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
+    STARG_TRY(tidy(p));
+    STARG_TRY(find_contacts(&m));
     m.crowded = p->facets.count + p->facets.count / 8;
     STARG_TRY(search(&m, options));
     STARG_TRY(tidy(p));

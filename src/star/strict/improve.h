@@ -11,7 +11,7 @@ typedef struct improve_options {
 } improve_options;
 
 typedef struct improve_report {
-    uint64_t trials, joins, recuts, moves, refused;
+    uint64_t trials, joins, recuts, dissolved, moves, refused;
     bool time_limited;
 } improve_report;
 

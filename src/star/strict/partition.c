@@ -87,7 +87,7 @@ done:
     return status;
 }
 
-static void plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane) {
+void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane) {
     const double *a = partition_unit(p, corners[0]);
     double n[3];
     vec3_triangle_normal(a, partition_unit(p, corners[1]), partition_unit(p, corners[2]), n);
@@ -109,7 +109,7 @@ static starg_status add_facet(partition *p, const starg_tetmesh *mesh, const uin
         f.corners[k] = numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)corner]];
     }
     partition_plane plane;
-    plane_of(p, f.corners, &plane);
+    partition_plane_of(p, f.corners, &plane);
     STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
     STARG_PUSH(p->context, PARTITION_STAGE, &p->facets, f);
 done:

@@ -85,6 +85,9 @@ starg_status partition_build_index(partition *p);
 /* Appends a point in the solid's coordinates; its number. Errors: MEMORY. */
 starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex);
 
+/* Of three vertices, counter-clockwise seen from where the normal points. */
+void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane);
+
 /* Corners of a facet of piece side s in the order that is counter-clockwise from outside of that
  * piece. */
 static inline void facet_outward(const facet *f, int side, uint32_t corners[3]) {

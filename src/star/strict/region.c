@@ -173,6 +173,8 @@ starg_status region_gather(const partition *p, const uint32_t *pieces, size_t co
             uint32_t entry = p->index.data[k];
             if (!is_chosen(pieces, count, p->facets.data[entry / 2].side[1 - entry % 2]))
                 STARG_TRY(gather_facet(p, entry, scratch, out));
+            if (i == 0)
+                out->first_rows = out->rows.count / ROW;
         }
     forget(p, pieces, count, scratch);
     STARG_TRY(make_blocks(p->context, out));
@@ -461,6 +463,18 @@ starg_status region_find_reach_about(const region *r, const double center[3], do
                                      region_scratch *scratch, region_reach *out) {
     starg_status status = STARG_OK;
     STARG_TRY(find_distances(r, center, scratch));
+    ball_search w = {.r = r, .lowest = scratch->lowest.data, .bound = INFINITY};
+    find_reach(&w, margin, out);
+done:
+    return status;
+}
+
+starg_status region_find_reach_beyond(const region *r, const double center[3], double margin,
+                                      region_scratch *scratch, region_reach *out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_distances(r, center, scratch));
+    for (size_t i = 0; i < r->first_rows; i++)
+        scratch->lowest.data[i] = -INFINITY;
     ball_search w = {.r = r, .lowest = scratch->lowest.data, .bound = INFINITY};
     find_reach(&w, margin, out);
 done:

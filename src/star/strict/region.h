@@ -17,6 +17,7 @@ typedef struct region {
     STARG_ARRAY(region_triangle) triangles;
     STARG_ARRAY(double) rows;   /* x 4: outward normal of length one, offset; one for each plane */
     STARG_ARRAY(double) blocks; /* the same for the scan (star/strict/scan.h) */
+    size_t first_rows;          /* those of the first piece come first: so many */
 } region;
 
 /* How far a star-shaped part of a region reaches: its side of a plane across `normal` at any height
@@ -69,6 +70,10 @@ starg_status region_find_reach(const region *r, const double normal[3], double m
  * distance; the height is as large as can be. Errors: MEMORY. */
 starg_status region_find_reach_about(const region *r, const double center[3], double margin,
                                      region_scratch *scratch, region_reach *out);
+
+/* The same, but inside of all rows of the region's first piece in any case. Errors: MEMORY. */
+starg_status region_find_reach_beyond(const region *r, const double center[3], double margin,
+                                      region_scratch *scratch, region_reach *out);
 
 /* Centre and radius of the largest ball inside of all rows, or of those with a vertex below a
  * plane and the plane itself, if `normal` is not NULL. The radius is negative when there is none.
