@@ -85,13 +85,20 @@ static void random_point(const dissolver *d, size_t facet_number, double out[3])
                  v * corner(d, facet_number, 2)[k];
 }
 
+static bool is_own(const dissolver *d, uint32_t number) {
+    for (size_t i = 0; i < d->task->piece_count; i++)
+        if (d->task->pieces[i] == number)
+            return true;
+    return false;
+}
+
 /* ---- guards ---- */
 
 static void add_taker(dissolver *d, uint32_t number, const double guard[3]) {
     taker *fresh = &d->takers[d->taker_count];
     fresh->piece = number;
     vec3_copy(guard, fresh->guard);
-    d->labelling.ranks[d->taker_count++] = d->p->pieces.data[number].volume;
+    d->labelling.ranks[d->taker_count++] = is_own(d, number) ? 0 : d->p->pieces.data[number].volume;
 }
 
 /* That sees all of the neighbour, and of the union what is about a random place. */
@@ -151,13 +158,6 @@ done:
 }
 
 /* ---- the union ---- */
-
-static bool is_own(const dissolver *d, uint32_t number) {
-    for (size_t i = 0; i < d->task->piece_count; i++)
-        if (d->task->pieces[i] == number)
-            return true;
-    return false;
-}
 
 /* In the order of region_gather. */
 static starg_status gather_entries(dissolver *d) {
@@ -260,15 +260,20 @@ done:
 
 /* ---- the apex ---- */
 
-/* Between the guard of one of the pieces and a random place on the surface, the first time at the
- * guard. */
-static void choose_apex(const dissolver *d, int attempt, double apex[3]) {
-    uint32_t number = d->task->pieces[starg_rng_below(d->rng, d->task->piece_count)];
-    double guard[3], place[3], away[3], part = attempt == 0 ? 0 : starg_rng_unit(d->rng);
-    partition_to_unit(d->p, d->p->pieces.data[number].guard, guard);
+/* Between a guard within the union and a random place on the surface: that of a piece that is made
+ * anew, which then has the apex before it, or of one of those given. */
+static void choose_apex(const dissolver *d, double apex[3]) {
+    const taker *last = &d->takers[d->taker_count - 1];
+    double guard[3], place[3], away[3];
+    if (d->task->kept > 0 && is_own(d, last->piece)) {
+        vec3_copy(last->guard, guard);
+    } else {
+        uint32_t number = d->task->pieces[starg_rng_below(d->rng, d->task->piece_count)];
+        partition_to_unit(d->p, d->p->pieces.data[number].guard, guard);
+    }
     random_point(d, random_facet(d), place);
     vec3_subtract(place, guard, away);
-    vec3_along(guard, part, away, apex);
+    vec3_along(guard, starg_rng_unit(d->rng), away, apex);
 }
 
 /* Takers by the side of the triangle between an edge and the apex on which their guards are. */
@@ -304,6 +309,7 @@ static starg_status make_plan(const dissolver *d, fan_plan *plan) {
     bool used[FAN_TAKERS_MOST] = {false};
     plan->piece_count = d->task->piece_count;
     plan->kept = d->task->kept;
+    plan->taker_count = plan->takes.count = plan->entries.count = 0;
     for (size_t i = 0; i < d->task->piece_count; i++)
         plan->pieces[i] = d->task->pieces[i];
     for (size_t i = 0; i < d->entries.count; i++) {
@@ -327,13 +333,6 @@ static bool takes_part(const fan_plan *plan, uint32_t number) {
     return false;
 }
 
-static bool keeps_all(const fan_plan *plan) {
-    for (size_t i = 0; i < plan->kept; i++)
-        if (!takes_part(plan, plan->pieces[i]))
-            return false;
-    return true;
-}
-
 /* Does a move make the sum of the squares of volumes larger? */
 static bool is_uneven(const dissolver *d, const fan_plan *plan) {
     double taken[FAN_TAKERS_MOST] = {0}, before = 0, after = 0;
@@ -352,14 +351,24 @@ static bool is_uneven(const dissolver *d, const fan_plan *plan) {
     return plan->taker_count > 1 && after > before * (1 + 1e-9);
 }
 
-static starg_status find_labels(dissolver *d, fan_plan *plan, bool *found) {
+/* All kept pieces are there, and a move is worth while. */
+static bool will_do(const dissolver *d, const fan_plan *plan) {
+    for (size_t i = 0; i < plan->kept; i++)
+        if (!takes_part(plan, plan->pieces[i]))
+            return false;
+    return plan->kept < plan->piece_count || is_uneven(d, plan);
+}
+
+static starg_status try_apex(dissolver *d, fan_plan *plan, bool *found) {
     starg_status status = STARG_OK;
-    for (int attempt = 0; attempt < APEXES && !*found; attempt++) {
-        choose_apex(d, attempt, plan->apex);
-        for (size_t i = 0; i < d->edges.count; i++)
-            find_fits(d, plan->apex, &d->edges.data[i], &d->labelling.links.data[i]);
-        STARG_TRY(labelling_solve(&d->labelling, d->rng, found));
-    }
+    choose_apex(d, plan->apex);
+    for (size_t i = 0; i < d->edges.count; i++)
+        find_fits(d, plan->apex, &d->edges.data[i], &d->labelling.links.data[i]);
+    STARG_TRY(labelling_solve(&d->labelling, d->rng, found));
+    if (!*found)
+        goto done;
+    STARG_TRY(make_plan(d, plan));
+    *found = will_do(d, plan);
 done:
     return status;
 }
@@ -376,14 +385,11 @@ starg_status dissolve_find(const partition *p, const dissolve_task *task, starg_
     STARG_TRY(gather_entries(&d));
     STARG_TRY(add_takers(&d));
     STARG_TRY(find_takers(&d, &fine));
+    fine = fine && d.taker_count > 0;
     if (fine)
         STARG_TRY(find_edges(&d, &fine));
-    if (fine)
-        STARG_TRY(find_labels(&d, plan, found));
-    if (!*found)
-        goto done;
-    STARG_TRY(make_plan(&d, plan));
-    *found = keeps_all(plan) && (task->kept < task->piece_count || is_uneven(&d, plan));
+    for (int i = 0; i < APEXES && fine && !*found; i++)
+        STARG_TRY(try_apex(&d, plan, found));
 done:
     if (status != STARG_OK || !*found)
         fan_plan_free(p->context, plan);

@@ -127,12 +127,19 @@ done:
     return status;
 }
 
+static void find_ranked(labelling *l) {
+    l->ranked = 0;
+    for (int k = 0; k < LABELLING_MOST; k++)
+        if (l->ranks[k] > 0)
+            l->ranked |= (label_set)1 << k;
+}
+
 /* The label of a settled node across a link, if it can be had; otherwise none. */
 static label_set label_nearby(const labelling *l, uint32_t node) {
     for (int k = 0; k < DEGREE; k++) {
         const labelling_link *link = &l->links.data[l->links_of.data[DEGREE * node + (uint32_t)k]];
         label_set there = l->left.data[link->nodes[link->nodes[0] == node ? 1 : 0]];
-        if (is_single(there) && (there & l->left.data[node]) != 0)
+        if (is_single(there) && (there & l->left.data[node] & l->ranked) != 0)
             return there;
     }
     return 0;
@@ -149,8 +156,10 @@ static label_set highest(const labelling *l, label_set set) {
     return best;
 }
 
-/* By rank, or any. */
+/* By rank, or any that has a rank. */
 static label_set choose_label(const labelling *l, label_set set, starg_rng *rng) {
+    if ((set & l->ranked) != 0)
+        set &= l->ranked;
     if (starg_rng_below(rng, 2) == 0)
         return highest(l, set);
     for (uint64_t skip = starg_rng_below(rng, (uint64_t)size_of(set)); skip > 0; skip--)
@@ -195,6 +204,7 @@ starg_status labelling_solve(labelling *l, starg_rng *rng, bool *found) {
     bool any = true, fine = true;
     *found = false;
     l->queue.count = l->changed.count = 0;
+    find_ranked(l);
     for (uint32_t i = 0; i < l->left.count; i++) {
         l->left.data[i] = l->given.data[i];
         fine = fine && l->given.data[i] != 0;

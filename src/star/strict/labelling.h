@@ -23,9 +23,12 @@ typedef struct labelling {
     starg_context *context;
     STARG_ARRAY(label_set) given; /* of each node: those it may have */
     STARG_ARRAY(labelling_link) links;
-    double ranks[LABELLING_MOST]; /* where nothing else decides, a high rank is preferred */
+    /* Where nothing else decides, a high rank is preferred; labels of rank 0 are for nodes that no
+     * other is left for. */
+    double ranks[LABELLING_MOST];
 
     STARG_ARRAY(label_set) left;    /* of each node; of a solution: exactly one */
+    label_set ranked;               /* those with a rank above 0 */
     STARG_ARRAY(uint32_t) links_of; /* node x 3 */
     STARG_ARRAY(uint32_t) queue;
     STARG_ARRAY(uint32_t) changed; /* nodes and what they had before, to go back */
