@@ -4,7 +4,7 @@
 usage: paper.py COMMAND STARGUARD DATA [options]
 
   table1     guards and seconds of ILP, greedy, PILP and PILP with refinement; --coverage 0.99
-  table2     skeletal against interior candidates, proven optima
+  table2     skeletal against tetrahedral candidates and a lattice, proven optima
   figure1    stability: what happens to the guards when the boundary is moved by noise
   figure2    greedy against PILP over many models; --svg FILE draws it
   figure3    pictures of guarded models into the folder --pictures FOLDER
@@ -35,9 +35,9 @@ PAPER1 = {
     "female": (13, 18, 14, 2046.2, 264.2, 281.1),
     "male": (14, 16, 15, 3074.3, 298.6, 310.2),
 }
-# Table 2: guards with all tetrahedral vertices and with skeletal nodes as candidates.
-PAPER2 = {"kitten_400": (3, 3), "beethoven_502": (2, 2), "bimba_752": (2, 2),
-          "buddha_502": (2, 2), "bunny_998": (5, 5)}
+# Table 2: tetrahedral vertices; guards with all of them and with skeletal nodes as candidates.
+PAPER2 = {"kitten_400": (1682, 3, 3), "beethoven_502": (2895, 2, 2), "bimba_752": (5115, 2, 2),
+          "buddha_502": (3002, 2, 2), "bunny_998": (8320, 5, 5)}
 METHODS = {
     "ilp": ["--method", "ilp"],
     "greedy": ["--method", "greedy"],
@@ -129,19 +129,66 @@ def table1(options):
               f"{len(ratios)}.")
 
 
+def tetrahedral_vertices(options, model, wanted):
+    """Vertices inside of a tetrahedral mesh that has about `wanted` vertices in all."""
+    with open(model, encoding="utf-8") as file:
+        surface = int(file.read().split()[1])
+    density = 12.0
+    with tempfile.TemporaryDirectory() as folder:
+        grid = os.path.join(folder, "t.vtk")
+        for _ in range(8):
+            subprocess.run([options.starguard, "decompose", model, "-o", grid, "--mode", "paper",
+                            "--density", f"{density:.3f}", "--quiet"], check=True)
+            points = read_vtk_points(grid)
+            if abs(len(points) - wanted) < 0.03 * wanted:
+                break
+            density *= (wanted - surface) / max(1, len(points) - surface)
+    return points
+
+
+def read_vtk_points(path):
+    """The points of a legacy VTK file in text."""
+    with open(path, encoding="utf-8") as file:
+        words = file.read().split()
+    at = words.index("POINTS")
+    count = int(words[at + 1])
+    return [words[at + 3 + 3 * i:at + 6 + 3 * i] for i in range(count)]
+
+
+def guards_at(options, model, points):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "points.xyz")
+        with open(path, "w", encoding="utf-8") as file:
+            file.writelines(" ".join(p) + "\n" for p in points)
+        return Guards(options.starguard, model, ["--method", "ilp", "--candidates", path])
+
+
+def inside_of(model, points):
+    """Those that are no vertices of the surface."""
+    with open(model, encoding="utf-8") as file:
+        words = file.read().split()
+    surface = {tuple(map(float, words[4 + 3 * i:7 + 3 * i])) for i in range(int(words[1]))}
+    return [p for p in points if tuple(map(float, p)) not in surface]
+
+
 def table2(options):
-    print("| model | vertices | skeletal nodes | guards | interior points | guards | refined | "
-          "paper: interior / skeletal |")
-    print("|---|---|---|---|---|---|---|---|")
+    print("| model | vertices | tetrahedral vertices | of them inside | guards | "
+          "skeletal candidates | guards | lattice | guards | refined | "
+          "paper: tetrahedral vertices | guards: tetrahedral / skeletal |")
+    print("|---" * 12 + "|")
     for name, paper in PAPER2.items():
         model = os.path.join(options.data, "table2", name + ".off")
         skeletal = Guards(options.starguard, model, ["--method", "ilp"])
-        interior = Guards(options.starguard, model, ["--method", "ilp", "--candidates", "interior",
-                                                     "--count", "8000"])
+        lattice = Guards(options.starguard, model, ["--method", "ilp", "--candidates", "interior",
+                                                    "--count", "8000"])
+        every = tetrahedral_vertices(options, model, paper[0])
+        inside = inside_of(model, every)
+        tetrahedral = guards_at(options, model, inside)
         refined = Guards(options.starguard, model, [])
-        print(f"| {name} | {vertices_of(skeletal):,} | {skeletal.file['candidates']} | "
-              f"{skeletal.mark()} | {interior.file['candidates']} | {interior.mark()} | "
-              f"{refined.mark()} | {paper[0]} / {paper[1]} |", flush=True)
+        print(f"| {name} | {vertices_of(skeletal):,} | {len(every):,} | {len(inside):,} | "
+              f"{tetrahedral.mark()} | {skeletal.file['candidates']:,} | {skeletal.mark()} | "
+              f"{lattice.file['candidates']:,} | {lattice.mark()} | {refined.mark()} | "
+              f"{paper[0]:,} | {paper[1]} / {paper[2]} |", flush=True)
 
 
 def read_off(path):

@@ -52,6 +52,6 @@ if [ -d "$data" ]; then
 fi
 
 if [ -d "$data" ]; then
-    echo "== every file"
-    python3 "$here/walk.py" "$build/starguard" "$data"
+    echo "== every model"
+    python3 "$here/survey.py" "$build/starguard" "$data"
 fi
