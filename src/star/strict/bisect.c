@@ -48,7 +48,9 @@ typedef struct bisector {
     STARG_ARRAY(job) jobs;
     STARG_ARRAY(job) next;
     uint64_t stream;
-    size_t done; /* jobs so far */
+    size_t done;     /* jobs so far */
+    double volume;   /* of the solid, in unit coordinates */
+    double finished; /* of it, in pieces that have a guard */
     bool hopeless;
 } bisector;
 
@@ -182,9 +184,12 @@ done:
     return status;
 }
 
-static void settle(partition *p, const job *j) {
-    partition_from_unit(p, j->guard, p->pieces.data[j->number].guard);
-    p->pieces.data[j->number].radius = j->radius;
+static void settle(bisector *b, const job *j) {
+    piece *it = &b->p->pieces.data[j->number];
+    partition_from_unit(b->p, j->guard, it->guard);
+    it->radius = j->radius;
+    b->finished += it->volume;
+    starg_progress_step(b->p->context, (size_t)(1e6 * fmin(1, b->finished / b->volume)), 1000000);
 }
 
 /* ---- rounds ---- */
@@ -205,7 +210,7 @@ static starg_status run_round(bisector *b) {
         const job *j = &b->jobs.data[i];
         STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
         if (j->radius >= margin_of(j))
-            settle(b->p, j);
+            settle(b, j);
         else
             STARG_TRY(carry_out(b, j));
     }
@@ -257,8 +262,10 @@ static starg_status open_all(bisector *b) {
         STARG_TRY(partition_separate(b->p, i));
     for (uint32_t i = 0; i < b->p->pieces.count && !b->hopeless; i++)
         STARG_TRY(partition_touches_itself(b->p, i, &b->hopeless));
-    for (uint32_t i = 0; i < b->p->pieces.count; i++)
+    for (uint32_t i = 0; i < b->p->pieces.count; i++) {
+        b->volume += b->p->pieces.data[i].volume;
         STARG_TRY(open_piece(b, i, 0));
+    }
 done:
     return status;
 }
@@ -267,6 +274,7 @@ starg_status bisect(partition *p, uint64_t stream, bool *done) {
     starg_status status = STARG_OK;
     bisector b = {.p = p, .stream = stream, .scratch = {.context = p->context}};
     *done = false;
+    starg_progress_begin(p->context, "planes");
     STARG_TRY(open_all(&b));
     while (b.next.count > 0) {
         swap_lists(&b);
@@ -280,6 +288,7 @@ starg_status bisect(partition *p, uint64_t stream, bool *done) {
     }
     *done = true;
 done:
+    starg_progress_end(p->context);
     region_scratch_free(&b.scratch);
     STARG_ARRAY_FREE(p->context, &b.jobs);
     STARG_ARRAY_FREE(p->context, &b.next);

@@ -453,7 +453,8 @@ static starg_status find_distances(const region *r, const double center[3],
         const region_triangle *t = &r->triangles.data[i];
         double *lowest = &scratch->lowest.data[t->row];
         for (int k = 0; k < 3; k++)
-            *lowest = fmin(*lowest, distance[t->corners[k]]);
+            if (distance[t->corners[k]] < *lowest)
+                *lowest = distance[t->corners[k]];
     }
 done:
     return status;
