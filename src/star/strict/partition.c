@@ -145,6 +145,7 @@ starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
     for (size_t slot = 0; slot < 4 * mesh->count; slot++)
         if (is_border(mesh, labels, slot))
             STARG_TRY(add_facet(out, mesh, labels, numbers, slot));
+    out->first_planes = out->planes.count;
     for (size_t t = 0; t < mesh->count; t++)
         add_volume(out, mesh, t, labels[t]);
     STARG_TRY(partition_build_index(out));
@@ -183,6 +184,7 @@ starg_status partition_copy(const partition *from, partition *to) {
     *to = (partition){.context = from->context,
                       .exponent = from->exponent,
                       .first_points = from->first_points,
+                      .first_planes = from->first_planes,
                       .stamps = from->stamps};
     vec3_copy(from->origin, to->origin);
     COPY_ARRAY(from->context, &to->points, &from->points);

@@ -48,6 +48,7 @@ typedef struct partition {
     STARG_ARRAY(double) unit;   /* x 3, the same in unit coordinates    */
     size_t first_points;        /* those before any cut: the first ones */
     STARG_ARRAY(partition_plane) planes;
+    size_t first_planes; /* likewise */
     STARG_ARRAY(facet) facets;
     STARG_ARRAY(piece) pieces;
     uint64_t stamps; /* handed out so far */

@@ -261,7 +261,29 @@ done:
     return status;
 }
 
-/* Points made by cuts that no facet uses go; planes stay. */
+/* Planes of cuts that no facet lies in go. */
+static starg_status drop_planes(partition *p) {
+    starg_status status = STARG_OK;
+    uint32_t *number = NULL;
+    size_t count = p->planes.count, kept = p->first_planes;
+    STARG_NEW_ZERO(p->context, PARTITION_STAGE, number, count);
+    for (size_t i = 0; i < p->facets.count; i++)
+        number[p->facets.data[i].plane] = 1;
+    for (size_t k = 0; k < count; k++) {
+        bool used = number[k] != 0;
+        number[k] = (uint32_t)(k < p->first_planes ? k : kept);
+        if (k >= p->first_planes && used)
+            p->planes.data[kept++] = p->planes.data[k];
+    }
+    p->planes.count = kept;
+    for (size_t i = 0; i < p->facets.count; i++)
+        p->facets.data[i].plane = number[p->facets.data[i].plane];
+done:
+    starg_release(p->context, number);
+    return status;
+}
+
+/* Points made by cuts that no facet uses go. */
 static starg_status drop_points(partition *p) {
     starg_status status = STARG_OK;
     uint32_t *number = NULL;
@@ -335,6 +357,7 @@ starg_status tidy(partition *p) {
     if (!done)
         goto done;
     STARG_TRY(drop_points(&copy));
+    STARG_TRY(drop_planes(&copy));
     STARG_TRY(partition_build_index(&copy));
     STARG_TRY(certify_all(&copy, &done));
     if (!done)
