@@ -11,4 +11,7 @@
  */
 starg_status tidy(partition *p);
 
+/* The same for pieces whose guards do not see them yet: nothing is certified. Errors: MEMORY. */
+starg_status tidy_unproven(partition *p);
+
 #endif
