@@ -141,11 +141,21 @@ static void forget(starg_output *output) {
     *output = (starg_output){.context = output->context, .stage = output->stage};
 }
 
+/* A write has failed, and why is forgotten: one more, of what nobody will read, tells. */
+static int ask_for_reason(FILE *stream) {
+    static const char block[1 << 14];
+    clearerr(stream);
+    errno = 0;
+    fwrite(block, 1, sizeof block, stream);
+    fflush(stream);
+    return errno;
+}
+
 starg_status starg_output_commit(starg_output *output) {
     starg_status status = STARG_OK;
     const char *shown = output->path ? output->path : "standard output";
     bool failed = ferror(output->stream) != 0;
-    errno = 0;
+    errno = failed && output->path != NULL ? ask_for_reason(output->stream) : 0;
     if (fflush(output->stream) != 0)
         failed = true;
     if (output->path != NULL && !failed && fsync(fileno(output->stream)) != 0)

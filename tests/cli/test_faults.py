@@ -40,10 +40,10 @@ class Writing(support.Case):
         "skeleton": (["skeleton", "cat.off", "-o", "curve.vtk"], ["curve.vtk"]),
         "visible": (["visible", "room.off", "--from", "0.5,0.5,0.5", "-o", "seen.ply"],
                     ["seen.ply"]),
-        "guard": (["guard", "cat.off", "-o", "g.json", "--marks", "g.ply", "--picture", "g.png",
-                   "--count", "100"], ["g.json", "g.ply", "g.png"]),
-        "decompose": (["decompose", "room.off", "-o", "p.vtk", "--report", "p.json", "--tets",
-                       "stuffing", "--effort", "30"], ["p.vtk", "p.json"]),
+        "guard": (["guard", "room.off", "-o", "g.json", "--marks", "g.ply", "--picture", "g.png",
+                   "--count", "50"], ["g.json", "g.ply", "g.png"]),
+        "decompose": (["decompose", "room.off", "-o", "p.vtk", "--report", "p.json",
+                       "--effort", "30"], ["p.vtk", "p.json"]),
         "describe": (["describe", "room.off", "-o", "d.json"], ["d.json"]),
         "map": (["map", "cat.off", "ball.off", "-o", "map.json"], ["map.json"]),
         "morph": (["morph", "cat.off", "cat_1.off", "--frames", "4", "-o", "frames", "--method",
@@ -97,19 +97,17 @@ class Writing(support.Case):
 
     def commands(self):
         for name, (words, outputs) in self.COMMANDS.items():
-            if name == "view" and not self.viewer:
-                continue
-            with self.subTest(command=name):
+            if name != "view" or self.viewer:
                 yield name, words, outputs
 
     def content(self, name):
         """What stands there; None if nothing does."""
         return self.read(name) if os.path.isfile(self.path(name)) else None
 
-    def reference(self, name, words, outputs):
+    def reference(self, name, words, outputs, **options):
         """What the command writes if nothing happens, and how long it takes."""
         began = time.monotonic()
-        self.run_bytes(*words, "--threads", "1", "--quiet")
+        self.run_bytes(*words, "--threads", "1", "--quiet", **options)
         took = time.monotonic() - began
         wanted = {output: self.read(output) for output in outputs}
         self.clear(outputs)
@@ -165,31 +163,32 @@ class Killed(Writing):
         print(f"{'command':12} {'seconds':>8} {'kills':>6} {'nothing':>8} {'all':>6} {'some':>6} "
               f"{'leftovers':>10}")
         for name, words, outputs in self.commands():
-            wanted, took = self.reference(name, words, outputs)
-            kills, counts = 0, {}
-            for i, moment in enumerate(self.moments(name, took)):
+            with self.subTest(command=name):
+                wanted, took = self.reference(name, words, outputs)
+                kills, counts = 0, {}
+                for i, moment in enumerate(self.moments(name, took)):
+                    self.clear(outputs)
+                    old = None
+                    if i % 3 == 0 and "/" not in outputs[0]:
+                        old = b"old"
+                        for output in outputs:
+                            self.write(output, old)
+                    kills += self.kill_at(moment, *words)
+                    there = self.check_whole(outputs, old, wanted)
+                    state = {0: "nothing", len(outputs): "all"}.get(there, "some")
+                    counts[state] = counts.get(state, 0) + 1
+                    strange = [n for n in self.names() if n not in self.made and n not in outputs
+                               and n != "frames" and not is_leftover(n)]
+                    self.assertEqual(strange, [])
+                left = len(self.leftovers())
+                self.run_bytes(*words, "--quiet")  # what was left does not matter
+                self.assertEqual(self.check_whole(outputs, None, wanted), len(outputs))
                 self.clear(outputs)
-                old = None
-                if i % 3 == 0 and "/" not in outputs[0]:
-                    old = b"old"
-                    for output in outputs:
-                        self.write(output, old)
-                kills += self.kill_at(moment, *words)
-                there = self.check_whole(outputs, old, wanted)
-                state = {0: "nothing", len(outputs): "all"}.get(there, "some")
-                counts[state] = counts.get(state, 0) + 1
-                strange = [n for n in self.names() if n not in self.made and n not in outputs
-                           and n != "frames" and not is_leftover(n)]
-                self.assertEqual(strange, [])
-            left = len(self.leftovers())
-            self.run_bytes(*words, "--quiet")  # what was left does not matter
-            self.assertEqual(self.check_whole(outputs, None, wanted), len(outputs))
-            self.clear(outputs)
-            for leftover in self.leftovers():
-                os.remove(self.path(leftover))
-            print(f"{name:12} {took:8.2f} {kills:6} {counts.get('nothing', 0):8} "
-                  f"{counts.get('all', 0):6} {counts.get('some', 0):6} {left:10}")
-            self.assertGreater(kills, 0)
+                for leftover in self.leftovers():
+                    os.remove(self.path(leftover))
+                print(f"{name:12} {took:8.2f} {kills:6} {counts.get('nothing', 0):8} "
+                      f"{counts.get('all', 0):6} {counts.get('some', 0):6} {left:10}")
+                self.assertGreater(kills, 0)
 
     def whole(self, name):
         """Is every stored model stored whole? Their file names in the order of storing."""
@@ -277,26 +276,30 @@ class Full(Writing):
     def test_file_size(self):
         """RLIMIT_FSIZE: nothing, half and nearly all of each file can be written."""
         for name, words, outputs in self.commands():
-            wanted, _ = self.reference(name, words, outputs)
-            largest = max(len(data) for data in wanted.values())
-            for size in 0, largest // 2, largest - 1:
-                self.write(outputs[-1], "old")
-                self.refuse(*words, "--quiet", says=[f"'{output}'" for output in outputs],
-                            preexec_fn=limit(resource.RLIMIT_FSIZE, size))
-                os.remove(self.path(outputs[-1]))
+            with self.subTest(command=name):
+                # TetGen, which would meet the limit as well, is kept out of it.
+                apart = {"environment": {"PATH": "/nowhere"}}
+                wanted, _ = self.reference(name, words, outputs, **apart)
+                largest = max(len(data) for data in wanted.values())
+                for size in 0, largest // 2, largest - 1:
+                    self.write(outputs[-1], "old")
+                    self.refuse(*words, "--quiet", says=[f"'{output}'" for output in outputs],
+                                preexec_fn=limit(resource.RLIMIT_FSIZE, size), **apart)
+                    os.remove(self.path(outputs[-1]))
 
     def test_device(self):
         """A device that is full, under a name with the right ending; other outputs do not change."""
         for name, words, outputs in self.commands():
-            if name == "morph":
-                continue  # its frames are files of a folder
-            for full in outputs:
-                for output in outputs:
-                    if output != full:
-                        self.write(output, "old")
-                os.symlink("/dev/full", self.path(full))
-                self.refuse(*words, "--quiet", says=["No space left"])
-                self.clear(outputs)
+            with self.subTest(command=name):
+                if name == "morph":
+                    continue  # its frames are files of a folder
+                for full in outputs:
+                    for output in outputs:
+                        if output != full:
+                            self.write(output, "old")
+                    os.symlink("/dev/full", self.path(full))
+                    self.refuse(*words, "--quiet", says=["No space left"])
+                    self.clear(outputs)
 
     def test_small_disk(self):
         """A file system of its own; needs the right to mount one."""
@@ -315,21 +318,20 @@ class Full(Writing):
                 except OSError:
                     break
         for name, words, outputs in self.commands():
-            moved = [f"disk/{word}" if word in outputs or word == "frames" else word
-                     for word in words]
-            self.refuse(*moved, "--quiet", says=["No space left"])
-            self.assertEqual(os.listdir(disk), ["filler"])
+            with self.subTest(command=name):
+                moved = [f"disk/{word}" if word in outputs or word == "frames" else word
+                         for word in words]
+                self.refuse(*moved, "--quiet", says=["No space left"])
+                self.assertEqual(os.listdir(disk), ["filler"])
         with self.subTest(command="db create"):
             self.refuse("db", "create", "disk/new.db", says=["full", "No space left"])
             self.assertEqual(os.listdir(disk), ["filler"])
 
     def test_no_room_for_temporary_files(self):
         """TetGen's files cannot be written: stuffing takes over."""
-        self.run_text("decompose", "room.off", "-o", "p.vtk", "--effort", "10",
+        self.run_text("decompose", "room.off", "-o", "p.vtk", "--report", "p.json", "--effort", "10",
                       environment={"TMPDIR": "/nowhere"})
-        _, err = self.run_text("decompose", "room.off", "-o", "q.vtk", "--tets", "tetgen", "--effort",
-                               "10", environment={"TMPDIR": "/nowhere"}, status=3)
-        self.assertIn("TMPDIR", err)
+        self.run_text("verify", "room.off", "p.vtk", "p.json")
 
 
 @unittest.skipIf(SANITIZED, "sanitizers need all the addresses there are")
@@ -373,10 +375,11 @@ class Memory(Writing):
     def test_commands(self):
         step = 1 << (18 if LONG else 22)
         for name, words, outputs in self.commands():
-            for threads in "1", "3":
-                failures, size = self.sweep([*words, "--threads", threads], outputs, step)
-                print(f"{name} on {threads} threads: {failures} failures, "
-                      f"enough with {size >> 20} MiB")
+            with self.subTest(command=name):
+                for threads in "1", "3":
+                    failures, size = self.sweep([*words, "--threads", threads], outputs, step)
+                    print(f"{name} on {threads} threads: {failures} failures, "
+                          f"enough with {size >> 20} MiB")
 
     def test_solver(self):
         """An instance that reaches CBC, whose memory fails by a C++ exception."""

@@ -95,6 +95,7 @@ static starg_status describe(starg_context *context, const starg_mesh *mesh, siz
     starg_descriptor_options_default(&options);
     options.direction_count = 12;
     options.detail = detail;
+    options.effort = 3;
     starg_status status = starg_descriptor_create(context, mesh, &options, &d);
     return descriptor_result(context, status, d);
 }
@@ -104,7 +105,7 @@ static starg_status descriptor_create(starg_context *context) {
 }
 
 static starg_status descriptor_simplified(starg_context *context) {
-    return describe(context, in.blob, 8);
+    return describe(context, in.fine_blob, 100);
 }
 
 static starg_status descriptor_write(starg_context *context) {

@@ -108,7 +108,17 @@ starg_status failing_result(starg_status status, const void *object) {
 typedef struct manner {
     int threads;
     bool for_good;
+    size_t limit, stride; /* where not every n is tried: all up to a limit, then in steps */
 } manner;
+
+#ifdef __SANITIZE_ADDRESS__
+enum { FIRST = 40, FEW = 10, STEP = 499, BIG_STEP = 997 };
+#else
+enum { FIRST = 300, FEW = 20, STEP = 97, BIG_STEP = 499 };
+#endif
+
+static const manner manners[] = {
+    {1, false, FIRST, STEP}, {1, true, FEW, BIG_STEP}, {2, false, FEW, BIG_STEP}};
 
 typedef struct tally {
     size_t allocations, attempts, failed, ok;
@@ -169,25 +179,27 @@ static bool attempt(const failing_call *call, const manner *how, size_t n, tally
 }
 
 /* All n up to a limit; then in steps, which begin somewhere else for each call. */
-static void exhaust(const failing_call *call, const manner *how, size_t limit, size_t stride) {
+static void exhaust(const failing_call *call, const manner *how, size_t limit) {
     tally sum = {0};
     starg_rng rng = starg_rng_make(1, 0, (uint64_t)call->name[strlen(call->name) - 1]);
     size_t n = 1;
     while (attempt(call, how, n, &sum))
-        n += n < limit ? 1 : n == limit ? 1 + starg_rng_below(&rng, stride) : stride;
+        n += n < limit ? 1 : n == limit ? 1 + starg_rng_below(&rng, how->stride) : how->stride;
     printf("%-34s %-24s %7d %-6s %11zu %8zu %8zu %8zu\n", call->name, call->variant, how->threads,
            how->for_good ? "all" : "one", sum.allocations, sum.attempts, sum.failed, sum.ok);
 }
 
-/* STARGUARD_LONG=1 (make check-long): every n. Else the first ones, then some. */
+/* STARGUARD_LONG=1 (make check-long): every n. Else the first ones, then some. What earlier tests
+ * have lost is theirs. */
 void failing_run(const failing_call *calls, size_t count) {
-    static const manner manners[] = {{1, false}, {1, true}, {2, false}};
     const char *all = getenv("STARGUARD_LONG");
     bool whole = all != NULL && strcmp(all, "1") == 0;
+    atomic_store(&memory.blocks, 0);
+    atomic_store(&memory.bytes, 0);
     printf("%-34s %-24s %7s %-6s %11s %8s %8s %8s\n", "call", "", "threads", "fails", "allocations",
            "attempts", "failed", "ok");
     for (size_t i = 0; i < count; i++)
         for (size_t m = 0; m < sizeof manners / sizeof *manners; m++)
-            exhaust(&calls[i], &manners[m], whole ? SIZE_MAX : m == 0 ? 300 : 60, 97);
+            exhaust(&calls[i], &manners[m], whole ? SIZE_MAX : manners[m].limit);
     remove_folder();
 }

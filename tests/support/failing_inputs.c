@@ -60,6 +60,7 @@ static void make_meshes(failing_inputs *in) {
     in->room = mesh_from(in->context, shape_room());
     in->blob = mesh_from(in->context, shape_blob(1, 1));
     in->other_blob = mesh_from(in->context, shape_blob(0, 2));
+    in->fine_blob = mesh_from(in->context, shape_blob(3, 3));
     in->open = mesh_from(in->context, open);
     in->crossed = mesh_from(in->context, crossed);
     test_ok(in->context, starg_solid_create(in->context, in->room, &in->solid));
@@ -210,8 +211,8 @@ void failing_inputs_free(failing_inputs *in) {
     starg_tetmesh_free(in->tetmesh);
     starg_solid_free(in->simple);
     starg_solid_free(in->solid);
-    starg_mesh *const meshes[] = {in->cube,       in->box,  in->room,   in->blob,
-                                  in->other_blob, in->open, in->crossed};
+    starg_mesh *const meshes[] = {in->cube,       in->box,       in->room, in->blob,
+                                  in->other_blob, in->fine_blob, in->open, in->crossed};
     for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++)
         starg_mesh_free(meshes[i]);
     remove_folder();

@@ -21,6 +21,7 @@ typedef struct failing_inputs {
     starg_context *context;               /* whose memory holds */
     starg_mesh *cube, *box;               /* of the same faces  */
     starg_mesh *room, *blob, *other_blob; /* an L; two spheres of different faces */
+    starg_mesh *fine_blob;                /* a sphere of 258 vertices */
     starg_mesh *open, *crossed;           /* a cube without a face; two that intersect */
     starg_solid *solid, *simple;          /* of the room, of the cube */
     starg_tetmesh *tetmesh;
