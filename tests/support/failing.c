@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "core/rng.h"
@@ -104,21 +105,16 @@ starg_status failing_result(starg_status status, const void *object) {
 
 /* ---- attempts ---- */
 
+enum { LEAST = 10, MOST = 2000 }; /* n that are tried one by one */
+
 /* How a table is gone through. */
 typedef struct manner {
     int threads;
     bool for_good;
-    size_t limit, stride; /* where not every n is tried: all up to a limit, then in steps */
+    double seconds; /* of processor time for the first n, where not every n is tried */
 } manner;
 
-#ifdef __SANITIZE_ADDRESS__
-enum { FIRST = 40, FEW = 10, STEP = 499, BIG_STEP = 997 };
-#else
-enum { FIRST = 300, FEW = 20, STEP = 97, BIG_STEP = 499 };
-#endif
-
-static const manner manners[] = {
-    {1, false, FIRST, STEP}, {1, true, FEW, BIG_STEP}, {2, false, FEW, BIG_STEP}};
+static const manner manners[] = {{1, false, 0.2}, {1, true, 0.04}, {2, false, 0.04}};
 
 typedef struct tally {
     size_t allocations, attempts, failed, ok;
@@ -178,19 +174,29 @@ static bool attempt(const failing_call *call, const manner *how, size_t n, tally
     return reached;
 }
 
-/* All n up to a limit; then in steps, which begin somewhere else for each call. */
-static void exhaust(const failing_call *call, const manner *how, size_t limit) {
+/* How many n are tried one by one: as many as there is time for. */
+static size_t choose_limit(const failing_call *call, const manner *how, tally *sum) {
+    clock_t began = clock();
+    attempt(call, how, SIZE_MAX, sum);
+    double each = (double)(clock() - began) / CLOCKS_PER_SEC;
+    double limit = each > 0 ? how->seconds / each : MOST;
+    return limit < LEAST ? LEAST : limit < MOST ? (size_t)limit : MOST;
+}
+
+/* All n, or all up to a limit and then some, a quarter as many, evenly from somewhere on. */
+static void exhaust(const failing_call *call, const manner *how, bool whole) {
     tally sum = {0};
-    starg_rng rng = starg_rng_make(1, 0, (uint64_t)call->name[strlen(call->name) - 1]);
-    size_t n = 1;
+    size_t limit = choose_limit(call, how, &sum), all = sum.allocations, stride = 1, n = 1;
+    starg_rng rng = starg_rng_make(1, limit, all);
+    if (!whole && all > limit)
+        stride = 1 + (all - limit) / (limit / 4 + 1);
     while (attempt(call, how, n, &sum))
-        n += n < limit ? 1 : n == limit ? 1 + starg_rng_below(&rng, how->stride) : how->stride;
+        n += whole || n < limit ? 1 : n == limit ? 1 + starg_rng_below(&rng, stride) : stride;
     printf("%-34s %-24s %7d %-6s %11zu %8zu %8zu %8zu\n", call->name, call->variant, how->threads,
            how->for_good ? "all" : "one", sum.allocations, sum.attempts, sum.failed, sum.ok);
 }
 
-/* STARGUARD_LONG=1 (make check-long): every n. Else the first ones, then some. What earlier tests
- * have lost is theirs. */
+/* STARGUARD_LONG=1 (make check-long): every n. What earlier tests have lost is theirs. */
 void failing_run(const failing_call *calls, size_t count) {
     const char *all = getenv("STARGUARD_LONG");
     bool whole = all != NULL && strcmp(all, "1") == 0;
@@ -200,6 +206,6 @@ void failing_run(const failing_call *calls, size_t count) {
            "attempts", "failed", "ok");
     for (size_t i = 0; i < count; i++)
         for (size_t m = 0; m < sizeof manners / sizeof *manners; m++)
-            exhaust(&calls[i], &manners[m], whole ? SIZE_MAX : manners[m].limit);
+            exhaust(&calls[i], &manners[m], whole);
     remove_folder();
 }
