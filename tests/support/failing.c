@@ -174,26 +174,52 @@ static bool attempt(const failing_call *call, const manner *how, size_t n, tally
     return reached;
 }
 
-/* How many n are tried one by one: as many as there is time for. */
-static size_t choose_limit(const failing_call *call, const manner *how, tally *sum) {
+/* What one run without failures tells of a call. */
+typedef struct extent {
+    size_t allocations;
+    double seconds; /* of processor time */
+} extent;
+
+static extent measure(const failing_call *call) {
+    tally sum = {0};
     clock_t began = clock();
-    attempt(call, how, SIZE_MAX, sum);
-    double each = (double)(clock() - began) / CLOCKS_PER_SEC;
-    double limit = each > 0 ? how->seconds / each : MOST;
+    attempt(call, &manners[0], SIZE_MAX, &sum);
+    return (extent){sum.allocations, (double)(clock() - began) / CLOCKS_PER_SEC};
+}
+
+/* How many n are tried one by one: as many as there is time for. */
+static size_t choose_limit(const manner *how, const extent *whole) {
+    double limit = whole->seconds > 0 ? how->seconds / whole->seconds : MOST;
     return limit < LEAST ? LEAST : limit < MOST ? (size_t)limit : MOST;
 }
 
-/* All n, or all up to a limit and then some, a quarter as many, evenly from somewhere on. */
-static void exhaust(const failing_call *call, const manner *how, bool whole) {
-    tally sum = {0};
-    size_t limit = choose_limit(call, how, &sum), all = sum.allocations, stride = 1, n = 1;
-    starg_rng rng = starg_rng_make(1, limit, all);
-    if (!whole && all > limit)
-        stride = 1 + (all - limit) / (limit / 4 + 1);
-    while (attempt(call, how, n, &sum))
-        n += whole || n < limit ? 1 : n == limit ? 1 + starg_rng_below(&rng, stride) : stride;
+static void tell(const failing_call *call, const manner *how, const tally *sum) {
     printf("%-34s %-24s %7d %-6s %11zu %8zu %8zu %8zu\n", call->name, call->variant, how->threads,
-           how->for_good ? "all" : "one", sum.allocations, sum.attempts, sum.failed, sum.ok);
+           how->for_good ? "all" : "one", sum->allocations, sum->attempts, sum->failed, sum->ok);
+}
+
+/* Every n, until the call succeeds without so many. */
+static void try_all(const failing_call *call, const manner *how) {
+    tally sum = {0};
+    for (size_t n = 1; attempt(call, how, n, &sum);)
+        n++;
+    tell(call, how, &sum);
+}
+
+/* All n up to a limit, and then some, about a quarter as many, evenly from somewhere on. */
+static void try_some(const failing_call *call, const manner *how, const extent *whole) {
+    tally sum = {0};
+    size_t limit = choose_limit(how, whole), last = whole->allocations, stride = 1;
+    starg_rng rng = starg_rng_make(1, limit, last);
+    if (last > limit)
+        stride = 1 + (last - limit) / (limit / 4 + 1);
+    for (size_t n = 1; n <= last; n += n < limit ? 1 : stride) {
+        if (n == limit)
+            n += starg_rng_below(&rng, stride);
+        attempt(call, how, n, &sum);
+    }
+    sum.allocations = last;
+    tell(call, how, &sum);
 }
 
 /* STARGUARD_LONG=1 (make check-long): every n. What earlier tests have lost is theirs. */
@@ -204,8 +230,13 @@ void failing_run(const failing_call *calls, size_t count) {
     atomic_store(&memory.bytes, 0);
     printf("%-34s %-24s %7s %-6s %11s %8s %8s %8s\n", "call", "", "threads", "fails", "allocations",
            "attempts", "failed", "ok");
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
+        extent once = measure(&calls[i]);
         for (size_t m = 0; m < sizeof manners / sizeof *manners; m++)
-            exhaust(&calls[i], &manners[m], whole);
+            if (whole)
+                try_all(&calls[i], &manners[m]);
+            else
+                try_some(&calls[i], &manners[m], &once);
+    }
     remove_folder();
 }
