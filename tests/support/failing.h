@@ -4,7 +4,7 @@
  *
  * Outside of this: what libraries allocate on their own (CBC, SQLite, jansson, ARPACK, AMD, zlib)
  * and the C library (streams, threads), since it does not come from the context.
- * tests/cli/test_faults.py limits the memory of whole processes for that. */
+ * tests/cli/test_limits.py limits the memory of whole processes for that. */
 #ifndef TESTS_FAILING_H
 #define TESTS_FAILING_H
 
