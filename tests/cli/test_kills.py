@@ -90,7 +90,7 @@ class Killed(Writing):
         return [path for path, _ in rows]
 
     def test_database_add(self):
-        files = [f"m_{i}.off" for i in range(12)]
+        files = [f"m_{i}.off" for i in range(4)]
         for i, file in enumerate(files):
             self.write(file, TETRAHEDRON.replace("0 0 1\n", f"0 {0.01 * i} 1\n"))
         self.run_text("db", "create", "empty.db")

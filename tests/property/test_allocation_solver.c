@@ -16,6 +16,8 @@ enum { POINTS = 27, LINES = 117, OPTIMUM = 18 };
 static size_t asked, failing; /* 0: none fails */
 
 void *_Znwm(size_t size) __attribute__((visibility("default")));
+void _ZdlPv(void *block) __attribute__((visibility("default")));
+void _ZdlPvm(void *block, size_t size) __attribute__((visibility("default")));
 void _ZSt17__throw_bad_allocv(void) __attribute__((noreturn));
 
 /* operator new(unsigned long), as the C++ ABI calls it */
@@ -24,6 +26,16 @@ void *_Znwm(size_t size) {
     if (block == NULL)
         _ZSt17__throw_bad_allocv(); /* std::__throw_bad_alloc() */
     return block;
+}
+
+/* operator delete(void *), with and without the size */
+void _ZdlPv(void *block) {
+    free(block);
+}
+
+void _ZdlPvm(void *block, size_t size) {
+    (void)size;
+    free(block);
 }
 
 /* The lines of the affine space of three dimensions over three elements: Steiner triples, hard for
