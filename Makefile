@@ -18,7 +18,7 @@ demo: build
 check: deps-check lint
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=ON > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
-	@$(CTEST) --test-dir $(BUILD)
+	@$(CTEST) --test-dir $(BUILD) -LE slow
 	@$(MAKE) --no-print-directory sanitize
 
 # The test suite once more, under the address and undefined-behaviour sanitizers.
@@ -27,14 +27,15 @@ sanitize: deps-check
 	@cmake --build $(BUILD)-sanitize -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
-# What takes too long for every change: static analysis, the tests that sanitizers make slow, a clang
-# build, the thread sanitizer, the package on a clean root.
+# What takes too long for every change: static analysis, tests labelled slow (every case of memory and
+# kills, and what sanitizers make slow), a clang build, the thread sanitizer, the package on a clean root.
 check-long: check
 	@scripts/tidy.sh $(BUILD)
+	@$(CTEST) --test-dir $(BUILD) -L slow
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
 	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
 	@cmake --build $(BUILD)-clang -j $(JOBS)
-	@$(CTEST) --test-dir $(BUILD)-clang
+	@$(CTEST) --test-dir $(BUILD)-clang -LE slow
 	@$(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-thread -LE slow

@@ -1,5 +1,6 @@
 #include "model.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,7 +13,8 @@
 
 static const uint8_t NEUTRAL[3] = {190, 195, 200};
 
-enum { HEAD = 1 << 16 }; /* bytes of a file that tell what it holds */
+enum { HEAD = 1 << 16 };                    /* bytes of a file that tell what it holds */
+static const size_t MOST = (size_t)2 << 30; /* bytes that are read, as in the library  */
 
 starg_status cli_input_read(cli_session *session) {
     const cli_command *command = session->command;
@@ -47,73 +49,98 @@ static bool is_read_once(const char *name) {
     return is_standard(name) || (stat(name, &info) == 0 && S_ISFIFO(info.st_mode));
 }
 
-/* All of what can be read once, or the head of a file; NULL with 0 bytes when it cannot be read. */
-static char *read_bytes(const char *name, size_t *size) {
-    bool whole = is_read_once(name);
-    FILE *file = is_standard(name) ? stdin : fopen(name, "rb");
-    size_t capacity = HEAD, count = 0, got = 1;
-    char *bytes = file != NULL ? malloc(capacity) : NULL;
-    while (bytes != NULL && got > 0 && (whole || count < HEAD)) {
-        if (count == capacity) {
-            char *more = realloc(bytes, 2 * capacity);
-            if (more == NULL)
-                break;
-            bytes = more;
-            capacity *= 2;
-        }
-        got = fread(bytes + count, 1, capacity - count, file);
-        count += got;
-    }
-    if (file != NULL && file != stdin)
-        fclose(file);
-    *size = bytes != NULL ? count : 0;
-    return bytes;
+/* What a file begins with; all of it where it can be read once only. */
+typedef struct input_head {
+    char *bytes;
+    size_t size;
+    bool whole;
+} input_head;
+
+static starg_status grow_head(cli_session *session, const char *name, size_t *capacity,
+                              input_head *head) {
+    if (*capacity > MOST)
+        return cli_fail(session, STARG_ERROR_READ,
+                        "'%.200s' is larger than 2 GiB, the most that is read", name);
+    char *more = realloc(head->bytes, 2 * *capacity);
+    if (more == NULL)
+        return cli_fail_memory(session);
+    head->bytes = more;
+    *capacity *= 2;
+    return STARG_OK;
 }
 
-/* The content tells a surface from tetrahedra. What cannot be opened is left to the reader of
- * surfaces, which says why. */
+static starg_status fill_head(cli_session *session, const char *name, FILE *file,
+                              input_head *head) {
+    starg_status status = STARG_OK;
+    size_t capacity = HEAD, got = 1;
+    head->bytes = malloc(capacity);
+    if (head->bytes == NULL)
+        return cli_fail_memory(session);
+    while (got > 0 && (head->whole || head->size < HEAD)) {
+        if (head->size == capacity)
+            CLI_TRY(grow_head(session, name, &capacity, head));
+        got = fread(head->bytes + head->size, 1, capacity - head->size, file);
+        head->size += got;
+    }
+    if (head->whole && ferror(file))
+        status =
+            cli_fail(session, STARG_ERROR_READ, "cannot read '%.200s': %s", name, strerror(errno));
+done:
+    return status;
+}
+
+/* What cannot be opened has nothing in its head: it is left to the reader, which says why. */
+static starg_status read_head(cli_session *session, const char *name, input_head *head) {
+    starg_status status = STARG_OK;
+    FILE *file = is_standard(name) ? stdin : fopen(name, "rb");
+    *head = (input_head){.whole = file != NULL && is_read_once(name)};
+    if (file != NULL)
+        status = fill_head(session, is_standard(name) ? "standard input" : name, file, head);
+    if (file != NULL && file != stdin)
+        fclose(file);
+    return status;
+}
+
+/* The content tells a surface from tetrahedra. */
 starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
                             starg_tetmesh **tetmesh) {
     starg_status status = STARG_OK;
     const char *name = is_standard(file) ? "standard input" : file;
-    size_t size;
-    char *bytes = read_bytes(file, &size);
-    bool whole = bytes != NULL && is_read_once(file);
-    bool tets = bytes != NULL && starg_tetmesh_recognized(bytes, size, file);
+    input_head head;
     *mesh = NULL;
     *tetmesh = NULL;
-    if (bytes == NULL && is_standard(file))
-        status = cli_fail_memory(session);
-    else if (tets)
-        status = whole ? starg_tetmesh_read_memory(session->context, bytes, size, name, tetmesh)
-                       : starg_tetmesh_read(session->context, file, tetmesh);
+    CLI_TRY(read_head(session, file, &head));
+    if (head.bytes != NULL && starg_tetmesh_recognized(head.bytes, head.size, file))
+        status = head.whole ? starg_tetmesh_read_memory(session->context, head.bytes, head.size,
+                                                        name, tetmesh)
+                            : starg_tetmesh_read(session->context, file, tetmesh);
     else
-        status = whole ? starg_mesh_read_memory(session->context, bytes, size, name, mesh)
-                       : starg_mesh_read(session->context, file, mesh);
-    free(bytes);
+        status = head.whole
+                     ? starg_mesh_read_memory(session->context, head.bytes, head.size, name, mesh)
+                     : starg_mesh_read(session->context, file, mesh);
+done:
+    free(head.bytes);
     return status;
 }
 
 starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
                                 starg_descriptor **descriptor) {
     starg_status status = STARG_OK;
-    bool whole = strcmp(file, "-") == 0;
-    const char *name = whole ? "standard input" : file;
-    size_t size;
-    char *bytes = read_bytes(file, &size);
-    bool described = bytes != NULL && starg_descriptor_recognized(bytes, size);
+    const char *name = is_standard(file) ? "standard input" : file;
+    input_head head;
     *mesh = NULL;
     *descriptor = NULL;
-    if (whole && bytes == NULL)
-        status = cli_fail_memory(session);
-    else if (described)
-        status = whole
-                     ? starg_descriptor_read_memory(session->context, bytes, size, name, descriptor)
-                     : starg_descriptor_read(session->context, file, descriptor);
+    CLI_TRY(read_head(session, file, &head));
+    if (head.bytes != NULL && starg_descriptor_recognized(head.bytes, head.size))
+        status = head.whole ? starg_descriptor_read_memory(session->context, head.bytes, head.size,
+                                                           name, descriptor)
+                            : starg_descriptor_read(session->context, file, descriptor);
     else
-        status = whole ? starg_mesh_read_memory(session->context, bytes, size, name, mesh)
-                       : starg_mesh_read(session->context, file, mesh);
-    free(bytes);
+        status = head.whole
+                     ? starg_mesh_read_memory(session->context, head.bytes, head.size, name, mesh)
+                     : starg_mesh_read(session->context, file, mesh);
+done:
+    free(head.bytes);
     return status;
 }
 

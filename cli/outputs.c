@@ -170,14 +170,23 @@ static bool copy_to_device(const cli_output *output) {
     return copied;
 }
 
-bool cli_outputs_commit(cli_outputs *outputs) {
+/* Moves those outputs that are devices, or those that are not. */
+static bool commit_kind(cli_outputs *outputs, bool device) {
     for (size_t i = 0; i < outputs->count; i++) {
         cli_output *output = &outputs->items[i];
-        bool moved =
-            output->device ? copy_to_device(output) : rename(output->staged, output->target) == 0;
+        if (output->device != device)
+            continue;
+        bool moved = device ? copy_to_device(output) : rename(output->staged, output->target) == 0;
         if (!moved)
             return fail(outputs, output->name, strerror(errno));
     }
+    return true;
+}
+
+/* Devices first: they may be full, and then no file has changed. */
+bool cli_outputs_commit(cli_outputs *outputs) {
+    if (!commit_kind(outputs, true) || !commit_kind(outputs, false))
+        return false;
     free(outputs->folder);
     outputs->folder = NULL;
     return true;

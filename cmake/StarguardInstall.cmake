@@ -38,7 +38,7 @@ foreach(module JANSSON CBC SQLITE ARPACK)
         list(APPEND private_libraries -l${library})
     endforeach()
 endforeach()
-list(APPEND private_libraries -lldl -lamd -lz -lpthread -lm)
+list(APPEND private_libraries -lldl -lamd -lz -lpthread -lstdc++ -lm)
 list(REMOVE_DUPLICATES private_libraries)
 list(JOIN private_libraries " " private_libraries)
 

@@ -49,8 +49,8 @@ typedef struct starg_database_report {
  * stored already are skipped (their signatures are made anew where they are missing or of another
  * version). A file that cannot be used does not keep the others from being stored. Files are worked
  * on in parallel and stored in their order, a few at a time: what is stored when the call is
- * cancelled or dies stays, and the file stays in order.
- * Errors: ARGUMENT ("-" as a file), WRITE, MEMORY, CANCELLED. */
+ * cancelled, runs out of time or dies stays, and the file stays in order.
+ * Errors: ARGUMENT ("-" as a file), WRITE, MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_database_add(starg_database *database, const char *const *files,
                                           size_t count, starg_database_report **out);
 STARG_API void starg_database_report_free(starg_context *context, starg_database_report *report);

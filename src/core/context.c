@@ -172,7 +172,26 @@ starg_status starg_fail_memory(starg_context *context, const char *stage) {
     return starg_fail(context, STARG_ERROR_MEMORY, stage, "out of memory");
 }
 
+starg_status starg_fail_time(starg_context *context, const char *stage) {
+    return starg_fail(context, STARG_ERROR_TIME, stage,
+                      "the time limit struck before %s was finished", stage);
+}
+
+void starg_deadline_begin(starg_context *context) {
+    context->unfinished++;
+}
+
+void starg_deadline_end(starg_context *context) {
+    context->unfinished--;
+}
+
+bool starg_deadline_struck(const starg_context *context) {
+    return context->unfinished > 0 && starg_time_is_over(context);
+}
+
 starg_status starg_check_cancel(starg_context *context, const char *stage) {
+    if (starg_deadline_struck(context))
+        return starg_fail_time(context, stage);
     if (!atomic_load_explicit(&context->cancelled, memory_order_relaxed))
         return STARG_OK;
     return starg_fail(context, STARG_ERROR_CANCELLED, stage, "cancelled");

@@ -20,7 +20,8 @@ struct starg_context {
     void *progress_user;
 
     atomic_bool cancelled;
-    double deadline; /* of starg_clock(); 0: none */
+    double deadline;     /* of starg_clock(); 0: none */
+    unsigned unfinished; /* calls under way that have nothing to show until they are done */
     atomic_size_t live_bytes, peak_bytes, live_blocks;
 
     const char *progress_stage;
@@ -44,7 +45,16 @@ double starg_clock(void);
 /* True when the time limit has passed. */
 bool starg_time_is_over(const starg_context *context);
 
-/* STARG_ERROR_CANCELLED (with its message set) once a cancellation was asked for. Cheap. */
+/* Between these two, which may be nested, there is nothing to show before all is done: the time
+ * limit ends the call as a cancellation would, with STARG_ERROR_TIME. */
+void starg_deadline_begin(starg_context *context);
+void starg_deadline_end(starg_context *context);
+
+/* Has the time limit passed in such a call? */
+bool starg_deadline_struck(const starg_context *context);
+
+/* STARG_ERROR_CANCELLED (with its message set) once a cancellation was asked for; STARG_ERROR_TIME
+ * where the deadline has struck. Cheap. */
 starg_status starg_check_cancel(starg_context *context, const char *stage);
 
 /* Records the detail of a failure and returns `status`, so that callers can return the call. */
@@ -58,6 +68,9 @@ starg_status starg_fail_at(starg_context *context, starg_status status, const ch
 
 /* Out of memory in `stage`. */
 starg_status starg_fail_memory(starg_context *context, const char *stage);
+
+/* Out of time in `stage`. */
+starg_status starg_fail_time(starg_context *context, const char *stage);
 
 /* Sends a line to the log callback. */
 void starg_log(starg_context *context, starg_log_level level, const char *format, ...)

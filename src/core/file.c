@@ -10,6 +10,8 @@
 
 static starg_status fail_errno(starg_context *context, starg_status status, const char *stage,
                                const char *action, const char *path, int error) {
+    if (error == ENOMEM)
+        return starg_fail_memory(context, stage);
     return starg_fail(context, status, stage, "cannot %s '%s': %s", action, path, strerror(error));
 }
 
@@ -85,11 +87,11 @@ starg_status starg_file_read(starg_context *context, const char *stage, const ch
     return status;
 }
 
-/* Opens a new file beside `path`; the name is unique to this process and attempt. */
-static int open_temporary(char *name, size_t size, const char *path) {
+int starg_file_temporary(const char *path, char *name) {
     for (int attempt = 0; attempt < 1000; attempt++) {
-        snprintf(name, size, "%s.%ld.%d.tmp", path, (long)getpid(), attempt);
-        int file = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        snprintf(name, strlen(path) + STARG_FILE_SUFFIX, "%s.%ld.%d.tmp", path, (long)getpid(),
+                 attempt);
+        int file = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file >= 0 || errno != EEXIST)
             return file;
     }
@@ -111,9 +113,9 @@ starg_status starg_output_open(starg_context *context, const char *stage, const 
 
     size_t length = strlen(path);
     STARG_NEW(context, stage, output->path, length + 1);
-    STARG_NEW(context, stage, output->temporary, length + 64);
+    STARG_NEW(context, stage, output->temporary, length + STARG_FILE_SUFFIX);
     memcpy(output->path, path, length + 1);
-    int file = open_temporary(output->temporary, length + 64, path);
+    int file = starg_file_temporary(path, output->temporary);
     if (file < 0) {
         status = fail_errno(context, STARG_ERROR_WRITE, stage, "write", path, errno);
         goto done;
@@ -139,11 +141,21 @@ static void forget(starg_output *output) {
     *output = (starg_output){.context = output->context, .stage = output->stage};
 }
 
+/* A write has failed, and why is forgotten: one more, of what nobody will read, tells. */
+static int ask_for_reason(FILE *stream) {
+    static const char block[1 << 14];
+    clearerr(stream);
+    errno = 0;
+    fwrite(block, 1, sizeof block, stream);
+    fflush(stream);
+    return errno;
+}
+
 starg_status starg_output_commit(starg_output *output) {
     starg_status status = STARG_OK;
     const char *shown = output->path ? output->path : "standard output";
     bool failed = ferror(output->stream) != 0;
-    errno = 0;
+    errno = failed && output->path != NULL ? ask_for_reason(output->stream) : 0;
     if (fflush(output->stream) != 0)
         failed = true;
     if (output->path != NULL && !failed && fsync(fileno(output->stream)) != 0)

@@ -15,6 +15,12 @@
 starg_status starg_file_read(starg_context *context, const char *stage, const char *path,
                              char **bytes, size_t *size);
 
+/* Opens a new, empty file beside `path` for reading and writing; `name`, which has room for
+ * STARG_FILE_SUFFIX bytes more than `path`, receives its name. One that a killed process left
+ * behind is passed by. The descriptor, or -1 with errno set. */
+enum { STARG_FILE_SUFFIX = 64 };
+int starg_file_temporary(const char *path, char *name);
+
 /* An output that appears under its name only when it is committed. */
 typedef struct starg_output {
     FILE *stream; /* to be written with stdio; errors are found at commit */

@@ -5,6 +5,24 @@
 
 enum { DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 
+/* jansson says so, or fails without a word: a text that is wrong it always complains of. */
+static bool is_out_of_memory(const json_error_t *error) {
+    return json_error_code(error) == json_error_out_of_memory || error->text[0] == '\0';
+}
+
+starg_status starg_json_parse(starg_context *context, const char *stage, const char *name,
+                              const void *bytes, size_t size, json_t **root) {
+    json_error_t error;
+    *root = json_loadb(size > 0 ? bytes : "", size, JSON_REJECT_DUPLICATES, &error);
+    if (*root != NULL)
+        return STARG_OK;
+    if (is_out_of_memory(&error))
+        return starg_fail_memory(context, stage);
+    uint64_t line = error.line > 0 ? (uint64_t)error.line : 1;
+    return starg_fail_at(context, STARG_ERROR_FORMAT, stage, STARG_ELEMENT_LINE, &line, 1,
+                         "'%.200s', line %llu: %s", name, (unsigned long long)line, error.text);
+}
+
 bool starg_json_put(FILE *stream, const char *before, json_t *value, const char *after) {
     if (value == NULL)
         return false;

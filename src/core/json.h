@@ -8,6 +8,11 @@
 
 #include "core/context.h"
 
+/* Parses a text, `name` in messages; *root is given back with json_decref. Names that stand twice
+ * in an object are an error. Errors: FORMAT (with the line), MEMORY. */
+starg_status starg_json_parse(starg_context *context, const char *stage, const char *name,
+                              const void *bytes, size_t size, json_t **root);
+
 /* Writes `before`, a value, which is consumed, and `after`; false when the value could not be made
  * (memory is out). */
 bool starg_json_put(FILE *stream, const char *before, json_t *value, const char *after);

@@ -31,7 +31,8 @@ static bool must_stop(team *crew, size_t item) {
         return true;
     if (atomic_load(&crew->context->cancelled))
         note_failure(crew, item, STARG_ERROR_CANCELLED);
-    else if (crew->loop->stop_at_deadline && starg_time_is_over(crew->context))
+    else if (starg_deadline_struck(crew->context) ||
+             (crew->loop->stop_at_deadline && starg_time_is_over(crew->context)))
         note_failure(crew, item, STARG_ERROR_TIME);
     return atomic_load(&crew->stop);
 }
@@ -76,8 +77,7 @@ static starg_status explain(starg_context *context, const char *stage, starg_sta
     case STARG_ERROR_CANCELLED:
         return starg_fail(context, status, stage, "cancelled");
     case STARG_ERROR_TIME:
-        return starg_fail(context, status, stage, "the time limit struck before %s was finished",
-                          stage);
+        return starg_fail_time(context, stage);
     default:
         return starg_fail(context, status, stage, "%s", starg_status_string(status));
     }

@@ -16,6 +16,8 @@
  *   - Its heuristics find nothing that our local search has not found: off. Its preprocessing can
  *     crash on infeasible models and gains nothing after our reductions: off. Limits are by elapsed
  *     time. All printing is off.
+ *   - When memory is out it throws, wherever it is. Its search then ends as one that has found
+ *     nothing; its model is lost, and it is not called again (solver.h).
  *
  * Trust: coefficients and costs are 1, demands at most 1,000, so the model is exact in doubles. A
  * cover from CBC is checked on the bits. Gaps are closed by our exact dual bound first (dual.h);
@@ -29,6 +31,7 @@
 
 #include <Cbc_C_Interface.h>
 
+#include "cover/exceptions.h"
 #include "cover/relax.h"
 #include "cover/solver.h"
 
@@ -211,7 +214,15 @@ static void take_answer(part_search *search, Cbc_Model *model, bool stopped) {
         search->bound = bound;
 }
 
-static void run_cbc(part_search *search, model_data *data) {
+typedef struct cbc_call {
+    part_search *search;
+    model_data *data;
+} cbc_call;
+
+/* May be left by an exception at each call of CBC: what it has found counts only at the end. */
+static void run_cbc(void *argument) {
+    part_search *search = ((cbc_call *)argument)->search;
+    const model_data *data = ((cbc_call *)argument)->data;
     stop_request request = {.run = search->run};
     Cbc_Model *model = Cbc_newModel();
     if (model == NULL)
@@ -240,8 +251,8 @@ static starg_status solve_part(part_search *search) {
     if (!fits)
         goto done;
     STARG_TRY(cover_solver_lock(run, &held));
-    if (held)
-        run_cbc(search, &data);
+    if (held && !cover_call_safely(run_cbc, &(cbc_call){search, &data}))
+        cover_solver_give_up();
     STARG_TRY(starg_check_cancel(run->context, "ilp"));
 done:
     cover_solver_unlock(held);

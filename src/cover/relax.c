@@ -13,6 +13,7 @@
 
 #include <Clp_C_Interface.h>
 
+#include "cover/exceptions.h"
 #include "cover/solver.h"
 
 enum {
@@ -175,6 +176,30 @@ static starg_status run_rounds(cover_run *run, relaxing *relax, bool *found) {
     return STARG_OK;
 }
 
+typedef struct clp_call {
+    cover_run *run;
+    relaxing *relax;
+    bool *found;
+    starg_status status;
+} clp_call;
+
+/* May be left by an exception at each call of Clp: what the rounds before have found stands. */
+static void run_clp(void *argument) {
+    clp_call *call = argument;
+    if (start_model(call->relax))
+        call->status = run_rounds(call->run, call->relax, call->found);
+}
+
+/* A model that an exception has come out of is not touched again. */
+static starg_status run_clp_safely(cover_run *run, relaxing *relax, bool *found) {
+    clp_call call = {run, relax, found, STARG_OK};
+    if (!cover_call_safely(run_clp, &call)) {
+        relax->model = NULL;
+        cover_solver_give_up();
+    }
+    return call.status;
+}
+
 starg_status cover_relax(cover_run *run, const cover_instance *instance, cover_relaxation *out,
                          bool *found) {
     starg_status status = STARG_OK;
@@ -188,8 +213,8 @@ starg_status cover_relax(cover_run *run, const cover_instance *instance, cover_r
     STARG_NEW_ZERO(context, "bound", out->multipliers, instance->columns);
     STARG_TRY(relaxing_make(instance, out, &relax));
     STARG_TRY(cover_solver_lock(run, &held));
-    if (held && instance->columns != 0 && start_model(&relax))
-        STARG_TRY(run_rounds(run, &relax, found));
+    if (held && instance->columns != 0)
+        STARG_TRY(run_clp_safely(run, &relax, found));
 done:
     relaxing_free(context, &relax);
     cover_solver_unlock(held);

@@ -5,6 +5,7 @@
 
 static mtx_t solver_lock;
 static bool solver_lock_exists;
+static bool solver_broken; /* guarded by the lock */
 static once_flag solver_lock_once = ONCE_FLAG_INIT;
 
 static void make_solver_lock(void) {
@@ -27,7 +28,15 @@ starg_status cover_solver_lock(cover_run *run, bool *held) {
         }
         *held = mtx_timedlock(&solver_lock, &until) == thrd_success;
     }
+    if (*held && solver_broken) {
+        mtx_unlock(&solver_lock);
+        *held = false;
+    }
     return STARG_OK;
+}
+
+void cover_solver_give_up(void) {
+    solver_broken = true;
 }
 
 void cover_solver_unlock(bool held) {

@@ -66,8 +66,7 @@ static starg_status open_chunks(reader *r, const uint8_t *bytes, size_t size) {
     if (!take_chunk(bytes, size, &at, JSON_CHUNK, &text, &length) ||
         !take_chunk(bytes, size, &at, BINARY_CHUNK, &r->binary, &r->binary_size))
         return reject(r, "it ends too early, or lacks a chunk");
-    r->root = json_loadb((const char *)text, length, JSON_REJECT_DUPLICATES, NULL);
-    return r->root != NULL ? STARG_OK : reject(r, "its description is not JSON");
+    return starg_json_parse(r->context, STAGE, r->name, text, length, &r->root);
 }
 
 /* ---- accessors ---- */

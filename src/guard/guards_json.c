@@ -436,15 +436,9 @@ starg_status starg_guards_read_memory(starg_context *context, const void *bytes,
     starg_status status = STARG_OK;
     json_reader reader = {context, name, STARG_OK};
     starg_guards *guards = NULL;
-    json_error_t error;
+    json_t *root = NULL;
     *out = NULL;
-    json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
-    if (root == NULL) {
-        uint64_t line = error.line > 0 ? (uint64_t)error.line : 1;
-        status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
-                               "'%s', line %llu: %s", name, (unsigned long long)line, error.text);
-        goto done;
-    }
+    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
     STARG_NEW_ZERO(context, STAGE, guards, 1);
     read_document(&reader, root, guards);
     STARG_TRY(reader.status);

@@ -117,17 +117,10 @@ starg_status starg_map_read(starg_context *context, const char *path, const star
     json_t *root = NULL;
     char *bytes = NULL;
     size_t size;
-    json_error_t error;
     *out = NULL;
     STARG_TRY(map_make(context, a, b, STARG_MAP_GIVEN, &map));
     STARG_TRY(starg_file_read(context, STAGE, path, &bytes, &size));
-    root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
-    if (root == NULL) {
-        uint64_t line = error.line > 0 ? (uint64_t)error.line : 0;
-        status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
-                               "'%.200s' line %d: %.100s", path, error.line, error.text);
-        goto done;
-    }
+    STARG_TRY(starg_json_parse(context, STAGE, path, bytes, size, &root));
     STARG_TRY(read_points(context, root, map));
     STARG_TRY(map_measure(context, a, b, map));
     *out = map;

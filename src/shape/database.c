@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 
 const char DATABASE_STAGE[] = "database";
@@ -240,15 +241,6 @@ static starg_status put_in_place(starg_context *context, const char *made, const
     return rename(made, path) == 0 ? STARG_OK : fail_create(context, path, error);
 }
 
-/* An empty file, which is an empty database to SQLite; the system says why it cannot be made. */
-static starg_status make_file(starg_context *context, const char *name, const char *path) {
-    int file = open(name, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file < 0)
-        return fail_create(context, path, errno);
-    close(file);
-    return STARG_OK;
-}
-
 static starg_status fill_file(starg_context *context, const char *name, const char *path) {
     starg_database *d = NULL;
     starg_status status = connect(context, name, path, &d);
@@ -263,12 +255,15 @@ static starg_status fill_file(starg_context *context, const char *name, const ch
 starg_status starg_database_create(starg_context *context, const char *path) {
     starg_status status = STARG_OK;
     char *made = NULL;
-    size_t size = strlen(path) + 64;
     if (access(path, F_OK) == 0)
         return fail_create(context, path, EEXIST);
-    STARG_NEW(context, DATABASE_STAGE, made, size);
-    snprintf(made, size, "%s.%ld.tmp", path, (long)getpid());
-    STARG_TRY(make_file(context, made, path));
+    STARG_NEW(context, DATABASE_STAGE, made, strlen(path) + STARG_FILE_SUFFIX);
+    int file = starg_file_temporary(path, made);
+    if (file < 0) {
+        status = fail_create(context, path, errno);
+        goto done;
+    }
+    close(file); /* an empty file is an empty database to SQLite */
     STARG_TRY(fill_file(context, made, path));
     status = put_in_place(context, made, path);
     unlink(made);

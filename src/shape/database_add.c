@@ -8,7 +8,8 @@
  * that stand twice in the list, meet the uniqueness of the hash and count as known.
  *
  * A worker has a context of its own (its errors are a file's, not the call's), which asks the
- * call's context whether to go on.
+ * call's context whether to go on. It knows no time limit: one would change what is stored. When
+ * the call's strikes, the batch under way is given up, and what was stored before stays.
  *
  * Cost: that of the signatures. */
 #include <stdio.h>
@@ -103,7 +104,7 @@ done:
 static bool go_on(void *user, const char *stage, double fraction) {
     const starg_context *parent = user;
     (void)stage, (void)fraction;
-    return !atomic_load(&parent->cancelled);
+    return !atomic_load(&parent->cancelled) && !starg_time_is_over(parent);
 }
 
 static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
@@ -186,8 +187,10 @@ static starg_status describe_item(starg_context *context, void *shared, void *sc
     description *d = &a->batch[item];
     const char *file = a->files[a->first + item];
     d->status = describe_file(a, scratch, file, d);
+    if (d->status == STARG_ERROR_CANCELLED && !atomic_load(&context->cancelled))
+        d->status = STARG_ERROR_TIME;
     if (d->status == STARG_OK || d->status == STARG_ERROR_MEMORY ||
-        d->status == STARG_ERROR_CANCELLED)
+        d->status == STARG_ERROR_CANCELLED || d->status == STARG_ERROR_TIME)
         return d->status;
     const char *message = starg_context_error(scratch)->message;
     d->message = database_copy(context, message);
@@ -322,6 +325,7 @@ static starg_status add_batches(adding *a, size_t most) {
                                           .item = describe_item,
                                           .make_scratch = make_worker,
                                           .free_scratch = free_worker,
+                                          .stop_at_deadline = true,
                                           .before = a->first,
                                           .whole = a->count};
         STARG_TRY(starg_parallel_for(a->context, &loop));

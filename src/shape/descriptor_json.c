@@ -274,18 +274,11 @@ done:
 starg_status starg_descriptor_read_memory(starg_context *context, const void *bytes, size_t size,
                                           const char *name, starg_descriptor **out) {
     starg_status status = STARG_OK;
-    json_error_t error;
     json_reader reader = {.context = context, .path = name};
     json_t *root = NULL;
     *out = NULL;
     STARG_NEW_ZERO(context, STAGE, reader.result, 1);
-    root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, &error);
-    if (root == NULL) {
-        status =
-            starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                       "'%s' is no valid descriptor: line %d: %s", name, error.line, error.text);
-        goto done;
-    }
+    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
     STARG_TRY(read_document(&reader, root));
     *out = reader.result;
 done:

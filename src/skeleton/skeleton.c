@@ -245,6 +245,7 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     *out = NULL;
     starg_skeleton_options_default(&defaults);
     options = options != NULL ? options : &defaults;
+    starg_deadline_begin(context);
     STARG_TRY(check_options(context, options));
     STARG_NEW_ZERO(context, STAGE, skeleton, 1);
     STARG_TRY(find_graph(context, solid, &a));
@@ -259,6 +260,7 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     *out = skeleton;
     skeleton = NULL;
 done:
+    starg_deadline_end(context);
     attempt_free(context, &a);
     graph_free(context, &graph);
     prune_free(context, &pruned);

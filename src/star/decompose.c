@@ -75,9 +75,12 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
                          const starg_mesh *surface, const starg_decompose_options *options,
                          starg_tetra_report *report, starg_tetmesh **out) {
     const starg_tetra_options tetra = tetra_options(options);
-    if (solid != NULL)
-        return starg_tetmesh_from_solid(context, solid, &tetra, report, out);
-    return starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
+    starg_deadline_begin(context);
+    starg_status status = solid != NULL
+                              ? starg_tetmesh_from_solid(context, solid, &tetra, report, out)
+                              : starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
+    starg_deadline_end(context);
+    return status;
 }
 
 static starg_status decompose_filled(starg_context *context, const starg_solid *solid,

@@ -1,10 +1,10 @@
 /* PIECES.json, read for the verifier (docs/formats.md). Types and shapes are checked here; whether
  * the numbers are true is what verification tells. Keys that are not known are passed over. */
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "core/json.h"
 #include "core/memory.h"
 #include "starguard/verify.h"
 
@@ -166,15 +166,9 @@ starg_status starg_pieces_report_read_memory(starg_context *context, const void 
     starg_status status = STARG_OK;
     reader r = {context, name, STARG_OK};
     starg_pieces_report *report = NULL;
-    json_error_t error;
+    json_t *root = NULL;
     *out = NULL;
-    json_t *root = json_loadb(size > 0 ? bytes : "", size, JSON_REJECT_DUPLICATES, &error);
-    if (root == NULL) {
-        uint64_t line = error.line > 0 ? (uint64_t)error.line : 1;
-        status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
-                               "'%s', line %llu: %s", name, (unsigned long long)line, error.text);
-        goto done;
-    }
+    STARG_TRY(starg_json_parse(context, STAGE, name, bytes, size, &root));
     STARG_NEW_ZERO(context, STAGE, report, 1);
     read_document(&r, root, report);
     STARG_TRY(r.status);

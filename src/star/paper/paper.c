@@ -210,7 +210,7 @@ starg_status paper_decompose(starg_context *context, const starg_tetmesh *mesh,
     else
         STARG_TRY(place_guards(&s, options->max_pieces, &time_limited));
     STARG_TRY(grow_from_guards(&s, options->max_pieces));
-    STARG_TRY(rest_colour(&s, options->max_pieces));
+    STARG_TRY(rest_colour(&s, options->max_pieces, &time_limited));
     STARG_TRY(drop_empty_pieces(&s));
     STARG_TRY(smooth_borders(&s));
     STARG_TRY(finish(&s, out));

@@ -7,6 +7,8 @@
  * the greedy choice of a cover, with growth in between, so that what counts is what can still be
  * claimed. What the growth leaves is collected anew.
  *
+ * Once time is over, what is left of a component goes to the pieces beside it.
+ *
  * Invariant: each guard colours at least the tetrahedron that it stands in, so that it ends. Cost:
  * for each guard a look-up for each candidate and vertex of its component. */
 #include "star/paper/rest.h"
@@ -17,6 +19,7 @@
 #include "star/paper/growth.h"
 
 enum { CANDIDATES = 32, RNG_STAGE = 0x7265 };
+static const double GRACE = 1; /* seconds */
 
 typedef struct rest {
     paper_state *state;
@@ -119,16 +122,24 @@ done:
     return status;
 }
 
-static starg_status colour_component(rest *r, uint32_t tetrahedron, size_t max_pieces) {
+/* The guards before may have used up all the time: a little more is taken for what they leave. */
+static bool must_hurry(const starg_context *context) {
+    return context->deadline > 0 && starg_clock() > context->deadline + GRACE;
+}
+
+static starg_status colour_component(rest *r, uint32_t tetrahedron, size_t max_pieces,
+                                     bool *time_limited) {
+    bool hurry = must_hurry(r->state->context);
+    *time_limited = *time_limited || hurry;
     component_find(r->state, &r->component, tetrahedron);
-    if (max_pieces > 0 && paper_pieces(r->state) >= max_pieces)
+    if (hurry || (max_pieces > 0 && paper_pieces(r->state) >= max_pieces))
         growth_absorb(r->state, r->component.found.tetrahedra, r->component.found.count);
     if (r->state->labels[tetrahedron] >= 0)
         return STARG_OK;
     return grow_new_piece(r);
 }
 
-starg_status rest_colour(paper_state *s, size_t max_pieces) {
+starg_status rest_colour(paper_state *s, size_t max_pieces, bool *time_limited) {
     starg_status status = STARG_OK;
     rest r = {.state = s};
     STARG_TRY(component_create(s, &r.component));
@@ -138,7 +149,7 @@ starg_status rest_colour(paper_state *s, size_t max_pieces) {
         starg_progress_step(s->context, t, s->mesh->count);
         while (s->labels[t] < 0) {
             STARG_TRY(starg_check_cancel(s->context, PAPER_STAGE));
-            STARG_TRY(colour_component(&r, (uint32_t)t, max_pieces));
+            STARG_TRY(colour_component(&r, (uint32_t)t, max_pieces, time_limited));
         }
     }
 done:

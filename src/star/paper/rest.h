@@ -6,7 +6,8 @@
 
 /* Guards each uncoloured component anew and grows again, until every tetrahedron has a colour.
  * There are no more than `max_pieces` pieces (0: any number) unless parts of the mesh have no guard
- * yet. Errors: MEMORY, CANCELLED. */
-starg_status rest_colour(paper_state *s, size_t max_pieces);
+ * yet, and no more of them once time is over, which *time_limited then tells. Errors: MEMORY,
+ * CANCELLED. */
+starg_status rest_colour(paper_state *s, size_t max_pieces, bool *time_limited);
 
 #endif

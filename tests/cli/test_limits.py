@@ -1,0 +1,146 @@
+"""Memory and time end (docs/robustness.md): the status and the message are those of the contract, and
+no output is left or changed. With STARGUARD_LONG=1 in many more steps."""
+import os
+import resource
+import sqlite3
+import subprocess
+import unittest
+
+import support
+from support import PROGRAM, SLOWNESS
+from writing import LONG, Writing, limit
+
+SANITIZED = SLOWNESS > 1
+
+
+@unittest.skipIf(SANITIZED, "sanitizers need all the addresses there are")
+class Memory(Writing):
+    """RLIMIT_AS: done, or status 3 with a message about memory; never a signal, never half a file.
+    What CBC, SQLite, ARPACK, jansson and the C library allocate on their own counts here."""
+
+    def least(self):
+        """Addresses that are needed to start at all."""
+        size = 16 << 20
+        while subprocess.run([PROGRAM, "--version"], capture_output=True, check=False,
+                             preexec_fn=limit(resource.RLIMIT_AS, size)).returncode != 0:
+            size += 1 << 20
+        return size
+
+    def attempt(self, size, words, outputs):
+        """The status, with all that it promises."""
+        with self.start(*words, "--quiet", preexec_fn=limit(resource.RLIMIT_AS, size)) as process:
+            try:
+                _, err = process.communicate(timeout=120)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                self.fail(f"{words} hangs with {size} bytes")
+        told = f"{words} with {size} bytes: {process.returncode} {err!r}"
+        self.assertIn(process.returncode, (0, 3), told)
+        if process.returncode == 3:
+            self.assertIn(b"out of memory", err, told)
+            self.assertEqual(self.names(), self.made, told)
+        self.clear(outputs)
+        return process.returncode
+
+    def sweep(self, words, outputs, step):
+        """From next to nothing until it is enough."""
+        size, failures = self.least(), 0
+        while self.attempt(size, words, outputs) != 0:
+            failures += 1
+            size += step
+            self.assertLess(size, 4 << 30)
+        return failures, size
+
+    def test_commands(self):
+        step = 1 << (18 if LONG else 22)
+        for name, words, outputs in self.commands():
+            with self.subTest(command=name):
+                for threads in "1", "3":
+                    failures, size = self.sweep([*words, "--threads", threads], outputs, step)
+                    print(f"{name} on {threads} threads: {failures} failures, "
+                          f"enough with {size >> 20} MiB")
+
+    def test_solver(self):
+        """An instance that reaches CBC, whose memory fails by a C++ exception."""
+        words = ["guard", "cat.off", "-o", "g.json", "--method", "ilp", "--candidates", "interior",
+                 "--count", "300", "--redundancy", "2", "--max-nodes", "200", "--threads", "1"]
+        failures, size = self.sweep(words, ["g.json"], 1 << (16 if LONG else 20))
+        print(f"solver: {failures} failures, enough with {size >> 20} MiB")
+
+    def test_database(self):
+        before = self.read("shapes.db")
+        size, step = self.least(), 1 << (18 if LONG else 22)
+        for _ in range(400):
+            self.write("shapes.db", before)
+            done = self.attempt_add(size)
+            if done == 0:
+                return
+            size += step
+        self.fail("never enough")
+
+    def attempt_add(self, size):
+        with self.start("db", "add", "shapes.db", "room.off", "--quiet",
+                        preexec_fn=limit(resource.RLIMIT_AS, size)) as process:
+            _, err = process.communicate(timeout=120)
+        self.assertIn(process.returncode, (0, 3), err)
+        if process.returncode == 3:
+            self.assertIn(b"memory", err)
+        connection = sqlite3.connect(self.path("shapes.db"))
+        self.assertEqual(connection.execute("PRAGMA integrity_check").fetchone(), ("ok",))
+        connection.close()
+        return process.returncode
+
+    def test_endless_input(self):
+        """Standard input is not read for ever, and not cut off where memory ends."""
+        for command in (["decompose", "-", "-o", "p.vtk"], ["describe", "-", "-o", "d.json"],
+                        ["guard", "-", "-o", "g.json"]):
+            with open("/dev/zero", "rb") as zero:
+                _, err = self.run_text(*command, stdin=zero, status=3,
+                                       preexec_fn=limit(resource.RLIMIT_AS, 300 << 20))
+            self.assertIn("out of memory", err)
+            self.assertEqual(self.names(), self.made)
+
+
+class TimeLimits(support.Case):
+    """A limit of S seconds ends a run within 1.05 S + 2. Processor time on one thread is measured, so
+    that a busy machine does not matter."""
+
+    def spend(self, seconds, *words, statuses=(0, 3)):
+        with self.start(*words, "--threads", "1", "--quiet", "--time-limit", str(seconds)) as process:
+            out, err = process.stdout.read(), process.stderr.read()
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        spent = usage.ru_utime + usage.ru_stime
+        self.assertIn(process.returncode, statuses, err)
+        print(f"{words[0]:10} {words[1]:12} limit {seconds} s: {spent:.2f} s, "
+              f"status {process.returncode}")
+        self.assertLess(spent, (1.05 * seconds + 2) * SLOWNESS, (words, out, err))
+        if process.returncode == 3:
+            self.assertIn(b"time limit", err)
+        return process.returncode
+
+    def setUp(self):
+        super().setUp()
+        self.sample("horse", 40000, "horse.off")
+        self.sample("cat", 40000, "cat.off")
+        self.sample("labyrinth", 30000, "maze.off")
+
+    def test_commands(self):
+        cases = [["guard", "horse.off", "-o", "g.json", "--visibility", "sweep"],
+                 ["guard", "maze.off", "-o", "g.json", "--method", "ilp", "--faces", "whole"],
+                 ["decompose", "maze.off", "-o", "p.vtk"],
+                 ["decompose", "horse.off", "-o", "p.vtk", "--mode", "paper"],
+                 ["skeleton", "horse.off", "-o", "s.obj"],
+                 ["describe", "horse.off", "-o", "d.json"],
+                 ["match", "horse.off", "cat.off"],
+                 ["map", "horse.off", "cat.off", "-o", "m.json"],
+                 ["db", "add", "shapes.db", "horse.off", "cat.off", "maze.off"]]
+        self.run_text("db", "create", "shapes.db")
+        for words in cases:
+            for seconds in (1, 3) if LONG else (1,):
+                with self.subTest(words=words, seconds=seconds):
+                    self.spend(seconds, *words)
+
+
+if __name__ == "__main__":
+    support.main()

@@ -1,0 +1,145 @@
+/* Memory of CBC and Clp that fails: the n-th call of C++'s operator new throws, in a process of its
+ * own for each n. The cover that comes back is a cover all the same, with a bound that holds, and
+ * the library's own memory is given back; only what the solver held is lost.
+ *
+ * The program has an operator new of its own for that, which libraries find before theirs. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "starguard/cover.h"
+#include "support.h"
+
+enum { POINTS = 27, LINES = 117, OPTIMUM = 18 };
+
+static size_t asked, failing; /* 0: none fails */
+
+void *_Znwm(size_t size) __attribute__((visibility("default")));
+void _ZdlPv(void *block) __attribute__((visibility("default")));
+void _ZdlPvm(void *block, size_t size) __attribute__((visibility("default")));
+void _ZSt17__throw_bad_allocv(void) __attribute__((noreturn));
+
+/* operator new(unsigned long), as the C++ ABI calls it */
+void *_Znwm(size_t size) {
+    void *block = ++asked == failing ? NULL : malloc(size > 0 ? size : 1);
+    if (block == NULL)
+        _ZSt17__throw_bad_allocv(); /* std::__throw_bad_alloc() */
+    return block;
+}
+
+/* operator delete(void *), with and without the size */
+void _ZdlPv(void *block) {
+    free(block);
+}
+
+void _ZdlPvm(void *block, size_t size) {
+    (void)size;
+    free(block);
+}
+
+/* The lines of the affine space of three dimensions over three elements: Steiner triples, hard for
+ * their size. */
+static starg_bits *make_lines(starg_context *context) {
+    starg_bits *bits = NULL;
+    size_t line = 0;
+    test_ok(context, starg_bits_create(context, POINTS, LINES, &bits));
+    for (size_t a = 0; a < POINTS; a++) {
+        for (size_t b = a + 1; b < POINTS; b++) {
+            size_t c = 0, x = a, y = b; /* a + b + c = 0 in each coordinate */
+            for (size_t unit = 1; unit < POINTS; unit *= 3, x /= 3, y /= 3)
+                c += (6 - x % 3 - y % 3) % 3 * unit;
+            if (c < b)
+                continue; /* each line once */
+            starg_bits_set(bits, a, line);
+            starg_bits_set(bits, b, line);
+            starg_bits_set(bits, c, line++);
+        }
+    }
+    assert_int_equal(line, LINES);
+    return bits;
+}
+
+static bool is_cover(const starg_bits *bits, const starg_cover *cover) {
+    for (size_t j = 0; j < LINES; j++) {
+        bool held = false;
+        for (size_t i = 0; i < cover->count; i++)
+            held = held || starg_bits_test(bits, cover->rows[i], j);
+        if (!held)
+            return false;
+    }
+    return true;
+}
+
+/* What the process that has failed ends with. */
+enum { FINE = 0, NO_COVER = 1, WRONG_COVER = 2, WRONG_BOUND = 3, LEAK = 4, NOT_REACHED = 5 };
+
+/* Solves with the n-th allocation failing, twice: the second time the solver is left alone. */
+static int solve(size_t n) {
+    starg_context *context = test_context(1);
+    starg_bits *bits = make_lines(context);
+    starg_cover_problem problem;
+    starg_cover_options options;
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    problem.rows = bits;
+    options.max_nodes = 30;
+    int result = FINE;
+    asked = 0;
+    failing = n;
+    for (int round = 0; round < 2 && result == FINE; round++) {
+        starg_cover *cover = NULL;
+        if (starg_cover_solve(context, &problem, &options, &cover) != STARG_OK)
+            result = NO_COVER;
+        else if (!is_cover(bits, cover))
+            result = WRONG_COVER;
+        else if (cover->lower_bound > OPTIMUM || cover->count < OPTIMUM)
+            result = WRONG_BOUND;
+        starg_cover_free(cover);
+        if (round == 0 && asked < n)
+            break; /* there are not so many */
+    }
+    bool reached = asked >= n;
+    starg_bits_free(bits);
+    if (starg_context_live_blocks(context) != 0)
+        result = LEAK;
+    starg_context_free(context);
+    return result != FINE ? result : reached ? FINE : NOT_REACHED;
+}
+
+static int solve_apart(size_t n) {
+    int status = 0;
+    fflush(stdout);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0)
+        _exit(solve(n));
+    assert_int_equal(waitpid(child, &status, 0), child);
+    if (!WIFEXITED(status))
+        print_error("allocation %zu: killed by signal %d\n", n, WTERMSIG(status));
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+static void test_solver(void **state) {
+    (void)state;
+    bool more = getenv("STARGUARD_LONG") != NULL;
+    size_t first = more ? 2000 : 40, part = more ? 64 : 6, attempts = 0, last = 0;
+    for (size_t n = 1;; n += n < first ? 1 : 1 + n / part) {
+        int result = solve_apart(n);
+        if (result == NOT_REACHED)
+            break;
+        if (result != FINE)
+            print_error("allocation %zu: result %d\n", n, result);
+        assert_int_equal(result, FINE);
+        attempts++;
+        last = n;
+    }
+    printf("%zu attempts, the last with allocation %zu failing\n", attempts, last);
+    assert_true(last > 1000); /* both libraries were reached */
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_solver)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,242 @@
+#include "failing.h"
+
+#include <dirent.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/rng.h"
+
+/* ---- memory ---- */
+
+/* Stands before every block, so that bytes can be counted. */
+typedef union head {
+    size_t size;
+    max_align_t align;
+} head;
+
+/* The memory of one attempt. `asked` counts allocations while armed. */
+static struct {
+    bool armed;
+    bool for_good; /* all allocations behind the n-th fail as well */
+    size_t failing;
+    atomic_size_t asked, failed, blocks, bytes;
+} memory;
+
+static bool must_fail(void) {
+    if (!memory.armed)
+        return false;
+    size_t number = atomic_fetch_add(&memory.asked, 1) + 1;
+    bool fails = number == memory.failing || (memory.for_good && number > memory.failing);
+    if (fails)
+        atomic_fetch_add(&memory.failed, 1);
+    return fails;
+}
+
+static void *allocate(void *user, size_t size) {
+    (void)user;
+    head *block = must_fail() ? NULL : malloc(sizeof *block + size);
+    if (block == NULL)
+        return NULL;
+    block->size = size;
+    atomic_fetch_add(&memory.blocks, 1);
+    atomic_fetch_add(&memory.bytes, size);
+    return block + 1;
+}
+
+static void release(void *user, void *block) {
+    (void)user;
+    head *start = (head *)block - 1;
+    atomic_fetch_sub(&memory.blocks, 1);
+    atomic_fetch_sub(&memory.bytes, start->size);
+    free(start);
+}
+
+void failing_pause(void) {
+    memory.armed = false;
+}
+
+void failing_resume(void) {
+    memory.armed = true;
+}
+
+/* ---- outputs ---- */
+
+static char folder[] = "/tmp/failing-XXXXXX";
+static bool folder_made;
+
+const char *failing_output(const char *name) {
+    static char path[128];
+    if (!folder_made)
+        assert_non_null(mkdtemp(folder));
+    folder_made = true;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return path;
+}
+
+/* Files in the folder, which are removed. */
+static size_t clear_folder(void) {
+    size_t count = 0;
+    if (!folder_made)
+        return 0;
+    DIR *list = opendir(folder);
+    assert_non_null(list);
+    for (struct dirent *entry; (entry = readdir(list)) != NULL;)
+        if (entry->d_name[0] != '.' && unlinkat(dirfd(list), entry->d_name, 0) == 0)
+            count++;
+    closedir(list);
+    return count;
+}
+
+static void remove_folder(void) {
+    if (folder_made)
+        rmdir(folder);
+    folder_made = false;
+    memcpy(folder + sizeof folder - 7, "XXXXXX", 6);
+}
+
+starg_status failing_result(starg_status status, const void *object) {
+    assert_true((status == STARG_OK) == (object != NULL));
+    return status;
+}
+
+/* ---- attempts ---- */
+
+enum { LEAST = 10, MOST = 2000 }; /* n that are tried one by one */
+
+/* How a table is gone through. */
+typedef struct manner {
+    int threads;
+    bool for_good;
+    double seconds; /* of processor time for the first n, where not every n is tried */
+} manner;
+
+static const manner manners[] = {{1, false, 0.2}, {1, true, 0.04}, {2, false, 0.04}};
+
+typedef struct tally {
+    size_t allocations, attempts, failed, ok;
+} tally;
+
+static void complain(const failing_call *call, const manner *how, size_t n, const char *what) {
+    print_error("%s (%s), %d threads, allocation %zu%s: %s\n", call->name, call->variant,
+                how->threads, n, how->for_good ? " and all later ones" : "", what);
+    fail();
+}
+
+static void check_failure(const failing_call *call, const manner *how, size_t n,
+                          const starg_context *context, starg_status status) {
+    const starg_error *error = starg_context_error(context);
+    if (status != STARG_ERROR_MEMORY) {
+        print_error("status %d: %s\n", (int)status, error->message);
+        complain(call, how, n, "not the status for memory");
+    }
+    if (error->status != STARG_ERROR_MEMORY || error->message[0] == '\0' || error->stage[0] == '\0')
+        complain(call, how, n, "no message about memory");
+}
+
+/* Lets the n-th allocation fail; false when the call succeeded without so many. */
+static bool attempt(const failing_call *call, const manner *how, size_t n, tally *sum) {
+    starg_context_options options;
+    starg_context *context = NULL;
+    starg_context_options_default(&options);
+    options.threads = how->threads;
+    options.allocator = (starg_allocator){allocate, release, NULL};
+    memory.failing = n;
+    memory.for_good = how->for_good;
+    atomic_store(&memory.asked, 0);
+    atomic_store(&memory.failed, 0);
+    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
+
+    failing_resume();
+    starg_status status = call->run(context);
+    failing_pause();
+    bool reached = atomic_load(&memory.failed) > 0;
+    size_t left = starg_context_live_blocks(context);
+    sum->allocations = atomic_load(&memory.asked);
+    sum->attempts++;
+    sum->failed += status != STARG_OK;
+    sum->ok += status == STARG_OK && reached;
+
+    if (status != STARG_OK && !reached)
+        test_ok(context, status);
+    if (status != STARG_OK)
+        check_failure(call, how, n, context, status);
+    else if (reached && call->fallback == NULL)
+        complain(call, how, n, "success although memory has failed");
+    starg_context_free(context);
+    if (left != 0 || atomic_load(&memory.blocks) != 0 || atomic_load(&memory.bytes) != 0)
+        complain(call, how, n, "memory is still in use");
+    if (clear_folder() != 0 && status != STARG_OK)
+        complain(call, how, n, "an output was left behind");
+    return reached;
+}
+
+/* What one run without failures tells of a call. */
+typedef struct extent {
+    size_t allocations;
+    double seconds; /* of processor time */
+} extent;
+
+static extent measure(const failing_call *call) {
+    tally sum = {0};
+    clock_t began = clock();
+    attempt(call, &manners[0], SIZE_MAX, &sum);
+    return (extent){sum.allocations, (double)(clock() - began) / CLOCKS_PER_SEC};
+}
+
+/* How many n are tried one by one: as many as there is time for. */
+static size_t choose_limit(const manner *how, const extent *whole) {
+    double limit = whole->seconds > 0 ? how->seconds / whole->seconds : MOST;
+    return limit < LEAST ? LEAST : limit < MOST ? (size_t)limit : MOST;
+}
+
+static void tell(const failing_call *call, const manner *how, const tally *sum) {
+    printf("%-34s %-24s %7d %-6s %11zu %8zu %8zu %8zu\n", call->name, call->variant, how->threads,
+           how->for_good ? "all" : "one", sum->allocations, sum->attempts, sum->failed, sum->ok);
+}
+
+/* Every n, until the call succeeds without so many. */
+static void try_all(const failing_call *call, const manner *how) {
+    tally sum = {0};
+    for (size_t n = 1; attempt(call, how, n, &sum);)
+        n++;
+    tell(call, how, &sum);
+}
+
+/* All n up to a limit, and then some, about a quarter as many, evenly from somewhere on. */
+static void try_some(const failing_call *call, const manner *how, const extent *whole) {
+    tally sum = {0};
+    size_t limit = choose_limit(how, whole), last = whole->allocations, stride = 1;
+    starg_rng rng = starg_rng_make(1, limit, last);
+    if (last > limit)
+        stride = 1 + (last - limit) / (limit / 4 + 1);
+    for (size_t n = 1; n <= last; n += n < limit ? 1 : stride) {
+        if (n == limit)
+            n += starg_rng_below(&rng, stride);
+        attempt(call, how, n, &sum);
+    }
+    sum.allocations = last;
+    tell(call, how, &sum);
+}
+
+/* STARGUARD_LONG=1 (make check-long): every n. What earlier tests have lost is theirs. */
+void failing_run(const failing_call *calls, size_t count) {
+    const char *all = getenv("STARGUARD_LONG");
+    bool whole = all != NULL && strcmp(all, "1") == 0;
+    atomic_store(&memory.blocks, 0);
+    atomic_store(&memory.bytes, 0);
+    printf("%-34s %-24s %7s %-6s %11s %8s %8s %8s\n", "call", "", "threads", "fails", "allocations",
+           "attempts", "failed", "ok");
+    for (size_t i = 0; i < count; i++) {
+        extent once = measure(&calls[i]);
+        for (size_t m = 0; m < sizeof manners / sizeof *manners; m++)
+            if (whole)
+                try_all(&calls[i], &manners[m]);
+            else
+                try_some(&calls[i], &manners[m], &once);
+    }
+    remove_folder();
+}

@@ -1,0 +1,49 @@
+/* One of everything, as small as can be: what the tests of failing memory hand to the library. */
+#ifndef TESTS_FAILING_INPUTS_H
+#define TESTS_FAILING_INPUTS_H
+
+#include "starguard/decompose.h"
+#include "starguard/descriptor.h"
+#include "starguard/guard.h"
+#include "starguard/morph.h"
+#include "starguard/skeleton.h"
+#include "starguard/tetra.h"
+#include "starguard/verify.h"
+#include "starguard/visibility.h"
+
+/* A file in memory. */
+typedef struct input_bytes {
+    char *data;
+    size_t size;
+} input_bytes;
+
+typedef struct failing_inputs {
+    starg_context *context;               /* whose memory holds */
+    starg_mesh *cube, *box;               /* of the same faces  */
+    starg_mesh *room, *blob, *other_blob; /* an L; two spheres of different faces */
+    starg_mesh *fine_blob;                /* a sphere of 258 vertices */
+    starg_mesh *open, *crossed;           /* a cube without a face; two that intersect */
+    starg_solid *solid, *simple;          /* of the room, of the cube */
+    starg_tetmesh *tetmesh;
+    starg_guards *guards;
+    starg_bits *seen;
+    starg_skeleton *skeleton;
+    starg_decomposition *decomposition; /* of the room */
+    starg_pieces_mesh *pieces;
+    starg_pieces_report *report;
+    starg_descriptor *descriptor;
+    starg_signature *stars[2], *papers[2];
+    starg_map *map; /* of the blobs */
+} failing_inputs;
+
+/* Makes them; the test fails if they cannot be made. */
+void failing_inputs_make(failing_inputs *in);
+void failing_inputs_free(failing_inputs *in);
+
+/* A file among the inputs: room.off, .obj, .ply, .stl; guards.json; skeleton.obj, .cg, .vtk;
+ * pieces.vtk, .json; descriptor.json; map.json; tets.vtk; points.txt; landmarks.txt; classes.txt;
+ * shapes.db. Valid until the fourth next call of it. */
+const char *failing_input(const char *name);
+input_bytes failing_input_bytes(const char *name);
+
+#endif
