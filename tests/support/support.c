@@ -54,6 +54,10 @@ const char *test_shared_data(void) {
     return NULL;
 }
 
+size_t test_rounds(size_t usual, size_t thorough) {
+    return getenv("STARGUARD_LONG") != NULL ? thorough : usual;
+}
+
 void test_ok(starg_context *context, starg_status status) {
     if (status != STARG_OK)
         print_error("%s\n", starg_context_error(context)->message);
