@@ -27,7 +27,7 @@ static void bind_value(sqlite3_stmt *statement, int index, fuzz_input *in) {
         sqlite3_bind_null(statement, index);
         break;
     case 1:
-        sqlite3_bind_int64(statement, index, (sqlite3_int64)fuzz_double(in));
+        sqlite3_bind_int64(statement, index, (sqlite3_int64)fuzz_byte(in) - 1);
         break;
     case 2:
         sqlite3_bind_double(statement, index, fuzz_double(in));

@@ -38,8 +38,8 @@ static starg_decompose_options choose_options(fuzz_input *in) {
     starg_decompose_options_default(&options);
     options.mode = (starg_decompose_mode)(fuzz_below(in, 4) == 0);
     options.tetra.generator = STARG_TETRA_STUFFING; /* no other program for each input */
-    options.tetra.target = 20 + fuzz_below(in, 100);
-    options.effort = 1 + fuzz_below(in, 6);
+    options.tetra.target = 10 + fuzz_below(in, 50);
+    options.effort = 1 + fuzz_below(in, 3);
     options.max_pieces = fuzz_below(in, 3);
     return options;
 }
