@@ -31,7 +31,7 @@ sanitize: deps-check
 # tests that sanitizers make slow, a clang build, the thread sanitizer, the package on a clean root.
 check-long: check
 	@scripts/tidy.sh $(BUILD)
-	@STARGUARD_LONG=1 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
+	@STARGUARD_LONG=100 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
 	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
 	@cmake --build $(BUILD)-clang -j $(JOBS)
