@@ -42,7 +42,7 @@ while read -r name seeds files; do
     found=$build/found/$name
     log=$build/$name.log
     mkdir -p "$found/corpus"
-    LLVM_PROFILE_FILE=/dev/null "$live" -max_total_time="$share" -timeout=60 -rss_limit_mb=2048 \
+    LLVM_PROFILE_FILE=/dev/null "$live" -max_total_time="$share" -timeout=60 -report_slow_units=60 -rss_limit_mb=2048 \
         -max_len=4096 -print_final_stats=1 -artifact_prefix="$found/" "$found/corpus" "$seeds" \
         >"$log" 2>&1 </dev/null || true
     LLVM_PROFILE_FILE=$log.profile "$live" -runs=0 "$found/corpus" "$seeds" >/dev/null 2>&1 \
