@@ -28,10 +28,12 @@ sanitize: deps-check
 	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
 # What takes too long for every change: static analysis, tests labelled slow (every case of memory and
-# kills, and what sanitizers make slow), a clang build, the thread sanitizer, the package on a clean root.
+# kills, and what sanitizers make slow), a million cases for each exact decision, a clang build, the
+# thread sanitizer, the package on a clean root.
 check-long: check
 	@scripts/tidy.sh $(BUILD)
 	@$(CTEST) --test-dir $(BUILD) -L slow
+	@STARGUARD_LONG=100 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
 	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
 	@cmake --build $(BUILD)-clang -j $(JOBS)
@@ -44,7 +46,7 @@ check-long: check
 lint: deps-check
 	@scripts/lint.sh
 
-# Coverage-guided fuzzing of every reader, SECONDS each.
+# Coverage-guided fuzzing of every reader and of small structured problems, SECONDS in all.
 fuzz: deps-check
 	@CC=clang $(CMAKE) -S . -B $(BUILD)-fuzz -DSTARGUARD_FUZZ=ON -DSTARGUARD_SANITIZE=address,undefined > /dev/null
 	@cmake --build $(BUILD)-fuzz -j $(JOBS)

@@ -1,19 +1,63 @@
 #!/bin/sh
-# Runs each libFuzzer target for some seconds, from its corpus. Usage: fuzz.sh BUILD SECONDS
+# Runs all libFuzzer targets in a row, each for its share of some seconds, from its seeds and what
+# earlier runs have found, and prints what they did. Fails when one of them crashed.
+# Usage: fuzz.sh BUILD SECONDS
+#
+# Columns: inputs tried and how many of them a second; edges of the control flow that were reached
+# in the whole library; lines reached of the files that the target is for, by its seeds and all that
+# was found. The corpora that grow are kept in BUILD/found, crashes as BUILD/found/TARGET/crash-*.
 set -eu
 build=$1
 seconds=$2
-for target in "$build"/tests/fuzz/fuzz_*_live; do
-    name=$(basename "$target" _live)
-    found="$build/found/$name"
-    corpus=${name#fuzz_}
-    corpus="tests/fuzz/corpus/${corpus#mesh_}"
-    mkdir -p "$found"
-    echo "$name: $seconds s"
-    "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-        -artifact_prefix="$found/" "$found" "$corpus" 2>"$build/$name.log" || {
-        tail -n 30 "$build/$name.log" >&2
-        exit 1
-    }
-    grep -E 'stat::number_of_executed_units|cov:' "$build/$name.log" | tail -n 2
-done
+targets=$build/tests/fuzz/targets.txt
+count=$(wc -l <"$targets")
+share=$((seconds / count))
+[ "$share" -gt 0 ] || share=1
+
+# A number that libFuzzer printed at the end, or 0.
+statistic() { # LOG NAME
+    value=$(sed -n "s/^stat::$2: *//p" "$1" | tail -n 1)
+    echo "${value:-0}"
+}
+
+edges() { # LOG
+    value=$(sed -n 's/.* cov: \([0-9]*\) .*/\1/p' "$1" | tail -n 1)
+    echo "${value:-0}"
+}
+
+# The part of the lines that the profile holds, of the files that match.
+lines() { # LIVE PROFILE FILES
+    llvm-profdata merge -sparse "$2" -o "$2.merged"
+    llvm-cov export -summary-only -instr-profile "$2.merged" "$1" |
+        jq -r --arg files "/src/($3)\$" '[.data[0].files[] | select(.filename | test($files))
+            | .summary.lines] | (map(.covered) | add // 0) as $c | (map(.count) | add // 0) as $n
+            | if $n > 0 then "\(($c * 1000 / $n | round) / 10) %" else "-" end'
+}
+
+total=0
+crashed=0
+printf '| target | inputs | a second | edges | lines | crashes |\n|---|--:|--:|--:|--:|--:|\n'
+while read -r name seeds files; do
+    live=$build/tests/fuzz/${name}_live
+    found=$build/found/$name
+    log=$build/$name.log
+    mkdir -p "$found/corpus"
+    LLVM_PROFILE_FILE=/dev/null "$live" -max_total_time="$share" -timeout=60 -report_slow_units=60 -rss_limit_mb=2048 \
+        -max_len=4096 -print_final_stats=1 -artifact_prefix="$found/" "$found/corpus" "$seeds" \
+        >"$log" 2>&1 </dev/null || true
+    LLVM_PROFILE_FILE=$log.profile "$live" -runs=0 "$found/corpus" "$seeds" >/dev/null 2>&1 \
+        </dev/null || true
+    crashes=$(find "$found" -maxdepth 1 -type f | wc -l)
+    inputs=$(statistic "$log" number_of_executed_units)
+    total=$((total + inputs))
+    crashed=$((crashed + crashes))
+    printf '| %s | %s | %s | %s | %s | %s |\n' "$name" "$inputs" \
+        "$(statistic "$log" average_exec_per_sec)" "$(edges "$log")" \
+        "$(lines "$live" "$log.profile" "$files")" "$crashes"
+done <"$targets"
+printf '| all | %s | | | | %s |\n' "$total" "$crashed"
+if [ "$crashed" -gt 0 ]; then
+    echo "fuzz: crashes found:" >&2
+    find "$build/found" -maxdepth 2 -type f >&2
+    exit 1
+fi

@@ -111,8 +111,8 @@ typedef struct starg_guards {
     uint64_t lines_tested;  /* by refinement                                              */
     size_t lower_bound;     /* no fewer candidates see as much (of what was asked for)    */
     bool optimal;           /* count == lower_bound                                       */
-    double area_bound;      /* max_guards: no choice of so many sees a larger fraction of
-                               all area; else 1                                           */
+    double area_bound;      /* max_guards, for faces seen once: no choice of so many sees a
+                               larger fraction of all area; else 1                        */
     bool time_limited;      /* the time limit cut the search short                        */
 } starg_guards;
 

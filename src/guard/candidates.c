@@ -69,6 +69,27 @@ done:
     return status;
 }
 
+/* How many points of the lattice are in the box, about. */
+static double lattice_size(const double extent[3], double step) {
+    double size = 2;
+    for (int k = 0; k < 3; k++)
+        size *= floor(extent[k] / step) + 1;
+    return size;
+}
+
+/* The step, doubled until there are no more points to look at than that: a solid may be so thin in
+ * its box that none of very many is inside. */
+static double coarse_enough(const starg_solid *solid, double step, double most) {
+    double lower[3], upper[3], extent[3];
+    starg_mesh_bounds(solid->mesh, lower, upper);
+    for (int k = 0; k < 3; k++)
+        extent[k] = upper[k] - lower[k];
+    step = fmax(step, 5e-324); /* where the volume underflows */
+    while (!(lattice_size(extent, step) <= most))
+        step *= 2;
+    return step;
+}
+
 /* Points of a body-centred cubic lattice: the most even one for covering. The half step that
  * shifts it off the box keeps points off walls that follow the axes. */
 static starg_status lattice_points(starg_context *context, const starg_solid *solid, double step,
@@ -100,13 +121,15 @@ done:
 static starg_status interior_candidates(starg_context *context, const starg_solid *solid,
                                         size_t wanted, double clearance, candidate_points *points) {
     enum { ROUNDS = 6 };
+    const double most = 10000 * (double)wanted + 1000;
     double step = cbrt(2 * solid->check->volume / (double)wanted);
     for (int round = 0; round < ROUNDS; round++) {
-        starg_status status = lattice_points(context, solid, step, clearance, points);
+        double used = coarse_enough(solid, step, most);
+        starg_status status = lattice_points(context, solid, used, clearance, points);
         if (status != STARG_OK)
             return status;
         size_t found = points->data.count / 3;
-        if (10 * found >= 9 * wanted)
+        if (10 * found >= 9 * wanted || used > step)
             break;
         double ratio = (double)(found > wanted / 8 ? found : wanted / 8 + 1) / (double)wanted;
         step *= cbrt(ratio) * 0.99;

@@ -210,6 +210,12 @@ done:
     return status;
 }
 
+/* Is the weight that was bounded the area that is seen? Not with vertices, nor where a face counts
+ * only once it is seen by several. */
+static bool bounds_area(const starg_guard_options *o) {
+    return o->max_guards > 0 && o->redundancy == 1 && o->visibility.target == STARG_TARGET_FACES;
+}
+
 static starg_status report(guard_job *job, starg_guards **out) {
     starg_status status = STARG_OK;
     starg_guards *result = NULL;
@@ -225,7 +231,7 @@ static starg_status report(guard_job *job, starg_guards **out) {
     result->lines_tested = job->lines_tested;
     result->time_limited = job->time_limited;
     result->area_bound = 1;
-    if (job->options->max_guards > 0)
+    if (bounds_area(job->options))
         result->area_bound = (double)job->weight_bound / (double)job->weights.total;
     STARG_TRY(copy_choice(job, result));
     result->lower_bound = job->lower_bound;

@@ -216,7 +216,8 @@ starg_status progressive_guards(guard_job *job) {
     int last = levels == NULL ? 0 : (int)levels->count - 1;
     for (int level = 0; level < last && !job->time_limited && job->pool.first_count > 0; level++)
         STARG_TRY(guard_coarse_level(job, level, levels->levels[level].mesh));
-    STARG_TRY(guard_level(job, last, &job->pool));
+    /* levels that were skipped have no number */
+    STARG_TRY(guard_level(job, (int)job->records.count, &job->pool));
 done:
     starg_levels_free(job->context, levels);
     return status;

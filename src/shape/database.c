@@ -142,6 +142,7 @@ static starg_status connect(starg_context *context, const char *file, const char
         goto done;
     }
     sqlite3_busy_handler(d->handle, wait_busy, context);
+    sqlite3_db_config(d->handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, (int *)NULL);
     *out = d;
 done:
     if (status != STARG_OK)
@@ -149,7 +150,7 @@ done:
     return status;
 }
 
-static starg_status read_pragma(starg_database *d, const char *sql, int *value) {
+static starg_status read_number(starg_database *d, const char *sql, int *value) {
     starg_status status = STARG_OK;
     sqlite3_stmt *statement = NULL;
     bool row;
@@ -163,9 +164,12 @@ done:
 
 static starg_status check_schema(starg_database *d) {
     starg_status status = STARG_OK;
-    int application, version;
-    STARG_TRY(read_pragma(d, "PRAGMA application_id", &application));
-    STARG_TRY(read_pragma(d, "PRAGMA user_version", &version));
+    int application, version, programs;
+    STARG_TRY(read_number(d, "PRAGMA application_id", &application));
+    STARG_TRY(read_number(d, "PRAGMA user_version", &version));
+    /* a file may come from anywhere: nothing in it is to run when its tables are read */
+    STARG_TRY(read_number(d, "SELECT count(*) FROM sqlite_schema WHERE type IN ('view', 'trigger')",
+                          &programs));
     if (application != APPLICATION)
         status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
                             "'%s' is no starguard database", d->path);
@@ -175,6 +179,12 @@ static starg_status check_schema(starg_database *d) {
                             d->path, version, SCHEMA_VERSION,
                             version > SCHEMA_VERSION ? "use a newer starguard"
                                                      : "create a new one and add the models again");
+    else if (programs > 0)
+        status =
+            starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                       "'%s' has views or triggers, which no starguard database has; it is not "
+                       "opened, because they would run",
+                       d->path);
 done:
     return status;
 }

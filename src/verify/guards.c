@@ -442,7 +442,10 @@ static void claim_goal(starg_verdict *verdict, const facts *known) {
 static void claim_numbers(starg_verdict *verdict, const facts *known) {
     const starg_guards *guards = known->guards;
     target goal = target_of(known);
-    verify_claim(verdict, guards->count > 0 || goal.coverable == 0,
+    /* fewer than are to see each face may see none of them often enough */
+    bool too_few =
+        guards->options.max_guards != 0 && guards->options.max_guards < guards->options.redundancy;
+    verify_claim(verdict, guards->count > 0 || goal.coverable == 0 || too_few,
                  "there are guards (%zu), unless nothing can be seen", guards->count);
     verify_claim(verdict, guards->count <= guards->candidate_count,
                  "%zu guards are among %zu candidates", guards->count, guards->candidate_count);

@@ -1,7 +1,7 @@
-/* Runs a fuzz target without a fuzzer: over every file of the folders that are named, then over
- * mutations of them (flipped, overwritten, inserted and dropped bytes, truncations, splices of two
+/* Runs a fuzz target without a fuzzer: over every file of a folder, then over so many mutations of
+ * them in all (flipped, overwritten, inserted and dropped bytes, truncations, splices of two
  * files), the same ones in every run. When the target crashes, the last input is written to the
- * working folder as crash_<seed>_<mutation>. */
+ * working folder as crash_<seed>_<mutation>. Usage: TARGET MUTATIONS FOLDER */
 #include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -15,7 +15,7 @@
 
 int LLVMFuzzerTestOneInput(const unsigned char *data, size_t size);
 
-enum { MUTATIONS = 3000, MOST_FILES = 256, MOST_BYTES = 1 << 16 };
+enum { MOST_FILES = 256, MOST_BYTES = 1 << 16 };
 
 typedef struct fuzz_seed {
     char *name;
@@ -52,8 +52,9 @@ static int by_name(const void *a, const void *b) {
     return strcmp(left->name, right->name);
 }
 
-static size_t load_folder(const char *folder, fuzz_seed *seeds, size_t count) {
+static size_t load_folder(const char *folder, fuzz_seed *seeds) {
     DIR *listing = opendir(folder);
+    size_t count = 0;
     if (listing == NULL)
         die("cannot be opened", folder);
     for (struct dirent *entry; (entry = readdir(listing)) != NULL;) {
@@ -159,8 +160,9 @@ static void run(const fuzz_input *input, const char *target) {
     free(exact);
 }
 
-static void run_seed(const fuzz_seed *seeds, size_t count, size_t index, const char *target) {
-    for (uint64_t i = 0; i <= MUTATIONS; i++) {
+static void run_seed(const fuzz_seed *seeds, size_t count, size_t index, size_t mutations,
+                     const char *target) {
+    for (uint64_t i = 0; i <= mutations; i++) {
         starg_rng rng = starg_rng_make(1, index, i);
         memcpy(current.bytes, seeds[index].bytes, seeds[index].size);
         current.size = seeds[index].size;
@@ -174,17 +176,18 @@ static void run_seed(const fuzz_seed *seeds, size_t count, size_t index, const c
 
 int main(int argc, char **argv) {
     static fuzz_seed seeds[MOST_FILES];
-    size_t count = 0;
-    for (int i = 1; i < argc; i++)
-        count = load_folder(argv[i], seeds, count);
+    if (argc != 3)
+        die("takes a number of mutations and a folder of seeds", argv[0]);
+    size_t count = load_folder(argv[2], seeds);
     if (count == 0)
-        die("name folders that hold seeds", argv[0]);
+        die("holds no seeds", argv[2]);
+    size_t mutations = strtoul(argv[1], NULL, 10) / count;
     static const int signals[] = {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL};
     for (size_t i = 0; i < sizeof signals / sizeof signals[0]; i++)
         signal(signals[i], leave_input);
     for (size_t i = 0; i < count; i++)
-        run_seed(seeds, count, i, argv[0]);
-    printf("%zu seeds and %d mutations of each\n", count, MUTATIONS);
+        run_seed(seeds, count, i, mutations, argv[0]);
+    printf("%zu seeds and %zu mutations of each\n", count, mutations);
     for (size_t i = 0; i < count; i++) {
         free(seeds[i].name);
         free(seeds[i].bytes);

@@ -5,8 +5,8 @@
 
 const char *point_family_name(point_family family) {
     static const char *const names[POINT_FAMILIES] = {
-        "uniform",     "lattice", "tiny",      "plane", "line", "sphere",
-        "far lattice", "1e-300",  "subnormal", "1e90",  "9e99", "mixed"};
+        "uniform",   "lattice", "tiny", "plane", "line",      "sphere", "far lattice", "1e-300",
+        "subnormal", "1e90",    "9e99", "mixed", "exponents", "ulps",   "between"};
     return names[family];
 }
 
@@ -34,6 +34,31 @@ static double mixed(starg_rng *rng) {
     static const double scales[] = {1e90, 1e-300, 5e-324, 1, 1e8, 0};
     double scale = scales[starg_rng_below(rng, sizeof scales / sizeof *scales)];
     return scale * integer(rng, -3, 3);
+}
+
+static double any_exponent(starg_rng *rng) {
+    return ldexp(between(rng, -1, 1), -1074 + (int)starg_rng_below(rng, 1074 + 329));
+}
+
+/* A few ulps from x, not many. */
+static double near(starg_rng *rng, double x) {
+    for (uint64_t steps = starg_rng_below(rng, 3); steps > 0; steps--)
+        x = shaken(rng, x);
+    return x;
+}
+
+/* A mean of earlier points with weights that leave no rounding on a lattice. */
+static void place_between(starg_rng *rng, double (*points)[3], size_t count) {
+    static const double weights[6][3] = {{0.5, 0.5, 0}, {0.25, 0.25, 0.5},  {2, -1, 0},
+                                         {1, 1, -1},    {0.75, 0.5, -0.25}, {1, 0, 0}};
+    const double *w = weights[starg_rng_below(rng, 6)];
+    const double *a = points[starg_rng_below(rng, count)];
+    const double *b = points[starg_rng_below(rng, count)];
+    const double *c = points[starg_rng_below(rng, count)];
+    for (int k = 0; k < 3; k++) {
+        double mean = w[0] * a[k] + w[1] * b[k] + w[2] * c[k];
+        points[count][k] = starg_rng_below(rng, 8) == 0 ? shaken(rng, mean) : mean;
+    }
 }
 
 /* frame: three points that a family hangs on. */
@@ -74,6 +99,15 @@ static void place(starg_rng *rng, point_family family, double (*frame)[3], doubl
         case POINTS_MIXED:
             out[k] = mixed(rng);
             break;
+        case POINTS_EXPONENTS:
+            out[k] = any_exponent(rng);
+            break;
+        case POINTS_ULPS:
+            out[k] = near(rng, frame[0][k]);
+            break;
+        case POINTS_BETWEEN:
+            out[k] = integer(rng, 0, 3);
+            break;
         default:
             out[k] = between(rng, -1, 1);
         }
@@ -84,7 +118,10 @@ void adversarial_points(starg_rng *rng, point_family family, double (*points)[3]
     for (int i = 0; i < 9; i++)
         frame[i / 3][i % 3] = between(rng, -1, 1);
     for (size_t i = 0; i < count; i++) {
-        place(rng, family, frame, points[i]);
+        if (family == POINTS_BETWEEN && i >= 3)
+            place_between(rng, points, i);
+        else
+            place(rng, family, frame, points[i]);
         if (i == 0 || starg_rng_below(rng, 12) != 0)
             continue;
         const double *earlier = points[starg_rng_below(rng, i)];

@@ -19,6 +19,9 @@ typedef enum point_family {
     POINTS_1E90,        /* a lattice times 1e90                                               */
     POINTS_9E99,        /* anything up to 9e99                                                */
     POINTS_MIXED,       /* coordinates of all these scales side by side                       */
+    POINTS_EXPONENTS,   /* any 53 bits, and every exponent from the smallest up to 1e99       */
+    POINTS_ULPS,        /* all within two ulps of one point                                   */
+    POINTS_BETWEEN,     /* on edges and in planes of earlier ones, exactly, or an ulp beside  */
     POINT_FAMILIES
 } point_family;
 

@@ -512,6 +512,42 @@ bool oracle_triangles_contact(const double *const s[3], const double *const t[3]
     return false;
 }
 
+/* ---- half-spaces ---- */
+
+/* Adds n . (a - x) > 0 for the normal n = (b - a) x (c - a). */
+static void add_half_space(linear_system *s, const double *const corner[3]) {
+    row *inside = new_row(s, ABOVE_ZERO);
+    vector n, a;
+    vector_init(&n);
+    vector_init(&a);
+    normal(&n, corner[0], corner[1], corner[2]);
+    vector_set(&a, corner[0]);
+    vector_dot(inside->k[VARIABLES], &n, &a);
+    for (int k = 0; k < 3; k++)
+        mpq_neg(inside->k[k], n.x[k]);
+    vector_clear(&n);
+    vector_clear(&a);
+}
+
+/* Adds sign x >= sign limit for coordinate k. */
+static void add_limit(linear_system *s, int k, int sign, double limit) {
+    row *within = new_row(s, AT_LEAST_ZERO);
+    mpq_set_si(within->k[k], sign, 1);
+    mpq_set_d(within->k[VARIABLES], -sign * limit);
+}
+
+bool oracle_half_spaces_meet(const double *const *corners, int count, const double lower[3],
+                             const double upper[3]) {
+    linear_system s = {0};
+    for (int i = 0; i < count; i++)
+        add_half_space(&s, corners + 3 * i);
+    for (int k = 0; k < 3 && lower != NULL; k++) {
+        add_limit(&s, k, 1, lower[k]);
+        add_limit(&s, k, -1, upper[k]);
+    }
+    return solvable(&s);
+}
+
 /* ---- winding number ---- */
 
 typedef enum crossing { RAY_MISSES, RAY_CROSSES, RAY_GRAZES } crossing;

@@ -33,6 +33,11 @@ bool oracle_triangles_contact(const double *const s[3], const double *const t[3]
 bool oracle_tetrahedron_meets_triangle(const double p[3], const double *const face[3],
                                        const double *const t[3]);
 
+/* Have the open half-spaces of the points x with orient3d(a, b, c, x) = 1 a common point (in the
+ * closed box, unless lower is NULL)? `corners` are 3 a half-space. */
+bool oracle_half_spaces_meet(const double *const *corners, int count, const double lower[3],
+                             const double upper[3]);
+
 /* Winding number of a closed mesh about p; *on_surface: p lies on a triangle (then the result is
  * 0 and means nothing). */
 int oracle_winding(const double *vertices, const uint32_t *faces, size_t face_count,

@@ -54,6 +54,12 @@ const char *test_shared_data(void) {
     return NULL;
 }
 
+size_t test_rounds(size_t usual, size_t thorough) {
+    const char *percent = getenv("STARGUARD_LONG");
+    size_t rounds = percent != NULL ? thorough * strtoul(percent, NULL, 10) / 100 : usual;
+    return rounds > usual ? rounds : usual;
+}
+
 void test_ok(starg_context *context, starg_status status) {
     if (status != STARG_OK)
         print_error("%s\n", starg_context_error(context)->message);

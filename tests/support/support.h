@@ -29,6 +29,10 @@ void test_context_free(starg_context *context);
  * returns, after skip()). */
 const char *test_shared_data(void);
 
+/* How often a test of random cases is to try: `usual`, or as many percent of `thorough` as
+ * STARGUARD_LONG in the environment says (100 in make check-long). */
+size_t test_rounds(size_t usual, size_t thorough);
+
 /* Asserts that a status is STARG_OK, and prints the context's message when it is not. */
 void test_ok(starg_context *context, starg_status status);
 

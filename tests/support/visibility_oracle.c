@@ -144,13 +144,10 @@ void visibility_oracle_vertices(const double *vertices, size_t vertex_count, con
         visible[v] = inside && sees_point(&s, p, vertices + 3 * v);
 }
 
-void visibility_oracle_faces(const double *vertices, size_t vertex_count, const uint32_t *faces,
-                             size_t face_count, const double p[3], bool whole, bool *visible) {
+void visibility_oracle_faces_from(const double *vertices, const uint32_t *faces, size_t face_count,
+                                  const double p[3], bool whole, const bool *vertex,
+                                  bool *visible) {
     scene s = {vertices, faces, face_count};
-    bool *vertex = malloc(vertex_count + 1);
-    if (vertex == NULL)
-        abort();
-    visibility_oracle_vertices(vertices, vertex_count, faces, face_count, p, vertex);
     for (size_t f = 0; f < face_count; f++) {
         const uint32_t *v = faces + 3 * f;
         const double *t[3];
@@ -158,5 +155,14 @@ void visibility_oracle_faces(const double *vertices, size_t vertex_count, const 
         visible[f] = vertex[v[0]] && vertex[v[1]] && vertex[v[2]] &&
                      oracle_orient3d(t[0], t[1], t[2], p) > 0 && (!whole || sees_whole(&s, p, f));
     }
+}
+
+void visibility_oracle_faces(const double *vertices, size_t vertex_count, const uint32_t *faces,
+                             size_t face_count, const double p[3], bool whole, bool *visible) {
+    bool *vertex = malloc(vertex_count + 1);
+    if (vertex == NULL)
+        abort();
+    visibility_oracle_vertices(vertices, vertex_count, faces, face_count, p, vertex);
+    visibility_oracle_faces_from(vertices, faces, face_count, p, whole, vertex, visible);
     free(vertex);
 }

@@ -18,4 +18,8 @@ void visibility_oracle_vertices(const double *vertices, size_t vertex_count, con
 void visibility_oracle_faces(const double *vertices, size_t vertex_count, const uint32_t *faces,
                              size_t face_count, const double p[3], bool whole, bool *visible);
 
+/* The same from the vertices that are visible. */
+void visibility_oracle_faces_from(const double *vertices, const uint32_t *faces, size_t face_count,
+                                  const double p[3], bool whole, const bool *vertex, bool *visible);
+
 #endif

@@ -239,6 +239,31 @@ static void old_and_damaged_signatures(void **state) {
     test_context_free(context);
 }
 
+/* What would run when tables are read or changed is not opened. */
+static void views_and_triggers(void **state) {
+    (void)state;
+    static const char *const harms[] = {
+        "CREATE VIEW more AS SELECT * FROM model",
+        "CREATE TRIGGER all_of_them AFTER DELETE ON model BEGIN DELETE FROM model; END",
+    };
+    static const char *const cures[] = {"DROP VIEW more", "DROP TRIGGER all_of_them"};
+    starg_context *context = test_context(1);
+    starg_database_close(open_copy(context, "harm.db"));
+    for (size_t i = 0; i < sizeof harms / sizeof *harms; i++) {
+        starg_database *database = NULL;
+        run_sql(path_of("harm.db"), harms[i]);
+        assert_int_equal(starg_database_open(context, path_of("harm.db"), &database),
+                         STARG_ERROR_FORMAT);
+        assert_null(database);
+        assert_non_null(strstr(starg_context_error(context)->message, "views or triggers"));
+        run_sql(path_of("harm.db"), cures[i]);
+        test_ok(context, starg_database_open(context, path_of("harm.db"), &database));
+        starg_database_close(database);
+    }
+    unlink(path_of("harm.db"));
+    test_context_free(context);
+}
+
 /* ---- query, remove ---- */
 
 static int by_distance(const void *a, const void *b) {
@@ -478,6 +503,7 @@ int main(void) {
         cmocka_unit_test(added_known_refused),
         cmocka_unit_test(stored_signatures),
         cmocka_unit_test(old_and_damaged_signatures),
+        cmocka_unit_test(views_and_triggers),
         cmocka_unit_test(queries),
         cmocka_unit_test(removal),
         cmocka_unit_test(no_databases),

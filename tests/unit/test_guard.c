@@ -75,6 +75,11 @@ static void test_options(void **state) {
     starg_guards *one = test_guard(context, solid, &options);
     assert_int_equal(one->count, 1);
     assert_true(one->coverage_area <= one->area_bound * (1 + 1e-9));
+    assert_true(one->area_bound < 1);
+    options.redundancy = 3; /* some faces may be seen by one candidate only; it alone counts then */
+    starg_guards *few = test_guard(context, solid, &options);
+    assert_true(few->count <= 1 && few->area_bound == 1);
+    starg_guards_free(context, few);
 
     options = small_options();
     options.redundancy = 2;

@@ -5,7 +5,7 @@
 #include "geometry/predicates.h"
 #include "support.h"
 
-enum { ROUNDS = 500, POINTS = 6 };
+enum { ROUNDS = 1000, LONG_ROUNDS = 70000, POINTS = 6 };
 
 typedef double (*points)[3];
 
@@ -18,15 +18,16 @@ static void refute(const char *what, point_family family, points x, int expected
 /* Calls `check` with many inputs of every family; it returns whether the shapes met. Every family
  * must give both answers. */
 static void for_all(bool check(point_family family, uint64_t round, points x)) {
+    size_t rounds = test_rounds(ROUNDS, LONG_ROUNDS);
     for (int family = 0; family < POINT_FAMILIES; family++) {
-        int met = 0;
-        for (uint64_t round = 0; round < ROUNDS; round++) {
+        size_t met = 0;
+        for (uint64_t round = 0; round < rounds; round++) {
             starg_rng rng = starg_rng_make(12, (uint64_t)family, round);
             double x[POINTS][3];
             adversarial_points(&rng, (point_family)family, x, POINTS);
             met += check((point_family)family, round, x);
         }
-        if (met == 0 || met == ROUNDS)
+        if (met == 0 || met == rounds)
             fail_msg("%s: all answers are %d", point_family_name((point_family)family), met != 0);
     }
 }

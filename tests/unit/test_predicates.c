@@ -7,7 +7,7 @@
 #include "support.h"
 #include "verify/cone.h"
 
-enum { ROUNDS = 1500, POINTS = 5 };
+enum { ROUNDS = 1500, LONG_ROUNDS = 70000, POINTS = 5 };
 
 typedef double (*points)[3];
 
@@ -20,8 +20,9 @@ static void refute(const char *what, point_family family, points x, int expected
 
 /* Calls `check` with many inputs of every family. */
 static void for_all(void check(point_family family, points x)) {
+    size_t rounds = test_rounds(ROUNDS, LONG_ROUNDS);
     for (int family = 0; family < POINT_FAMILIES; family++)
-        for (uint64_t round = 0; round < ROUNDS; round++) {
+        for (uint64_t round = 0; round < rounds; round++) {
             starg_rng rng = starg_rng_make(11, (uint64_t)family, round);
             double x[POINTS][3];
             adversarial_points(&rng, (point_family)family, x, POINTS);

@@ -19,7 +19,7 @@
 
 /* ---- arithmetic and signs ---- */
 
-enum { ROUNDS = 250, POINTS = 7 };
+enum { ROUNDS = 250, LONG_ROUNDS = 70000, POINTS = 7 };
 
 typedef double (*points)[3];
 
@@ -30,8 +30,9 @@ static void refute(const char *what, point_family family, points x) {
 }
 
 static void for_all(void check(point_family family, points x)) {
+    size_t rounds = test_rounds(ROUNDS, LONG_ROUNDS);
     for (int family = 0; family < POINT_FAMILIES; family++)
-        for (uint64_t round = 0; round < ROUNDS; round++) {
+        for (uint64_t round = 0; round < rounds; round++) {
             starg_rng rng = starg_rng_make(17, (uint64_t)family, round);
             double x[POINTS][3];
             adversarial_points(&rng, (point_family)family, x, POINTS);
