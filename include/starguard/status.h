@@ -19,7 +19,8 @@ typedef enum starg_status {
     STARG_ERROR_RANGE = 7,     /* a coordinate is not finite or not below 1e100 in magnitude   */
     STARG_ERROR_SOLVER = 8,    /* the solver library gave up without a usable answer           */
     STARG_ERROR_TIME = 9,      /* the time limit struck before anything was found              */
-    STARG_ERROR_CANCELLED = 10 /* the progress callback or starg_context_cancel said stop      */
+    STARG_ERROR_CANCELLED = 10, /* the progress callback or starg_context_cancel said stop     */
+    STARG_ERROR_RANK = 11       /* the way to another process of the run is broken             */
 } starg_status;
 
 /* A short English phrase for a status; "unknown status" for any other number.
