@@ -53,7 +53,7 @@ COMMANDS = [
     "guard octopus.off -o range.json --method ilp --visibility bvh --range 0.5 --clearance 0.01 "
     "--count 100 --max-nodes 50",
     "verify horse.off pilp.json ilp.json",
-    "visible gallery_0.obj --from 0.5,0.5,0.5 -o visible.ply --visibility contours",
+    "visible gallery_0.obj --from 0.5,0.5,0.5 -o visible.ply --engine contours",
     "decompose octopus.off -o strict.vtk --report strict.json --effort 300",
     "decompose gallery_0.obj -o binary.vtk --binary --report binary.json --effort 100",
     "decompose octopus.off -o paper.vtk --report paper.json --mode paper --density 3",
@@ -64,8 +64,8 @@ COMMANDS = [
     "map cat_0.ply octopus.off -o map.json",
     "morph cat_0.ply octopus.off --map map.json --frames 4 -o star --glb star.glb",
     "morph horse.off pose.off --frames 4 -o arap --method arap",
-    "morph horse.off pose.off --frames 3 -o linear --method linear --guards paired.json "
-    "--candidates 100",
+    "morph horse.off pose.off --frames 3 -o guarded --guards --candidates 100",
+    "morph horse.off pose.off --frames 3 -o linear --method linear",
     "export pilp.json --model horse.off -o guards.glb",
     "export strict.vtk strict.json -o pieces.vtu --model octopus.off",
     "export skeleton.obj --model horse.off -o bones.ply",
