@@ -19,12 +19,15 @@
 
 enum { BATCH = 8 };
 
+static const double PAUSE = 0.2; /* seconds between transactions: each waits for the disk */
+
 typedef struct adding {
     database_files files; /* first: what the loop's functions are given */
     starg_database *database;
     starg_context *context;
     database_digest *stored;
     size_t stored_files; /* how many files have been dealt with */
+    double stored_at;    /* the last of them, by starg_clock()  */
     sqlite3_stmt *insert_model, *insert_signature, *find_model;
     starg_database_report *report;
 } adding;
@@ -189,9 +192,12 @@ done:
 static starg_status store_described(starg_context *context, void *shared, size_t described) {
     adding *a = shared;
     (void)context;
-    if (described - a->stored_files < BATCH && described < a->files.count)
+    bool due = described - a->stored_files >= BATCH && starg_clock() - a->stored_at >= PAUSE;
+    if (!due && described < a->files.count)
         return STARG_OK;
-    return store_until(a, described);
+    starg_status status = store_until(a, described);
+    a->stored_at = starg_clock();
+    return status;
 }
 
 static starg_status describe_and_store(adding *a) {
