@@ -17,7 +17,11 @@ typedef enum ranks_message_kind {
 } ranks_message_kind;
 
 /* Which function of a helper a job is for. */
-typedef enum ranks_work_kind { RANKS_VISIBILITY = 0, RANKS_DESCRIBE = 1 } ranks_work_kind;
+typedef enum ranks_work_kind {
+    RANKS_VISIBILITY = 0,
+    RANKS_DESCRIBE = 1,
+    RANKS_WORKS = 2
+} ranks_work_kind;
 
 /* The head of a message; what follows it is the work's own. */
 typedef struct ranks_message {

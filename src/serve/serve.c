@@ -18,7 +18,7 @@ typedef struct helper {
     bool released;
 } helper;
 
-static const ranks_work *const works[] = {
+static const ranks_work *const works[RANKS_WORKS] = {
     [RANKS_VISIBILITY] = &visibility_ranks_work,
     [RANKS_DESCRIBE] = &database_ranks_work,
 };
@@ -34,7 +34,7 @@ static void begin_job(helper *h, const ranks_message *head, starg_bytes_reader *
     end_job(h);
     h->loop = head->loop;
     h->begun = STARG_ERROR_RANK;
-    if (head->work >= sizeof works / sizeof *works)
+    if (head->work >= RANKS_WORKS)
         return;
     h->context->seed = head->seed;
     starg_context_set_time_limit(h->context, head->seconds);
