@@ -41,7 +41,7 @@ check-long: check
 	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
 	@scripts/package-test.sh $(BUILD)
 	@$(MAKE) --no-print-directory mpi
-	@$(CTEST) --test-dir $(BUILD)-mpi -R mpi
+	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
 	@JOBS=$(JOBS) scripts/determinism.py --matrix $(BUILD)-matrix
 
 # The command line for mpirun (docs/scaling.md): build-mpi/starguard.

@@ -172,7 +172,7 @@ def compare(programs, threads):
 
 def build(folder, compiler, flags):
     """The program of one compiler and its flags."""
-    place = os.path.join(folder, (compiler + flags).replace(" ", ""))
+    place = os.path.abspath(os.path.join(folder, (compiler + flags).replace(" ", "")))
     debug = flags == "-O0"  # else some files, which matter most, are compiled at -O3 of their own
     commands = [
         ["cmake", "-G", "Ninja", "-S", ROOT, "-B", place, f"-DCMAKE_C_COMPILER={compiler}",
