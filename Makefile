@@ -5,7 +5,7 @@ SECONDS ?= 60
 CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
-.PHONY: build demo check check-long lint sanitize fuzz bench install package deps deps-check clean
+.PHONY: build demo check check-long mpi lint sanitize fuzz bench install package deps deps-check clean
 
 build: deps
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=OFF > /dev/null
@@ -29,7 +29,8 @@ sanitize: deps-check
 
 # What takes too long for every change: static analysis, tests labelled slow (every case of memory and
 # kills, and what sanitizers make slow), a million cases for each exact decision, a clang build, the
-# thread sanitizer, the package on a clean root.
+# thread sanitizer, the package on a clean root, runs by mpirun, and all results of six builds at four
+# numbers of threads.
 check-long: check
 	@scripts/tidy.sh $(BUILD)
 	@$(CTEST) --test-dir $(BUILD) -L slow
@@ -42,6 +43,15 @@ check-long: check
 	@cmake --build $(BUILD)-thread -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
 	@scripts/package-test.sh $(BUILD)
+	@$(MAKE) --no-print-directory mpi
+	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
+	@JOBS=$(JOBS) scripts/determinism.py --matrix $(BUILD)-matrix
+
+# The command line for mpirun (docs/scaling.md): build-mpi/starguard.
+mpi: deps
+	@scripts/install-deps.sh mpi
+	@$(CMAKE) -S . -B $(BUILD)-mpi -DSTARGUARD_MPI=ON > /dev/null
+	@cmake --build $(BUILD)-mpi -j $(JOBS) --target starguard_cli
 
 lint: deps-check
 	@scripts/lint.sh
@@ -72,4 +82,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-thread $(BUILD)-fuzz $(BUILD)-bench demo
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-thread $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix demo

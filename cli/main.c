@@ -6,6 +6,7 @@
 #include "help.h"
 #include "manual.h"
 #include "model.h"
+#include "ranks.h"
 #include "report.h"
 #include "starguard/version.h"
 #include "suggest.h"
@@ -213,7 +214,7 @@ static int run_member(const cli_command *group, int argc, char **argv) {
     return member != NULL ? run(member, argc - 1, argv + 1) : reject_command(group->members, word);
 }
 
-int main(int argc, char **argv) {
+static int run_program(int argc, char **argv) {
     if (argc < 2) {
         cli_help_short(stderr);
         return CLI_EXIT_USAGE;
@@ -229,4 +230,11 @@ int main(int argc, char **argv) {
     if (command->members != NULL)
         return run_member(command, argc - 2, argv + 2);
     return run(command, argc - 2, argv + 2);
+}
+
+int main(int argc, char **argv) {
+    cli_ranks_begin(&argc, &argv);
+    if (cli_ranks() != NULL && cli_ranks()->rank > 0)
+        return cli_ranks_serve();
+    return cli_ranks_end(run_program(argc, argv));
 }

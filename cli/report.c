@@ -5,6 +5,8 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "ranks.h"
+
 enum { LAYOUT = JSON_INDENT(1) | JSON_REAL_PRECISION(17) };
 
 void cli_report_begin(cli_session *session) {
@@ -127,6 +129,17 @@ static json_t *memory(cli_session *session) {
     return object;
 }
 
+/* What the processes of an MPI run have shared; the rest of the time only rank 0 has worked. */
+static json_t *shared(cli_session *session) {
+    json_t *object = json_object();
+    cli_put(session, object, "count", json_integer(cli_ranks()->count));
+    cli_put(session, object, "shared_seconds",
+            json_real(starg_context_shared_seconds(session->context)));
+    cli_put(session, object, "helped_items",
+            json_integer((json_int_t)starg_context_helped_items(session->context)));
+    return object;
+}
+
 /* Prints an object and gives it up. */
 static bool print(json_t *object) {
     bool printed = object != NULL && json_dumpf(object, stdout, LAYOUT) == 0;
@@ -141,6 +154,8 @@ starg_status cli_report_print(cli_session *session) {
     cli_put(session, report, "log", json_incref(session->log));
     cli_put(session, report, "seconds", seconds(session));
     cli_put(session, report, "memory", memory(session));
+    if (cli_ranks() != NULL)
+        cli_put(session, report, "ranks", shared(session));
     if (session->report_broken)
         return cli_fail_memory(session);
     session->report = NULL;
@@ -156,8 +171,8 @@ static const char *element_name(starg_element element) {
 }
 
 static const char *status_name(starg_status status) {
-    static const char *const names[] = {"ok",   "argument", "memory", "read", "write",    "format",
-                                        "mesh", "range",    "solver", "time", "cancelled"};
+    static const char *const names[] = {"ok",   "argument", "memory", "read", "write",     "format",
+                                        "mesh", "range",    "solver", "time", "cancelled", "rank"};
     return (size_t)status < sizeof names / sizeof *names ? names[status] : "unknown";
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "ranks.h"
 #include "report.h"
 #include "terminal.h"
 
@@ -100,7 +101,7 @@ starg_status cli_session_start(cli_session *session) {
     const cli_common *common = &session->common;
     starg_context_options options;
     starg_context_options_default(&options);
-    options.threads = (int)common->threads;
+    options.threads = common->threads > 0 ? (int)common->threads : cli_ranks_threads();
     options.seed = common->seed;
     options.log = on_log;
     options.log_user = session;
@@ -113,6 +114,7 @@ starg_status cli_session_start(cli_session *session) {
     starg_status status = starg_context_create(&options, &session->context);
     if (status != STARG_OK)
         return cli_fail(session, status, "%s", starg_status_string(status));
+    starg_context_set_ranks(session->context, cli_ranks());
     signal_context = session->context;
     catch_signals();
     if (common->time_limit > 0)
@@ -215,6 +217,7 @@ static cli_exit exit_status(starg_status status) {
     case STARG_ERROR_WRITE:
     case STARG_ERROR_SOLVER:
     case STARG_ERROR_TIME:
+    case STARG_ERROR_RANK:
         break;
     }
     return CLI_EXIT_UNFINISHED;

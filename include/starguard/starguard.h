@@ -16,6 +16,7 @@
 #include "morph.h"
 #include "page.h"
 #include "picture.h"
+#include "ranks.h"
 #include "repair.h"
 #include "sample.h"
 #include "scene.h"

@@ -10,16 +10,17 @@ extern "C" {
 
 typedef enum starg_status {
     STARG_OK = 0,
-    STARG_ERROR_ARGUMENT = 1,  /* a parameter is out of its stated range                       */
-    STARG_ERROR_MEMORY = 2,    /* the allocator returned NULL, or a size does not fit          */
-    STARG_ERROR_READ = 3,      /* a file is missing, unreadable or a directory                 */
-    STARG_ERROR_WRITE = 4,     /* an output cannot be written: permission, full disk           */
-    STARG_ERROR_FORMAT = 5,    /* a file's text does not follow its format                     */
-    STARG_ERROR_MESH = 6,      /* a mesh is not usable for the call: open, non-manifold, empty */
-    STARG_ERROR_RANGE = 7,     /* a coordinate is not finite or not below 1e100 in magnitude   */
-    STARG_ERROR_SOLVER = 8,    /* the solver library gave up without a usable answer           */
-    STARG_ERROR_TIME = 9,      /* the time limit struck before anything was found              */
-    STARG_ERROR_CANCELLED = 10 /* the progress callback or starg_context_cancel said stop      */
+    STARG_ERROR_ARGUMENT = 1,   /* a parameter is out of its stated range                       */
+    STARG_ERROR_MEMORY = 2,     /* the allocator returned NULL, or a size does not fit          */
+    STARG_ERROR_READ = 3,       /* a file is missing, unreadable or a directory                 */
+    STARG_ERROR_WRITE = 4,      /* an output cannot be written: permission, full disk           */
+    STARG_ERROR_FORMAT = 5,     /* a file's text does not follow its format                     */
+    STARG_ERROR_MESH = 6,       /* a mesh is not usable for the call: open, non-manifold, empty */
+    STARG_ERROR_RANGE = 7,      /* a coordinate is not finite or not below 1e100 in magnitude   */
+    STARG_ERROR_SOLVER = 8,     /* the solver library gave up without a usable answer           */
+    STARG_ERROR_TIME = 9,       /* the time limit struck before anything was found              */
+    STARG_ERROR_CANCELLED = 10, /* the progress callback or starg_context_cancel said stop */
+    STARG_ERROR_RANK = 11       /* the way to another process of the run is broken */
 } starg_status;
 
 /* A short English phrase for a status; "unknown status" for any other number.

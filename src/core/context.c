@@ -41,6 +41,8 @@ const char *starg_status_string(starg_status status) {
         return "time limit reached";
     case STARG_ERROR_CANCELLED:
         return "cancelled";
+    case STARG_ERROR_RANK:
+        return "another process is lost";
     }
     return "unknown status";
 }

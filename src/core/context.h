@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "starguard/context.h"
+#include "starguard/ranks.h"
 
 struct starg_context {
     starg_allocator allocator;
@@ -22,6 +23,12 @@ struct starg_context {
     atomic_bool cancelled;
     double deadline;     /* of starg_clock(); 0: none */
     unsigned unfinished; /* calls under way that have nothing to show until they are done */
+
+    const starg_ranks *ranks; /* whom the work is shared with, or NULL */
+    uint64_t shared_loops;    /* so far: the number of the last one    */
+    double shared_seconds;    /* spent in them                         */
+    uint64_t helped_items;    /* of them, that others have worked on   */
+
     atomic_size_t live_bytes, peak_bytes, live_blocks;
 
     const char *progress_stage;

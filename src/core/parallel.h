@@ -3,12 +3,22 @@
 #ifndef STARG_CORE_PARALLEL_H
 #define STARG_CORE_PARALLEL_H
 
-#include "core/context.h"
+#include "core/ranks.h"
 
 /* Works on one item. `scratch` belongs to the running thread. Allocation is allowed; logging,
  * progress and error detail are not (the calling thread does that). */
 typedef starg_status starg_parallel_item(starg_context *context, void *shared, void *scratch,
                                          size_t item);
+
+/* How other processes work on items of a loop (core/share.c). */
+typedef struct starg_parallel_remote {
+    ranks_work_kind work;
+    const starg_bytes *job; /* what they have to know of all items                         */
+    size_t most;            /* items that they get at once; 0: the more, the more are left */
+    /* Takes what a helper appended to its reply for these items, on the calling thread. */
+    starg_status (*take)(starg_context *context, void *shared, size_t first, size_t count,
+                         starg_bytes_reader *reply);
+} starg_parallel_remote;
 
 typedef struct starg_parallel_loop {
     const char *stage; /* static; named in progress and errors */
@@ -23,6 +33,10 @@ typedef struct starg_parallel_loop {
     /* One of several loops that are a stage together: `whole` items, of which `before` are done.
      * The caller begins and ends the progress of the stage. whole 0: the loop is the stage. */
     size_t before, whole;
+    /* Called on the calling thread, now and then and at the end, when the items below `finished`
+     * are. It may set error detail. NULL: not wanted. */
+    starg_status (*advance)(starg_context *context, void *shared, size_t finished);
+    const starg_parallel_remote *remote; /* used where the context has helpers; NULL: not shared */
 } starg_parallel_loop;
 
 /* Runs the items 0 to count - 1 on up to the context's threads, the calling one among them.

@@ -93,6 +93,27 @@ done:
     return status;
 }
 
+starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,
+                            const uint32_t *faces, size_t face_count, const starg_check *check,
+                            starg_solid **out) {
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, "solid", solid, 1);
+    solid->context = context;
+    STARG_TRY(starg_mesh_create(context, vertices, vertex_count, faces, face_count, &solid->mesh));
+    STARG_NEW(context, "solid", solid->check, 1);
+    *solid->check = *check;
+    solid->check->face_marks = NULL;
+    STARG_TRY(
+        bvh_create(context, solid->mesh->vertices, solid->mesh->faces, face_count, &solid->tree));
+    *out = solid;
+done:
+    if (status != STARG_OK)
+        starg_solid_free(solid);
+    return status;
+}
+
 void starg_solid_free(starg_solid *solid) {
     if (solid == NULL)
         return;

@@ -13,4 +13,10 @@ struct starg_solid {
     bvh *tree;
 };
 
+/* The solid that another process has examined: its mesh as it was after that, and as much of the
+ * check as is needed. Copies all. Errors: those of starg_mesh_create. */
+starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,
+                            const uint32_t *faces, size_t face_count, const starg_check *check,
+                            starg_solid **out);
+
 #endif

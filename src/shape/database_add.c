@@ -1,61 +1,38 @@
 /* Adding models to a database.
  *
- * Stages: the contents that are stored whole; then, a batch of files at a time: read, hash and
- * describe them in parallel, and store the batch in one transaction in the order of the files.
+ * Stages: the contents that are stored whole; then the files are described
+ * (shape/database_files.c), in parallel and by other processes too if there are any (core/share.c),
+ * and stored in their order, a few in one transaction, as soon as they and all before them are
+ * described.
  *
  * Descriptions are made outside of transactions: a database is locked for milliseconds only, and
  * two processes that add at once take turns. Contents that another process stored meanwhile, or
  * that stand twice in the list, meet the uniqueness of the hash and count as known.
  *
- * A worker has a context of its own (its errors are a file's, not the call's), which asks the
- * call's context whether to go on. It knows no time limit: one would change what is stored. When
- * the call's strikes, the batch under way is given up, and what was stored before stays.
- *
  * Cost: that of the signatures. */
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "core/file.h"
 #include "core/memory.h"
-#include "core/parallel.h"
-#include "core/sha256.h"
 #include "shape/database.h"
+#include "shape/database_files.h"
 
-enum { BATCH_PER_THREAD = 4, LEAST_BATCH = 8 };
+enum { BATCH = 8 };
 
-typedef struct digest {
-    uint8_t bytes[STARG_SHA256_BYTES];
-} digest;
-
-/* What is known of one file before it is stored. */
-typedef struct description {
-    starg_status status;
-    char *message; /* why the file is refused */
-    digest hash;
-    bool known; /* stored, with all signatures */
-    size_t vertices, faces;
-    uint8_t *numbers[STARG_SIGNATURE_KINDS]; /* as they are stored */
-    size_t sizes[STARG_SIGNATURE_KINDS];
-} description;
+static const double PAUSE = 0.2; /* seconds between transactions: each waits for the disk */
 
 typedef struct adding {
+    database_files files; /* first: what the loop's functions are given */
     starg_database *database;
     starg_context *context;
-    const char *const *files;
-    size_t count;
-    digest *stored; /* ascending */
-    size_t stored_count;
-    size_t first, batch_size; /* the batch under way */
-    description *batch;
+    database_digest *stored;
+    size_t stored_files; /* how many files have been dealt with */
+    double stored_at;    /* the last of them, by starg_clock()  */
     sqlite3_stmt *insert_model, *insert_signature, *find_model;
     starg_database_report *report;
 } adding;
 
 /* ---- what is stored ---- */
-
-static int by_bytes(const void *a, const void *b) {
-    return memcmp(a, b, sizeof(digest));
-}
 
 /* How many signatures a model has that need not be made anew. */
 static starg_status prepare_stored(adding *a, sqlite3_stmt **out) {
@@ -77,11 +54,11 @@ done:
 static starg_status load_stored(adding *a) {
     starg_status status = STARG_OK;
     sqlite3_stmt *statement = NULL;
-    STARG_ARRAY(digest) list = {0};
+    STARG_ARRAY(database_digest) list = {0};
     bool row;
     STARG_TRY(prepare_stored(a, &statement));
     for (;;) {
-        digest hash;
+        database_digest hash;
         STARG_TRY(database_step(a->database, statement, &row));
         if (!row)
             break;
@@ -91,110 +68,13 @@ static starg_status load_stored(adding *a) {
         STARG_PUSH(a->context, DATABASE_STAGE, &list, hash);
     }
     if (list.count > 0)
-        qsort(list.data, list.count, sizeof *list.data, by_bytes);
+        qsort(list.data, list.count, sizeof *list.data, database_by_digest);
 done:
     sqlite3_finalize(statement);
     a->stored = list.data;
-    a->stored_count = list.count;
+    a->files.stored = list.data;
+    a->files.stored_count = list.count;
     return status;
-}
-
-/* ---- describing ---- */
-
-static bool go_on(void *user, const char *stage, double fraction) {
-    const starg_context *parent = user;
-    (void)stage, (void)fraction;
-    return !atomic_load(&parent->cancelled) && !starg_time_is_over(parent);
-}
-
-static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
-    starg_context *worker = NULL;
-    starg_context_options options;
-    (void)shared;
-    starg_context_options_default(&options);
-    options.allocator = context->allocator;
-    options.threads = 1;
-    options.seed = context->seed;
-    options.progress = go_on;
-    options.progress_user = context;
-    starg_status status = starg_context_create(&options, &worker);
-    *scratch = worker;
-    return status;
-}
-
-static void free_worker(starg_context *context, void *scratch) {
-    (void)context;
-    starg_context_free(scratch);
-}
-
-/* The least significant byte first, whatever the machine does. */
-static starg_status keep_numbers(starg_context *context, const starg_signature *from,
-                                 description *d) {
-    starg_status status = STARG_OK;
-    uint8_t *bytes = NULL;
-    STARG_NEW(context, DATABASE_STAGE, bytes, 8 * from->count);
-    for (size_t i = 0; i < from->count; i++) {
-        uint64_t bits;
-        memcpy(&bits, &from->numbers[i], sizeof bits);
-        for (size_t k = 0; k < 8; k++)
-            bytes[8 * i + k] = (uint8_t)(bits >> (8 * k));
-    }
-    d->numbers[from->kind] = bytes;
-    d->sizes[from->kind] = 8 * from->count;
-done:
-    return status;
-}
-
-static starg_status describe_mesh(starg_context *context, starg_context *worker,
-                                  const starg_mesh *mesh, description *d) {
-    starg_status status = STARG_OK;
-    starg_signature *signatures[STARG_SIGNATURE_KINDS] = {NULL};
-    d->vertices = starg_mesh_vertex_count(mesh);
-    d->faces = starg_mesh_face_count(mesh);
-    STARG_TRY(starg_signature_create_all(worker, mesh, signatures));
-    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
-        STARG_TRY(keep_numbers(context, signatures[kind], d));
-done:
-    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
-        starg_signature_free(worker, signatures[kind]);
-    return status;
-}
-
-static starg_status describe_file(const adding *a, starg_context *worker, const char *file,
-                                  description *d) {
-    starg_status status = STARG_OK;
-    starg_mesh *mesh = NULL;
-    char *bytes = NULL;
-    size_t size = 0;
-    STARG_TRY(starg_file_read(worker, DATABASE_STAGE, file, &bytes, &size));
-    starg_sha256(bytes, size, d->hash.bytes);
-    d->known = a->stored_count > 0 &&
-               bsearch(&d->hash, a->stored, a->stored_count, sizeof *a->stored, by_bytes) != NULL;
-    if (d->known)
-        goto done;
-    STARG_TRY(starg_mesh_read_memory(worker, bytes, size, file, &mesh));
-    STARG_TRY(describe_mesh(a->context, worker, mesh, d));
-done:
-    starg_mesh_free(mesh);
-    starg_release(worker, bytes);
-    return status;
-}
-
-/* A failure that is the file's is kept for the report; others end the call. */
-static starg_status describe_item(starg_context *context, void *shared, void *scratch,
-                                  size_t item) {
-    const adding *a = shared;
-    description *d = &a->batch[item];
-    const char *file = a->files[a->first + item];
-    d->status = describe_file(a, scratch, file, d);
-    if (d->status == STARG_ERROR_CANCELLED && !atomic_load(&context->cancelled))
-        d->status = STARG_ERROR_TIME;
-    if (d->status == STARG_OK || d->status == STARG_ERROR_MEMORY ||
-        d->status == STARG_ERROR_CANCELLED || d->status == STARG_ERROR_TIME)
-        return d->status;
-    const char *message = starg_context_error(scratch)->message;
-    d->message = database_copy(context, message);
-    return d->message != NULL ? STARG_OK : STARG_ERROR_MEMORY;
 }
 
 /* ---- storing ---- */
@@ -216,7 +96,7 @@ done:
 }
 
 static starg_status note(adding *a, size_t item, starg_database_outcome outcome, const char *text) {
-    starg_database_result *result = &a->report->results[a->first + item];
+    starg_database_result *result = &a->report->results[item];
     result->outcome = outcome;
     if (text == NULL)
         return STARG_OK;
@@ -225,7 +105,7 @@ static starg_status note(adding *a, size_t item, starg_database_outcome outcome,
     return result->text != NULL ? STARG_OK : starg_fail_memory(a->context, DATABASE_STAGE);
 }
 
-static starg_status store_signatures(adding *a, int64_t model, const description *d) {
+static starg_status store_signatures(adding *a, int64_t model, const database_file *d) {
     starg_status status = STARG_OK;
     sqlite3_stmt *s = a->insert_signature;
     bool row;
@@ -244,10 +124,10 @@ done:
 /* The model of this content, and whether it was there before. */
 static starg_status store_model(adding *a, size_t item, bool *is_new, int64_t *id) {
     starg_status status = STARG_OK;
-    const description *d = &a->batch[item];
+    const database_file *d = &a->files.files[item];
     sqlite3_stmt *s = a->insert_model;
     bool row;
-    sqlite3_bind_text(s, 1, a->files[a->first + item], -1, SQLITE_STATIC);
+    sqlite3_bind_text(s, 1, a->files.names[item], -1, SQLITE_STATIC);
     sqlite3_bind_blob(s, 2, d->hash.bytes, sizeof d->hash.bytes, SQLITE_STATIC);
     sqlite3_bind_int64(s, 3, (int64_t)d->vertices);
     sqlite3_bind_int64(s, 4, (int64_t)d->faces);
@@ -260,7 +140,7 @@ done:
 
 static starg_status note_known(adding *a, size_t item, int64_t *id) {
     starg_status status = STARG_OK;
-    const description *d = &a->batch[item];
+    const database_file *d = &a->files.files[item];
     bool row;
     sqlite3_bind_blob(a->find_model, 1, d->hash.bytes, sizeof d->hash.bytes, SQLITE_STATIC);
     STARG_TRY(database_step(a->database, a->find_model, &row));
@@ -273,7 +153,7 @@ done:
 }
 
 static starg_status store_item(adding *a, size_t item) {
-    const description *d = &a->batch[item];
+    const database_file *d = &a->files.files[item];
     starg_status status = STARG_OK;
     bool is_new = false;
     int64_t id;
@@ -291,12 +171,15 @@ done:
     return status;
 }
 
-static starg_status store_batch(adding *a) {
+/* In one transaction. */
+static starg_status store_until(adding *a, size_t end) {
     starg_status status = STARG_OK;
     STARG_TRY(database_begin(a->database));
-    for (size_t i = 0; i < a->batch_size; i++)
+    for (size_t i = a->stored_files; i < end; i++)
         STARG_TRY(store_item(a, i));
     STARG_TRY(database_commit(a->database));
+    for (; a->stored_files < end; a->stored_files++)
+        database_file_clear(a->context, &a->files.files[a->stored_files]);
 done:
     if (status != STARG_OK)
         database_roll_back(a->database);
@@ -305,36 +188,37 @@ done:
 
 /* ---- all of it ---- */
 
-static void clear_batch(adding *a) {
-    for (size_t i = 0; i < a->batch_size; i++) {
-        starg_release(a->context, a->batch[i].message);
-        for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
-            starg_release(a->context, a->batch[i].numbers[kind]);
-        a->batch[i] = (description){0};
-    }
+/* A starg_parallel_loop's advance. */
+static starg_status store_described(starg_context *context, void *shared, size_t described) {
+    adding *a = shared;
+    (void)context;
+    bool due = described - a->stored_files >= BATCH && starg_clock() - a->stored_at >= PAUSE;
+    if (!due && described < a->files.count)
+        return STARG_OK;
+    starg_status status = store_until(a, described);
+    a->stored_at = starg_clock();
+    return status;
 }
 
-static starg_status add_batches(adding *a, size_t most) {
+static starg_status describe_and_store(adding *a) {
     starg_status status = STARG_OK;
-    starg_progress_begin(a->context, "add");
-    for (a->first = 0; a->first < a->count; a->first += a->batch_size) {
-        a->batch_size = a->count - a->first < most ? a->count - a->first : most;
-        const starg_parallel_loop loop = {.stage = "add",
-                                          .count = a->batch_size,
-                                          .shared = a,
-                                          .item = describe_item,
-                                          .make_scratch = make_worker,
-                                          .free_scratch = free_worker,
-                                          .stop_at_deadline = true,
-                                          .before = a->first,
-                                          .whole = a->count};
-        STARG_TRY(starg_parallel_for(a->context, &loop));
-        STARG_TRY(store_batch(a));
-        clear_batch(a);
-    }
-    starg_progress_end(a->context);
+    starg_bytes job = {0};
+    const starg_parallel_remote remote = {
+        .work = RANKS_DESCRIBE, .job = &job, .most = 1, .take = database_files_take};
+    const starg_parallel_loop loop = {.stage = "add",
+                                      .count = a->files.count,
+                                      .shared = a,
+                                      .item = database_files_describe,
+                                      .make_scratch = database_files_scratch,
+                                      .free_scratch = database_files_free_scratch,
+                                      .stop_at_deadline = true,
+                                      .advance = store_described,
+                                      .remote = &remote};
+    if (a->context->ranks != NULL)
+        STARG_TRY(database_files_pack(a->context, &a->files, &job));
+    STARG_TRY(starg_parallel_for(a->context, &loop));
 done:
-    clear_batch(a);
+    STARG_ARRAY_FREE(a->context, &job);
     return status;
 }
 
@@ -350,22 +234,20 @@ starg_status starg_database_add(starg_database *database, const char *const *fil
                                 starg_database_report **out) {
     starg_context *context = database->context;
     starg_status status = STARG_OK;
-    size_t most = BATCH_PER_THREAD * (size_t)context->threads;
-    adding a = {.database = database, .context = context, .files = files, .count = count};
+    adding a = {
+        .files = {.names = files, .count = count}, .database = database, .context = context};
     *out = NULL;
     for (size_t i = 0; i < count; i++)
         if (strcmp(files[i], "-") == 0)
             return starg_fail(context, STARG_ERROR_ARGUMENT, DATABASE_STAGE,
                               "a database takes files, which have names, not standard input");
-    if (most < LEAST_BATCH)
-        most = LEAST_BATCH;
     STARG_NEW_ZERO(context, DATABASE_STAGE, a.report, 1);
     a.report->count = count;
     STARG_NEW_ZERO(context, DATABASE_STAGE, a.report->results, count);
-    STARG_NEW_ZERO(context, DATABASE_STAGE, a.batch, most);
+    STARG_NEW_ZERO(context, DATABASE_STAGE, a.files.files, count);
     STARG_TRY(load_stored(&a));
     STARG_TRY(prepare_statements(&a));
-    STARG_TRY(add_batches(&a, most));
+    STARG_TRY(describe_and_store(&a));
     count_outcomes(a.report);
     *out = a.report;
 done:
@@ -373,7 +255,9 @@ done:
     sqlite3_finalize(a.insert_signature);
     sqlite3_finalize(a.find_model);
     starg_release(context, a.stored);
-    starg_release(context, a.batch);
+    for (size_t i = a.stored_files; a.files.files != NULL && i < count; i++)
+        database_file_clear(context, &a.files.files[i]);
+    starg_release(context, a.files.files);
     if (status != STARG_OK)
         starg_database_report_free(context, a.report);
     return status;

@@ -4,22 +4,13 @@
 
 #include "core/bits.h"
 #include "core/memory.h"
-#include "core/parallel.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "visibility/scene.h"
+#include "visibility/rows.h"
 
 static const char STAGE[] = "visibility";
 
-typedef struct job {
-    const visibility_scene *scene;
-    const visibility_engine *engine;
-    const starg_visibility_options *options;
-    const double *points;
-    starg_bits *rows;
-    uint8_t *finished; /* by point; may be NULL */
-    double cosine;     /* of half the cone */
-} job;
+typedef visibility_job job;
 
 /* What one thread needs to work on a point. */
 typedef struct worker {
@@ -209,6 +200,47 @@ static const visibility_engine *choose_engine(const starg_visibility_options *op
                                                                 : engines[options->engine];
 }
 
+starg_status visibility_scene_for(starg_context *context, const starg_solid *solid,
+                                  const starg_visibility_options *options, size_t count,
+                                  visibility_scene **out) {
+    starg_status status = scene_create(context, solid, out);
+    if (status == STARG_OK && options->engine >= STARG_VISIBILITY_CONTOURS &&
+        count > 1) /* one does not pay for it */
+        status = scene_add_net(*out);
+    return status;
+}
+
+starg_status visibility_fill(starg_context *context, const visibility_job *of,
+                             const starg_parallel_remote *remote) {
+    job all = *of;
+    all.engine = choose_engine(of->options);
+    all.cosine = starg_cone_cosine(of->options->cone);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = of->count,
+                                      .shared = &all,
+                                      .item = find_row,
+                                      .make_scratch = make_worker,
+                                      .free_scratch = free_worker,
+                                      .stop_at_deadline = true,
+                                      .remote = remote};
+    return starg_parallel_for(context, &loop);
+}
+
+/* With the help of other processes where there are any, and enough to do for them. */
+static starg_status fill_shared(starg_context *context, const job *all) {
+    starg_status status = STARG_OK;
+    starg_bytes packed = {0};
+    const starg_parallel_remote remote = {
+        .work = RANKS_VISIBILITY, .job = &packed, .take = visibility_take};
+    if (!visibility_is_shared(context, all))
+        return visibility_fill(context, all, NULL);
+    STARG_TRY(visibility_pack(context, all, &packed));
+    STARG_TRY(visibility_fill(context, all, &remote));
+done:
+    STARG_ARRAY_FREE(context, &packed);
+    return status;
+}
+
 starg_status visibility_rows(starg_context *context, const starg_solid *solid, const double *points,
                              size_t count, const starg_visibility_options *options,
                              uint8_t *finished, starg_bits **out) {
@@ -222,22 +254,17 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
         options = &defaults;
     STARG_TRY(check_arguments(context, points, count, options));
     STARG_TRY(check_cone(context, count, options));
-    STARG_TRY(scene_create(context, solid, &scene));
-    if (options->engine >= STARG_VISIBILITY_CONTOURS && count > 1) /* one does not pay for it */
-        STARG_TRY(scene_add_net(scene));
+    STARG_TRY(visibility_scene_for(context, solid, options, count, &scene));
     size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                               : solid->mesh->face_count;
     STARG_TRY(starg_bits_create(context, count, columns, &rows));
-    job all = {scene,    choose_engine(options),          options, points, rows,
-               finished, starg_cone_cosine(options->cone)};
-    starg_parallel_loop loop = {.stage = STAGE,
-                                .count = count,
-                                .shared = &all,
-                                .item = find_row,
-                                .make_scratch = make_worker,
-                                .free_scratch = free_worker,
-                                .stop_at_deadline = true};
-    status = starg_parallel_for(context, &loop);
+    const job all = {.scene = scene,
+                     .options = options,
+                     .points = points,
+                     .count = count,
+                     .rows = rows,
+                     .finished = finished};
+    status = fill_shared(context, &all);
     if (status == STARG_ERROR_TIME && finished != NULL)
         status = STARG_OK;
     STARG_TRY(status);

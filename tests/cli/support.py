@@ -60,9 +60,9 @@ class Case(unittest.TestCase):
     def names(self):
         return sorted(os.listdir(self.folder))
 
-    def start(self, *words, **options):
+    def start(self, *words, launcher=(), **options):
         environment = dict(os.environ, **options.pop("environment", {}))
-        return subprocess.Popen([PROGRAM, *words], cwd=self.folder, env=environment,
+        return subprocess.Popen([*launcher, PROGRAM, *words], cwd=self.folder, env=environment,
                                 stdin=options.pop("stdin", subprocess.DEVNULL),
                                 stdout=options.pop("stdout", subprocess.PIPE),
                                 stderr=options.pop("stderr", subprocess.PIPE), **options)

@@ -308,7 +308,9 @@ static void propose(const divider *d, int sort, double out[3]) {
         normalize(out);
     } else if (sort == 1) {
         double between[3];
-        vec3_subtract(random_place(d)->at, random_place(d)->at, between);
+        /* one after the other: compilers evaluate arguments in orders of their own */
+        const double *from = random_place(d)->at, *to = random_place(d)->at;
+        vec3_subtract(to, from, between);
         if (vec3_length(between) > 1e-9) {
             vec3_copy(between, out);
             normalize(out);

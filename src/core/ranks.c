@@ -1,0 +1,77 @@
+#include "core/ranks.h"
+
+static const char STAGE[] = "ranks";
+
+void starg_context_set_ranks(starg_context *context, const starg_ranks *ranks) {
+    context->ranks = ranks != NULL && ranks->count > 1 && ranks->rank == 0 ? ranks : NULL;
+}
+
+double starg_context_shared_seconds(const starg_context *context) {
+    return context->shared_seconds;
+}
+
+uint64_t starg_context_helped_items(const starg_context *context) {
+    return context->helped_items;
+}
+
+static starg_status fail_lost(starg_context *context) {
+    return starg_fail(context, STARG_ERROR_RANK, STAGE,
+                      "the way to another process of this run is broken");
+}
+
+starg_status ranks_send(starg_context *context, const starg_ranks *ranks, int to,
+                        const ranks_message *head, const void *rest, size_t size) {
+    starg_status status = STARG_OK;
+    starg_bytes message = {0};
+    STARG_TRY(starg_bytes_put(context, &message, head, 1, sizeof *head));
+    STARG_TRY(starg_bytes_put(context, &message, rest, size, 1));
+    if (!ranks->send(ranks->user, to, message.data, message.count))
+        status = fail_lost(context);
+done:
+    STARG_ARRAY_FREE(context, &message);
+    return status;
+}
+
+starg_status ranks_receive(starg_context *context, const starg_ranks *ranks, double seconds,
+                           int *from, ranks_message *head, starg_bytes_reader *rest, void **bytes) {
+    starg_status status = STARG_OK;
+    uint8_t *block = NULL;
+    size_t size;
+    *bytes = NULL;
+    if (!ranks->wait(ranks->user, seconds, from, &size))
+        return fail_lost(context);
+    if (*from < 0)
+        return STARG_OK;
+    STARG_NEW(context, STAGE, block, size);
+    *rest = (starg_bytes_reader){block, size};
+    if (*from >= ranks->count || !ranks->receive(ranks->user, *from, block, size) ||
+        !starg_bytes_take(rest, head, 1, sizeof *head)) {
+        status = fail_lost(context);
+        goto done;
+    }
+    *bytes = block;
+done:
+    if (status != STARG_OK)
+        starg_release(context, block);
+    return status;
+}
+
+/* What else a helper has sent, which nobody waits for any more, is taken, lest it waits for that.
+ */
+starg_status starg_ranks_release(starg_context *context, const starg_ranks *ranks) {
+    starg_status status = STARG_OK;
+    const ranks_message end = {.kind = RANKS_END};
+    for (int to = 1; to < ranks->count; to++)
+        STARG_TRY(ranks_send(context, ranks, to, &end, NULL, 0));
+    for (int gone = 1; gone < ranks->count;) {
+        void *bytes;
+        int from;
+        ranks_message head;
+        starg_bytes_reader rest;
+        STARG_TRY(ranks_receive(context, ranks, 1, &from, &head, &rest, &bytes));
+        gone += bytes != NULL && head.kind == RANKS_END;
+        starg_release(context, bytes);
+    }
+done:
+    return status;
+}

@@ -1,0 +1,98 @@
+/* A helper's life: it takes jobs, works on blocks of them and answers, until it is sent home
+ * (core/ranks.h). The work itself is done where it is done without helpers: each kind has a table
+ * of functions in its own folder. */
+#include "core/ranks.h"
+
+#include "shape/database_files.h"
+#include "visibility/rows.h"
+
+static const double PATIENCE = 0.05; /* until a cancellation is seen */
+
+typedef struct helper {
+    starg_context *context;
+    const starg_ranks *ranks;
+    const ranks_work *work; /* of the job at hand, NULL before the first */
+    void *state;
+    starg_status begun; /* the job's own status */
+    uint64_t loop;
+    bool released;
+} helper;
+
+static const ranks_work *const works[RANKS_WORKS] = {
+    [RANKS_VISIBILITY] = &visibility_ranks_work,
+    [RANKS_DESCRIBE] = &database_ranks_work,
+};
+
+static void end_job(helper *h) {
+    if (h->work != NULL)
+        h->work->end(h->context, h->state);
+    h->work = NULL;
+    h->state = NULL;
+}
+
+static void begin_job(helper *h, const ranks_message *head, starg_bytes_reader *rest) {
+    end_job(h);
+    h->loop = head->loop;
+    h->begun = STARG_ERROR_RANK;
+    if (head->work >= RANKS_WORKS)
+        return;
+    h->context->seed = head->seed;
+    starg_context_set_time_limit(h->context, head->seconds);
+    h->work = works[head->work];
+    h->begun = h->work->begin(h->context, rest, &h->state);
+}
+
+static starg_status work_on_block(helper *h, const ranks_message *head) {
+    starg_status status = h->begun;
+    ranks_message answer = *head;
+    starg_bytes reply = {0};
+    if (head->loop != h->loop || h->work == NULL)
+        status = STARG_ERROR_RANK;
+    if (status == STARG_OK)
+        status = h->work->run(h->context, h->state, head->first, head->count, &reply);
+    answer.kind = RANKS_REPLY;
+    answer.status = status;
+    if (status != STARG_ERROR_CANCELLED)
+        status = ranks_send(h->context, h->ranks, 0, &answer, reply.data, reply.count);
+    STARG_ARRAY_FREE(h->context, &reply);
+    return status;
+}
+
+static starg_status leave(helper *h, const ranks_message *head) {
+    h->released = true;
+    if (head->kind != RANKS_END)
+        return STARG_ERROR_RANK;
+    return ranks_send(h->context, h->ranks, 0, head, NULL, 0);
+}
+
+static starg_status take_message(helper *h) {
+    starg_status status = STARG_OK;
+    void *bytes = NULL;
+    int from;
+    ranks_message head;
+    starg_bytes_reader rest;
+    STARG_TRY(ranks_receive(h->context, h->ranks, PATIENCE, &from, &head, &rest, &bytes));
+    if (bytes == NULL)
+        goto done;
+    if (head.kind == RANKS_JOB)
+        begin_job(h, &head, &rest);
+    else if (head.kind == RANKS_BLOCK)
+        status = work_on_block(h, &head);
+    else
+        status = leave(h, &head);
+done:
+    starg_release(h->context, bytes);
+    return status;
+}
+
+starg_status starg_ranks_serve(starg_context *context, const starg_ranks *ranks) {
+    starg_status status = STARG_OK;
+    helper h = {.context = context, .ranks = ranks};
+    while (!h.released) {
+        STARG_TRY(starg_check_cancel(context, "ranks"));
+        STARG_TRY(take_message(&h));
+    }
+done:
+    end_job(&h);
+    return status;
+}

@@ -1,0 +1,118 @@
+/* Describing files that are to be added to a database: read, hash, and make all signatures, unless
+ * the content is stored already.
+ *
+ * A worker has a context of its own (its errors are a file's, not the call's), which asks the
+ * call's context whether to go on. It knows no time limit: one would change what is stored.
+ *
+ * Cost: that of the signatures. */
+#include "shape/database_files.h"
+
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "shape/database.h"
+
+int database_by_digest(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(database_digest));
+}
+
+void database_file_clear(starg_context *context, database_file *file) {
+    starg_release(context, file->message);
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
+        starg_release(context, file->numbers[kind]);
+    *file = (database_file){0};
+}
+
+static bool go_on(void *user, const char *stage, double fraction) {
+    const starg_context *parent = user;
+    (void)stage, (void)fraction;
+    return !atomic_load(&parent->cancelled) && !starg_time_is_over(parent);
+}
+
+starg_status database_files_scratch(starg_context *context, void *shared, void **scratch) {
+    starg_context *worker = NULL;
+    starg_context_options options;
+    (void)shared;
+    starg_context_options_default(&options);
+    options.allocator = context->allocator;
+    options.threads = 1;
+    options.seed = context->seed;
+    options.progress = go_on;
+    options.progress_user = context;
+    starg_status status = starg_context_create(&options, &worker);
+    *scratch = worker;
+    return status;
+}
+
+void database_files_free_scratch(starg_context *context, void *scratch) {
+    (void)context;
+    starg_context_free(scratch);
+}
+
+/* The least significant byte first, whatever the machine does. */
+static starg_status keep_numbers(starg_context *context, const starg_signature *from,
+                                 database_file *d) {
+    starg_status status = STARG_OK;
+    uint8_t *bytes = NULL;
+    STARG_NEW(context, DATABASE_STAGE, bytes, 8 * from->count);
+    for (size_t i = 0; i < from->count; i++) {
+        uint64_t bits;
+        memcpy(&bits, &from->numbers[i], sizeof bits);
+        for (size_t k = 0; k < 8; k++)
+            bytes[8 * i + k] = (uint8_t)(bits >> (8 * k));
+    }
+    d->numbers[from->kind] = bytes;
+    d->sizes[from->kind] = 8 * from->count;
+done:
+    return status;
+}
+
+static starg_status describe_mesh(starg_context *context, starg_context *worker,
+                                  const starg_mesh *mesh, database_file *d) {
+    starg_status status = STARG_OK;
+    starg_signature *signatures[STARG_SIGNATURE_KINDS] = {NULL};
+    d->vertices = starg_mesh_vertex_count(mesh);
+    d->faces = starg_mesh_face_count(mesh);
+    STARG_TRY(starg_signature_create_all(worker, mesh, signatures));
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
+        STARG_TRY(keep_numbers(context, signatures[kind], d));
+done:
+    for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++)
+        starg_signature_free(worker, signatures[kind]);
+    return status;
+}
+
+static starg_status describe_file(starg_context *context, const database_files *all,
+                                  starg_context *worker, const char *name, database_file *d) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    char *bytes = NULL;
+    size_t size = 0;
+    STARG_TRY(starg_file_read(worker, DATABASE_STAGE, name, &bytes, &size));
+    starg_sha256(bytes, size, d->hash.bytes);
+    d->known = all->stored_count > 0 && bsearch(&d->hash, all->stored, all->stored_count,
+                                                sizeof *all->stored, database_by_digest) != NULL;
+    if (d->known)
+        goto done;
+    STARG_TRY(starg_mesh_read_memory(worker, bytes, size, name, &mesh));
+    STARG_TRY(describe_mesh(context, worker, mesh, d));
+done:
+    starg_mesh_free(mesh);
+    starg_release(worker, bytes);
+    return status;
+}
+
+starg_status database_files_describe(starg_context *context, void *shared, void *scratch,
+                                     size_t item) {
+    const database_files *all = shared;
+    database_file *d = &all->files[item];
+    starg_status status = describe_file(context, all, scratch, all->names[item], d);
+    if (status == STARG_ERROR_CANCELLED && !atomic_load(&context->cancelled))
+        return STARG_ERROR_TIME;
+    if (status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED)
+        return status;
+    const char *message = starg_context_error(scratch)->message;
+    d->message = database_copy(context, message);
+    return d->message != NULL ? STARG_OK : STARG_ERROR_MEMORY;
+}

@@ -1,0 +1,183 @@
+/* Visibility rows that other processes make.
+ *
+ * A job is the solid, as it is after the check, with all points and the options; so helpers read no
+ * file, examine nothing again, and take levels of detail, which stand in no file, like any other
+ * model. A reply is the rows of a block, and which of them were finished. The bits of a row depend
+ * on nothing else, so it does not matter who makes it.
+ *
+ * Cost: once for each helper 36 bytes a face or so, and its search structures; a bit per column a
+ * row. */
+#include "core/bits.h"
+#include "visibility/rows.h"
+
+static const char STAGE[] = "visibility";
+
+/* Faces times points below which the search structures of a helper cost more than it brings. */
+enum { LEAST_WORK = 1 << 22 };
+
+/* The fixed part of a job. */
+typedef struct job_head {
+    uint64_t points, vertices, faces;
+    double range, cone, diagonal;
+    uint32_t engine, target, face_rule, embedded;
+} job_head;
+
+typedef struct remote_job {
+    starg_solid *solid;
+    visibility_scene *scene;
+    starg_visibility_options options;
+    double *points, *directions;
+    size_t count;
+} remote_job;
+
+/* ---- rank 0 ---- */
+
+bool visibility_is_shared(starg_context *context, const visibility_job *job) {
+    return context->ranks != NULL && job->count > 1 &&
+           job->scene->face_count >= LEAST_WORK / job->count;
+}
+
+starg_status visibility_pack(starg_context *context, const visibility_job *job, starg_bytes *out) {
+    starg_status status = STARG_OK;
+    const starg_solid *solid = job->scene->solid;
+    const starg_mesh *mesh = solid->mesh;
+    const starg_visibility_options *o = job->options;
+    const job_head head = {.points = job->count,
+                           .vertices = mesh->vertex_count,
+                           .faces = mesh->face_count,
+                           .range = o->range,
+                           .cone = o->cone,
+                           .diagonal = solid->check->diagonal,
+                           .engine = o->engine,
+                           .target = o->target,
+                           .face_rule = o->face_rule,
+                           .embedded = solid->check->embedded};
+    STARG_TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
+    STARG_TRY(starg_bytes_put(context, out, mesh->vertices, 3 * mesh->vertex_count, 8));
+    STARG_TRY(starg_bytes_put(context, out, mesh->faces, 3 * mesh->face_count, 4));
+    STARG_TRY(starg_bytes_put(context, out, job->points, 3 * job->count, 8));
+    if (o->cone < 360)
+        STARG_TRY(starg_bytes_put(context, out, o->directions, 3 * job->count, 8));
+done:
+    return status;
+}
+
+starg_status visibility_take(starg_context *context, void *shared, size_t first, size_t count,
+                             starg_bytes_reader *reply) {
+    starg_status status = STARG_OK;
+    const visibility_job *job = shared;
+    uint8_t *finished = NULL;
+    if (count * job->rows->words * sizeof(uint64_t) + count != reply->left)
+        return STARG_ERROR_RANK;
+    STARG_NEW(context, STAGE, finished, count);
+    starg_bytes_take(reply, finished, count, 1);
+    if (job->finished != NULL)
+        memcpy(job->finished + first, finished, count);
+    starg_bytes_take(reply, starg_bits_row_mutable(job->rows, first), count * job->rows->words,
+                     sizeof(uint64_t));
+done:
+    starg_release(context, finished);
+    return status;
+}
+
+/* ---- helpers ---- */
+
+static void end(starg_context *context, void *state) {
+    remote_job *job = state;
+    if (job == NULL)
+        return;
+    scene_free(job->scene);
+    starg_solid_free(job->solid);
+    starg_release(context, job->points);
+    starg_release(context, job->directions);
+    starg_release(context, job);
+}
+
+static starg_status take_solid(starg_context *context, starg_bytes_reader *bytes,
+                               const job_head *head, starg_solid **out) {
+    starg_status status = STARG_OK;
+    void *vertices = NULL, *faces = NULL;
+    STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head->vertices, 8, &vertices));
+    STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head->faces, 4, &faces));
+    const starg_check check = {.usable = true,
+                               .embedded = head->embedded,
+                               .diagonal = head->diagonal,
+                               .vertices = head->vertices,
+                               .faces = head->faces};
+    STARG_TRY(solid_of_parts(context, vertices, head->vertices, faces, head->faces, &check, out));
+done:
+    starg_release(context, vertices);
+    starg_release(context, faces);
+    return status;
+}
+
+/* Is it a job? Counts that are too high for what follows are met there. */
+static bool is_sound(const job_head *head, size_t left) {
+    return head->points <= left / 24 && head->vertices <= left / 24 && head->faces <= left / 12 &&
+           head->engine <= STARG_VISIBILITY_FASTEST && head->target <= STARG_TARGET_VERTICES &&
+           head->face_rule <= STARG_FACES_WHOLE && head->cone > 0 && head->range >= 0;
+}
+
+static starg_status begin(starg_context *context, starg_bytes_reader *bytes, void **state) {
+    starg_status status = STARG_OK;
+    remote_job *job = NULL;
+    job_head head;
+    void *points, *directions;
+    *state = NULL;
+    STARG_NEW_ZERO(context, STAGE, job, 1);
+    *state = job;
+    if (!starg_bytes_take(bytes, &head, 1, sizeof head) || !is_sound(&head, bytes->left))
+        return STARG_ERROR_RANK;
+    STARG_TRY(take_solid(context, bytes, &head, &job->solid));
+    STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &points));
+    job->points = points;
+    if (head.cone < 360) {
+        STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &directions));
+        job->directions = directions;
+    }
+    job->count = head.points;
+    job->options = (starg_visibility_options){.engine = (starg_visibility_engine)head.engine,
+                                              .target = (starg_target)head.target,
+                                              .face_rule = (starg_face_rule)head.face_rule,
+                                              .range = head.range,
+                                              .cone = head.cone};
+    STARG_TRY(visibility_scene_for(context, job->solid, &job->options, job->count, &job->scene));
+done:
+    return status;
+}
+
+static starg_status run(starg_context *context, void *state, size_t first, size_t count,
+                        starg_bytes *reply) {
+    starg_status status = STARG_OK, filled;
+    const remote_job *all = state;
+    starg_visibility_options options = all->options;
+    starg_bits *rows = NULL;
+    uint8_t *finished = NULL;
+    const starg_mesh *mesh = all->solid->mesh;
+    size_t columns =
+        options.target == STARG_TARGET_VERTICES ? mesh->vertex_count : mesh->face_count;
+    if (count > all->count || first > all->count - count)
+        return STARG_ERROR_RANK;
+    if (all->directions != NULL)
+        options.directions = all->directions + 3 * first;
+    STARG_TRY(starg_bits_create(context, count, columns, &rows));
+    STARG_NEW_ZERO(context, STAGE, finished, count);
+    const visibility_job job = {.scene = all->scene,
+                                .options = &options,
+                                .points = all->points + 3 * first,
+                                .count = count,
+                                .rows = rows,
+                                .finished = finished};
+    filled = visibility_fill(context, &job, NULL);
+    if (filled != STARG_ERROR_TIME)
+        STARG_TRY(filled);
+    STARG_TRY(starg_bytes_put(context, reply, finished, count, 1));
+    STARG_TRY(starg_bytes_put(context, reply, rows->data, count * rows->words, sizeof *rows->data));
+    status = filled;
+done:
+    starg_release(context, finished);
+    starg_bits_free(rows);
+    return status;
+}
+
+const ranks_work visibility_ranks_work = {begin, run, end};
