@@ -17,7 +17,10 @@
 #include "star/strict/cone.h"
 #include "star/strict/improve.h"
 
-enum { SEARCHES = 6 };
+enum {
+    SEARCHES = 6,
+    IDLE_MOST = 2 /* searches in a row that bring nothing: then no more */
+};
 
 static starg_status collect_guards(const partition *p, double **guards) {
     starg_status status = STARG_OK;
@@ -112,6 +115,7 @@ typedef struct searches {
     uint64_t trials_left;
     size_t enough;
     uint64_t count; /* searches so far */
+    int idle;       /* of them, since the last that was better */
     bool time_limited;
 } searches;
 
@@ -128,7 +132,7 @@ static starg_status run_search(searches *s, partition *p) {
 
 /* Two pieces are as few as can be when one was not enough. */
 static bool may_search_again(const searches *s, const partition *p) {
-    return s->count < SEARCHES && s->trials_left > 0 && !s->time_limited &&
+    return s->count < SEARCHES && s->idle < IDLE_MOST && s->trials_left > 0 && !s->time_limited &&
            p->pieces.count > (s->enough > 2 ? s->enough : 2);
 }
 
@@ -140,6 +144,7 @@ static starg_status search_again(searches *s, partition *p, partition *other) {
         STARG_TRY(start_by_planes(s->mesh, s->count, other, &done));
     if (done) {
         STARG_TRY(run_search(s, other));
+        s->idle = other->pieces.count < p->pieces.count ? 0 : s->idle + 1;
         keep_better(p, other);
     } else {
         s->count = SEARCHES;
