@@ -16,7 +16,7 @@
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "consistent pieces";
-static const double DENSITY = 8; /* tetrahedra per vertex to begin with */
+static const double DENSITY = 1; /* tetrahedra per vertex to begin with */
 
 /* ---- ends ---- */
 
