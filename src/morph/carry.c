@@ -32,8 +32,9 @@ static const char STAGE[] = "carry tetrahedra";
 
 enum {
     SWEEPS = 40,  /* over the vertices in question, in a step            */
-    PATIENCE = 8, /* sweeps without fewer inverted tetrahedra            */
-    ROUNDS = 12,  /* of splitting                                        */
+    PATIENCE = 4, /* sweeps without fewer inverted tetrahedra            */
+    ROUNDS = 4,   /* of splitting                                        */
+    GROWTH = 2,   /* tetrahedra for each at the beginning, at most, before a round */
     ROW = 5       /* of a linear program: normal, factor of room, offset */
 };
 static const double LONGEST_STEP = 0x1p-3, SHORTEST_STEP = 0x1p-8;
@@ -356,10 +357,12 @@ starg_status carry(const starg_morph *m, carried *c, size_t *inverted, double *r
     starg_status status = STARG_OK;
     walk w = {.m = m, .c = c};
     double step = LONGEST_STEP;
+    size_t most;
     int rounds = 0;
     *reached = 0;
     STARG_NEW(c->context, STAGE, w.frame, 3 * m->mesh->vertex_count);
     STARG_TRY(split(&w, true));
+    most = GROWTH * tetrahedron_count(c);
     while (*reached < 1) {
         STARG_TRY(predict(&w, fmin(1, *reached + step)));
         STARG_TRY(mend(&w, inverted));
@@ -369,7 +372,7 @@ starg_status carry(const starg_morph *m, carried *c, size_t *inverted, double *r
             step = fmin(LONGEST_STEP, 2 * step);
         } else if (step > SHORTEST_STEP) {
             step /= 2;
-        } else if (rounds++ < ROUNDS) {
+        } else if (rounds++ < ROUNDS && tetrahedron_count(c) <= most) {
             STARG_TRY(split(&w, false));
             step = LONGEST_STEP / 2;
         } else {

@@ -53,8 +53,8 @@ class Morph(Case):
     @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
     def test_pieces(self):
         """The same pieces of both solids, and both files verify."""
-        self.run_text("sample", "cat", "--vertices", "400", "-o", "a.off")
-        self.run_text("sample", "cat", "--vertices", "400", "--pose", "1", "-o", "b.off")
+        self.run_text("sample", "cat", "--vertices", "500", "-o", "a.off")
+        self.run_text("sample", "cat", "--vertices", "500", "--pose", "1", "-o", "b.off")
         report = self.run_json("morph", "a.off", "b.off", "--frames", "2", "-o", "out", "--pieces")
         told = [json.loads(self.read(f"out/pieces_{end}.json")) for end in "ab"]
         for end, model in zip("ab", ("a.off", "b.off")):

@@ -11,7 +11,7 @@
 #include "starguard/morph.h"
 #include "starguard/sample.h"
 
-enum { VERTICES = 400 };
+enum { VERTICES = 500 };
 
 static bool has_tetgen(void) {
     bool found = system("command -v tetgen >/dev/null 2>&1") == 0;
@@ -148,7 +148,8 @@ static void test_refused(void **state) {
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
-    starg_mesh *a = test_sample_mesh(context, "sphere", VERTICES);
+    shape s = shape_cube(3);
+    starg_mesh *a = test_mesh_of(context, &s);
     const double *v = starg_mesh_vertices(a);
     size_t size = 3 * starg_mesh_vertex_count(a);
     double *images = malloc(size * sizeof *images);
@@ -158,7 +159,7 @@ static void test_refused(void **state) {
     expect(context, a, images, "turn over");
     memcpy(images, v, size * sizeof *images);
     for (size_t k = 0; k < 3; k++) /* one vertex through the other side */
-        images[k] = -2 * v[k];
+        images[k] = 4 + 0.3 * (double)k;
     expect(context, a, images, "B in A's connectivity meets itself");
     starg_mesh *crossed;
     test_ok(context, starg_mesh_create(context, images, size / 3, starg_mesh_faces(a),
@@ -166,6 +167,7 @@ static void test_refused(void **state) {
     expect(context, crossed, v, "A meets itself");
     starg_mesh_free(crossed);
     starg_mesh_free(a);
+    shape_free(&s);
     free(images);
     test_context_free(context);
 }
