@@ -12,7 +12,7 @@
 typedef struct values {
     const char *output, *map, *landmarks, *glb, *picture;
     uint64_t frames, candidates;
-    int method;
+    int method, up;
     bool guards, pieces;
 } values;
 
@@ -21,6 +21,9 @@ static const double SECONDS = 2; /* of an animation */
 
 /* In the order of starg_morph_method. */
 static const char *const methods[] = {"star", "arap", "linear", "spherical", NULL};
+
+/* In the order of starg_picture_options.up. */
+static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off and so on; it is made if it is not there."),
@@ -38,6 +41,7 @@ static const cli_option options[] = {
                     "The frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Draw five moments by the methods star, arap and linear, a row each."),
+    CLI_CHOICE_OPTION("up", up, axes, "x|y|z", "The axis that points up in --picture. Default y."),
     CLI_FLAG_OPTION(
         "guards", guards,
         "Write guards_a.json and guards_b.json into DIR as well, guards of A and of the "
@@ -54,9 +58,13 @@ static const cli_option options[] = {
 
 static void set_defaults(void *data) {
     starg_morph_options library;
+    starg_picture_options picture;
     starg_morph_options_default(&library);
-    *(values *)data =
-        (values){.frames = 21, .candidates = library.candidates, .method = (int)library.method};
+    starg_picture_options_default(&picture);
+    *(values *)data = (values){.frames = 21,
+                               .candidates = library.candidates,
+                               .method = (int)library.method,
+                               .up = picture.up};
 }
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -378,6 +386,7 @@ static starg_status write_picture(cli_session *session, const values *v, const s
     picture.width = TILE_WIDTH;
     picture.height = TILE_HEIGHT;
     picture.opacity = 1;
+    picture.up = v->up;
     for (size_t i = 0; i < ROWS * SHEET_COLUMNS; i++)
         shown[i] = meshes[i];
     CLI_TRY(starg_picture_sheet_write(session->context, shown, ROWS, SHEET_COLUMNS, &picture,
@@ -475,8 +484,9 @@ const cli_command cli_command_morph = {
     .description =
         "Writes frames that lead from A to B in A's connectivity: the first is A, the last one B. "
         "With the method star, guards are placed in both shapes so that each pair of them sees "
-        "corresponding pieces; pieces turn and stretch about their guards, and what rigid motion "
-        "cannot explain is added evenly. For each frame the faces that pass through one another "
+        "corresponding pieces; pieces turn and stretch about their guards, what rigid motion "
+        "cannot explain is added evenly, and folds of the map come last. For each frame the faces "
+        "that pass through one another "
         "and the drift of the volume are told.",
     .examples = "# two poses of one model\n"
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames\n"
@@ -484,6 +494,9 @@ const cli_command cli_command_morph = {
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames --guards\n"
                 "starguard verify horse_0.off frames/guards_a.json\n"
                 "starguard verify horse_1.off frames/guards_b.json\n"
+                "# both solids in the same star-shaped pieces\n"
+                "starguard morph horse_0.off horse_1.off --frames 21 -o frames --pieces\n"
+                "starguard verify horse_1.off frames/pieces_b.vtk frames/pieces_b.json\n"
                 "# two animals by a map of landmarks, and the plain method to compare with\n"
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json\n"
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o frames\n"
