@@ -8,11 +8,11 @@
  * discrete harmonic extension of the surface's displacement (one sparse factor for all steps); then
  * those of tetrahedra that are inverted or thin go one after the other to where they are farthest
  * from the planes of the faces about them, a linear program [Freitag, Plassmann 2000], until none
- * is inverted. If some stay so, the step is halved; if it is too short for that, edges of the
- * tetrahedra in question are split (split.c), which gives room, and the walk goes on.
+ * is inverted. If some stay so, the step is halved, until it is too short: then it cannot be done.
  *
- * Before it begins, edges inside that have both ends on the surface are split: they leave no
- * freedom where the surface bends.
+ * Before the first step edges inside that have both ends on the surface are split (split.c): they
+ * leave no freedom where the surface bends. More room than that was never needed where the surface
+ * did not pass through itself on the way.
  *
  * Invariant: at every moment reached all tetrahedra are positive, exactly.
  * Cost: for a step a frame, three solutions and some sweeps over the tetrahedra. */
@@ -33,15 +33,13 @@ static const char STAGE[] = "carry tetrahedra";
 enum {
     SWEEPS = 40,  /* over the vertices in question, in a step            */
     PATIENCE = 4, /* sweeps without fewer inverted tetrahedra            */
-    ROUNDS = 4,   /* of splitting                                        */
-    GROWTH = 2,   /* tetrahedra for each at the beginning, at most, before a round */
     ROW = 5       /* of a linear program: normal, factor of room, offset */
 };
 static const double LONGEST_STEP = 0x1p-3, SHORTEST_STEP = 0x1p-8;
 static const double THIN = 0.03; /* least height over longest edge that is left as it is */
 static const double FAR = 4;     /* how far a vertex may go, in units of its surroundings */
 
-/* What depends on which tetrahedra there are, and what a step needs. */
+/* What a step needs. */
 typedef struct walk {
     const starg_morph *m;
     carried *c;
@@ -52,28 +50,17 @@ typedef struct walk {
     double *next;    /* x 3 per vertex: places after the step */
     double *sides;   /* inner + inner: a right-hand side, and room to solve it */
     uint8_t *marked; /* per inner vertex */
-    uint8_t *bad;    /* per tetrahedron: inverted */
     STARG_ARRAY(double) rows;
     STARG_ARRAY(uint32_t) order;
 } walk;
 
-static void forget(walk *w) {
+static void walk_free(walk *w) {
     starg_context *context = w->c->context;
-    void *const blocks[] = {w->first, w->about, w->next, w->sides, w->marked, w->bad};
+    void *const blocks[] = {w->first, w->about,  w->frame,     w->next,
+                            w->sides, w->marked, w->rows.data, w->order.data};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(context, blocks[i]);
-    w->first = w->about = NULL;
-    w->next = w->sides = NULL;
-    w->marked = w->bad = NULL;
     cholesky_free(w->system);
-    w->system = NULL;
-}
-
-static void walk_free(walk *w) {
-    forget(w);
-    starg_release(w->c->context, w->frame);
-    STARG_ARRAY_FREE(w->c->context, &w->rows);
-    STARG_ARRAY_FREE(w->c->context, &w->order);
 }
 
 /* ---- tetrahedra ---- */
@@ -153,16 +140,14 @@ done:
     return status;
 }
 
-/* Everything anew for the tetrahedra as they are. */
 static starg_status prepare(walk *w) {
     starg_status status = STARG_OK;
     const carried *c = w->c;
-    forget(w);
     w->inner = c->rest.count / 3 - c->fixed;
+    STARG_NEW(c->context, STAGE, w->frame, 3 * w->m->mesh->vertex_count);
     STARG_NEW(c->context, STAGE, w->next, c->rest.count);
     STARG_NEW(c->context, STAGE, w->sides, 2 * w->inner);
     STARG_NEW(c->context, STAGE, w->marked, w->inner);
-    STARG_NEW(c->context, STAGE, w->bad, tetrahedron_count(c));
     STARG_TRY(list_about(w));
     if (w->inner > 0)
         STARG_TRY(make_system(w));
@@ -265,9 +250,9 @@ static size_t examine(walk *w) {
     size_t inverted = 0;
     memset(w->marked, 0, w->inner);
     for (size_t t = 0; t < tetrahedron_count(c); t++) {
-        w->bad[t] = !is_positive(c, w->next, t);
-        inverted += w->bad[t];
-        if (!w->bad[t] && !is_thin(c, w->next, t))
+        bool positive = is_positive(c, w->next, t);
+        inverted += !positive;
+        if (positive && !is_thin(c, w->next, t))
             continue;
         for (size_t k = 0; k < 4; k++)
             if (c->tetrahedra.data[4 * t + k] >= c->fixed)
@@ -296,11 +281,11 @@ done:
     return status;
 }
 
-/* ---- splitting ---- */
+/* ---- chords ---- */
 
 typedef STARG_ARRAY(carried_edge) edge_list;
 
-static starg_status surface_edges(const walk *w, edge_list *out) {
+static starg_status find_surface_edges(const walk *w, edge_list *out) {
     starg_status status = STARG_OK;
     const starg_mesh *mesh = w->m->mesh;
     uint32_t *own = NULL; /* of the mesh's vertices their numbers here */
@@ -318,19 +303,15 @@ done:
     return status;
 }
 
-/* Edges inside: of all tetrahedra those with both ends on the surface, or, of the inverted ones,
- * those with one end on it. */
-static starg_status wanted_edges(const walk *w, const edge_list *surface, bool chords,
-                                 edge_list *out) {
+/* Edges inside that have both ends on the surface. */
+static starg_status find_chords(const walk *w, const edge_list *surface, edge_list *out) {
     starg_status status = STARG_OK;
     const carried *c = w->c;
     for (size_t i = 0; i < 6 * tetrahedron_count(c); i++) {
         uint32_t a = c->tetrahedra.data[4 * (i / 6) + (size_t)CARRIED_EDGES[i % 6][0]];
         uint32_t b = c->tetrahedra.data[4 * (i / 6) + (size_t)CARRIED_EDGES[i % 6][1]];
-        bool wanted =
-            chords ? a < c->fixed && b < c->fixed : w->bad[i / 6] && (a < c->fixed || b < c->fixed);
         carried_edge edge = carried_edge_of(a, b);
-        if (wanted && !carried_edge_in(surface->data, surface->count, edge))
+        if (a < c->fixed && b < c->fixed && !carried_edge_in(surface->data, surface->count, edge))
             STARG_PUSH(c->context, STAGE, out, edge);
     }
     carried_edges_sort(out->data, &out->count);
@@ -338,16 +319,15 @@ done:
     return status;
 }
 
-static starg_status split(walk *w, bool chords) {
+static starg_status split_chords(const walk *w) {
     starg_status status = STARG_OK;
-    edge_list surface = {0}, wanted = {0};
-    STARG_TRY(surface_edges(w, &surface));
-    STARG_TRY(wanted_edges(w, &surface, chords, &wanted));
-    STARG_TRY(carried_split(w->c, wanted.data, wanted.count));
-    STARG_TRY(prepare(w));
+    edge_list surface = {0}, chords = {0};
+    STARG_TRY(find_surface_edges(w, &surface));
+    STARG_TRY(find_chords(w, &surface, &chords));
+    STARG_TRY(carried_split(w->c, chords.data, chords.count));
 done:
     STARG_ARRAY_FREE(w->c->context, &surface);
-    STARG_ARRAY_FREE(w->c->context, &wanted);
+    STARG_ARRAY_FREE(w->c->context, &chords);
     return status;
 }
 
@@ -357,26 +337,18 @@ starg_status carry(const starg_morph *m, carried *c, size_t *inverted, double *r
     starg_status status = STARG_OK;
     walk w = {.m = m, .c = c};
     double step = LONGEST_STEP;
-    size_t most;
-    int rounds = 0;
     *reached = 0;
-    STARG_NEW(c->context, STAGE, w.frame, 3 * m->mesh->vertex_count);
-    STARG_TRY(split(&w, true));
-    most = GROWTH * tetrahedron_count(c);
-    while (*reached < 1) {
+    STARG_TRY(split_chords(&w));
+    STARG_TRY(prepare(&w));
+    while (*reached < 1 && step >= SHORTEST_STEP) {
         STARG_TRY(predict(&w, fmin(1, *reached + step)));
         STARG_TRY(mend(&w, inverted));
         if (*inverted == 0) {
             *reached = fmin(1, *reached + step);
             memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);
             step = fmin(LONGEST_STEP, 2 * step);
-        } else if (step > SHORTEST_STEP) {
-            step /= 2;
-        } else if (rounds++ < ROUNDS && tetrahedron_count(c) <= most) {
-            STARG_TRY(split(&w, false));
-            step = LONGEST_STEP / 2;
         } else {
-            break;
+            step /= 2;
         }
     }
 done:

@@ -142,6 +142,41 @@ static void expect(starg_context *context, const starg_mesh *a, const double *im
     starg_morph_free(morph);
 }
 
+/* A beam that is bent by 172 degrees and by 206; the straight way to that leads through itself. */
+static void test_bent(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    char cells[2 * 2 * 16];
+    memset(cells, '#', sizeof cells);
+    shape s = shape_cells(cells, 2, 2, 16);
+    starg_mesh *a = test_mesh_of(context, &s);
+    double *images = malloc(3 * starg_mesh_vertex_count(a) * sizeof *images);
+    assert_non_null(images);
+    for (int i = 0; i < 2; i++) {
+        double angle = 3 + 0.6 * i;
+        for (size_t v = 0; v < starg_mesh_vertex_count(a); v++) {
+            const double *p = starg_mesh_vertices(a) + 3 * v;
+            double radius = 16 / angle - p[0] + 1, turn = angle * p[2] / 16;
+            images[3 * v] = -radius * cos(turn);
+            images[3 * v + 1] = p[1];
+            images[3 * v + 2] = radius * sin(turn);
+        }
+        starg_morph *morph = morph_to(context, a, images, STARG_MORPH_STAR);
+        starg_decomposition *out[2];
+        test_ok(context, starg_morph_solids(morph, out));
+        check(context, out, a, images);
+        free_both(context, out);
+        starg_morph_free(morph);
+    }
+    expect(context, a, images, "turn over");
+    starg_mesh_free(a);
+    shape_free(&s);
+    free(images);
+    test_context_free(context);
+}
+
 /* An end that meets itself; a mirror image, whose tetrahedra would have to turn over. */
 static void test_refused(void **state) {
     (void)state;
@@ -204,7 +239,7 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_poses), cmocka_unit_test(test_convex),
-                                       cmocka_unit_test(test_refused),
+                                       cmocka_unit_test(test_bent), cmocka_unit_test(test_refused),
                                        cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
