@@ -240,12 +240,20 @@ static char *in_folder(const values *v, const char *name) {
     return path;
 }
 
-/* B is the model itself where it has A's faces, else the last frame. NULL when memory is out. */
+/* A map that keeps vertices may still be one of surfaces whose faces differ here and there. */
+static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
+    size_t count = starg_mesh_face_count(a);
+    return starg_mesh_face_count(b) == count &&
+           starg_mesh_vertex_count(a) == starg_mesh_vertex_count(b) &&
+           memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
+}
+
+/* B is the model itself where it is the last frame, else that frame. NULL when memory is out. */
 static char *model_of(const cli_session *session, const values *v, const subject *s, int end) {
     char frame[32];
     snprintf(frame, sizeof frame, "frame_%04llu.off", (unsigned long long)(v->frames - 1));
-    return end == 1 && s->map->kind != STARG_MAP_SAME ? in_folder(v, frame)
-                                                      : strdup(session->operands[end]);
+    bool given = s->map->kind == STARG_MAP_SAME && has_same_faces(session->mesh, s->target);
+    return end == 1 && !given ? in_folder(v, frame) : strdup(session->operands[end]);
 }
 
 /* ---- guards ---- */
