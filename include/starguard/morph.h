@@ -140,7 +140,7 @@ STARG_API starg_status starg_morph_guards_separate(const starg_morph *morph, int
  * piece strictly star-shaped in A (out[0]) and in the images (out[1]). A is filled by TetGen, and
  * the frames of the morph take the tetrahedra along. Free both with starg_decomposition_free.
  * Errors: MESH (an end that meets itself, or tetrahedra that cannot be kept positive on the way:
- * how many, and where), SOLVER (no TetGen), MEMORY, CANCELLED. */
+ * how many, and where), SOLVER (no TetGen), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_morph_solids(const starg_morph *morph, starg_decomposition *out[2]);
 
 /* What a frame is like. */

@@ -207,6 +207,25 @@ static void test_refused(void **state) {
     test_context_free(context);
 }
 
+static void test_time(void **state) {
+    (void)state;
+    if (!has_tetgen())
+        skip();
+    starg_context *context = test_context(1);
+    starg_mesh *a = pose_of(context, "cat", 0), *b = pose_of(context, "cat", 1);
+    starg_morph *morph = morph_to(context, a, starg_mesh_vertices(b), STARG_MORPH_LINEAR);
+    starg_decomposition *out[2];
+    starg_context_set_time_limit(context, 1e-6);
+    assert_int_equal(starg_morph_solids(morph, out), STARG_ERROR_TIME);
+    assert_null(out[0]);
+    assert_null(out[1]);
+    starg_context_set_time_limit(context, 0);
+    starg_morph_free(morph);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    test_context_free(context);
+}
+
 static void test_memory(void **state) {
     (void)state;
     starg_status status = STARG_ERROR_MEMORY;
@@ -239,7 +258,7 @@ static void test_memory(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_poses), cmocka_unit_test(test_convex),
-                                       cmocka_unit_test(test_bent), cmocka_unit_test(test_refused),
-                                       cmocka_unit_test(test_memory)};
+                                       cmocka_unit_test(test_bent),  cmocka_unit_test(test_refused),
+                                       cmocka_unit_test(test_time),  cmocka_unit_test(test_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
