@@ -12,8 +12,8 @@
 typedef struct values {
     const char *output, *map, *landmarks, *glb, *picture;
     uint64_t frames, candidates;
-    int method;
-    bool guards;
+    int method, up;
+    bool guards, pieces;
 } values;
 
 enum { SHEET_COLUMNS = 5, TILE_WIDTH = 480, TILE_HEIGHT = 360 };
@@ -21,6 +21,9 @@ static const double SECONDS = 2; /* of an animation */
 
 /* In the order of starg_morph_method. */
 static const char *const methods[] = {"star", "arap", "linear", "spherical", NULL};
+
+/* In the order of starg_picture_options.up. */
+static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off and so on; it is made if it is not there."),
@@ -38,20 +41,30 @@ static const cli_option options[] = {
                     "The frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Draw five moments by the methods star, arap and linear, a row each."),
+    CLI_CHOICE_OPTION("up", up, axes, "x|y|z", "The axis that points up in --picture. Default y."),
     CLI_FLAG_OPTION(
         "guards", guards,
         "Write guards_a.json and guards_b.json into DIR as well, guards of A and of the "
         "last frame that correspond one by one, and tell how many each shape alone "
         "would need (star and spherical)."),
+    CLI_FLAG_OPTION(
+        "pieces", pieces,
+        "Cut both solids into the same star-shaped pieces and write pieces_a.vtk, pieces_a.json, "
+        "pieces_b.vtk and pieces_b.json into DIR as well, for A and for the last frame. Neither "
+        "may intersect itself; needs TetGen."),
     CLI_COUNT_OPTION("candidates", candidates, "N", 1, 100000,
                      "About how many places are tried for guards. Default 1,000."),
 };
 
 static void set_defaults(void *data) {
     starg_morph_options library;
+    starg_picture_options picture;
     starg_morph_options_default(&library);
-    *(values *)data =
-        (values){.frames = 21, .candidates = library.candidates, .method = (int)library.method};
+    starg_picture_options_default(&picture);
+    *(values *)data = (values){.frames = 21,
+                               .candidates = library.candidates,
+                               .method = (int)library.method,
+                               .up = picture.up};
 }
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -216,6 +229,33 @@ done:
     return status;
 }
 
+/* ---- results of both ends ---- */
+
+/* A file in the folder of the frames; NULL when memory is out. */
+static char *in_folder(const values *v, const char *name) {
+    size_t size = strlen(v->output) + strlen(name) + 2;
+    char *path = malloc(size);
+    if (path != NULL)
+        snprintf(path, size, "%s/%s", v->output, name);
+    return path;
+}
+
+/* A map that keeps vertices may still be one of surfaces whose faces differ here and there. */
+static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
+    size_t count = starg_mesh_face_count(a);
+    return starg_mesh_face_count(b) == count &&
+           starg_mesh_vertex_count(a) == starg_mesh_vertex_count(b) &&
+           memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
+}
+
+/* B is the model itself where it is the last frame, else that frame. NULL when memory is out. */
+static char *model_of(const cli_session *session, const values *v, const subject *s, int end) {
+    char frame[32];
+    snprintf(frame, sizeof frame, "frame_%04llu.off", (unsigned long long)(v->frames - 1));
+    bool given = s->map->kind == STARG_MAP_SAME && has_same_faces(session->mesh, s->target);
+    return end == 1 && !given ? in_folder(v, frame) : strdup(session->operands[end]);
+}
+
 /* ---- guards ---- */
 
 /* How many guards each end would need alone, with the proven bounds. */
@@ -223,22 +263,22 @@ typedef struct separate {
     size_t count[2], bound[2];
 } separate;
 
-/* B is the model itself where it has A's faces, else the last frame. */
+/* What --guards and --pieces have found; nothing without. */
+typedef struct extras {
+    separate alone;
+    starg_decomposition *pieces[2];
+} extras;
+
 static starg_status write_end(cli_session *session, const values *v, const subject *s,
                               const starg_morph *morph, int end) {
     starg_status status = STARG_OK;
     starg_guards *guards = NULL;
-    size_t size = strlen(v->output) + 64;
-    char *name = malloc(size), *frame = malloc(size);
-    const char *model = session->operands[end];
-    if (name == NULL || frame == NULL) {
+    char *name = in_folder(v, end == 0 ? "guards_a.json" : "guards_b.json");
+    char *model = model_of(session, v, s, end);
+    if (name == NULL || model == NULL) {
         status = cli_fail_memory(session);
         goto done;
     }
-    snprintf(name, size, "%s/guards_%c.json", v->output, end == 0 ? 'a' : 'b');
-    snprintf(frame, size, "%s/frame_%04llu.off", v->output, (unsigned long long)(v->frames - 1));
-    if (end == 1 && s->map->kind != STARG_MAP_SAME)
-        model = frame;
     CLI_TRY(starg_morph_guards_result(morph, end, &guards));
     CLI_TRY(cli_announce(session, name));
     CLI_TRY(starg_guards_write(session->context, guards, model,
@@ -246,7 +286,7 @@ static starg_status write_end(cli_session *session, const values *v, const subje
 done:
     starg_guards_free(session->context, guards);
     free(name);
-    free(frame);
+    free(model);
     return status;
 }
 
@@ -272,6 +312,49 @@ static json_t *separate_json(cli_session *session, const separate *found) {
                    json_pack("{s:I, s:I}", "guards", (json_int_t)found->count[end], "lower_bound",
                              (json_int_t)found->bound[end]));
     return list;
+}
+
+/* ---- pieces ---- */
+
+static starg_status write_pieces_of(cli_session *session, const values *v, const subject *s,
+                                    const starg_decomposition *pieces, int end) {
+    starg_status status = STARG_OK;
+    char *grid = in_folder(v, end == 0 ? "pieces_a.vtk" : "pieces_b.vtk");
+    char *told = in_folder(v, end == 0 ? "pieces_a.json" : "pieces_b.json");
+    char *model = model_of(session, v, s, end);
+    if (grid == NULL || told == NULL || model == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    CLI_TRY(cli_announce(session, grid));
+    CLI_TRY(cli_announce(session, told));
+    CLI_TRY(starg_decomposition_write(session->context, pieces,
+                                      cli_outputs_place(&session->outputs, grid), false));
+    CLI_TRY(starg_decomposition_write_report(session->context, pieces, model,
+                                             cli_outputs_place(&session->outputs, told)));
+done:
+    free(grid);
+    free(told);
+    free(model);
+    return status;
+}
+
+static starg_status write_pieces(cli_session *session, const values *v, const subject *s,
+                                 const starg_morph *morph, starg_decomposition *pieces[2]) {
+    starg_status status = STARG_OK;
+    CLI_TRY(starg_morph_solids(morph, pieces));
+    for (int end = 0; end < 2; end++)
+        CLI_TRY(write_pieces_of(session, v, s, pieces[end], end));
+done:
+    return status;
+}
+
+static json_t *pieces_json(const starg_decomposition *const pieces[2]) {
+    return json_pack("{s:I, s:I, s:[I, I], s:[f, f]}", "count", (json_int_t)pieces[0]->piece_count,
+                     "tetrahedra", (json_int_t)starg_tetmesh_count(pieces[0]->mesh),
+                     "strictly_star", (json_int_t)pieces[0]->strictly_star,
+                     (json_int_t)pieces[1]->strictly_star, "flattest", pieces[0]->flattest,
+                     pieces[1]->flattest);
 }
 
 /* ---- picture ---- */
@@ -311,6 +394,7 @@ static starg_status write_picture(cli_session *session, const values *v, const s
     picture.width = TILE_WIDTH;
     picture.height = TILE_HEIGHT;
     picture.opacity = 1;
+    picture.up = v->up;
     for (size_t i = 0; i < ROWS * SHEET_COLUMNS; i++)
         shown[i] = meshes[i];
     CLI_TRY(starg_picture_sheet_write(session->context, shown, ROWS, SHEET_COLUMNS, &picture,
@@ -332,7 +416,7 @@ static json_t *guards_json(cli_session *session, const starg_morph *morph, int e
 }
 
 static void report_morph(cli_session *session, const values *v, const starg_morph *morph,
-                         const separate *alone, json_t *frames) {
+                         const extras *found, json_t *frames) {
     json_t *report = session->report;
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
@@ -342,12 +426,16 @@ static void report_morph(cli_session *session, const values *v, const starg_morp
     cli_put(session, report, "unguarded_faces",
             json_integer((json_int_t)starg_morph_unguarded(morph)));
     if (v->guards)
-        cli_put(session, report, "separate", separate_json(session, alone));
+        cli_put(session, report, "separate", separate_json(session, &found->alone));
+    if (v->pieces)
+        cli_put(session, report, "pieces",
+                pieces_json((const starg_decomposition *const *)found->pieces));
     cli_put(session, report, "frames", json_incref(frames));
 }
 
 static void say_morph(cli_session *session, const values *v, const starg_morph *morph,
-                      const separate *alone, const totals *sum) {
+                      const extras *found, const totals *sum) {
+    const separate *alone = &found->alone;
     cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
     if (starg_morph_guard_count(morph) > 0)
         cli_say(session, "guards        %zu in each shape\n", starg_morph_guard_count(morph));
@@ -355,6 +443,9 @@ static void say_morph(cli_session *session, const values *v, const starg_morph *
         cli_say(session,
                 "alone         %zu guards for A (at least %zu), %zu for B (at least %zu)\n",
                 alone->count[0], alone->bound[0], alone->count[1], alone->bound[1]);
+    if (v->pieces)
+        cli_say(session, "pieces        %zu, star-shaped in both solids (proven)\n",
+                found->pieces[0]->piece_count);
     cli_say(session, "intersecting  %zu pairs of faces, at most %zu in a frame\n",
             sum->intersections, sum->most_intersections);
     cli_say(session, "folded        %zu faces\n", sum->inverted);
@@ -367,7 +458,7 @@ static starg_status run(cli_session *session, void *data) {
     subject s = {0};
     starg_morph *morph = NULL;
     totals sum = {0};
-    separate alone = {0};
+    extras found = {0};
     const starg_morph_options wanted = {.method = (starg_morph_method)v->method,
                                         .candidates = (size_t)v->candidates};
     json_t *frames = json_array();
@@ -375,16 +466,20 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(starg_morph_create(session->context, session->mesh, s.images, &wanted, &morph));
     CLI_TRY(write_frames(session, v, morph, frames, &sum));
     if (v->guards)
-        CLI_TRY(write_guards(session, v, &s, morph, &alone));
+        CLI_TRY(write_guards(session, v, &s, morph, &found.alone));
+    if (v->pieces)
+        CLI_TRY(write_pieces(session, v, &s, morph, found.pieces));
     if (v->glb != NULL)
         CLI_TRY(write_animation(session, v, morph));
     if (v->picture != NULL)
         CLI_TRY(write_picture(session, v, &s));
-    say_morph(session, v, morph, &alone, &sum);
+    say_morph(session, v, morph, &found, &sum);
     if (session->report != NULL)
-        report_morph(session, v, morph, &alone, frames);
+        report_morph(session, v, morph, &found, frames);
 done:
     json_decref(frames);
+    for (int end = 0; end < 2; end++)
+        starg_decomposition_free(session->context, found.pieces[end]);
     starg_morph_free(morph);
     subject_free(session, &s);
     return status;
@@ -397,8 +492,9 @@ const cli_command cli_command_morph = {
     .description =
         "Writes frames that lead from A to B in A's connectivity: the first is A, the last one B. "
         "With the method star, guards are placed in both shapes so that each pair of them sees "
-        "corresponding pieces; pieces turn and stretch about their guards, and what rigid motion "
-        "cannot explain is added evenly. For each frame the faces that pass through one another "
+        "corresponding pieces; pieces turn and stretch about their guards, what rigid motion "
+        "cannot explain is added evenly, and folds of the map come last. For each frame the faces "
+        "that pass through one another "
         "and the drift of the volume are told.",
     .examples = "# two poses of one model\n"
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames\n"
@@ -406,6 +502,9 @@ const cli_command cli_command_morph = {
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames --guards\n"
                 "starguard verify horse_0.off frames/guards_a.json\n"
                 "starguard verify horse_1.off frames/guards_b.json\n"
+                "# both solids in the same star-shaped pieces\n"
+                "starguard morph horse_0.off horse_1.off --frames 21 -o frames --pieces\n"
+                "starguard verify horse_1.off frames/pieces_b.vtk frames/pieces_b.json\n"
                 "# two animals by a map of landmarks, and the plain method to compare with\n"
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json\n"
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o frames\n"

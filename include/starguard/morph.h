@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "decompose.h"
 #include "guard.h"
 #include "mesh.h"
 
@@ -134,6 +135,13 @@ STARG_API starg_status starg_morph_guards_result(const starg_morph *morph, int e
  * candidate sees there. Errors: as above. */
 STARG_API starg_status starg_morph_guards_separate(const starg_morph *morph, int end,
                                                    starg_guards **out);
+
+/* Cuts both ends, as solids, into the same pieces: the same tetrahedra with the same labels, each
+ * piece strictly star-shaped in A (out[0]) and in the images (out[1]). A is filled by TetGen, and
+ * the frames of the morph take the tetrahedra along. Free both with starg_decomposition_free.
+ * Errors: MESH (an end that meets itself, or tetrahedra that cannot be kept positive on the way:
+ * how many, and where), SOLVER (no TetGen), MEMORY, CANCELLED, TIME. */
+STARG_API starg_status starg_morph_solids(const starg_morph *morph, starg_decomposition *out[2]);
 
 /* What a frame is like. */
 typedef struct starg_frame_measures {

@@ -31,6 +31,14 @@ static void making_free(starg_context *context, making *m) {
         starg_release(context, blocks[i]);
 }
 
+matrix_entry *matrix_put_link(uint32_t a, uint32_t b, double w, matrix_entry *next) {
+    *next++ = (matrix_entry){a, a, w};
+    *next++ = (matrix_entry){b, b, w};
+    *next++ = (matrix_entry){a, b, -w};
+    *next++ = (matrix_entry){b, a, -w};
+    return next;
+}
+
 void cholesky_free(cholesky *c) {
     if (c == NULL)
         return;

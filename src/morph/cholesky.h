@@ -14,6 +14,10 @@ typedef struct matrix_entry {
     double value;
 } matrix_entry;
 
+/* Writes the quadratic form of w (x_a - x_b)^2, LINK_ENTRIES entries; the place behind them. */
+enum { LINK_ENTRIES = 4 };
+matrix_entry *matrix_put_link(uint32_t a, uint32_t b, double w, matrix_entry *next);
+
 /* Factorises a positive definite matrix of `size` rows. Errors: SOLVER, MEMORY. */
 starg_status cholesky_create(starg_context *context, size_t size, const matrix_entry *entries,
                              size_t count, cholesky **out);

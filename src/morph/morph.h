@@ -10,6 +10,9 @@
 /* Branch-and-bound nodes for guards. */
 enum { MORPH_COVER_NODES = 2000 };
 
+/* Entries of starg_morph.weights for a face. */
+enum { FACE_WEIGHTS = 4 };
+
 /* How a face gets from A to B about a reference: A(t) = R0(t) R(t) ((1 - t) I + t S), with
  * R0(t) = exp(t w0) for all faces and R(t) = exp(t w). */
 typedef struct face_path {
@@ -45,6 +48,9 @@ struct starg_morph {
     uint32_t *component;     /* per unknown a name of its connected part             */
     cholesky *system;
     double *remainder; /* vertex_count x 3: what the least squares leave at 1  */
+    double *late;      /* the part of it that comes last; NULL: none           */
+    size_t fold_count; /* folded faces (star)                                  */
+    uint8_t *folded;   /* per face; NULL for other methods                     */
 
     size_t guard_count, unguarded;
     size_t candidate_count, lower_bound; /* of the common problem */
@@ -67,6 +73,13 @@ double morph_size(const starg_morph *m, double t);
 
 /* Finds the whole's and the faces' paths (face_paths.c). */
 starg_status morph_prepare_faces(starg_morph *m);
+
+/* Finds the folded faces and gives them the paths of what is around them (folds.c). */
+starg_status morph_fill_folds(starg_morph *m);
+
+/* Parts the remainder of the least squares, and adds what has come in at t (remainder.c). */
+starg_status morph_part_remainder(starg_morph *m);
+void morph_add_remainder(const starg_morph *m, double t, double *out);
 
 /* Factorises the system and finds the remainder; shapes at t, scaled (rigid.c). */
 starg_status morph_prepare_rigid(starg_morph *m);

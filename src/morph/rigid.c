@@ -2,14 +2,15 @@
  *
  * Energy: for each face with the wanted Jacobian A(t), its cotangents times the squared errors of
  * its three edges, which is the error of its Jacobian within its plane, weighted by area; with
- * guards, for faces that theirs see, also the error along the direction from the guard to the
- * face's middle c, weighted by the face's area over the square of that distance: the middle less
- * the guard shall be A(t) (c - g). Guards are unknowns as vertices are; links of the guarding graph
- * want their offsets (see guard_paths.c), each with the weight of one cotangent.
+ * guards, for faces that theirs see and that are not folded, also the error along the direction
+ * from the guard to the face's middle c, weighted by the face's area over the square of that
+ * distance: the middle less the guard shall be A(t) (c - g). Guards are unknowns as vertices are;
+ * links of the guarding graph want their offsets (see guard_paths.c), each with the weight of one
+ * cotangent.
  *
  * The matrix does not depend on t: it is factorised once. It knows differences only; one unknown of
  * each connected part is held, and the part is then moved so that its mean goes straight.
- * What is missing to B at t = 1 is added in proportion to t: the non-rigid part of [YL11].
+ * What is missing to B at t = 1, the non-rigid part of [YL11], is added (remainder.c).
  *
  * Cost of a frame: O(faces) and three solutions with the factor. */
 #include <math.h>
@@ -24,7 +25,7 @@
 static const char STAGE[] = "morph";
 static const double LEAST_AREA = 1e-10; /* of a face, to the square of its longest edge */
 static const double LINK = 1;           /* weight of a link of two guards */
-enum { LINK_ENTRIES = 4, FACE_ENTRIES = 3 * LINK_ENTRIES + 16, WEIGHTS = 4 };
+enum { FACE_ENTRIES = 3 * LINK_ENTRIES + 16 };
 
 /* ---- system ---- */
 
@@ -37,7 +38,7 @@ static void middle_of(const double *positions, const uint32_t corner[3], double 
 
 /* Half the cotangents of the corners, which make a positive form for any area above 0, and the
  * anchor's weight. A face in one point has none. */
-static void weigh_face(const starg_morph *m, size_t face, double weights[WEIGHTS]) {
+static void weigh_face(const starg_morph *m, size_t face, double weights[FACE_WEIGHTS]) {
     const uint32_t *corner = m->mesh->faces + 3 * face;
     double e[3][3], n[3], longest = 0;
     for (int k = 0; k < 3; k++) {
@@ -47,12 +48,12 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[WEIGHTS
     }
     vec3_cross(e[0], e[1], n);
     double area = fmax(0.5 * vec3_length(n), LEAST_AREA * longest);
-    memset(weights, 0, WEIGHTS * sizeof *weights);
+    memset(weights, 0, FACE_WEIGHTS * sizeof *weights);
     if (!(area > 0))
         return;
     for (int k = 0; k < 3; k++)
         weights[k] = -vec3_dot(e[(k + 1) % 3], e[(k + 2) % 3]) / (4 * area);
-    if (m->method != STARG_MORPH_STAR || !m->guarded[face])
+    if (m->method != STARG_MORPH_STAR || !m->guarded[face] || m->folded[face])
         return;
     double middle[3];
     middle_of(m->mesh->vertices, corner, middle);
@@ -60,16 +61,7 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[WEIGHTS
     weights[3] = area / fmax(d, area);
 }
 
-/* The quadratic form of w (x_a - x_b)^2. */
-static matrix_entry *put_link(uint32_t a, uint32_t b, double w, matrix_entry *next) {
-    *next++ = (matrix_entry){a, a, w};
-    *next++ = (matrix_entry){b, b, w};
-    *next++ = (matrix_entry){a, b, -w};
-    *next++ = (matrix_entry){b, a, -w};
-    return next;
-}
-
-/* That of w (x_0 / 3 + x_1 / 3 + x_2 / 3 - x_3)^2. */
+/* The quadratic form of w (x_0 / 3 + x_1 / 3 + x_2 / 3 - x_3)^2. */
 static matrix_entry *put_anchor(const uint32_t unknowns[4], double w, matrix_entry *next) {
     static const double factors[4] = {1.0 / 3, 1.0 / 3, 1.0 / 3, -1};
     for (int i = 0; i < 4; i++)
@@ -85,9 +77,9 @@ static uint32_t guard_unknown(const starg_morph *m, uint32_t guard) {
 
 static matrix_entry *put_face(const starg_morph *m, size_t face, matrix_entry *next) {
     const uint32_t *corner = m->mesh->faces + 3 * face;
-    const double *weights = m->weights + WEIGHTS * face;
+    const double *weights = m->weights + FACE_WEIGHTS * face;
     for (size_t k = 0; k < 3; k++)
-        next = put_link(corner[(k + 1) % 3], corner[(k + 2) % 3], weights[k], next);
+        next = matrix_put_link(corner[(k + 1) % 3], corner[(k + 2) % 3], weights[k], next);
     if (m->method != STARG_MORPH_STAR)
         return next;
     const uint32_t unknowns[4] = {corner[0], corner[1], corner[2],
@@ -98,8 +90,8 @@ static matrix_entry *put_face(const starg_morph *m, size_t face, matrix_entry *n
 static matrix_entry *put_guards(const starg_morph *m, matrix_entry *next) {
     for (uint32_t i = 0; i < m->linked; i++)
         if (m->guard_paths[i].parent != i)
-            next = put_link(guard_unknown(m, i), guard_unknown(m, m->guard_paths[i].parent), LINK,
-                            next);
+            next = matrix_put_link(guard_unknown(m, i), guard_unknown(m, m->guard_paths[i].parent),
+                                   LINK, next);
     return next;
 }
 
@@ -124,11 +116,11 @@ static starg_status make_system(starg_morph *m) {
     m->linked = m->method == STARG_MORPH_STAR ? m->guard_count : 0;
     m->unknowns = m->mesh->vertex_count + m->linked;
     most = FACE_ENTRIES * faces + LINK_ENTRIES * m->linked + m->unknowns;
-    STARG_NEW(m->context, STAGE, m->weights, WEIGHTS * faces);
+    STARG_NEW(m->context, STAGE, m->weights, FACE_WEIGHTS * faces);
     STARG_NEW(m->context, STAGE, entries, most);
     next = entries;
     for (size_t f = 0; f < faces; f++) {
-        weigh_face(m, f, m->weights + WEIGHTS * f);
+        weigh_face(m, f, m->weights + FACE_WEIGHTS * f);
         next = put_face(m, f, next);
     }
     next = put_guards(m, next);
@@ -172,7 +164,7 @@ static void add_face(const starg_morph *m, size_t face, const double whole[9], d
                      const sides *s) {
     const face_path *path = &m->faces[face];
     const uint32_t *corner = m->mesh->faces + 3 * face;
-    const double *weights = m->weights + WEIGHTS * face;
+    const double *weights = m->weights + FACE_WEIGHTS * face;
     double turn[9], d[3];
     turn_at(path->rotation, whole, t, turn);
     for (int k = 0; k < 3; k++) {
@@ -264,6 +256,7 @@ starg_status morph_prepare_rigid(starg_morph *m) {
     STARG_TRY(rigid_part(m, 1, m->remainder));
     for (size_t i = 0; i < size; i++)
         m->remainder[i] = m->images[i] - m->remainder[i];
+    STARG_TRY(morph_part_remainder(m));
 done:
     return status;
 }
@@ -271,8 +264,7 @@ done:
 starg_status morph_frame_rigid(const starg_morph *m, double t, double *out) {
     starg_status status = STARG_OK;
     STARG_TRY(rigid_part(m, t, out));
-    for (size_t i = 0; i < 3 * m->mesh->vertex_count; i++)
-        out[i] += t * m->remainder[i];
+    morph_add_remainder(m, t, out);
 done:
     return status;
 }

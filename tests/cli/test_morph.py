@@ -1,7 +1,9 @@
 """map and morph: the contract, and wrong use of both."""
 import json
 import os
+import shutil
 import struct
+import unittest
 
 import support
 from support import Case, OPEN, TETRAHEDRON
@@ -47,6 +49,26 @@ class Morph(Case):
         report = self.run_json("morph", "cat0.off", "cat1.off", "--frames", "2", "-o", "plain")
         self.assertNotIn("separate", report)
         self.assertNotIn("guards_a.json", os.listdir(self.path("plain")))
+
+    @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
+    def test_pieces(self):
+        """The same pieces of both solids, and both files verify."""
+        self.run_text("sample", "cat", "--vertices", "500", "-o", "a.off")
+        self.run_text("sample", "cat", "--vertices", "500", "--pose", "1", "-o", "b.off")
+        report = self.run_json("morph", "a.off", "b.off", "--frames", "2", "-o", "out", "--pieces")
+        told = [json.loads(self.read(f"out/pieces_{end}.json")) for end in "ab"]
+        for end, model in zip("ab", ("a.off", "b.off")):
+            self.run_text("verify", model, f"out/pieces_{end}.vtk", f"out/pieces_{end}.json")
+        self.assertEqual([t["strictly_star"] for t in told], report["pieces"]["strictly_star"])
+        self.assertEqual([len(t["pieces"]) for t in told], 2 * [report["pieces"]["count"]])
+        labels = [self.read(f"out/pieces_{end}.vtk").split(b"LOOKUP_TABLE")[1] for end in "ab"]
+        self.assertEqual(*labels)
+        lines = self.read("a.off").decode().split("\n")
+        lines[2] = "9 9 9"
+        self.write("crossed.off", "\n".join(lines))
+        _, err = self.run_text("morph", "a.off", "crossed.off", "--frames", "2", "-o", "none",
+                               "--pieces", status=2)
+        self.assertIn("B in A's connectivity meets itself", err)
 
     def test_threads(self):
         for threads in "1", "3":

@@ -9,6 +9,10 @@
  * g, a tetrahedron is added when all neighbours that it depends on are in. The set's winding number
  * about g is the number of its tetrahedra that hold g: one.
  *
+ * With a twin, the same tetrahedra in other places, a guard is a pair of points and a dependency of
+ * either is one of the pair: sets are then star-shaped in both. The counterpart of a point is where
+ * its tetrahedron takes it.
+ *
  * Stages: the whole is a component; for each component, one guard if its kernel has an interior (a
  * linear program); else the best of several guards that start in random tetrahedra and climb, by
  * the volume that they claim; what is left falls into components, and so on.
@@ -49,14 +53,20 @@ typedef struct grower {
     index_list set;
 } grower;
 
+/* A point of the mesh, and its counterpart in the twin. */
+typedef struct guard_pair {
+    double at[2][3];
+} guard_pair;
+
 typedef struct climber {
-    double guard[3], volume;
+    guard_pair guard;
+    double volume;
     uint32_t at; /* tetrahedron that holds the guard */
 } climber;
 
 typedef struct claimer {
     starg_context *context;
-    const starg_tetmesh *mesh;
+    const starg_tetmesh *mesh, *twin; /* no twin: NULL */
     double *volumes;
     uint32_t *labels;   /* claimed pieces; UNCLAIMED */
     uint32_t *region;   /* per tetrahedron: the component that it belonged to last */
@@ -79,15 +89,20 @@ static bool looks_away(const starg_tetmesh *mesh, size_t t, int face, const doub
                     tetmesh_corner(mesh, t, k[2]), g) > 0;
 }
 
+static bool pair_looks_away(const claimer *c, size_t t, int face, const guard_pair *g) {
+    return looks_away(c->mesh, t, face, g->at[0]) &&
+           (c->twin == NULL || looks_away(c->twin, t, face, g->at[1]));
+}
+
 static bool is_free(const claimer *c, uint32_t t) {
     return t != STARG_TETMESH_NONE && c->labels[t] == UNCLAIMED;
 }
 
 /* Neighbours that t depends on for g; 0xfe if one of them can never be in. */
-static uint8_t count_dependencies(const claimer *c, uint32_t t, const double g[3]) {
+static uint8_t count_dependencies(const claimer *c, uint32_t t, const guard_pair *g) {
     uint8_t count = 0;
     for (int face = 0; face < 4; face++) {
-        if (looks_away(c->mesh, t, face, g))
+        if (pair_looks_away(c, t, face, g))
             continue;
         if (!is_free(c, c->mesh->neighbours[4 * (size_t)t + (size_t)face]))
             return 0xfe;
@@ -106,7 +121,7 @@ done:
 }
 
 /* u depends on a tetrahedron that was added: it waits for one less. */
-static starg_status reach(const claimer *c, grower *grow, uint32_t u, const double g[3],
+static starg_status reach(const claimer *c, grower *grow, uint32_t u, const guard_pair *g,
                           double *volume) {
     if (grow->epoch[u] != grow->now) {
         grow->epoch[u] = grow->now;
@@ -118,7 +133,7 @@ static starg_status reach(const claimer *c, grower *grow, uint32_t u, const doub
 }
 
 /* Grows what g claims from tetrahedron t, which holds it strictly inside. */
-static starg_status claim(const claimer *c, grower *grow, uint32_t t, const double g[3],
+static starg_status claim(const claimer *c, grower *grow, uint32_t t, const guard_pair *g,
                           double *volume) {
     starg_status status = STARG_OK;
     grow->now++;
@@ -131,7 +146,7 @@ static starg_status claim(const claimer *c, grower *grow, uint32_t t, const doub
         for (int face = 0; face < 4; face++) {
             /* where g is strictly inside of this face, it is strictly outside of it for u */
             uint32_t u = c->mesh->neighbours[4 * (size_t)s + (size_t)face];
-            if (is_free(c, u) && looks_away(c->mesh, s, face, g))
+            if (is_free(c, u) && pair_looks_away(c, s, face, g))
                 STARG_TRY(reach(c, grow, u, g, volume));
         }
     }
@@ -155,6 +170,28 @@ static bool holds(const starg_tetmesh *mesh, uint32_t t, const double g[3]) {
         if (!looks_away(mesh, t, face, g))
             return false;
     return true;
+}
+
+static bool holds_pair(const claimer *c, uint32_t t, const guard_pair *g) {
+    return holds(c->mesh, t, g->at[0]) && (c->twin == NULL || holds(c->twin, t, g->at[1]));
+}
+
+/* Where tetrahedron t takes a point to in the twin. */
+static void find_counterpart(const claimer *c, uint32_t t, guard_pair *g) {
+    double edges[3][3], offset[3], share[3];
+    if (c->twin == NULL)
+        return;
+    for (int k = 0; k < 3; k++)
+        vec3_subtract(tetmesh_corner(c->mesh, t, k + 1), tetmesh_corner(c->mesh, t, 0), edges[k]);
+    vec3_subtract(g->at[0], tetmesh_corner(c->mesh, t, 0), offset);
+    double whole = vec3_triple(edges[0], edges[1], edges[2]);
+    for (int k = 0; k < 3; k++)
+        share[k] = vec3_triple(offset, edges[(k + 1) % 3], edges[(k + 2) % 3]) / whole;
+    vec3_copy(tetmesh_corner(c->twin, t, 0), g->at[1]);
+    for (int k = 0; k < 3; k++) {
+        vec3_subtract(tetmesh_corner(c->twin, t, k + 1), tetmesh_corner(c->twin, t, 0), offset);
+        vec3_along(g->at[1], share[k], offset, g->at[1]);
+    }
 }
 
 /* Walks from tetrahedron t towards g through free ones; UNCLAIMED when the way is barred. */
@@ -190,13 +227,15 @@ static uint32_t pick_member(const claimer *c, starg_rng *rng) {
 static bool start(const claimer *c, size_t item, starg_rng *rng, climber *out) {
     for (size_t i = item; i < c->hint_count; i += CLIMBERS)
         if (c->hint_at[i] != UNCLAIMED && c->region[c->hint_at[i]] == c->regions) {
-            vec3_copy(c->hints + 3 * i, out->guard);
+            vec3_copy(c->hints + 3 * i, out->guard.at[0]);
             out->at = c->hint_at[i];
             return true;
         }
     out->at = pick_member(c, rng);
-    centroid(c->mesh, out->at, out->guard);
-    return holds(c->mesh, out->at, out->guard);
+    centroid(c->mesh, out->at, out->guard.at[0]);
+    if (c->twin != NULL)
+        centroid(c->twin, out->at, out->guard.at[1]);
+    return holds_pair(c, out->at, &out->guard);
 }
 
 static size_t steps_for(const claimer *c) {
@@ -215,17 +254,20 @@ static starg_status climb(starg_context *context, void *shared, void *scratch, s
     starg_rng rng = starg_rng_make(c->context->seed, c->regions, item);
     if (!start(c, item, &rng, &best))
         goto done;
-    STARG_TRY(claim(c, grow, best.at, best.guard, &best.volume));
+    STARG_TRY(claim(c, grow, best.at, &best.guard, &best.volume));
     double reach_out = cbrt(c->running[c->members.count - 1]);
     for (size_t step = 0; step < steps_for(c); step++) {
         climber next = {.volume = 0};
         for (int k = 0; k < 3; k++)
-            next.guard[k] = best.guard[k] + reach_out * (starg_rng_unit(&rng) - 0.5);
-        next.at = walk(c, best.at, next.guard);
+            next.guard.at[0][k] = best.guard.at[0][k] + reach_out * (starg_rng_unit(&rng) - 0.5);
+        next.at = walk(c, best.at, next.guard.at[0]);
         reach_out *= 0.85;
         if (next.at == UNCLAIMED)
             continue;
-        STARG_TRY(claim(c, grow, next.at, next.guard, &next.volume));
+        find_counterpart(c, next.at, &next.guard);
+        if (!holds_pair(c, next.at, &next.guard))
+            continue;
+        STARG_TRY(claim(c, grow, next.at, &next.guard, &next.volume));
         if (next.volume > best.volume)
             best = next;
     }
@@ -287,10 +329,12 @@ done:
     return status;
 }
 
-/* The kernel of the component at hand. */
-static starg_status find_kernel(const claimer *c, starg_kernel_result *result) {
+/* A guard that sees all of the component at hand, if there is one. */
+static starg_status find_kernel(const claimer *c, guard_pair *guard, bool *found) {
     starg_status status = STARG_OK;
+    const starg_tetmesh *const meshes[2] = {c->mesh, c->twin};
     index_list faces = {0};
+    *found = true;
     for (size_t i = 0; i < c->members.count; i++)
         for (size_t face = 0; face < 4; face++) {
             uint32_t t = c->members.data[i];
@@ -300,21 +344,28 @@ static starg_status find_kernel(const claimer *c, starg_kernel_result *result) {
                 STARG_PUSH(c->context, STAGE, &faces,
                            c->mesh->tetrahedra[4 * (size_t)t + (size_t)TETMESH_FACE[face][k]]);
         }
-    const kernel_faces surface = {c->mesh->vertices, faces.data, faces.count / 3};
-    STARG_TRY(kernel_find(c->context, &surface, result));
+    for (int i = 0; i < 2 && meshes[i] != NULL && *found; i++) {
+        const kernel_faces surface = {meshes[i]->vertices, faces.data, faces.count / 3};
+        starg_kernel_result kernel;
+        STARG_TRY(kernel_find(c->context, &surface, &kernel));
+        vec3_copy(kernel.guard, guard->at[i]);
+        *found = kernel.verdict == STARG_KERNEL_INTERIOR;
+    }
 done:
     STARG_ARRAY_FREE(c->context, &faces);
     return status;
 }
 
-static starg_status add_piece(claims *out, claimer *c, const double guard[3], const uint32_t *set,
+static starg_status add_piece(claims *out, claimer *c, const guard_pair *guard, const uint32_t *set,
                               size_t count) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < count; i++)
         c->labels[set[i]] = (uint32_t)out->count;
     c->claimed += count;
     for (int k = 0; k < 3; k++)
-        STARG_PUSH(c->context, STAGE, &out->guards, guard[k]);
+        STARG_PUSH(c->context, STAGE, &out->guards, guard->at[0][k]);
+    for (int k = 0; k < 3 && c->twin != NULL; k++)
+        STARG_PUSH(c->context, STAGE, &out->counterparts, guard->at[1][k]);
     out->count++;
 done:
     return status;
@@ -331,11 +382,12 @@ static const climber *best_climber(const claimer *c) {
 /* Claims one set of the component that holds t. */
 static starg_status claim_from(claimer *c, uint32_t t, grower *grow, claims *out) {
     starg_status status = STARG_OK;
-    starg_kernel_result kernel;
+    guard_pair guard = {.at = {{0}}};
+    bool found;
     STARG_TRY(gather(c, t));
-    STARG_TRY(find_kernel(c, &kernel));
-    if (kernel.verdict == STARG_KERNEL_INTERIOR) {
-        STARG_TRY(add_piece(out, c, kernel.guard, c->members.data, c->members.count));
+    STARG_TRY(find_kernel(c, &guard, &found));
+    if (found) {
+        STARG_TRY(add_piece(out, c, &guard, c->members.data, c->members.count));
         goto done;
     }
     const starg_parallel_loop loop = {.stage = STAGE,
@@ -349,16 +401,16 @@ static starg_status claim_from(claimer *c, uint32_t t, grower *grow, claims *out
     const climber *best = best_climber(c);
     if (best->volume > 0) {
         double volume;
-        STARG_TRY(claim(c, grow, best->at, best->guard, &volume));
-        STARG_TRY(add_piece(out, c, best->guard, grow->set.data, grow->set.count));
+        STARG_TRY(claim(c, grow, best->at, &best->guard, &volume));
+        STARG_TRY(add_piece(out, c, &best->guard, grow->set.data, grow->set.count));
         goto done;
     }
     /* centroids rounded out of slivers: a point of one tetrahedron, if doubles name any */
     c->region[t] = ++c->regions;
     c->members.data[0] = t;
     c->members.count = 1;
-    STARG_TRY(find_kernel(c, &kernel));
-    if (kernel.verdict != STARG_KERNEL_INTERIOR) {
+    STARG_TRY(find_kernel(c, &guard, &found));
+    if (!found) {
         const uint64_t number = t;
         status = starg_fail_at(c->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
                                &number, 1,
@@ -368,7 +420,7 @@ static starg_status claim_from(claimer *c, uint32_t t, grower *grow, claims *out
                                (unsigned)t);
         goto done;
     }
-    STARG_TRY(add_piece(out, c, kernel.guard, &t, 1));
+    STARG_TRY(add_piece(out, c, &guard, &t, 1));
 done:
     return status;
 }
@@ -394,47 +446,60 @@ static void locate_hints(claimer *c) {
     }
 }
 
-starg_status claim_all(starg_context *context, const starg_tetmesh *mesh, const double *hints,
-                       size_t hint_count, claims *out) {
+static starg_status run(claimer *c, claims *out) {
     starg_status status = STARG_OK;
-    claimer c = {.context = context, .mesh = mesh, .hints = hints, .hint_count = hint_count};
+    starg_context *context = c->context;
+    size_t count = c->mesh->count;
     void *scratch = NULL;
     *out = (claims){.count = 0};
-    STARG_NEW(context, STAGE, c.volumes, mesh->count);
-    STARG_NEW(context, STAGE, c.running, mesh->count);
-    STARG_NEW_ZERO(context, STAGE, c.region, mesh->count);
-    STARG_NEW(context, STAGE, c.hint_at, hint_count);
-    STARG_NEW(context, STAGE, c.labels, mesh->count);
-    memset(c.labels, 0xff, mesh->count * sizeof *c.labels);
-    STARG_TRY(make_grower(context, &c, &scratch));
-    measure(&c);
-    locate_hints(&c);
+    STARG_NEW(context, STAGE, c->volumes, count);
+    STARG_NEW(context, STAGE, c->running, count);
+    STARG_NEW_ZERO(context, STAGE, c->region, count);
+    STARG_NEW(context, STAGE, c->hint_at, c->hint_count);
+    STARG_NEW(context, STAGE, c->labels, count);
+    memset(c->labels, 0xff, count * sizeof *c->labels);
+    STARG_TRY(make_grower(context, c, &scratch));
+    measure(c);
+    locate_hints(c);
     starg_progress_begin(context, STAGE);
     /* a component that a claim leaves is found again from one of its tetrahedra */
-    for (uint32_t t = 0; t < mesh->count; t++)
-        while (c.labels[t] == UNCLAIMED) {
+    for (uint32_t t = 0; t < count; t++)
+        while (c->labels[t] == UNCLAIMED) {
             STARG_TRY(starg_check_cancel(context, STAGE));
-            starg_progress_step(context, c.claimed, mesh->count);
-            STARG_TRY(claim_from(&c, t, scratch, out));
+            starg_progress_step(context, c->claimed, count);
+            STARG_TRY(claim_from(c, t, scratch, out));
         }
-    out->labels = c.labels;
-    c.labels = NULL;
+    out->labels = c->labels;
+    c->labels = NULL;
 done:
     starg_progress_end(context);
     free_grower(context, scratch);
-    starg_release(context, c.volumes);
-    starg_release(context, c.running);
-    starg_release(context, c.region);
-    starg_release(context, c.hint_at);
-    starg_release(context, c.labels);
-    STARG_ARRAY_FREE(context, &c.members);
+    starg_release(context, c->volumes);
+    starg_release(context, c->running);
+    starg_release(context, c->region);
+    starg_release(context, c->hint_at);
+    starg_release(context, c->labels);
+    STARG_ARRAY_FREE(context, &c->members);
     if (status != STARG_OK)
         claims_free(context, out);
     return status;
 }
 
+starg_status claim_all(starg_context *context, const starg_tetmesh *mesh, const double *hints,
+                       size_t hint_count, claims *out) {
+    claimer c = {.context = context, .mesh = mesh, .hints = hints, .hint_count = hint_count};
+    return run(&c, out);
+}
+
+starg_status claim_twins(starg_context *context, const starg_tetmesh *mesh,
+                         const starg_tetmesh *twin, claims *out) {
+    claimer c = {.context = context, .mesh = mesh, .twin = twin};
+    return run(&c, out);
+}
+
 void claims_free(starg_context *context, claims *claimed) {
     starg_release(context, claimed->labels);
     STARG_ARRAY_FREE(context, &claimed->guards);
+    STARG_ARRAY_FREE(context, &claimed->counterparts);
     *claimed = (claims){.count = 0};
 }

@@ -1,0 +1,162 @@
+/* Consistent decomposition of solids [YL11, section 5.2]: both ends of a morph cut into the same
+ * pieces, each star-shaped in both.
+ *
+ * Stages: both ends must bound a solid without meeting themselves; A is filled with tetrahedra that
+ * keep its surface; the morph takes these to B (carry.c); the pieces are sets of tetrahedra that
+ * are star-shaped in both places (star/strict/twins.c).
+ *
+ * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the surface
+ * of either, so that they fill both without overlap. Cost: that of its stages. */
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/solid.h"
+#include "morph/carry.h"
+#include "morph/morph.h"
+#include "star/strict/twins.h"
+#include "tetra/tetmesh.h"
+
+static const char STAGE[] = "consistent pieces";
+static const double DENSITY = 1; /* tetrahedra per vertex to begin with */
+
+/* ---- ends ---- */
+
+static starg_status check_end(const starg_morph *m, int end, const starg_solid *solid) {
+    const starg_finding *found = solid->check->findings;
+    size_t crossing = found[STARG_FINDING_SELF_INTERSECTION].count;
+    size_t touching = found[STARG_FINDING_SELF_CONTACT].count;
+    size_t flat = found[STARG_FINDING_DEGENERATE_FACE].count;
+    if (crossing + touching + flat == 0)
+        return STARG_OK;
+    return starg_fail(m->context, STARG_ERROR_MESH, STAGE,
+                      "%s (%zu pairs of its faces pass through one another, %zu touch, %zu faces "
+                      "have no area), so that it cannot be filled with tetrahedra; 'starguard "
+                      "repair' may help, and the surface can be cut without (--guards)",
+                      end == 0 ? "A meets itself" : "B in A's connectivity meets itself", crossing,
+                      touching, flat);
+}
+
+/* A as a solid; both ends are looked at. */
+static starg_status check_ends(const starg_morph *m, starg_solid **out) {
+    starg_status status = STARG_OK;
+    starg_solid *solids[2] = {NULL, NULL};
+    for (int end = 0; end < 2; end++) {
+        STARG_TRY(morph_solid(m, end, &solids[end]));
+        STARG_TRY(check_end(m, end, solids[end]));
+    }
+    *out = solids[0];
+    solids[0] = NULL;
+done:
+    starg_solid_free(solids[0]);
+    starg_solid_free(solids[1]);
+    return status;
+}
+
+/* ---- tetrahedra ---- */
+
+/* The vertices of A that faces use, in their order: the tetrahedra begin with them. */
+static starg_status list_surface(const starg_morph *m, uint32_t **out, size_t *count) {
+    starg_status status = STARG_OK;
+    uint8_t *used = NULL;
+    STARG_NEW_ZERO(m->context, STAGE, used, m->mesh->vertex_count);
+    STARG_NEW(m->context, STAGE, *out, m->mesh->vertex_count);
+    for (size_t i = 0; i < 3 * m->mesh->face_count; i++)
+        used[m->mesh->faces[i]] = 1;
+    for (uint32_t v = 0; v < m->mesh->vertex_count; v++)
+        if (used[v])
+            (*out)[(*count)++] = v;
+done:
+    starg_release(m->context, used);
+    return status;
+}
+
+static starg_status fill(const starg_morph *m, const starg_solid *solid, carried *c) {
+    starg_status status = STARG_OK;
+    starg_tetra_options options;
+    starg_tetmesh *mesh = NULL;
+    starg_tetra_options_default(&options);
+    options.generator = STARG_TETRA_TETGEN;
+    options.density = DENSITY;
+    STARG_TRY(starg_tetmesh_from_solid(m->context, solid, &options, NULL, &mesh));
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+        STARG_PUSH(m->context, STAGE, &c->rest, mesh->vertices[i]);
+        STARG_PUSH(m->context, STAGE, &c->now, mesh->vertices[i]);
+    }
+    for (size_t i = 0; i < 4 * mesh->count; i++)
+        STARG_PUSH(m->context, STAGE, &c->tetrahedra, mesh->tetrahedra[i]);
+done:
+    starg_tetmesh_free(mesh);
+    return status;
+}
+
+static starg_status take_along(const starg_morph *m, carried *c) {
+    size_t inverted;
+    double reached;
+    starg_status status = carry(m, c, &inverted, &reached);
+    if (status == STARG_OK && reached < 1)
+        status = starg_fail(m->context, STARG_ERROR_MESH, STAGE,
+                            "%zu of %zu tetrahedra turn over near t = %.3g and cannot be mended: "
+                            "the solids are too different for pieces that correspond; poses that "
+                            "are nearer to one another, or another --method, may do",
+                            inverted, c->tetrahedra.count / 4, reached);
+    return status;
+}
+
+/* The tetrahedra in one of the two places. That they do not overlap is known. */
+static starg_status place(const carried *c, const double *places, starg_tetmesh **out) {
+    starg_status status = STARG_OK;
+    double *vertices = NULL;
+    uint32_t *tetrahedra = NULL;
+    STARG_NEW(c->context, STAGE, vertices, c->rest.count);
+    STARG_NEW(c->context, STAGE, tetrahedra, c->tetrahedra.count);
+    memcpy(vertices, places, c->rest.count * sizeof *vertices);
+    memcpy(tetrahedra, c->tetrahedra.data, c->tetrahedra.count * sizeof *tetrahedra);
+    STARG_TRY(tetmesh_adopt(c->context, vertices, c->rest.count / 3, tetrahedra,
+                            c->tetrahedra.count / 4, NULL, true, out));
+    vertices = NULL;
+    tetrahedra = NULL;
+done:
+    starg_release(c->context, vertices);
+    starg_release(c->context, tetrahedra);
+    return status;
+}
+
+/* ---- pieces ---- */
+
+static starg_status cut(const starg_morph *m, const carried *c, starg_decomposition *out[2]) {
+    starg_status status = STARG_OK;
+    starg_tetmesh *meshes[2] = {NULL, NULL};
+    STARG_TRY(place(c, c->rest.data, &meshes[0]));
+    STARG_TRY(place(c, c->now.data, &meshes[1]));
+    STARG_TRY(twins_decompose(m->context, meshes[0], meshes[1], out));
+    for (int end = 0; end < 2; end++) {
+        out[end]->model_vertices = m->mesh->vertex_count;
+        out[end]->model_faces = m->mesh->face_count;
+        out[end]->model_tetrahedra = 0;
+        out[end]->tetra.generator = STARG_TETRA_TETGEN;
+    }
+done:
+    starg_tetmesh_free(meshes[0]);
+    starg_tetmesh_free(meshes[1]);
+    return status;
+}
+
+starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2]) {
+    starg_status status = STARG_OK;
+    carried c = {.context = m->context};
+    starg_solid *solid = NULL;
+    uint32_t *surface = NULL;
+    out[0] = out[1] = NULL;
+    starg_deadline_begin(m->context);
+    STARG_TRY(check_ends(m, &solid));
+    STARG_TRY(list_surface(m, &surface, &c.fixed));
+    c.surface = surface;
+    STARG_TRY(fill(m, solid, &c));
+    STARG_TRY(take_along(m, &c));
+    STARG_TRY(cut(m, &c, out));
+done:
+    starg_deadline_end(m->context);
+    carried_free(&c);
+    starg_solid_free(solid);
+    starg_release(m->context, surface);
+    return status;
+}

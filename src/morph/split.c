@@ -1,0 +1,203 @@
+/* Splitting edges of tetrahedra in two.
+ *
+ * An edge is split with all tetrahedra about it, so that they still fit together. In each round a
+ * tetrahedron names the longest of its edges that are to be split, and edges that all tetrahedra
+ * about them have named are split together; the longest of all is among them. An edge is left as it
+ * is where a part would have no volume by the rounded middle.
+ *
+ * Invariant: tetrahedra stay positive in A, exactly. Cost: O(tetrahedra) for each round. */
+#include <stdlib.h>
+
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "morph/carry.h"
+
+static const char STAGE[] = "split edges";
+
+#define NONE UINT32_MAX
+
+const int CARRIED_EDGES[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+
+/* ---- lists ---- */
+
+static int compare(const void *left, const void *right) {
+    const carried_edge a = *(const carried_edge *)left, b = *(const carried_edge *)right;
+    return (a > b) - (a < b);
+}
+
+static size_t find(const carried_edge *list, size_t count, carried_edge edge) {
+    size_t low = 0, high = count;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (list[middle] < edge)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < count && list[low] == edge ? low : count;
+}
+
+bool carried_edge_in(const carried_edge *list, size_t count, carried_edge edge) {
+    return find(list, count, edge) < count;
+}
+
+void carried_edges_sort(carried_edge *list, size_t *count) {
+    size_t kept = 0;
+    if (*count == 0)
+        return;
+    qsort(list, *count, sizeof *list, compare);
+    for (size_t i = 0; i < *count; i++)
+        if (kept == 0 || list[i] != list[kept - 1])
+            list[kept++] = list[i];
+    *count = kept;
+}
+
+/* ---- rounds ---- */
+
+typedef struct splitting {
+    carried *c;
+    const carried_edge *edges;
+    size_t count;
+    uint32_t *about, *named; /* per edge: tetrahedra that have it, and that name it */
+    uint32_t *middle;        /* per edge: its new vertex                            */
+    uint8_t *over;           /* per edge: split, or left as it is                   */
+    uint32_t *choice;        /* per tetrahedron of the round                        */
+} splitting;
+
+static const double *place(const splitting *s, uint32_t vertex) {
+    return s->c->rest.data + 3 * (size_t)vertex;
+}
+
+/* The longest edge of a tetrahedron that is still to be split; the lower number of equal ones. */
+static uint32_t name_edge(const splitting *s, size_t t) {
+    const uint32_t *corner = s->c->tetrahedra.data + 4 * t;
+    uint32_t best = NONE;
+    double longest = -1;
+    for (int e = 0; e < 6; e++) {
+        uint32_t a = corner[CARRIED_EDGES[e][0]], b = corner[CARRIED_EDGES[e][1]];
+        size_t i = find(s->edges, s->count, carried_edge_of(a, b));
+        if (i == s->count || s->over[i])
+            continue;
+        double length = vec3_distance_squared(place(s, a), place(s, b));
+        s->about[i]++;
+        if (length > longest || (length == longest && i < best)) {
+            longest = length;
+            best = (uint32_t)i;
+        }
+    }
+    return best;
+}
+
+static void name_edges(const splitting *s, size_t tetrahedra) {
+    for (size_t i = 0; i < s->count; i++) {
+        s->about[i] = s->named[i] = 0;
+        s->middle[i] = NONE;
+    }
+    for (size_t t = 0; t < tetrahedra; t++) {
+        s->choice[t] = name_edge(s, t);
+        if (s->choice[t] != NONE)
+            s->named[s->choice[t]]++;
+    }
+}
+
+static bool is_ready(const splitting *s, uint32_t edge) {
+    return edge != NONE && !s->over[edge] && s->named[edge] == s->about[edge];
+}
+
+static void middle_of(const double *places, carried_edge edge, double out[3]) {
+    const double *a = places + 3 * (size_t)(edge >> 32), *b = places + 3 * (size_t)(uint32_t)edge;
+    for (int k = 0; k < 3; k++)
+        out[k] = 0.5 * a[k] + 0.5 * b[k];
+}
+
+/* Are both parts of a tetrahedron positive in A? */
+static bool parts_are_positive(const splitting *s, size_t t, carried_edge edge) {
+    const uint32_t *corner = s->c->tetrahedra.data + 4 * t;
+    double middle[3];
+    middle_of(s->c->rest.data, edge, middle);
+    for (int part = 0; part < 2; part++) {
+        uint32_t gone = part == 0 ? (uint32_t)edge : (uint32_t)(edge >> 32);
+        const double *p[4];
+        for (int k = 0; k < 4; k++)
+            p[k] = corner[k] == gone ? middle : place(s, corner[k]);
+        if (orient3d(p[0], p[1], p[2], p[3]) >= 0)
+            return false;
+    }
+    return true;
+}
+
+static void leave_thin(const splitting *s, size_t tetrahedra) {
+    for (size_t t = 0; t < tetrahedra; t++)
+        if (is_ready(s, s->choice[t]) && !parts_are_positive(s, t, s->edges[s->choice[t]]))
+            s->over[s->choice[t]] = 1;
+}
+
+static starg_status add_middle(const splitting *s, size_t edge) {
+    starg_status status = STARG_OK;
+    double rest[3], now[3];
+    middle_of(s->c->rest.data, s->edges[edge], rest);
+    middle_of(s->c->now.data, s->edges[edge], now);
+    s->middle[edge] = (uint32_t)(s->c->rest.count / 3);
+    for (int k = 0; k < 3; k++) {
+        STARG_PUSH(s->c->context, STAGE, &s->c->rest, rest[k]);
+        STARG_PUSH(s->c->context, STAGE, &s->c->now, now[k]);
+    }
+done:
+    return status;
+}
+
+/* The tetrahedron keeps the lower end of the edge, a new one takes the upper one. */
+static starg_status cut(const splitting *s, size_t t, uint32_t edge) {
+    starg_status status = STARG_OK;
+    uint32_t lower = (uint32_t)(s->edges[edge] >> 32), upper = (uint32_t)s->edges[edge];
+    for (size_t k = 0; k < 4; k++) {
+        uint32_t corner = s->c->tetrahedra.data[4 * t + k];
+        STARG_PUSH(s->c->context, STAGE, &s->c->tetrahedra,
+                   corner == lower ? s->middle[edge] : corner);
+        if (corner == upper)
+            s->c->tetrahedra.data[4 * t + k] = s->middle[edge];
+    }
+done:
+    return status;
+}
+
+static starg_status split_round(splitting *s, bool *any) {
+    starg_status status = STARG_OK;
+    size_t tetrahedra = s->c->tetrahedra.count / 4;
+    *any = false;
+    starg_release(s->c->context, s->choice);
+    STARG_NEW(s->c->context, STAGE, s->choice, tetrahedra);
+    name_edges(s, tetrahedra);
+    for (uint32_t i = 0; i < s->count; i++)
+        *any = *any || (is_ready(s, i) && s->about[i] > 0);
+    leave_thin(s, tetrahedra);
+    for (uint32_t i = 0; i < s->count; i++)
+        if (is_ready(s, i) && s->about[i] > 0)
+            STARG_TRY(add_middle(s, i));
+    for (size_t t = 0; t < tetrahedra; t++)
+        if (s->choice[t] != NONE && s->middle[s->choice[t]] != NONE)
+            STARG_TRY(cut(s, t, s->choice[t]));
+    for (size_t i = 0; i < s->count; i++)
+        s->over[i] |= s->middle[i] != NONE;
+done:
+    return status;
+}
+
+starg_status carried_split(carried *c, const carried_edge *edges, size_t count) {
+    starg_status status = STARG_OK;
+    splitting s = {.c = c, .edges = edges, .count = count};
+    bool any = count > 0;
+    STARG_NEW(c->context, STAGE, s.about, count);
+    STARG_NEW(c->context, STAGE, s.named, count);
+    STARG_NEW(c->context, STAGE, s.middle, count);
+    STARG_NEW_ZERO(c->context, STAGE, s.over, count);
+    while (any)
+        STARG_TRY(split_round(&s, &any));
+done:
+    starg_release(c->context, s.about);
+    starg_release(c->context, s.named);
+    starg_release(c->context, s.middle);
+    starg_release(c->context, s.over);
+    starg_release(c->context, s.choice);
+    return status;
+}

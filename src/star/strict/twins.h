@@ -1,0 +1,15 @@
+/* Pieces that are star-shaped in two solids at once. */
+#ifndef STARG_STAR_STRICT_TWINS_H
+#define STARG_STAR_STRICT_TWINS_H
+
+#include "core/context.h"
+#include "starguard/decompose.h"
+
+/* Labels the tetrahedra of a mesh so that every piece is strictly star-shaped in it and in its
+ * twin, the same tetrahedra in other places. out[0] is the mesh in pieces, out[1] the twin in the
+ * same pieces; copies of both. Errors: MESH (a tetrahedron so thin that no point is found in it),
+ * MEMORY, CANCELLED. */
+starg_status twins_decompose(starg_context *context, const starg_tetmesh *mesh,
+                             const starg_tetmesh *twin, starg_decomposition *out[2]);
+
+#endif
