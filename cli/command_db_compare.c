@@ -147,7 +147,8 @@ static const struct {
 enum { MEASURES = sizeof measures / sizeof *measures };
 
 static double measure(const starg_retrieval *r, size_t i) {
-    return *(const double *)((const char *)r + measures[i].offset);
+    const void *at = (const char *)r + measures[i].offset;
+    return *(const double *)at;
 }
 
 static void tell_line(cli_session *session, const char *name, const starg_retrieval *r) {
