@@ -257,20 +257,27 @@ static void test_options(void **state) {
 
 /* With no time at all the first division is the result, and says so, also where it has no more
  * pieces than wanted: what could be joined is not. */
+/* Without tetrahedra there is nothing to show; with them there always is. */
 static void test_time(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     starg_solid *solid = test_sample(context, "labyrinth", 500);
+    starg_tetmesh *mesh = NULL;
+    starg_decomposition *d = NULL;
+    starg_decompose_options options = small_effort(64);
+    test_ok(context, starg_tetmesh_from_solid(context, solid, &options.tetra, NULL, &mesh));
+    starg_context_set_time_limit(context, 1e-9);
+    assert_int_equal(starg_decompose(context, solid, &options, &d), STARG_ERROR_TIME);
+    assert_null(d);
     for (size_t most = 0; most <= 1000; most += 1000) {
-        starg_decompose_options options = small_effort(64);
         options.max_pieces = most;
         starg_context_set_time_limit(context, 1e-9);
-        starg_decomposition *d = decompose(context, solid, &options);
+        test_ok(context, starg_decompose_tetmesh(context, mesh, &options, &d));
         assert_true(d->time_limited);
         assert_int_equal(d->strictly_star, d->piece_count);
         starg_decomposition_free(context, d);
-        starg_context_set_time_limit(context, 0);
     }
+    starg_tetmesh_free(mesh);
     starg_solid_free(solid);
     test_context_free(context);
 }
