@@ -246,8 +246,7 @@ starg_status starg_descriptor_create(starg_context *context, const starg_mesh *m
     STARG_TRY(ray_caster_create(context, pieces->mesh, &caster));
     STARG_TRY(add_distances(context, &caster, d));
     STARG_TRY(views_measure(context, pieces->mesh, &caster, &d->views[0][0]));
-    STARG_TRY(
-        thickness_spectra(context, pieces->mesh, &caster, d->surface_spectrum, d->solid_spectrum));
+    STARG_TRY(thickness_spectra(context, pieces->mesh, &caster, d));
     *out = d;
 done:
     ray_caster_free(context, &caster);

@@ -1,16 +1,20 @@
 /* The star distance: what the pieces of a star decomposition tell of a shape whatever its pose and
  * however it was cut.
  *
- * Numbers, in three parts:
- * - the spectrum of the solid, as the shell of its thickness that guards measure (thickness.c);
- * - the spectrum of its boundary as a surface;
- * - views: logarithms of what is seen from points spread over the pieces (views.c), in units of the
- *   cube root of the shape's volume, so that a finger is as unlike an arm as the arm a trunk.
+ * Numbers, in four parts:
+ * - the spectrum of the boundary as a surface, which is Shape-DNA [RWP06];
+ * - the spectrum of the solid, as the shell of its thickness that guards measure (thickness.c), in
+ *   units of its own growth: the scale is the surface's, counted once;
+ * - views: what is seen from points spread over the pieces (views.c), in units of the cube root of
+ *   the shape's volume;
+ * - waves: where the surface vibrates (waves.c), as logarithms.
  *
- * Spectra differ by the mean difference of their eigenvalues, each divided by its place, because
- * they grow in proportion to it (Weyl's law); views by the mean difference. Each part is divided by
- * what it is on average between two shapes, and the mean of the three is the distance. That is a
- * weighted L1 norm of a difference, and so a metric.
+ * Eigenvalues are divided by their place, because they grow in proportion to it (Weyl's law). Those
+ * of the surface differ by the root of the mean square, as in Shape-DNA; those of the solid by the
+ * mean. Rows of views and waves are quantiles, so that their mean difference is the cost of
+ * transporting distributions into each other. Each part is divided by what it is on average between
+ * two shapes, and the mean of the four is the distance: a sum of norms of a difference, and so a
+ * metric.
  *
  * Cost: a few additions for each number. */
 #include <math.h>
@@ -21,18 +25,22 @@
 static const char STAGE[] = "star distance";
 
 enum {
-    EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES,
-    VIEWS = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
-    SURFACE = EIGENVALUES,        /* where the surface's spectrum begins */
-    SEEN = SURFACE + EIGENVALUES, /* where views begin */
-    NUMBERS = SEEN + VIEWS
+    SURFACE_COUNT = STARG_DESCRIPTOR_SURFACE_EIGENVALUES,
+    SOLID_COUNT = STARG_DESCRIPTOR_SOLID_EIGENVALUES,
+    VIEWS_COUNT = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
+    WAVES_COUNT = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
+    SOLID = SURFACE_COUNT, /* where each part begins */
+    VIEWS = SOLID + SOLID_COUNT,
+    WAVES = VIEWS + VIEWS_COUNT,
+    NUMBERS = WAVES + WAVES_COUNT
 };
-static const double SMALLEST = 1e-3; /* lengths below that are alike, in units of the shape's */
 
-static const double LARGEST = 1e100; /* eigenvalue that is taken for one */
+static const double FAINT = 0.05;    /* what is less than that is about as weak, 1 being average */
+static const double LARGEST = 1e100; /* number that is taken for one */
 
 /* Mean differences between two models of the TOSCA set. */
-static const double SOLID_UNIT = 1.27, SURFACE_UNIT = 1.19, VIEWS_UNIT = 0.146;
+static const double SURFACE_UNIT = 1.21, SOLID_UNIT = 0.0875, VIEWS_UNIT = 0.041,
+                    WAVES_UNIT = 0.179;
 
 /* The cube root of the volume. Relative to the largest, so that volumes of any shape that has
  * coordinates can be summed. */
@@ -45,57 +53,82 @@ static double unit_of(const starg_descriptor *d) {
     return largest > 0 ? cbrt(largest) * cbrt(sum) : fmax(d->diagonal, 1e-300);
 }
 
+/* What eigenvalues grow by on average from one to the next; never 0. */
+static double growth_of(const double *eigenvalues, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += eigenvalues[i] / (double)(i + 1);
+    return sum > 0 ? sum / (double)count : 1;
+}
+
 static starg_status derive(starg_context *context, const starg_descriptor *d, double **numbers,
                            size_t *count) {
     starg_status status = STARG_OK;
-    double *all = NULL, unit = unit_of(d);
+    double *all = NULL, unit = unit_of(d), growth = growth_of(d->solid_spectrum, SOLID_COUNT);
     STARG_NEW(context, STAGE, all, NUMBERS);
-    memcpy(all, d->solid_spectrum, sizeof d->solid_spectrum);
-    memcpy(all + SURFACE, d->surface_spectrum, sizeof d->surface_spectrum);
-    for (size_t i = 0; i < VIEWS; i++)
-        all[SEEN + i] = log(
-            d->views[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] / unit + SMALLEST);
+    memcpy(all, d->surface_spectrum, sizeof d->surface_spectrum);
+    for (size_t i = 0; i < SOLID_COUNT; i++)
+        all[SOLID + i] = d->solid_spectrum[i] / growth;
+    for (size_t i = 0; i < VIEWS_COUNT; i++)
+        all[VIEWS + i] = d->views[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] / unit;
+    for (size_t i = 0; i < WAVES_COUNT; i++)
+        all[WAVES + i] =
+            log(d->waves[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] + FAINT);
     *numbers = all;
     *count = NUMBERS;
 done:
     return status;
 }
 
-static bool check(const double *numbers, size_t count) {
-    if (count != NUMBERS)
-        return false;
-    for (size_t i = 0; i < SEEN; i++)
-        if (!(numbers[i] >= (i % EIGENVALUES > 0 ? numbers[i - 1] : 0) && numbers[i] < LARGEST))
-            return false;
-    for (size_t i = SEEN; i < NUMBERS; i++)
-        if (!(fabs(numbers[i]) < 1e3))
+static bool ascends(const double *numbers, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!(numbers[i] >= (i > 0 ? numbers[i - 1] : 0)))
             return false;
     return true;
 }
 
-static double compare_spectra(const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < EIGENVALUES; i++)
-        sum += fabs(a[i] - b[i]) / (double)(i + 1);
-    return sum / EIGENVALUES;
+static bool check(const double *numbers, size_t count) {
+    if (count != NUMBERS)
+        return false;
+    for (size_t i = 0; i < NUMBERS; i++)
+        if (!(fabs(numbers[i]) < LARGEST))
+            return false;
+    return ascends(numbers, SURFACE_COUNT) && ascends(numbers + SOLID, SOLID_COUNT);
 }
 
-static double compare_views(const double *a, const double *b) {
+static double compare_surfaces(const double *a, const double *b) {
     double sum = 0;
-    for (size_t i = 0; i < VIEWS; i++)
+    for (size_t i = 0; i < SURFACE_COUNT; i++) {
+        double difference = (a[i] - b[i]) / (double)(i + 1);
+        sum += difference * difference;
+    }
+    return sqrt(sum / SURFACE_COUNT);
+}
+
+static double compare_solids(const double *a, const double *b) {
+    double sum = 0;
+    for (size_t i = 0; i < SOLID_COUNT; i++)
+        sum += fabs(a[i] - b[i]) / (double)(i + 1);
+    return sum / SOLID_COUNT;
+}
+
+static double compare_quantiles(const double *a, const double *b, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
         sum += fabs(a[i] - b[i]);
-    return sum / VIEWS;
+    return sum / (double)count;
 }
 
 static starg_status compare(starg_context *context, const double *a, size_t a_count,
                             const double *b, size_t b_count, double *out) {
     (void)context, (void)a_count, (void)b_count;
-    *out = (compare_spectra(a, b) / SOLID_UNIT +
-            compare_spectra(a + SURFACE, b + SURFACE) / SURFACE_UNIT +
-            compare_views(a + SEEN, b + SEEN) / VIEWS_UNIT) /
-           3;
+    *out =
+        (compare_surfaces(a, b) / SURFACE_UNIT + compare_solids(a + SOLID, b + SOLID) / SOLID_UNIT +
+         compare_quantiles(a + VIEWS, b + VIEWS, VIEWS_COUNT) / VIEWS_UNIT +
+         compare_quantiles(a + WAVES, b + WAVES, WAVES_COUNT) / WAVES_UNIT) /
+        4;
     return STARG_OK;
 }
 
 const signature_method signature_star = {
-    .name = "star", .version = 2, .derive = derive, .check = check, .compare = compare};
+    .name = "star", .version = 3, .derive = derive, .check = check, .compare = compare};
