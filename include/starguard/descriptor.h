@@ -32,8 +32,7 @@ enum {
     STARG_DESCRIPTOR_VIEW = 8,
     STARG_DESCRIPTOR_SPREAD = 16,
     STARG_DESCRIPTOR_ENERGIES = 12,
-    STARG_DESCRIPTOR_SURFACE_EIGENVALUES = 50,
-    STARG_DESCRIPTOR_SOLID_EIGENVALUES = 40
+    STARG_DESCRIPTOR_EIGENVALUES = 40
 };
 
 typedef struct starg_descriptor {
@@ -55,8 +54,8 @@ typedef struct starg_descriptor {
     double views[STARG_DESCRIPTOR_VIEW][STARG_DESCRIPTOR_SPREAD];
     /* The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area,
      * ascending: as a surface, and as a shell as thick as the solid is wide there. */
-    double surface_spectrum[STARG_DESCRIPTOR_SURFACE_EIGENVALUES];
-    double solid_spectrum[STARG_DESCRIPTOR_SOLID_EIGENVALUES];
+    double surface_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
+    double solid_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
     /* Where the boundary vibrates: row k holds quantiles, over the surface, of how strong
      * vibrations of about the k-th energy are at a point, 1 on average. Rows ascend. */
     double waves[STARG_DESCRIPTOR_ENERGIES][STARG_DESCRIPTOR_SPREAD];

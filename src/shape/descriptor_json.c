@@ -15,8 +15,7 @@ enum {
     VERSION = 3,
     VIEWS = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
     WAVES = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
-    SURFACE = STARG_DESCRIPTOR_SURFACE_EIGENVALUES,
-    SOLID = STARG_DESCRIPTOR_SOLID_EIGENVALUES
+    EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES
 };
 
 /* ---- writing ---- */
@@ -66,8 +65,8 @@ static bool put_head(FILE *stream, const starg_descriptor *d, const char *file) 
            starg_json_put(stream, "\"directions\": ", json_integer((json_int_t)d->direction_count),
                           ",\n") &&
            put_numbers(stream, "views", &d->views[0][0], VIEWS) &&
-           put_numbers(stream, "surface_spectrum", d->surface_spectrum, SURFACE) &&
-           put_numbers(stream, "solid_spectrum", d->solid_spectrum, SOLID) &&
+           put_numbers(stream, "surface_spectrum", d->surface_spectrum, EIGENVALUES) &&
+           put_numbers(stream, "solid_spectrum", d->solid_spectrum, EIGENVALUES) &&
            put_numbers(stream, "waves", &d->waves[0][0], WAVES);
 }
 
@@ -266,8 +265,8 @@ static starg_status read_document(const json_reader *r, json_t *root) {
     d->time_limited = json_is_true(json_object_get(root, "time_limited"));
     STARG_TRY(read_count(r, root, "directions", UINT32_MAX, &d->direction_count));
     STARG_TRY(read_numbers(r, root, "views", VIEWS, &d->views[0][0]));
-    STARG_TRY(read_numbers(r, root, "surface_spectrum", SURFACE, d->surface_spectrum));
-    STARG_TRY(read_numbers(r, root, "solid_spectrum", SOLID, d->solid_spectrum));
+    STARG_TRY(read_numbers(r, root, "surface_spectrum", EIGENVALUES, d->surface_spectrum));
+    STARG_TRY(read_numbers(r, root, "solid_spectrum", EIGENVALUES, d->solid_spectrum));
     STARG_TRY(read_numbers(r, root, "waves", WAVES, &d->waves[0][0]));
     STARG_TRY(read_guards(r, root));
     STARG_TRY(read_edges(r, root));

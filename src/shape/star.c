@@ -1,20 +1,19 @@
 /* The star distance: what the pieces of a star decomposition tell of a shape whatever its pose and
  * however it was cut.
  *
- * Numbers, in four parts:
- * - the spectrum of the boundary as a surface, which is Shape-DNA [RWP06];
- * - the spectrum of the solid, as the shell of its thickness that guards measure (thickness.c), in
- *   units of its own growth: the scale is the surface's, counted once;
+ * Numbers, in three parts:
+ * - spectra: of the boundary as a surface [RWP06], and of the solid, as the shell of its thickness
+ *   that guards measure (thickness.c), each in units of its own growth: between things of a kind
+ *   that differ in proportions, the area is no measure of the scale;
  * - views: what is seen from points spread over the pieces (views.c), in units of the cube root of
  *   the shape's volume;
  * - waves: where the surface vibrates (waves.c), as logarithms.
  *
- * Eigenvalues are divided by their place, because they grow in proportion to it (Weyl's law). Those
- * of the surface differ by the root of the mean square, as in Shape-DNA; those of the solid by the
- * mean. Rows of views and waves are quantiles, so that their mean difference is the cost of
- * transporting distributions into each other. Each part is divided by what it is on average between
- * two shapes, and the mean of the four is the distance: a sum of norms of a difference, and so a
- * metric.
+ * Spectra differ by the mean difference of their eigenvalues, each divided by its place, because
+ * they grow in proportion to it (Weyl's law). Rows of views and waves are quantiles, so that their
+ * mean difference is the cost of transporting distributions into each other. Each part is divided
+ * by what it is on average between two shapes, and the mean of the three is the distance. That is a
+ * weighted L1 norm of a difference, and so a metric.
  *
  * Cost: a few additions for each number. */
 #include <math.h>
@@ -25,22 +24,20 @@
 static const char STAGE[] = "star distance";
 
 enum {
-    SURFACE_COUNT = STARG_DESCRIPTOR_SURFACE_EIGENVALUES,
-    SOLID_COUNT = STARG_DESCRIPTOR_SOLID_EIGENVALUES,
+    EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES,
     VIEWS_COUNT = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
     WAVES_COUNT = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
-    SOLID = SURFACE_COUNT, /* where each part begins */
-    VIEWS = SOLID + SOLID_COUNT,
+    SOLID = EIGENVALUES, /* where the solid's spectrum begins, and the other parts */
+    VIEWS = SOLID + EIGENVALUES,
     WAVES = VIEWS + VIEWS_COUNT,
     NUMBERS = WAVES + WAVES_COUNT
 };
 
-static const double FAINT = 0.05;    /* what is less than that is about as weak, 1 being average */
+static const double FAINT = 0.05;    /* vibrations below that are about as weak; 1 is average */
 static const double LARGEST = 1e100; /* number that is taken for one */
 
 /* Mean differences between two models of the TOSCA set. */
-static const double SURFACE_UNIT = 1.21, SOLID_UNIT = 0.0875, VIEWS_UNIT = 0.041,
-                    WAVES_UNIT = 0.179;
+static const double SPECTRA_UNIT = 0.083, VIEWS_UNIT = 0.041, WAVES_UNIT = 0.18;
 
 /* The cube root of the volume. Relative to the largest, so that volumes of any shape that has
  * coordinates can be summed. */
@@ -53,22 +50,22 @@ static double unit_of(const starg_descriptor *d) {
     return largest > 0 ? cbrt(largest) * cbrt(sum) : fmax(d->diagonal, 1e-300);
 }
 
-/* What eigenvalues grow by on average from one to the next; never 0. */
-static double growth_of(const double *eigenvalues, size_t count) {
+/* Eigenvalues in units of what they grow by on average from one to the next. */
+static void put_spectrum(const double *eigenvalues, double *out) {
     double sum = 0;
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < EIGENVALUES; i++)
         sum += eigenvalues[i] / (double)(i + 1);
-    return sum > 0 ? sum / (double)count : 1;
+    for (size_t i = 0; i < EIGENVALUES; i++)
+        out[i] = sum > 0 ? eigenvalues[i] / (sum / EIGENVALUES) : 0;
 }
 
 static starg_status derive(starg_context *context, const starg_descriptor *d, double **numbers,
                            size_t *count) {
     starg_status status = STARG_OK;
-    double *all = NULL, unit = unit_of(d), growth = growth_of(d->solid_spectrum, SOLID_COUNT);
+    double *all = NULL, unit = unit_of(d);
     STARG_NEW(context, STAGE, all, NUMBERS);
-    memcpy(all, d->surface_spectrum, sizeof d->surface_spectrum);
-    for (size_t i = 0; i < SOLID_COUNT; i++)
-        all[SOLID + i] = d->solid_spectrum[i] / growth;
+    put_spectrum(d->surface_spectrum, all);
+    put_spectrum(d->solid_spectrum, all + SOLID);
     for (size_t i = 0; i < VIEWS_COUNT; i++)
         all[VIEWS + i] = d->views[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] / unit;
     for (size_t i = 0; i < WAVES_COUNT; i++)
@@ -80,36 +77,23 @@ done:
     return status;
 }
 
-static bool ascends(const double *numbers, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (!(numbers[i] >= (i > 0 ? numbers[i - 1] : 0)))
+static bool check(const double *numbers, size_t count) {
+    if (count != NUMBERS)
+        return false;
+    for (size_t i = 0; i < VIEWS; i++)
+        if (!(numbers[i] >= (i % EIGENVALUES > 0 ? numbers[i - 1] : 0)))
+            return false;
+    for (size_t i = 0; i < NUMBERS; i++)
+        if (!(fabs(numbers[i]) < LARGEST))
             return false;
     return true;
 }
 
-static bool check(const double *numbers, size_t count) {
-    if (count != NUMBERS)
-        return false;
-    for (size_t i = 0; i < NUMBERS; i++)
-        if (!(fabs(numbers[i]) < LARGEST))
-            return false;
-    return ascends(numbers, SURFACE_COUNT) && ascends(numbers + SOLID, SOLID_COUNT);
-}
-
-static double compare_surfaces(const double *a, const double *b) {
+static double compare_spectra(const double *a, const double *b) {
     double sum = 0;
-    for (size_t i = 0; i < SURFACE_COUNT; i++) {
-        double difference = (a[i] - b[i]) / (double)(i + 1);
-        sum += difference * difference;
-    }
-    return sqrt(sum / SURFACE_COUNT);
-}
-
-static double compare_solids(const double *a, const double *b) {
-    double sum = 0;
-    for (size_t i = 0; i < SOLID_COUNT; i++)
-        sum += fabs(a[i] - b[i]) / (double)(i + 1);
-    return sum / SOLID_COUNT;
+    for (size_t i = 0; i < VIEWS; i++)
+        sum += fabs(a[i] - b[i]) / (double)(i % EIGENVALUES + 1);
+    return sum / VIEWS;
 }
 
 static double compare_quantiles(const double *a, const double *b, size_t count) {
@@ -122,11 +106,10 @@ static double compare_quantiles(const double *a, const double *b, size_t count) 
 static starg_status compare(starg_context *context, const double *a, size_t a_count,
                             const double *b, size_t b_count, double *out) {
     (void)context, (void)a_count, (void)b_count;
-    *out =
-        (compare_surfaces(a, b) / SURFACE_UNIT + compare_solids(a + SOLID, b + SOLID) / SOLID_UNIT +
-         compare_quantiles(a + VIEWS, b + VIEWS, VIEWS_COUNT) / VIEWS_UNIT +
-         compare_quantiles(a + WAVES, b + WAVES, WAVES_COUNT) / WAVES_UNIT) /
-        4;
+    *out = (compare_spectra(a, b) / SPECTRA_UNIT +
+            compare_quantiles(a + VIEWS, b + VIEWS, VIEWS_COUNT) / VIEWS_UNIT +
+            compare_quantiles(a + WAVES, b + WAVES, WAVES_COUNT) / WAVES_UNIT) /
+           3;
     return STARG_OK;
 }
 

@@ -33,7 +33,7 @@
 
 static const char STAGE[] = "thickness";
 
-enum { SURFACE = STARG_DESCRIPTOR_SURFACE_EIGENVALUES, SOLID = STARG_DESCRIPTOR_SOLID_EIGENVALUES };
+enum { EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES };
 
 /* Where one stands: so far from the face's centre to the guard. */
 static const double STANDPOINT = 1.0 / 16;
@@ -154,34 +154,34 @@ done:
 }
 
 /* All but the first one; what rounding put below 0 is 0. */
-static void keep_behind_zero(double *eigenvalues, size_t count, double *out) {
-    for (size_t i = 0; i <= count; i++)
+static void keep_behind_zero(double *eigenvalues, double *out) {
+    for (size_t i = 0; i <= EIGENVALUES; i++)
         eigenvalues[i] = fmax(eigenvalues[i], 0);
-    memcpy(out, eigenvalues + 1, count * sizeof *out);
+    memcpy(out, eigenvalues + 1, EIGENVALUES * sizeof *out);
 }
 
 static starg_status take_solid(starg_context *context, const starg_mesh *boundary,
                                const double *thickness, double *out) {
     starg_status status = STARG_OK;
     laplacian l = {0};
-    double eigenvalues[SOLID + 1];
+    double eigenvalues[EIGENVALUES + 1];
     STARG_TRY(laplacian_create_shell(context, boundary, thickness, &l));
-    STARG_TRY(spectrum_smallest(context, &l, SOLID + 1, eigenvalues, NULL));
-    keep_behind_zero(eigenvalues, SOLID, out);
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, NULL));
+    keep_behind_zero(eigenvalues, out);
 done:
     laplacian_free(context, &l);
     return status;
 }
 
-static starg_status take_surface(starg_context *context, const starg_mesh *boundary, double *out,
+static starg_status take_surface(starg_context *context, const starg_mesh *surface, double *out,
                                  double *waves) {
     starg_status status = STARG_OK;
     laplacian l = {0};
-    double eigenvalues[SURFACE + 1], *functions = NULL;
-    STARG_TRY(laplacian_create(context, boundary, NULL, &l));
-    STARG_NEW(context, STAGE, functions, (SURFACE + 1) * l.count);
-    STARG_TRY(spectrum_smallest(context, &l, SURFACE + 1, eigenvalues, functions));
-    keep_behind_zero(eigenvalues, SURFACE, out);
+    double eigenvalues[EIGENVALUES + 1], *functions = NULL;
+    STARG_TRY(laplacian_create(context, surface, NULL, &l));
+    STARG_NEW(context, STAGE, functions, (EIGENVALUES + 1) * l.count);
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, functions));
+    keep_behind_zero(eigenvalues, out);
     STARG_TRY(waves_measure(context, &l, eigenvalues, functions, waves));
 done:
     starg_release(context, functions);
@@ -190,7 +190,8 @@ done:
 }
 
 starg_status thickness_spectra(starg_context *context, const starg_tetmesh *mesh,
-                               const ray_caster *caster, starg_descriptor *out) {
+                               const starg_mesh *surface, const ray_caster *caster,
+                               starg_descriptor *out) {
     starg_status status = STARG_OK;
     looker l = {.mesh = mesh, .caster = caster};
     starg_mesh *boundary = NULL;
@@ -204,7 +205,8 @@ starg_status thickness_spectra(starg_context *context, const starg_tetmesh *mesh
     STARG_NEW_ZERO(context, STAGE, at, starg_mesh_vertex_count(boundary));
     STARG_TRY(put_at_vertices(context, boundary, l.widths, at));
     STARG_TRY(diffuse(context, boundary, at));
-    STARG_TRY(take_surface(context, boundary, out->surface_spectrum, &out->waves[0][0]));
+    STARG_TRY(take_surface(context, surface != NULL ? surface : boundary, out->surface_spectrum,
+                           &out->waves[0][0]));
     STARG_TRY(take_solid(context, boundary, at, out->solid_spectrum));
 done:
     starg_mesh_free(boundary);

@@ -25,7 +25,6 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "starguard/descriptor.h"
 
 static const char STAGE[] = "waves";
 

@@ -3,8 +3,9 @@
 #define STARG_SHAPE_WAVES_H
 
 #include "shape/laplacian.h"
+#include "starguard/descriptor.h"
 
-enum { WAVES_MODES = 40 };
+enum { WAVES_MODES = STARG_DESCRIPTOR_EIGENVALUES };
 
 /* STARG_DESCRIPTOR_ENERGIES rows of STARG_DESCRIPTOR_SPREAD numbers: quantiles, over the surface,
  * of how strong vibrations of about an energy are at a point, 1 on average. `eigenvalues` are the

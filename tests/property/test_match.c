@@ -12,11 +12,10 @@
 
 /* The layouts of docs/formats.md. */
 enum {
-    STAR_SURFACE = 50,
-    STAR_SOLID = 40,
+    STAR_SPECTRUM = 40,
     STAR_VIEWS = 128,
     STAR_WAVES = 192,
-    STAR = 410,
+    STAR = 400,
     PAPER_HEAD = 2,
     PAPER_GUARD = 68
 };
@@ -40,19 +39,17 @@ static double distance(starg_context *context, const starg_signature *a, const s
 
 /* From the definition in docs/retrieval.md. */
 static double star_by_definition(const starg_signature *a, const starg_signature *b) {
-    double sum = 0, squares = 0;
+    double sum = 0;
     for (int i = 0; i < STAR; i++) {
-        double difference = fabs(a->numbers[i] - b->numbers[i]);
-        if (i < STAR_SURFACE)
-            squares += pow(difference / (i + 1), 2);
-        else if (i < STAR_SURFACE + STAR_SOLID)
-            sum += difference / (i - STAR_SURFACE + 1) / (0.0875 * STAR_SOLID);
-        else if (i < STAR_SURFACE + STAR_SOLID + STAR_VIEWS)
+        double difference = fabs(a->numbers[i] - b->numbers[i]), place = i % STAR_SPECTRUM + 1;
+        if (i < 2 * STAR_SPECTRUM)
+            sum += difference / place / (0.083 * 2 * STAR_SPECTRUM);
+        else if (i < 2 * STAR_SPECTRUM + STAR_VIEWS)
             sum += difference / (0.041 * STAR_VIEWS);
         else
-            sum += difference / (0.179 * STAR_WAVES);
+            sum += difference / (0.18 * STAR_WAVES);
     }
-    return (sum + sqrt(squares / STAR_SURFACE) / 1.21) / 4;
+    return sum / 3;
 }
 
 static starg_mesh *posed(starg_context *context, const char *name, int pose) {
@@ -428,9 +425,9 @@ static void damaged_numbers_are_refused(void **state) {
     const struct {
         size_t place;
         double value;
-    } star_damages[] = {{0, -1},    {3, 1},        {49, NAN},      {89, INFINITY},
-                        {50, -1},   {70, 1},       {89, 1e101},    {90, 1e101},
-                        {217, NAN}, {218, -1e101}, {409, INFINITY}};
+    } star_damages[] = {{0, -1},    {3, 1},        {39, NAN},      {79, INFINITY},
+                        {40, -1},   {60, 1},       {79, 1e101},    {80, 1e101},
+                        {207, NAN}, {208, -1e101}, {399, INFINITY}};
     for (size_t i = 0; i < sizeof star_damages / sizeof *star_damages; i++) {
         star[star_damages[i].place] = star_damages[i].value;
         assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 3, star, STAR, &s),
