@@ -28,7 +28,12 @@ typedef struct starg_descriptor_edge {
     double gate[3];         /* their centroid: the way between guards */
 } starg_descriptor_edge;
 
-enum { STARG_DESCRIPTOR_VIEW = 8, STARG_DESCRIPTOR_SPREAD = 16, STARG_DESCRIPTOR_EIGENVALUES = 30 };
+enum {
+    STARG_DESCRIPTOR_VIEW = 8,
+    STARG_DESCRIPTOR_SPREAD = 16,
+    STARG_DESCRIPTOR_ENERGIES = 12,
+    STARG_DESCRIPTOR_EIGENVALUES = 40
+};
 
 typedef struct starg_descriptor {
     char *file; /* as given to the writer; NULL if there is none */
@@ -51,6 +56,9 @@ typedef struct starg_descriptor {
      * ascending: as a surface, and as a shell as thick as the solid is wide there. */
     double surface_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
     double solid_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
+    /* Where the boundary vibrates: row k holds quantiles, over the surface, of how strong
+     * vibrations of about the k-th energy are at a point, 1 on average. Rows ascend. */
+    double waves[STARG_DESCRIPTOR_ENERGIES][STARG_DESCRIPTOR_SPREAD];
 } starg_descriptor;
 
 enum {

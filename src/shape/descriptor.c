@@ -3,9 +3,9 @@
  * Stages: the model at a standard level of detail (level.c); a strict star decomposition of it
  * within a budget of trials; its guards with the volumes of their pieces; an edge for each two
  * pieces that touch, with the centroid of what they share; from each guard the distance to the
- * boundary in directions that cover the sphere evenly; the widths of the solid and the spectrum
- * that they give its boundary (thickness.c), which unlike all else do not depend on where guards
- * came to stand.
+ * boundary in directions that cover the sphere evenly; the spectra of the boundary, as a
+ * surface and with the widths of the solid (thickness.c), and where it vibrates (waves.c), which
+ * unlike all else do not depend on where guards came to stand.
  *
  * The paper's graph follows the curve skeleton on which its guards lie. Here guards lie anywhere in
  * the kernels of their pieces and the edges are the contacts of pieces, so that the graph has a
@@ -53,15 +53,16 @@ void starg_descriptor_direction(size_t count, size_t index, double out[3]) {
 
 /* ---- guards ---- */
 
-/* A mesh that encloses no solid by itself is filled with what it winds around. */
+/* A mesh that encloses no solid by itself is filled with what it winds around: *closed is false. */
 static starg_status decompose_mesh(starg_context *context, const starg_mesh *mesh,
                                    const starg_descriptor_options *options,
-                                   starg_decomposition **out) {
+                                   starg_decomposition **out, bool *closed) {
     starg_decompose_options wanted;
     starg_solid *solid = NULL;
     starg_decompose_options_default(&wanted);
     wanted.effort = options->effort;
     starg_status status = starg_solid_create(context, mesh, &solid);
+    *closed = status == STARG_OK;
     if (status == STARG_ERROR_MESH)
         return starg_decompose_open_mesh(context, mesh, &wanted, out);
     if (status == STARG_OK)
@@ -70,19 +71,35 @@ static starg_status decompose_mesh(starg_context *context, const starg_mesh *mes
     return status;
 }
 
+/* What is described. */
+typedef struct subject {
+    starg_mesh *level; /* NULL: the model as it is */
+    starg_decomposition *pieces;
+    const starg_mesh *surface; /* before it was cut; NULL where holes were filled */
+} subject;
+
+static void subject_free(starg_context *context, subject *s) {
+    starg_mesh_free(s->level);
+    starg_decomposition_free(context, s->pieces);
+}
+
 /* A model of which nothing is left at its level of detail is taken as it is. */
 static starg_status decompose(starg_context *context, const starg_mesh *mesh,
-                              const starg_descriptor_options *options, starg_decomposition **out) {
+                              const starg_descriptor_options *options, subject *out) {
     starg_status status = STARG_OK;
-    starg_mesh *level = NULL;
+    bool closed = false;
     if (options->detail > 0)
-        STARG_TRY(level_create(context, mesh, options->detail, &level));
-    if (level != NULL)
-        status = decompose_mesh(context, level, options, out);
-    if (level == NULL || status == STARG_ERROR_MESH || status == STARG_ERROR_SOLVER)
-        status = decompose_mesh(context, mesh, options, out);
+        STARG_TRY(level_create(context, mesh, options->detail, &out->level));
+    out->surface = out->level;
+    if (out->level != NULL)
+        status = decompose_mesh(context, out->level, options, &out->pieces, &closed);
+    if (out->level == NULL || status == STARG_ERROR_MESH || status == STARG_ERROR_SOLVER) {
+        out->surface = mesh;
+        status = decompose_mesh(context, mesh, options, &out->pieces, &closed);
+    }
+    if (!closed)
+        out->surface = NULL;
 done:
-    starg_mesh_free(level);
     return status;
 }
 
@@ -230,7 +247,7 @@ starg_status starg_descriptor_create(starg_context *context, const starg_mesh *m
                                      starg_descriptor **out) {
     starg_status status = STARG_OK;
     starg_descriptor_options defaults;
-    starg_decomposition *pieces = NULL;
+    subject s = {0};
     starg_descriptor *d = NULL;
     ray_caster caster = {0};
     starg_descriptor_options_default(&defaults);
@@ -238,20 +255,19 @@ starg_status starg_descriptor_create(starg_context *context, const starg_mesh *m
         options = &defaults;
     *out = NULL;
     STARG_TRY(check_options(context, options));
-    STARG_TRY(decompose(context, mesh, options, &pieces));
+    STARG_TRY(decompose(context, mesh, options, &s));
     STARG_NEW_ZERO(context, STAGE, d, 1);
-    add_head(mesh, options, pieces, d);
-    STARG_TRY(add_guards(context, pieces, d));
-    STARG_TRY(add_edges(context, pieces, d));
-    STARG_TRY(ray_caster_create(context, pieces->mesh, &caster));
+    add_head(mesh, options, s.pieces, d);
+    STARG_TRY(add_guards(context, s.pieces, d));
+    STARG_TRY(add_edges(context, s.pieces, d));
+    STARG_TRY(ray_caster_create(context, s.pieces->mesh, &caster));
     STARG_TRY(add_distances(context, &caster, d));
-    STARG_TRY(views_measure(context, pieces->mesh, &caster, &d->views[0][0]));
-    STARG_TRY(
-        thickness_spectra(context, pieces->mesh, &caster, d->surface_spectrum, d->solid_spectrum));
+    STARG_TRY(views_measure(context, s.pieces->mesh, &caster, &d->views[0][0]));
+    STARG_TRY(thickness_spectra(context, s.pieces->mesh, s.surface, &caster, d));
     *out = d;
 done:
     ray_caster_free(context, &caster);
-    starg_decomposition_free(context, pieces);
+    subject_free(context, &s);
     if (status != STARG_OK)
         starg_descriptor_free(context, d);
     return status;

@@ -12,8 +12,9 @@
 static const char STAGE[] = "descriptor file";
 static const char FORMAT[] = "starguard-descriptor";
 enum {
-    VERSION = 2,
+    VERSION = 3,
     VIEWS = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
+    WAVES = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
     EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES
 };
 
@@ -65,7 +66,8 @@ static bool put_head(FILE *stream, const starg_descriptor *d, const char *file) 
                           ",\n") &&
            put_numbers(stream, "views", &d->views[0][0], VIEWS) &&
            put_numbers(stream, "surface_spectrum", d->surface_spectrum, EIGENVALUES) &&
-           put_numbers(stream, "solid_spectrum", d->solid_spectrum, EIGENVALUES);
+           put_numbers(stream, "solid_spectrum", d->solid_spectrum, EIGENVALUES) &&
+           put_numbers(stream, "waves", &d->waves[0][0], WAVES);
 }
 
 static bool put_all(FILE *stream, const void *result, const char *file) {
@@ -255,7 +257,7 @@ static starg_status read_document(const json_reader *r, json_t *root) {
     STARG_TRY(read_count(r, root, "version", SIZE_MAX, &version));
     if (version != VERSION)
         return reject(r, "version",
-                      "2, the only one that is known; describe the model anew with this program");
+                      "3, the only one that is known; describe the model anew with this program");
     STARG_TRY(read_model(r, root));
     STARG_TRY(read_count(r, root, "detail", STARG_MESH_LIMIT, &d->detail));
     STARG_TRY(read_count(r, root, "effort", SIZE_MAX, &effort));
@@ -265,6 +267,7 @@ static starg_status read_document(const json_reader *r, json_t *root) {
     STARG_TRY(read_numbers(r, root, "views", VIEWS, &d->views[0][0]));
     STARG_TRY(read_numbers(r, root, "surface_spectrum", EIGENVALUES, d->surface_spectrum));
     STARG_TRY(read_numbers(r, root, "solid_spectrum", EIGENVALUES, d->solid_spectrum));
+    STARG_TRY(read_numbers(r, root, "waves", WAVES, &d->waves[0][0]));
     STARG_TRY(read_guards(r, root));
     STARG_TRY(read_edges(r, root));
 done:

@@ -27,7 +27,7 @@ static starg_status compute(starg_context *context, const starg_mesh *mesh, doub
     laplacian l = {0};
     STARG_TRY(laplacian_create(context, mesh, NULL, &l));
     STARG_NEW(context, STAGE, values, EIGENVALUES + 1);
-    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values));
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values, NULL));
     memmove(values, values + 1, EIGENVALUES * sizeof *values);
     for (size_t i = 0; i < EIGENVALUES; i++)
         values[i] = fmax(values[i], 0); /* rounding about the zeros */

@@ -40,6 +40,7 @@ typedef struct iteration {
     double *roots; /* of the masses */
     double *solution, *residual, *vectors, *work, *small;
     a_int *chosen;
+    bool functions; /* are eigenvectors wanted? */
 } iteration;
 
 /* y = M^1/2 (L + SHIFT M)^-1 M^1/2 x */
@@ -57,7 +58,8 @@ static void start_vector(const iteration *it) {
         it->residual[i] = starg_rng_unit(&rng) - 0.5;
 }
 
-/* The largest eigenvalues of the operator, in any order. The lock is held. */
+/* The largest eigenvalues of the operator, in any order, their vectors, if wanted, in the first
+ * columns of `vectors`. The lock is held. */
 static starg_status iterate(starg_context *context, const iteration *it, a_int wanted,
                             a_int vectors, double *largest) {
     a_int n = (a_int)it->l->count, ido = 0, info = 1, small = vectors * (vectors + 8);
@@ -78,9 +80,9 @@ static starg_status iterate(starg_context *context, const iteration *it, a_int w
     }
     starg_progress_end(context);
     if (info == 0 && parameters[4] >= wanted)
-        dseupd_c(0, "A", it->chosen, largest, it->vectors, n, 0, "I", n, "LM", wanted, TOLERANCE,
-                 it->residual, vectors, it->vectors, n, parameters, places, it->work, it->small,
-                 small, &info);
+        dseupd_c(it->functions, "A", it->chosen, largest, it->vectors, n, 0, "I", n, "LM", wanted,
+                 TOLERANCE, it->residual, vectors, it->vectors, n, parameters, places, it->work,
+                 it->small, small, &info);
     if (info != 0)
         return starg_fail(context, STARG_ERROR_SOLVER, STAGE,
                           "the eigenvalues did not converge (ARPACK says %d)", (int)info);
@@ -97,17 +99,43 @@ static starg_status locked_iterate(starg_context *context, const iteration *it, 
     return status;
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+typedef struct mode {
+    double eigenvalue;
+    size_t column;
+} mode;
+
+static int by_eigenvalue(const void *left, const void *right) {
+    const mode *a = left, *b = right;
+    int order = (a->eigenvalue > b->eigenvalue) - (a->eigenvalue < b->eigenvalue);
+    return order != 0 ? order : (a->column > b->column) - (a->column < b->column);
+}
+
+/* From the operator's solutions, `eigenvalues` and it->vectors, to those of the Laplacian. */
+static starg_status sort_modes(starg_context *context, const iteration *it, mode *modes,
+                               size_t wanted, double *eigenvalues, double *functions) {
+    size_t n = it->l->count;
+    for (size_t i = 0; i < wanted; i++) {
+        modes[i] = (mode){.eigenvalue = 1 / eigenvalues[i] - SHIFT, .column = i};
+        if (!(isfinite(modes[i].eigenvalue) && modes[i].eigenvalue > -0.5 * SHIFT))
+            return factor_fail(context);
+    }
+    qsort(modes, wanted, sizeof *modes, by_eigenvalue);
+    for (size_t i = 0; i < wanted; i++) {
+        const double *vector = it->vectors + modes[i].column * n;
+        eigenvalues[i] = modes[i].eigenvalue;
+        for (size_t k = 0; k < n && functions != NULL; k++)
+            functions[i * n + k] = vector[k] / it->roots[k];
+    }
+    return STARG_OK;
 }
 
 starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_t wanted,
-                               double *eigenvalues) {
+                               double *eigenvalues, double *functions) {
     starg_status status = STARG_OK;
     size_t n = l->count, vectors = 2 * wanted + SPARE_VECTORS;
     factor f = {0};
-    iteration it = {.l = l, .f = &f};
+    mode *modes = NULL;
+    iteration it = {.l = l, .f = &f, .functions = functions != NULL};
     if (vectors > n)
         vectors = n;
     if (wanted >= n || n * sizeof(double) > INT_MAX)
@@ -122,18 +150,13 @@ starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_
     STARG_NEW(context, STAGE, it.work, 3 * n);
     STARG_NEW_ZERO(context, STAGE, it.chosen, vectors);
     STARG_NEW(context, STAGE, it.small, vectors * (vectors + 8));
+    STARG_NEW(context, STAGE, modes, wanted);
     for (size_t i = 0; i < n; i++)
         it.roots[i] = sqrt(l->masses[i]);
     STARG_TRY(locked_iterate(context, &it, (a_int)wanted, (a_int)vectors, eigenvalues));
-    for (size_t i = 0; i < wanted; i++) {
-        eigenvalues[i] = 1 / eigenvalues[i] - SHIFT;
-        if (!(isfinite(eigenvalues[i]) && eigenvalues[i] > -0.5 * SHIFT)) {
-            status = factor_fail(context);
-            goto done;
-        }
-    }
-    qsort(eigenvalues, wanted, sizeof *eigenvalues, by_size);
+    STARG_TRY(sort_modes(context, &it, modes, wanted, eigenvalues, functions));
 done:
+    starg_release(context, modes);
     starg_release(context, it.roots);
     starg_release(context, it.solution);
     starg_release(context, it.residual);

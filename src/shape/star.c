@@ -2,14 +2,16 @@
  * however it was cut.
  *
  * Numbers, in three parts:
- * - the spectrum of the solid, as the shell of its thickness that guards measure (thickness.c);
- * - the spectrum of its boundary as a surface;
- * - views: logarithms of what is seen from points spread over the pieces (views.c), in units of the
- *   cube root of the shape's volume, so that a finger is as unlike an arm as the arm a trunk.
+ * - the spectrum of the boundary as a surface [RWP06], in units of its own growth: between things
+ * of a kind that differ in proportions, the area is no measure of the scale;
+ * - views: what is seen from points spread over the pieces (views.c), in units of the cube root of
+ *   the shape's volume;
+ * - waves: where the surface vibrates (waves.c), as logarithms.
  *
  * Spectra differ by the mean difference of their eigenvalues, each divided by its place, because
- * they grow in proportion to it (Weyl's law); views by the mean difference. Each part is divided by
- * what it is on average between two shapes, and the mean of the three is the distance. That is a
+ * they grow in proportion to it (Weyl's law). Rows of views and waves are quantiles, so that their
+ * mean difference is the cost of transporting distributions into each other. Each part is divided
+ * by what it is on average between two shapes, and the mean of the three is the distance. That is a
  * weighted L1 norm of a difference, and so a metric.
  *
  * Cost: a few additions for each number. */
@@ -22,17 +24,18 @@ static const char STAGE[] = "star distance";
 
 enum {
     EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES,
-    VIEWS = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
-    SURFACE = EIGENVALUES,        /* where the surface's spectrum begins */
-    SEEN = SURFACE + EIGENVALUES, /* where views begin */
-    NUMBERS = SEEN + VIEWS
+    VIEWS_COUNT = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
+    WAVES_COUNT = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
+    VIEWS = EIGENVALUES, /* where views begin, and waves */
+    WAVES = VIEWS + VIEWS_COUNT,
+    NUMBERS = WAVES + WAVES_COUNT
 };
-static const double SMALLEST = 1e-3; /* lengths below that are alike, in units of the shape's */
 
-static const double LARGEST = 1e100; /* eigenvalue that is taken for one */
+static const double FAINT = 0.05;    /* vibrations below that are about as weak; 1 is average */
+static const double LARGEST = 1e100; /* number that is taken for one */
 
 /* Mean differences between two models of the TOSCA set. */
-static const double SOLID_UNIT = 1.27, SURFACE_UNIT = 1.19, VIEWS_UNIT = 0.146;
+static const double SPECTRUM_UNIT = 0.078, VIEWS_UNIT = 0.041, WAVES_UNIT = 0.18;
 
 /* The cube root of the volume. Relative to the largest, so that volumes of any shape that has
  * coordinates can be summed. */
@@ -45,16 +48,26 @@ static double unit_of(const starg_descriptor *d) {
     return largest > 0 ? cbrt(largest) * cbrt(sum) : fmax(d->diagonal, 1e-300);
 }
 
+/* Eigenvalues in units of what they grow by on average from one to the next. */
+static void put_spectrum(const double *eigenvalues, double *out) {
+    double sum = 0;
+    for (size_t i = 0; i < EIGENVALUES; i++)
+        sum += eigenvalues[i] / (double)(i + 1);
+    for (size_t i = 0; i < EIGENVALUES; i++)
+        out[i] = sum > 0 ? eigenvalues[i] / (sum / EIGENVALUES) : 0;
+}
+
 static starg_status derive(starg_context *context, const starg_descriptor *d, double **numbers,
                            size_t *count) {
     starg_status status = STARG_OK;
     double *all = NULL, unit = unit_of(d);
     STARG_NEW(context, STAGE, all, NUMBERS);
-    memcpy(all, d->solid_spectrum, sizeof d->solid_spectrum);
-    memcpy(all + SURFACE, d->surface_spectrum, sizeof d->surface_spectrum);
-    for (size_t i = 0; i < VIEWS; i++)
-        all[SEEN + i] = log(
-            d->views[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] / unit + SMALLEST);
+    put_spectrum(d->surface_spectrum, all);
+    for (size_t i = 0; i < VIEWS_COUNT; i++)
+        all[VIEWS + i] = d->views[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] / unit;
+    for (size_t i = 0; i < WAVES_COUNT; i++)
+        all[WAVES + i] =
+            log(d->waves[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] + FAINT);
     *numbers = all;
     *count = NUMBERS;
 done:
@@ -64,11 +77,11 @@ done:
 static bool check(const double *numbers, size_t count) {
     if (count != NUMBERS)
         return false;
-    for (size_t i = 0; i < SEEN; i++)
-        if (!(numbers[i] >= (i % EIGENVALUES > 0 ? numbers[i - 1] : 0) && numbers[i] < LARGEST))
+    for (size_t i = 0; i < EIGENVALUES; i++)
+        if (!(numbers[i] >= (i > 0 ? numbers[i - 1] : 0)))
             return false;
-    for (size_t i = SEEN; i < NUMBERS; i++)
-        if (!(fabs(numbers[i]) < 1e3))
+    for (size_t i = 0; i < NUMBERS; i++)
+        if (!(fabs(numbers[i]) < LARGEST))
             return false;
     return true;
 }
@@ -80,22 +93,22 @@ static double compare_spectra(const double *a, const double *b) {
     return sum / EIGENVALUES;
 }
 
-static double compare_views(const double *a, const double *b) {
+static double compare_quantiles(const double *a, const double *b, size_t count) {
     double sum = 0;
-    for (size_t i = 0; i < VIEWS; i++)
+    for (size_t i = 0; i < count; i++)
         sum += fabs(a[i] - b[i]);
-    return sum / VIEWS;
+    return sum / (double)count;
 }
 
 static starg_status compare(starg_context *context, const double *a, size_t a_count,
                             const double *b, size_t b_count, double *out) {
     (void)context, (void)a_count, (void)b_count;
-    *out = (compare_spectra(a, b) / SOLID_UNIT +
-            compare_spectra(a + SURFACE, b + SURFACE) / SURFACE_UNIT +
-            compare_views(a + SEEN, b + SEEN) / VIEWS_UNIT) /
+    *out = (compare_spectra(a, b) / SPECTRUM_UNIT +
+            compare_quantiles(a + VIEWS, b + VIEWS, VIEWS_COUNT) / VIEWS_UNIT +
+            compare_quantiles(a + WAVES, b + WAVES, WAVES_COUNT) / WAVES_UNIT) /
            3;
     return STARG_OK;
 }
 
 const signature_method signature_star = {
-    .name = "star", .version = 2, .derive = derive, .check = check, .compare = compare};
+    .name = "star", .version = 3, .derive = derive, .check = check, .compare = compare};

@@ -13,7 +13,8 @@
  * surface: Shape-DNA [RWP06] with a thickness.
  *
  * Stages: boundary and widths; widths spread by diffusion over about a tenth of the shape's size
- * (each is one look; the shell wants the thickness of a region); spectra.
+ * (each is one look; the shell wants the thickness of a region); spectra, and of the surface the
+ * eigenfunctions too, for what waves.c makes of them.
  *
  * Invariants: lengths are in units of the solid's size meanwhile, so that nothing overflows.
  *
@@ -27,8 +28,8 @@
 #include "geometry/vec3.h"
 #include "shape/factor.h"
 #include "shape/spectrum.h"
+#include "shape/waves.h"
 #include "star/piece_faces.h"
-#include "starguard/descriptor.h"
 
 static const char STAGE[] = "thickness";
 
@@ -152,26 +153,45 @@ done:
     return status;
 }
 
-/* Of the shell, or of the surface where `thickness` is NULL. */
-static starg_status take_spectrum(starg_context *context, const starg_mesh *boundary,
-                                  const double *thickness, double *out) {
+/* All but the first one; what rounding put below 0 is 0. */
+static void keep_behind_zero(double *eigenvalues, double *out) {
+    for (size_t i = 0; i <= EIGENVALUES; i++)
+        eigenvalues[i] = fmax(eigenvalues[i], 0);
+    memcpy(out, eigenvalues + 1, EIGENVALUES * sizeof *out);
+}
+
+static starg_status take_solid(starg_context *context, const starg_mesh *boundary,
+                               const double *thickness, double *out) {
     starg_status status = STARG_OK;
     laplacian l = {0};
-    double values[EIGENVALUES + 1];
-    if (thickness != NULL)
-        STARG_TRY(laplacian_create_shell(context, boundary, thickness, &l));
-    else
-        STARG_TRY(laplacian_create(context, boundary, NULL, &l));
-    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values));
-    for (size_t i = 0; i < EIGENVALUES; i++)
-        out[i] = fmax(values[i + 1], 0); /* rounding about the zeros */
+    double eigenvalues[EIGENVALUES + 1];
+    STARG_TRY(laplacian_create_shell(context, boundary, thickness, &l));
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, NULL));
+    keep_behind_zero(eigenvalues, out);
 done:
     laplacian_free(context, &l);
     return status;
 }
 
+static starg_status take_surface(starg_context *context, const starg_mesh *surface, double *out,
+                                 double *waves) {
+    starg_status status = STARG_OK;
+    laplacian l = {0};
+    double eigenvalues[EIGENVALUES + 1], *functions = NULL;
+    STARG_TRY(laplacian_create(context, surface, NULL, &l));
+    STARG_NEW(context, STAGE, functions, (EIGENVALUES + 1) * l.count);
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, functions));
+    keep_behind_zero(eigenvalues, out);
+    STARG_TRY(waves_measure(context, &l, eigenvalues, functions, waves));
+done:
+    starg_release(context, functions);
+    laplacian_free(context, &l);
+    return status;
+}
+
 starg_status thickness_spectra(starg_context *context, const starg_tetmesh *mesh,
-                               const ray_caster *caster, double *surface, double *solid) {
+                               const starg_mesh *surface, const ray_caster *caster,
+                               starg_descriptor *out) {
     starg_status status = STARG_OK;
     looker l = {.mesh = mesh, .caster = caster};
     starg_mesh *boundary = NULL;
@@ -185,8 +205,9 @@ starg_status thickness_spectra(starg_context *context, const starg_tetmesh *mesh
     STARG_NEW_ZERO(context, STAGE, at, starg_mesh_vertex_count(boundary));
     STARG_TRY(put_at_vertices(context, boundary, l.widths, at));
     STARG_TRY(diffuse(context, boundary, at));
-    STARG_TRY(take_spectrum(context, boundary, NULL, surface));
-    STARG_TRY(take_spectrum(context, boundary, at, solid));
+    STARG_TRY(take_surface(context, surface != NULL ? surface : boundary, out->surface_spectrum,
+                           &out->waves[0][0]));
+    STARG_TRY(take_solid(context, boundary, at, out->solid_spectrum));
 done:
     starg_mesh_free(boundary);
     starg_release(context, l.faces);

@@ -11,7 +11,14 @@
 #include "starguard/simplify.h"
 
 /* The layouts of docs/formats.md. */
-enum { STAR_SPECTRUM = 30, STAR_VIEWS = 128, STAR = 188, PAPER_HEAD = 2, PAPER_GUARD = 68 };
+enum {
+    STAR_SPECTRUM = 40,
+    STAR_VIEWS = 128,
+    STAR_WAVES = 192,
+    STAR = 360,
+    PAPER_HEAD = 2,
+    PAPER_GUARD = 68
+};
 
 static starg_signature *signature_of(starg_context *context, const starg_mesh *mesh,
                                      starg_signature_kind kind) {
@@ -34,13 +41,15 @@ static double distance(starg_context *context, const starg_signature *a, const s
 static double star_by_definition(const starg_signature *a, const starg_signature *b) {
     double sum = 0;
     for (int i = 0; i < STAR; i++) {
-        double difference = fabs(a->numbers[i] - b->numbers[i]), place = i % STAR_SPECTRUM + 1;
-        if (i >= 2 * STAR_SPECTRUM)
-            sum += difference / (3 * 0.146 * STAR_VIEWS);
+        double difference = fabs(a->numbers[i] - b->numbers[i]);
+        if (i < STAR_SPECTRUM)
+            sum += difference / (i + 1) / (0.078 * STAR_SPECTRUM);
+        else if (i < STAR_SPECTRUM + STAR_VIEWS)
+            sum += difference / (0.041 * STAR_VIEWS);
         else
-            sum += difference / (place * 3 * (i < STAR_SPECTRUM ? 1.27 : 1.19) * STAR_SPECTRUM);
+            sum += difference / (0.18 * STAR_WAVES);
     }
-    return sum;
+    return sum / 3;
 }
 
 static starg_mesh *posed(starg_context *context, const char *name, int pose) {
@@ -410,21 +419,21 @@ static void damaged_numbers_are_refused(void **state) {
             STARG_ERROR_FORMAT);
     double star[STAR + 1] = {0};
     for (size_t cut = 0; cut <= STAR; cut++)
-        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 2, star,
+        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 3, star,
                                                  cut < STAR ? cut : STAR + 1, &s),
                          STARG_ERROR_FORMAT);
     const struct {
         size_t place;
         double value;
-    } star_damages[] = {{0, -1},     {3, 1},    {29, NAN}, {59, INFINITY},
-                        {59, 1e101}, {60, 1e4}, {187, NAN}};
+    } star_damages[] = {{0, -1},     {3, 1},     {38, NAN},     {39, INFINITY}, {39, 1e101},
+                        {40, 1e101}, {167, NAN}, {168, -1e101}, {359, INFINITY}};
     for (size_t i = 0; i < sizeof star_damages / sizeof *star_damages; i++) {
         star[star_damages[i].place] = star_damages[i].value;
-        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 2, star, STAR, &s),
+        assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 3, star, STAR, &s),
                          STARG_ERROR_FORMAT);
         star[star_damages[i].place] = 0;
     }
-    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 1, star, STAR, &s),
+    assert_int_equal(starg_signature_restore(context, STARG_SIGNATURE_STAR, 2, star, STAR, &s),
                      STARG_ERROR_FORMAT);
     assert_null(s);
     free(g.numbers);

@@ -155,6 +155,11 @@ static void views_and_spectra_of_a_ball(void **state) {
             assert_true(fabs(d->surface_spectrum[i] / expected - 1) < 0.01);
             assert_true(fabs(d->solid_spectrum[i] / expected - 1) < 0.02);
         }
+    /* By the addition theorem vibrations of any degree are equally strong all over; what is above
+     * energies of the fifth one is cut off within the sixth. */
+    for (size_t e = 0; e < STARG_DESCRIPTOR_ENERGIES - 4; e++)
+        for (size_t i = 0; i < STARG_DESCRIPTOR_SPREAD; i++)
+            assert_true(fabs(d->waves[e][i] - 1) < 0.05);
     starg_descriptor_free(context, d);
     starg_mesh_free(mesh);
     test_context_free(context);
@@ -261,6 +266,7 @@ static void there_and_back(void **state) {
     assert_memory_equal(back->views, d->views, sizeof d->views);
     assert_memory_equal(back->surface_spectrum, d->surface_spectrum, sizeof d->surface_spectrum);
     assert_memory_equal(back->solid_spectrum, d->solid_spectrum, sizeof d->solid_spectrum);
+    assert_memory_equal(back->waves, d->waves, sizeof d->waves);
     assert_memory_equal(back->guards, d->guards, d->guard_count * sizeof *d->guards);
     assert_memory_equal(back->distances, d->distances,
                         d->guard_count * d->direction_count * sizeof *d->distances);
@@ -302,9 +308,9 @@ static void broken_files(void **state) {
     for (size_t cut = 0; cut + 2 < size; cut += 1 + size / 400)
         refuse(context, text, cut);
     const char *changes[][2] = {
-        {"\"version\": 2", "\"version\": 1"},
-        {"\"version\": 2", "\"version\": 3"},
-        {"\"version\": 2", "\"version\": \"2\""},
+        {"\"version\": 3", "\"version\": 2"},
+        {"\"version\": 3", "\"version\": 4"},
+        {"\"version\": 3", "\"version\": \"3\""},
         {"starguard-descriptor", "starguard-guards"},
         {"\"directions\": 12", "\"directions\": 13"},
         {"\"directions\": 12", "\"directions\": 0"},
@@ -317,6 +323,8 @@ static void broken_files(void **state) {
         {"\"views\": [", "\"others\": ["},
         {"\"surface_spectrum\": [", "\"surface_spectrum\": [null, "},
         {"\"solid_spectrum\": [", "\"solid_spectrum\": [0, "},
+        {"\"waves\": [", "\"waves\": [1, "},
+        {"\"waves\": [", "\"waves\": [-"},
         {"\"diagonal\":", "\"diagonal\":-"},
         {"\"position\":[", "\"position\":[1,"},
         {"\"position\":[", "\"position\":[1e101,"},

@@ -205,6 +205,26 @@ static void jacobi(double *a, size_t n, double *out) {
     }
 }
 
+/* Are columns solutions of A x = lambda M x, and orthonormal in the masses? */
+static void check_functions(const double *full, const double *masses, size_t n,
+                            const double *eigenvalues, const double *functions, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const double *x = functions + i * n;
+        for (size_t k = 0; k < i + 1; k++) {
+            double product = 0;
+            for (size_t r = 0; r < n; r++)
+                product += masses[r] * x[r] * functions[k * n + r];
+            assert_true(fabs(product - (i == k ? 1 : 0)) < 1e-7);
+        }
+        for (size_t r = 0; r < n; r++) {
+            double left = 0, right = eigenvalues[i] * masses[r] * x[r];
+            for (size_t c = 0; c < n; c++)
+                left += full[r * n + c] * x[c];
+            assert_true(fabs(left - right) < 1e-5 * (1 + eigenvalues[i]) * sqrt(masses[r]));
+        }
+    }
+}
+
 /* Random weighted graphs, of one or several components, against a dense solver. */
 static void spectrum_of_graphs(void **state) {
     (void)state;
@@ -243,7 +263,14 @@ static void spectrum_of_graphs(void **state) {
         }
         const laplacian l = {
             .count = N, .starts = starts, .rows = rows, .values = values, .masses = masses};
-        test_ok(context, spectrum_smallest(context, &l, WANTED, found));
+        double *functions = malloc(WANTED * N * sizeof *functions), again[WANTED];
+        assert_non_null(functions);
+        test_ok(context, spectrum_smallest(context, &l, WANTED, again, NULL));
+        test_ok(context, spectrum_smallest(context, &l, WANTED, found, functions));
+        for (size_t i = 0; i < WANTED; i++)
+            assert_true(fabs(again[i] - found[i]) < 1e-9 * (1 + found[i]));
+        check_functions(full, masses, N, found, functions, WANTED);
+        free(functions);
         for (size_t i = 0; i < N * N; i++)
             full[i] /= sqrt(masses[i / N] * masses[i % N]);
         jacobi(full, N, exact);
