@@ -265,6 +265,7 @@ static void test_time(void **state) {
     starg_tetmesh *mesh = NULL;
     starg_decomposition *d = NULL;
     starg_decompose_options options = small_effort(64);
+    options.tetra.density = 0;
     test_ok(context, starg_tetmesh_from_solid(context, solid, &options.tetra, NULL, &mesh));
     starg_context_set_time_limit(context, 1e-9);
     assert_int_equal(starg_decompose(context, solid, &options, &d), STARG_ERROR_TIME);
