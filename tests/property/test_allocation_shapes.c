@@ -416,6 +416,18 @@ static starg_status morph_guards_separate(starg_context *context) {
     return status;
 }
 
+static starg_status morph_solids(starg_context *context) {
+    starg_morph *morph = ready(context);
+    starg_decomposition *solids[2] = {NULL, NULL};
+    starg_status status = starg_morph_solids(morph, solids);
+    for (int end = 0; end < 2; end++) {
+        failing_result(status, solids[end]);
+        starg_decomposition_free(context, solids[end]);
+    }
+    starg_morph_free(morph);
+    return status;
+}
+
 /* ---- the tables ---- */
 
 static const failing_call signatures[] = {
@@ -474,6 +486,10 @@ static const failing_call morphs[] = {
     {"starg_morph_guards_separate", "", morph_guards_separate, NULL},
 };
 
+static const failing_call by_tetgen[] = {
+    {"starg_morph_solids", "", morph_solids, NULL},
+};
+
 static void test_signatures(void **state) {
     (void)state;
     FAILING_RUN(signatures);
@@ -499,6 +515,17 @@ static void test_morphs(void **state) {
     FAILING_RUN(morphs);
 }
 
+static void test_tetgen(void **state) {
+    (void)state;
+    starg_status status = morph_solids(in.context);
+    if (status == STARG_ERROR_SOLVER) {
+        printf("skipped: %s\n", starg_context_error(in.context)->message);
+        skip();
+    }
+    test_ok(in.context, status);
+    FAILING_RUN(by_tetgen);
+}
+
 static int set_up(void **state) {
     (void)state;
     failing_inputs_make(&in);
@@ -519,7 +546,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_signatures), cmocka_unit_test(test_descriptors),
         cmocka_unit_test(test_databases),  cmocka_unit_test(test_maps),
-        cmocka_unit_test(test_morphs),
+        cmocka_unit_test(test_morphs),     cmocka_unit_test(test_tetgen),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -308,7 +308,7 @@ static starg_status cut_off(const searcher *s, const direction *d, int parts, re
                             bool *found) {
     starg_status status = STARG_OK;
     region rest = {.vertices = {0}};
-    double height;
+    double height = 0;
     bool placed;
     STARG_TRY(place_peel(s, d, &height, &placed));
     if (!placed)
