@@ -33,6 +33,7 @@ sanitize: deps-check
 # numbers of threads.
 check-long: check
 	@scripts/tidy.sh $(BUILD)
+	@scripts/cppcheck.sh
 	@$(CTEST) --test-dir $(BUILD) -L slow
 	@STARGUARD_LONG=100 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow

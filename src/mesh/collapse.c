@@ -300,9 +300,7 @@ static bool clear_of(void *user, uint32_t face) {
 
 bool collapse_keeps_embedding(mesh_surface *surface, const mesh_nearby *nearby,
                               const collapse_star *star, const double position[3]) {
-    change c;
-    c.surface = surface;
-    c.star = star;
+    change c = {.surface = surface, .star = star};
     double *a = surface->vertices + 3 * (size_t)star->a;
     vec3_copy(a, c.old);
     vec3_copy(position, a);

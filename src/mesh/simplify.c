@@ -103,7 +103,7 @@ static bool place(const simplifier *s, uint32_t edge, int rank, placement *out) 
     for (int i = 0; i < PLACEMENTS; i++) {
         int better = 0;
         for (int j = 0; j < PLACEMENTS; j++)
-            better += all[j].error < all[i].error || (all[j].error == all[i].error && j < i);
+            better += all[j].error < all[i].error || (j < i && all[j].error == all[i].error);
         if (better == rank) {
             *out = all[i];
             return all[i].error < INFINITY;

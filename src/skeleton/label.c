@@ -82,7 +82,7 @@ static const double *sample(const labelling *l, uint32_t index) {
 /* Labels tetrahedron t where its face opposite corner k is one of the samples'. */
 static void match_face(labelling *l, size_t t, int k) {
     const uint32_t *corners = l->tetrahedra->tetrahedra[t];
-    uint32_t v[3];
+    uint32_t v[3] = {0};
     for (int j = 0, n = 0; j < 4; j++)
         if (j != k)
             v[n++] = corners[j];

@@ -19,7 +19,7 @@ void starg_tetmesh_write_options_default(starg_tetmesh_write_options *options) {
 }
 
 static void put_big_endian(const writer *w, uint64_t bits, int bytes) {
-    unsigned char out[8];
+    unsigned char out[8] = {0};
     for (int i = 0; i < bytes; i++)
         out[i] = (unsigned char)(bits >> 8 * (bytes - 1 - i));
     fwrite(out, 1, (size_t)bytes, w->stream);
