@@ -16,7 +16,7 @@ class Describe(support.Case):
                                      "--histograms", "seen.svg")
         self.assertEqual(report["format"], "starguard-describe")
         self.assertEqual(file["format"], "starguard-descriptor")
-        self.assertEqual(file["version"], 2)
+        self.assertEqual(file["version"], 3)
         self.assertEqual(file["model"]["file"], "torus.off")
         self.assertEqual(report["guards"], len(file["guards"]))
         self.assertEqual(report["edges"], len(file["edges"]))
