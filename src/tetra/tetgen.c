@@ -275,11 +275,11 @@ done:
     return status;
 }
 
-/* Everything but memory and cancellation is the program's fault. */
+/* Everything but memory, time and cancellation is the program's fault. */
 static starg_status blame(run *r, starg_status status) {
     char message[384];
     if (status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ||
-        status == STARG_ERROR_SOLVER)
+        status == STARG_ERROR_TIME || status == STARG_ERROR_SOLVER)
         return status;
     snprintf(message, sizeof message, "%.380s", starg_context_error(r->context)->message);
     return refuse(r, message);
