@@ -88,7 +88,8 @@ static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
 }
 
 static bool is_final(starg_status status) {
-    return status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED;
+    return status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ||
+           status == STARG_ERROR_TIME;
 }
 
 starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid *solid,
