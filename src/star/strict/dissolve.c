@@ -208,17 +208,12 @@ done:
 
 static int compare_edges(const void *left, const void *right) {
     const union_edge *x = left, *y = right;
-    uint32_t low[2] = {x->a < x->b ? x->a : x->b, y->a < y->b ? y->a : y->b};
-    uint32_t high[2] = {x->a < x->b ? x->b : x->a, y->a < y->b ? y->b : y->a};
-    if (low[0] != low[1])
-        return low[0] < low[1] ? -1 : 1;
-    if (high[0] != high[1])
-        return high[0] < high[1] ? -1 : 1;
-    return (x->facets[0] > y->facets[0]) - (x->facets[0] < y->facets[0]);
+    int order = partition_compare_edges(x->a, x->b, y->a, y->b);
+    return order != 0 ? order : (x->facets[0] > y->facets[0]) - (x->facets[0] < y->facets[0]);
 }
 
 static bool are_one_edge(const union_edge *x, const union_edge *y) {
-    return (x->a == y->a && x->b == y->b) || (x->a == y->b && x->b == y->a);
+    return partition_compare_edges(x->a, x->b, y->a, y->b) == 0;
 }
 
 /* Pairs of edges become one. False where an edge has other than two facets. */

@@ -43,13 +43,8 @@ done:
 /* Both directions of an edge next to each other. */
 static int compare_edges(const void *left, const void *right) {
     const fan_edge *x = left, *y = right;
-    uint32_t low[2] = {x->a < x->b ? x->a : x->b, y->a < y->b ? y->a : y->b};
-    uint32_t high[2] = {x->a < x->b ? x->b : x->a, y->a < y->b ? y->b : y->a};
-    if (low[0] != low[1])
-        return low[0] < low[1] ? -1 : 1;
-    if (high[0] != high[1])
-        return high[0] < high[1] ? -1 : 1;
-    return (x->a > y->a) - (x->a < y->a);
+    int order = partition_compare_edges(x->a, x->b, y->a, y->b);
+    return order != 0 ? order : (x->a > y->a) - (x->a < y->a);
 }
 
 static bool is_piece(const fan_plan *plan, uint32_t number) {

@@ -86,6 +86,14 @@ starg_status partition_build_index(partition *p);
 /* Appends a point in the solid's coordinates; its number. Errors: MEMORY. */
 starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex);
 
+/* Order of edges by their ends, whichever of the two comes first: 0 for the same edge. */
+static inline int partition_compare_edges(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    uint32_t low[2] = {a < b ? a : b, c < d ? c : d}, high[2] = {a < b ? b : a, c < d ? d : c};
+    if (low[0] != low[1])
+        return low[0] < low[1] ? -1 : 1;
+    return (high[0] > high[1]) - (high[0] < high[1]);
+}
+
 /* Of three vertices, counter-clockwise seen from where the normal points. */
 void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane);
 
