@@ -5,7 +5,7 @@ SECONDS ?= 60
 CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
-.PHONY: build demo check check-long mpi lint sanitize fuzz bench install package deps deps-check clean
+.PHONY: build demo check check-long coverage mpi lint sanitize fuzz bench install package deps deps-check clean
 
 build: deps
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=OFF > /dev/null
@@ -29,7 +29,7 @@ sanitize: deps-check
 
 # What takes too long for every change: static analysis, tests labelled slow (every case of memory and
 # kills, and what sanitizers make slow), a million cases for each exact decision, a clang build, the
-# thread sanitizer, the package on a clean root, runs by mpirun, and all results of six builds at four
+# thread sanitizer, the lines that tests reach, the package on a clean root, runs by mpirun, and all results of six builds at four
 # numbers of threads.
 check-long: check
 	@scripts/tidy.sh $(BUILD)
@@ -43,10 +43,22 @@ check-long: check
 	@$(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
+	@$(MAKE) --no-print-directory coverage
 	@scripts/package-test.sh $(BUILD)
 	@$(MAKE) --no-print-directory mpi
 	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
 	@JOBS=$(JOBS) scripts/determinism.py --matrix $(BUILD)-matrix
+
+# Which lines the tests reach. Left out are tests of what an instrumented build cannot have: its time,
+# and symbols and files that are installed.
+coverage: deps-check
+	@scripts/install-deps.sh coverage
+	@CC=gcc CXX=g++ $(CMAKE) -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O1 -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
+		-DSTARGUARD_COVERAGE=ON -S . -B $(BUILD)-coverage > /dev/null
+	@cmake --build $(BUILD)-coverage -j $(JOBS)
+	@find $(BUILD)-coverage -name '*.gcda' -delete
+	@$(CTEST) --test-dir $(BUILD)-coverage -LE slow -E '^install/|cli/test_(interrupt|limits)'
+	@scripts/coverage.py $(BUILD)-coverage
 
 # The command line for mpirun (docs/scaling.md): build-mpi/starguard.
 mpi: deps
@@ -83,4 +95,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-thread $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix demo
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix demo

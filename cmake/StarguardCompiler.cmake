@@ -24,6 +24,10 @@ if(STARGUARD_SANITIZE)
         -fsanitize=${STARGUARD_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(starguard_compiler INTERFACE -fsanitize=${STARGUARD_SANITIZE})
 endif()
+if(STARGUARD_COVERAGE) # atomic: threads count the same lines
+    target_compile_options(starguard_compiler INTERFACE --coverage -fprofile-update=atomic)
+    target_link_options(starguard_compiler INTERFACE --coverage)
+endif()
 if(STARGUARD_FUZZ) # the profile is for the report of lines
     target_compile_options(starguard_compiler INTERFACE
         -fsanitize=fuzzer-no-link -fprofile-instr-generate -fcoverage-mapping)
