@@ -128,7 +128,9 @@ static bool finds_contour_before(const visibility_scene *scene, const contours_s
     }
     if (triangle_is_near(d, corner))
         return true;
-    for (q.cube_face = 0; q.cube_face < CUBE_FACES; q.cube_face++) {
+    uint32_t met = cube_faces_met(d, corner);
+    STARG_FOR_BITS (cube_face, met) {
+        q.cube_face = (uint32_t)cube_face;
         cube_clip_triangle(d, corner, q.cube_face, &q.polygon);
         if (q.polygon.count == 0)
             continue;

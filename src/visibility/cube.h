@@ -189,6 +189,34 @@ static inline double beyond_side(const double v[3], int plane) {
     return SLACK * v[0] - (plane % 2 ? -v[1 + plane / 2] : v[1 + plane / 2]);
 }
 
+/* Bit 4 f + k: the vertex lies outside side k of the frustum of cube face f; bit 24 + f: not
+ * before that cube face. */
+static inline uint32_t cube_outside(const double v[3]) {
+    uint32_t bits = 0;
+    for (uint32_t face = 0; face < CUBE_FACES; face++) {
+        double major = face % 2 ? -v[face / 2] : v[face / 2];
+        double turned[3] = {major, v[(face / 2 + 1) % 3], v[(face / 2 + 2) % 3]};
+        for (int plane = 0; plane < 4; plane++)
+            bits |= (uint32_t)(beyond_side(turned, plane) < 0) << (4 * face + (uint32_t)plane);
+        bits |= (uint32_t)(major <= 0) << (24 + face);
+    }
+    return bits;
+}
+
+/* Bit f: the face may project to cube face f. */
+static inline uint32_t cube_faces_met(const cube_directions *d, const uint32_t corner[3]) {
+    uint32_t outside = UINT32_MAX, met = 0;
+    for (int k = 0; k < 3; k++) {
+        double v[3];
+        cube_relative(d, corner[k], v);
+        outside &= cube_outside(v);
+    }
+    for (uint32_t face = 0; face < CUBE_FACES; face++)
+        met |= (uint32_t)((outside & (UINT32_C(15) << 4 * face | UINT32_C(1) << (24 + face))) == 0)
+               << face;
+    return met;
+}
+
 /* A convex polygon on one cube face: a face, or the part of one that lies before the cube face. */
 typedef struct cube_polygon {
     int count;
@@ -219,25 +247,14 @@ static inline void clip_cone(const cone_polygon *in, int plane, cone_polygon *ou
     }
 }
 
-/* The part of a face in the frustum of a cube face: mostly nothing, which one side tells, or what
- * a single side cuts off. */
+/* The part of a face in the frustum of a cube face that it may meet: mostly what a single side cuts
+ * off. */
 static inline void clip_to_frustum(cone_polygon *polygon) {
     cone_polygon clipped;
-    bool cut[4];
-    if (polygon->corner[0][0] <= 0 && polygon->corner[1][0] <= 0 && polygon->corner[2][0] <= 0) {
-        polygon->count = 0;
-        return;
-    }
-    for (int plane = 0; plane < 4; plane++) {
-        int outside = 0;
+    bool cut[4] = {false};
+    for (int plane = 0; plane < 4; plane++)
         for (int i = 0; i < 3; i++)
-            outside += beyond_side(polygon->corner[i], plane) < 0;
-        if (outside == 3) {
-            polygon->count = 0;
-            return;
-        }
-        cut[plane] = outside > 0;
-    }
+            cut[plane] |= beyond_side(polygon->corner[i], plane) < 0;
     for (int plane = 0; plane < 4; plane++)
         if (cut[plane]) {
             clip_cone(polygon, plane, &clipped);
@@ -245,7 +262,7 @@ static inline void clip_to_frustum(cone_polygon *polygon) {
         }
 }
 
-/* The same on the cube face, for a face that is not near p. */
+/* The same on a cube face that it may meet, for a face that is not near p. */
 static inline void cube_clip_triangle(const cube_directions *d, const uint32_t corner[3],
                                       uint32_t cube_face, cube_polygon *polygon) {
     cone_polygon cone = {.count = 3};

@@ -39,7 +39,6 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_context *context = scene->context;
     starg_release(context, g->rows);
     starg_release(context, g->cell_start);
-    starg_release(context, g->cube);
     cube_free(context, &g->at);
     starg_release(context, g->in_use);
     starg_release(context, g->used);
@@ -65,7 +64,6 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->row_limit = (size_t)(CUBE_FACES * (ROW_FACTOR * sqrt((double)n) + 2));
     g->rows = starg_allocate(context, g->row_limit, sizeof *g->rows);
     g->cell_start = starg_allocate(context, 2 * n + g->row_limit + 1, sizeof *g->cell_start);
-    g->cube = starg_allocate(context, n, sizeof *g->cube);
     g->in_use = starg_allocate(context, n, sizeof *g->in_use);
     g->used = starg_allocate(context, n + 1, sizeof *g->used);
     g->kept = starg_allocate(context, scene->face_count + 1, sizeof *g->kept);
@@ -77,9 +75,9 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->hider = starg_allocate(context, n, sizeof *g->hider);
     g->hidden = starg_allocate(context, starg_bit_words(n) + 1, sizeof *g->hidden);
     g->chunks = starg_allocate(context, scene->face_count / CHUNK + 1, sizeof *g->chunks);
-    if (cube_make(context, n, &g->at) && g->rows && g->cell_start && g->cube && g->in_use &&
-        g->used && g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hider &&
-        g->hidden && g->chunks) {
+    if (cube_make(context, n, &g->at) && g->rows && g->cell_start && g->in_use && g->used &&
+        g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hider && g->hidden &&
+        g->chunks) {
         g->run = grid_choose_form(FORM_WIDEST);
         *scratch = g;
         return STARG_OK;

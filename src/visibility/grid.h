@@ -13,13 +13,6 @@ enum { CHUNK = 128, LANES = 8 };
  * touches few rows, and in each of them one run of vertices. */
 static const double ROW_FACTOR = 0.2;
 
-/* Where a direction meets the cube, and the rows there. */
-typedef struct cube_point {
-    float u;
-    uint32_t face;              /* plus RIM where rounding could put it on another face */
-    uint32_t row_low, row_high; /* rows of v - margin and v + margin; one, as a rule */
-} cube_point;
-
 /* A row of cells: vertices of nearly the same v, cut evenly between their extremes of u. */
 typedef struct grid_row {
     float u_low, u_high, v_low, v_high, scale, last_cell;
@@ -44,7 +37,6 @@ typedef struct grid_scratch {
     grid_row *rows; /* row_limit at most */
     size_t row_limit;
     uint32_t *cell_start; /* two cells a vertex and one a row, and the end */
-    cube_point *cube;     /* by slot */
     cube_directions at;
     uint8_t *in_use; /* slot has a kept face */
     uint32_t *used;  /* the slots in use */
@@ -52,7 +44,7 @@ typedef struct grid_scratch {
     uint32_t *kept; /* ranks of the kept faces, chunk by chunk, near ones first */
     size_t kept_count;
     /* Vertices in use, by cell. */
-    uint32_t *place;      /* slot -> position */
+    uint32_t *place;      /* slot -> position; any value for others */
     uint32_t *slot;       /* position -> slot */
     double *sx, *sy, *sz; /* LANES more than there are vertices, of any value */
     uint32_t *hider;      /* slot -> rank of a face that certainly hides it, or SCENE_NONE */
