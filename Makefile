@@ -40,9 +40,9 @@ check-long: check
 	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
 	@cmake --build $(BUILD)-clang -j $(JOBS)
 	@$(CTEST) --test-dir $(BUILD)-clang -LE slow
-	@$(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
+	@CC=clang CXX=clang++ $(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
-	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
+	@$(CTEST) --timeout 3000 --test-dir $(BUILD)-thread
 	@$(MAKE) --no-print-directory coverage
 	@scripts/package-test.sh $(BUILD)
 	@$(MAKE) --no-print-directory mpi
