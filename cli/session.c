@@ -29,7 +29,8 @@ const cli_option cli_common_options[] = {
      .value = "S",
      .high = 1e9,
      .above = true,
-     .help = "Stop searching after S seconds and give the best that was found. Default: none."},
+     .help = "Stop after S seconds: a search gives the best that it has found, what has nothing to "
+             "show by then ends with status 3. Default: none."},
     {.name = "quiet",
      .kind = CLI_FLAG,
      .offset = offsetof(cli_common, quiet),

@@ -67,7 +67,8 @@ STARG_API void starg_context_cancel(starg_context *context);
 STARG_API void starg_context_reset(starg_context *context);
 
 /* Wall-clock limit for the calls that follow, in seconds from now; 0 or less means none.
- * A search that the limit stops returns the best it has found and says so in its result. */
+ * A search that the limit stops returns the best it has found and says so in its result; what has
+ * nothing to show before it is done (a check, a skeleton, a map) returns STARG_ERROR_TIME. */
 STARG_API void starg_context_set_time_limit(starg_context *context, double seconds);
 
 /* Memory that the context has handed out: bytes at the peak, and blocks not yet returned. */

@@ -19,6 +19,7 @@
  * each level is twice the one before; an ILP per level on what is left of it. */
 #include "geometry/vec3.h"
 #include "guard/job.h"
+#include "mesh/solid.h"
 #include "starguard/simplify.h"
 
 static const char STAGE[] = "levels";
@@ -152,7 +153,7 @@ static starg_status guard_coarse_level(guard_job *job, int level, const starg_me
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     guard_pool pool = {0};
-    STARG_TRY(starg_solid_create(job->context, mesh, &solid));
+    STARG_TRY(solid_make(job->context, mesh, &solid));
     STARG_TRY(pool_on_level(&job->pool, solid, &pool));
     if (!pool.time_limited)
         STARG_TRY(guard_level(job, level, &pool));

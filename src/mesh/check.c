@@ -23,7 +23,11 @@ typedef struct checker {
     mesh_topology *topology;
     bvh *tree;
     mesh_shell *shells;
+    size_t pairs; /* of faces that were looked at */
 } checker;
+
+/* How often to look at the clock. */
+enum { PAIRS_PER_CLOCK = 4096 };
 
 const char *starg_finding_name(starg_finding_kind kind) {
     static const char *const names[STARG_FINDING_KINDS] = {
@@ -230,7 +234,9 @@ static bool check_pair(void *user, uint32_t a, uint32_t b) {
         if (kind == STARG_FINDING_SELF_INTERSECTION && first != second)
             c->shells[first].crossed = c->shells[second].crossed = true;
     }
-    return !atomic_load_explicit(&c->context->cancelled, memory_order_relaxed);
+    bool look_up = ++c->pairs % PAIRS_PER_CLOCK == 0;
+    return !(look_up && starg_deadline_struck(c->context)) &&
+           !atomic_load_explicit(&c->context->cancelled, memory_order_relaxed);
 }
 
 static starg_status check_intersections(checker *c) {
@@ -294,12 +300,15 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     STARG_NEW_ZERO(context, "check", c.check, 1);
     STARG_NEW_ZERO(context, "check", c.check->face_marks, mesh->face_count);
     STARG_TRY(topology_create(context, mesh, &c.topology));
+    STARG_TRY(starg_check_cancel(context, "check"));
     STARG_TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &c.tree));
+    STARG_TRY(starg_check_cancel(context, "check"));
     STARG_NEW_ZERO(context, "check", c.shells, c.topology->component_count);
     check_corners(&c);
     check_edges(&c);
     STARG_TRY(check_vertices(&c));
     STARG_TRY(check_positions(&c));
+    STARG_TRY(starg_check_cancel(context, "check"));
     check_duplicates(&c);
     check_areas(&c);
     STARG_TRY(check_intersections(&c));
@@ -320,8 +329,10 @@ void mesh_examination_free(starg_context *context, mesh_examination *examination
 
 starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, starg_check **out) {
     mesh_examination all;
-    starg_status status = mesh_examine(context, mesh, &all);
     *out = NULL;
+    starg_deadline_begin(context);
+    starg_status status = mesh_examine(context, mesh, &all);
+    starg_deadline_end(context);
     if (status == STARG_OK) {
         *out = all.check;
         all.check = NULL;

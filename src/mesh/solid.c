@@ -65,7 +65,7 @@ static void tell(starg_context *context, const starg_check *check) {
                   (unsigned long long)check->findings[STARG_FINDING_DEGENERATE_FACE].first[0]);
 }
 
-starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
+starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     mesh_examination all = {0};
@@ -90,6 +90,13 @@ done:
     mesh_examination_free(context, &all);
     if (status != STARG_OK)
         starg_solid_free(solid);
+    return status;
+}
+
+starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
+    starg_deadline_begin(context);
+    starg_status status = solid_make(context, mesh, out);
+    starg_deadline_end(context);
     return status;
 }
 

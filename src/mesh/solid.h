@@ -13,6 +13,9 @@ struct starg_solid {
     bvh *tree;
 };
 
+/* starg_solid_create for steps of a longer work: the time limit does not end it. */
+starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out);
+
 /* The solid that another process has examined: its mesh as it was after that, and as much of the
  * check as is needed. Copies all. Errors: those of starg_mesh_create. */
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,

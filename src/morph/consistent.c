@@ -17,6 +17,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
+#include "mesh/solid.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
 #include "morph/rotation.h"
@@ -45,7 +46,7 @@ starg_status morph_solid(const starg_morph *m, int end, starg_solid **out) {
         starg_mesh_create(m->context, end ? m->target : m->source, m->mesh->vertex_count,
                           m->mesh->faces, m->mesh->face_count, &mesh);
     if (status == STARG_OK)
-        status = starg_solid_create(m->context, mesh, out);
+        status = solid_make(m->context, mesh, out);
     starg_mesh_free(mesh);
     return status;
 }

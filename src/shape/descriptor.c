@@ -23,6 +23,7 @@
 #include "core/parallel.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
+#include "mesh/solid.h"
 #include "shape/level.h"
 #include "shape/rays.h"
 #include "shape/thickness.h"
@@ -61,7 +62,7 @@ static starg_status decompose_mesh(starg_context *context, const starg_mesh *mes
     starg_solid *solid = NULL;
     starg_decompose_options_default(&wanted);
     wanted.effort = options->effort;
-    starg_status status = starg_solid_create(context, mesh, &solid);
+    starg_status status = solid_make(context, mesh, &solid);
     *closed = status == STARG_OK;
     if (status == STARG_ERROR_MESH)
         return starg_decompose_open_mesh(context, mesh, &wanted, out);

@@ -472,6 +472,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     starg_verdict *verdict = NULL;
     facts known = {.guards = guards};
     *out = NULL;
+    starg_deadline_begin(context);
     STARG_TRY(verify_surface_create(context, mesh, &surface));
     known.surface = surface;
     STARG_TRY(find_facts(context, &known));
@@ -491,6 +492,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     *out = verdict;
     verdict = NULL;
 done:
+    starg_deadline_end(context);
     starg_verdict_free(context, verdict);
     free_facts(context, &known);
     verify_surface_free(surface);

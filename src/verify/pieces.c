@@ -107,12 +107,14 @@ starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     *out = NULL;
+    starg_deadline_begin(context);
     if (report != NULL && report->approximated)
         STARG_TRY(wrap_model(context, model, &surface));
     else
         STARG_TRY(verify_surface_create(context, model, &surface));
     STARG_TRY(verify_against(context, surface, pieces, report, out));
 done:
+    starg_deadline_end(context);
     verify_surface_free(surface);
     return status;
 }
@@ -144,9 +146,11 @@ starg_status starg_verify_pieces_of_tetmesh(starg_context *context, const starg_
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     *out = NULL;
+    starg_deadline_begin(context);
     STARG_TRY(wrap_boundary(context, model, &surface));
     STARG_TRY(verify_against(context, surface, pieces, report, out));
 done:
+    starg_deadline_end(context);
     verify_surface_free(surface);
     return status;
 }

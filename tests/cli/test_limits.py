@@ -123,6 +123,7 @@ class TimeLimits(support.Case):
         super().setUp()
         self.sample("horse", 40000, "horse.off")
         self.sample("cat", 40000, "cat.off")
+        self.sample("cat", 40000, "pose.off", "--pose", "1")
         self.sample("labyrinth", 30000, "maze.off")
 
     def test_commands(self):
@@ -134,12 +135,25 @@ class TimeLimits(support.Case):
                  ["describe", "horse.off", "-o", "d.json"],
                  ["match", "horse.off", "cat.off"],
                  ["map", "horse.off", "cat.off", "-o", "m.json"],
+                 ["morph", "cat.off", "pose.off", "--frames", "500", "-o", "frames"],
                  ["db", "add", "shapes.db", "horse.off", "cat.off", "maze.off"]]
         self.run_text("db", "create", "shapes.db")
         for words in cases:
             for seconds in (1, 3) if LONG else (1,):
                 with self.subTest(words=words, seconds=seconds):
                     self.spend(seconds, *words)
+
+    def test_nothing_to_show(self):
+        """What is whole or nothing ends with a message, and leaves no file."""
+        self.run_text("guard", "maze.off", "-o", "g.json", "--quiet", "--no-refine", "--coverage", "0.5")
+        before = self.names()
+        for words in (["check", "horse.off", "--marks", "m.ply"], ["repair", "horse.off", "-o", "r.off"],
+                      ["kernel", "horse.off"], ["skeleton", "horse.off", "-o", "s.obj"],
+                      ["verify", "maze.off", "g.json"]):
+            with self.subTest(words=words):
+                _, err = self.run_text(*words, "--time-limit", "0.001", status=3)
+                self.assertIn("time limit", err)
+                self.assertEqual(self.names(), before)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@
 #include <math.h>
 
 #include "geometry/vec3.h"
+#include "mesh/solid.h"
 #include "star/decomposition.h"
 #include "star/paper/component.h"
 #include "star/paper/growth.h"
@@ -91,7 +92,7 @@ static starg_status place_guards(paper_state *s, size_t most, bool *time_limited
     starg_guard_options_default(&wanted);
     wanted.max_guards = most;
     STARG_TRY(starg_tetmesh_surface(s->context, s->mesh, &surface, NULL));
-    status = starg_solid_create(s->context, surface, &solid);
+    status = solid_make(s->context, surface, &solid);
     if (status == STARG_OK)
         status = starg_guard(s->context, solid, &wanted, &guards);
     if (status == STARG_ERROR_MESH || status == STARG_ERROR_TIME) {
