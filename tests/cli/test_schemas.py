@@ -95,20 +95,22 @@ class Schemas(support.Case):
             instead = ["made up"] if isinstance(at(document, path), dict) else {"made": "up"}
             at(wrong, path[:-1])[path[-1]] = instead
             self.assertFalse(validator.is_valid(wrong), f"{name}: {path} may be {instead}")
-            if isinstance(path[-1], str) and self.required(path):
+            if isinstance(path[-1], str) and self.required(name, path):
                 wrong = copy.deepcopy(document)
                 del at(wrong, path[:-1])[path[-1]]
                 self.assertFalse(validator.is_valid(wrong), f"{name}: {path} may be missing")
 
     OPTIONAL = {"levels", "direction", "area_bound", "coarsest", "step", "significance", "refine",
-                "peak_resident_bytes", "report", "map", "letter"}
+                "peak_resident_bytes", "report", "map", "letter", "separate"}
 
-    def required(self, path):
+    def required(self, name, path):
         if path[-1] in self.OPTIONAL:
             return False
         if path[0] in ("seconds", "findings", "classes") and len(path) == 2:
             return path[-1] == "total"  # keys of maps
         if path[0] in ("written", "shown") and len(path) == 2: # keys of what there is
+            return False
+        if name == "report-morph" and path == ("pieces",): # has them where it is asked to
             return False
         if path[0] == "results" and path[-1] in ("tetrahedra", "pieces", "strictly_star"):
             return False
@@ -198,9 +200,9 @@ class Schemas(support.Case):
                           f"horse_{pose}.off")
         self.report("map", "map", "horse_0.off", "horse_1.off", "-o", "map.json")
         self.file("map", "map.json")
-        for method in ["star", "linear"]:
-            self.report("morph", "morph", "horse_0.off", "horse_1.off", "--frames", "3", "-o", method,
-                        "--method", method)
+        for method, *more in [["star"], ["star", "--guards", "--pieces"], ["linear"]]:
+            self.report("morph", "morph", "horse_0.off", "horse_1.off", "--frames", "3", "-o", "frames",
+                        "--method", method, *more)
 
     def test_database(self):
         def db(name, *words, **options):
