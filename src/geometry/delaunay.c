@@ -495,6 +495,36 @@ done:
     return status;
 }
 
+starg_status delaunay_copy(const delaunay_builder *b, delaunay_builder **out) {
+    starg_status status = STARG_OK;
+    starg_context *context = b->context;
+    builder *copy = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, "delaunay", copy, 1);
+    *copy = (builder){.context = context,
+                      .count = b->count,
+                      .free_cells = b->free_cells,
+                      .last = b->last,
+                      .stamp = b->stamp,
+                      .rng = b->rng,
+                      .star_of = NOWHERE};
+    STARG_NEW(context, "delaunay", copy->incident, b->count);
+    STARG_NEW(context, "delaunay", copy->changed, b->count);
+    STARG_NEW(context, "delaunay", copy->cells.data, b->cells.count);
+    copy->cells.count = copy->cells.capacity = b->cells.count;
+    if (b->count > 0) {
+        memcpy(copy->incident, b->incident, b->count * sizeof *b->incident);
+        memcpy(copy->changed, b->changed, b->count * sizeof *b->changed);
+    }
+    if (b->cells.count > 0)
+        memcpy(copy->cells.data, b->cells.data, b->cells.count * sizeof *b->cells.data);
+    *out = copy;
+    copy = NULL;
+done:
+    delaunay_builder_free(copy);
+    return status;
+}
+
 void delaunay_builder_free(delaunay_builder *b) {
     if (b == NULL)
         return;
