@@ -37,6 +37,10 @@ enum { MAX_PASSES = 20, WORK = 1000 };
  * rounds have not brought fewer: points then only call for more points. */
 enum { SETBACK = 4, PATIENCE = 20 };
 
+/* When so many faces for a number of points are always lost, they are lost all over the surface,
+ * and not in single spots that another manner might do better with. */
+enum { HOPELESS = 20 };
+
 /* By its ends, as moves nearby renumber halfedges. */
 typedef struct mesh_edge {
     uint32_t u, v;
@@ -69,7 +73,8 @@ typedef struct conformer {
     lost_list lost_faces, last_faces; /* each by its halfedge from its lowest corner */
     uint32_t *place; /* of each point: its number in the ring looked at, from 1, or 0 */
     size_t place_capacity;
-    size_t work;                   /* corners of tetrahedra looked at */
+    size_t least;                  /* faces lost, ever since the rounds began */
+    size_t work;                   /* corners of tetrahedra looked at, by all manners so far */
     size_t most_points, most_work; /* the rounds end beyond */
 } conformer;
 
@@ -498,22 +503,24 @@ static bool is_spent(const conformer *c) {
 /* Points and flips in turn, from a state that is settled. */
 static starg_status run_rounds(conformer *c, const manner *how) {
     starg_status status = STARG_OK;
-    size_t least = SIZE_MAX / SETBACK, least_round = 0;
+    size_t least_round = 0;
+    c->least = c->lost_faces.count;
     for (size_t round = 0; c->lost_faces.count > 0; round++) {
         STARG_TRY(starg_check_cancel(c->context, STAGE));
         size_t before = point_count(c), lost = c->lost_faces.count;
-        if (lost < least) {
-            least = lost;
+        if (lost < c->least) {
+            c->least = lost;
             least_round = round;
         }
-        if (lost > SETBACK * least || round - least_round > PATIENCE)
+        if (lost > SETBACK * c->least || round - least_round > PATIENCE || is_spent(c))
             return STARG_OK;
         STARG_TRY(how->pierces ? cut_and_pierce(c) : bisect_lost_faces(c));
-        if (point_count(c) == before || is_spent(c))
+        if (point_count(c) == before)
             return STARG_OK;
         STARG_TRY(delaunay_extend(c->builder, c->mesh.points.data, point_count(c)));
         STARG_TRY(settle(c, how));
     }
+    c->least = 0;
 done:
     return status;
 }
@@ -594,8 +601,8 @@ starg_status conform_samples(starg_context *context, surface_samples *samples,
     for (const manner *how = MANNERS; how < MANNERS + CONFORM_MANNERS; how++) {
         STARG_TRY(conformer_copy(&first, &c));
         STARG_TRY(run_rounds(&c, how));
-        /* The manner with the fewest points has run out of them: so would the others. */
-        bool hopeless = how == MANNERS && is_spent(&c);
+        bool hopeless = c.least > point_count(&first) / HOPELESS || c.work > c.most_work;
+        first.work = c.work;
         STARG_TRY(hand_out(&c, &results[(*count)++]));
         conformer_free(&c);
         sort_in(results, *count);

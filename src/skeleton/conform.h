@@ -13,7 +13,7 @@ typedef struct conformed {
 } conformed;
 
 /* As many ways there are of adding points. */
-enum { CONFORM_MANNERS = 4 };
+enum { CONFORM_MANNERS = 5 };
 
 /* Changes the samples, a closed manifold mesh, until each of its faces is a face of the Delaunay
  * tetrahedra of its points or the work is over. One manner after another is tried until no face is

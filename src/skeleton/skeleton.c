@@ -115,7 +115,10 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
     size_t count;
     STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
     STARG_TRY(conform_samples(context, &samples, manners, &count));
-    for (size_t i = 0; i < count && (i == 0 || manners[0].lost > 0); i++) {
+    /* Counts decide between manners that lose faces. Where a surface crosses itself none is right.
+     */
+    size_t judged = manners[0].lost > 0 && solid->check->embedded ? count : 1;
+    for (size_t i = 0; i < judged; i++) {
         STARG_TRY(make_attempt(context, solid, &manners[i], &a));
         if (best->complex == NULL ||
             count_faults(solid->check, &a) < count_faults(solid->check, best)) {
