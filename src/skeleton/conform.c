@@ -8,16 +8,20 @@
  *   - flip: a lost edge between faces u v w and v u x gives way to w x where it is not Delaunay in
  *     its plane, or where u w x and v w x are faces of tetrahedra and the fold is no sharp one.
  *     Most lost edges of scanned models are of this kind, and cost no point.
- *   - unfold: two lost faces that lie nearly on one another have their common edge flipped, which
- *     closes a crack or takes a fin of next to no volume away.
- *   - points, by manner: the middle of a lost edge, and where an edge of tetrahedra pierces a lost
- *     face; or the middle of the terminal longest edge, which keeps angles from getting small
- *     [Rivara 1997].
+ *   - unfold, once nothing else flips: an edge at which a lost face leans to its neighbour by less
+ *     than a certain angle is flipped, which closes a crack or takes a fin away.
+ *   - points: the middle of a lost edge, and where an edge of tetrahedra pierces a lost face; or
+ *     the middle of the terminal longest edge, which keeps angles from getting small [Rivara 1997].
+ *
+ * Manners differ in how they put points and in what they take for a fold. All start from the same
+ * state, which flips alone have led to, and one after another is tried until no face is lost.
  *
  * That a flip sweeps over no other part of the surface need not be proven: when all faces are faces
  * of tetrahedra in the end, the surface is embedded. Only points whose tetrahedra have changed are
  * looked at again. Edges that meet at next to no angle, and surfaces that cross themselves, may
  * never be followed: points, their depth and work are bounded, and what is still lost is counted.
+ * There a manner gets further than another by chance rather than by merit, so that several are
+ * worth more than one that is tried for longer.
  *
  * Cost: that of the Delaunay tetrahedra, and linear for each round in what has changed. */
 #include "skeleton/conform.h"
@@ -591,27 +595,36 @@ static void sort_in(conformed *results, size_t count) {
     results[i] = last;
 }
 
+/* Goes on from a state that stays as it is but for the work. */
+static starg_status try_manner(conformer *from, const manner *how, conformed *result,
+                               bool *hopeless) {
+    starg_status status = STARG_OK;
+    conformer c = {.context = from->context};
+    STARG_TRY(conformer_copy(from, &c));
+    STARG_TRY(run_rounds(&c, how));
+    *hopeless = c.least > point_count(from) / HOPELESS || c.work > c.most_work;
+    from->work = c.work;
+    STARG_TRY(hand_out(&c, result));
+done:
+    conformer_free(&c);
+    return status;
+}
+
 starg_status conform_samples(starg_context *context, surface_samples *samples,
                              conformed results[CONFORM_MANNERS], size_t *count) {
     starg_status status = STARG_OK;
-    conformer first = {.context = context}, c = {.context = context};
+    conformer first = {.context = context};
+    bool over = false;
     *count = 0;
     memset(results, 0, CONFORM_MANNERS * sizeof *results);
     STARG_TRY(start(&first, samples));
-    for (const manner *how = MANNERS; how < MANNERS + CONFORM_MANNERS; how++) {
-        STARG_TRY(conformer_copy(&first, &c));
-        STARG_TRY(run_rounds(&c, how));
-        bool hopeless = c.least > point_count(&first) / HOPELESS || c.work > c.most_work;
-        first.work = c.work;
-        STARG_TRY(hand_out(&c, &results[(*count)++]));
-        conformer_free(&c);
+    for (const manner *how = MANNERS; how < MANNERS + CONFORM_MANNERS && !over; how++) {
+        STARG_TRY(try_manner(&first, how, &results[(*count)++], &over));
         sort_in(results, *count);
-        if (results[0].lost == 0 || hopeless)
-            break;
+        over = over || results[0].lost == 0;
     }
 done:
     conformer_free(&first);
-    conformer_free(&c);
     return status;
 }
 
