@@ -539,6 +539,10 @@ void delaunay_builder_free(delaunay_builder *b) {
     starg_release(b->context, b);
 }
 
+bool delaunay_has_changed(const delaunay_builder *b, uint32_t point_index) {
+    return b->changed[point_index];
+}
+
 bool delaunay_take_change(delaunay_builder *b, uint32_t point_index) {
     bool changed = b->changed[point_index];
     b->changed[point_index] = false;

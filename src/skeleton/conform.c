@@ -53,6 +53,12 @@ typedef struct mesh_edge {
 
 typedef STARG_ARRAY(mesh_edge) lost_list;
 
+/* A halfedge that leaves the point looked at: which of it and the face on its left are found? */
+typedef struct spoke {
+    uint32_t halfedge, head;
+    bool edge, face;
+} spoke;
+
 /* Cosine of the bend that still counts as flat: eight degrees. */
 static const double FLAT = 0.99;
 /* And of the angle below which two faces lie on one another: eleven degrees. */
@@ -64,15 +70,17 @@ typedef struct manner {
     double fold;  /* cosine of the angle below which an edge is a fold; -1: none is */
 } manner;
 
+enum { MANNER_COUNT = CONFORM_RESULTS - 1 };
+
 /* No manner does best on all meshes. The first changes the surface least and adds the fewest
  * points; the last two take every edge sharper than a right angle for a fold. */
-static const manner MANNERS[CONFORM_MANNERS] = {{false, -1}, {true, NARROW}, {false, 0}, {true, 0}};
+static const manner MANNERS[MANNER_COUNT] = {{false, -1}, {true, NARROW}, {false, 0}, {true, 0}};
 
 typedef struct conformer {
     starg_context *context;
     delaunay_builder *builder;
     sample_mesh mesh;
-    STARG_ARRAY(uint32_t) ring;       /* halfedges that leave the point looked at, in turn */
+    STARG_ARRAY(spoke) ring;          /* of the point looked at, in turn */
     lost_list lost_edges, last_edges; /* now, and in the search before */
     lost_list lost_faces, last_faces; /* each by its halfedge from its lowest corner */
     uint32_t *place; /* of each point: its number in the ring looked at, from 1, or 0 */
@@ -118,17 +126,38 @@ static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
 
 /* ---- what is lost ---- */
 
-/* The halfedges that leave v, counter-clockwise. */
+/* The halfedges that leave v, counter-clockwise; nothing of them is found yet. */
 static starg_status find_ring(conformer *c, uint32_t v) {
     starg_status status = STARG_OK;
     uint32_t first = c->mesh.leaving.data[v], h = first;
     c->ring.count = 0;
     do {
-        STARG_PUSH(c->context, STAGE, &c->ring, h);
+        STARG_PUSH(c->context, STAGE, &c->ring, ((spoke){.halfedge = h, .head = head(c, h)}));
         h = twin(c, corner_previous(h));
     } while (h != first);
 done:
     return status;
+}
+
+/* Marks those edges and faces of the ring that tetrahedra of the star have. */
+static void find_in_star(conformer *c, uint32_t (*star)[3], size_t count) {
+    spoke *ring = c->ring.data;
+    uint32_t n = (uint32_t)c->ring.count;
+    for (uint32_t i = 0; i < n; i++)
+        c->place[ring[i].head] = i + 1;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = c->place[star[i][k]], b = c->place[star[i][(k + 1) % 3]];
+            if (a == 0)
+                continue;
+            ring[a - 1].edge = true;
+            if (b != 0 && b == a % n + 1)
+                ring[a - 1].face = true;
+            if (b != 0 && a == b % n + 1)
+                ring[b - 1].face = true;
+        }
+    for (uint32_t i = 0; i < n; i++)
+        c->place[ring[i].head] = 0;
 }
 
 /* Looks for the edges and faces at v among the tetrahedra at v. Each edge is asked for at its lower
@@ -137,37 +166,36 @@ static starg_status look_at(conformer *c, uint32_t v) {
     starg_status status = STARG_OK;
     uint32_t(*star)[3];
     size_t count;
-    uint8_t *found = NULL; /* bit 0: the edge, bit 1: the face after it */
     STARG_TRY(find_ring(c, v));
     STARG_TRY(delaunay_star(c->builder, v, &star, &count));
-    size_t n = c->ring.count;
-    c->work += count + n;
-    STARG_NEW_ZERO(c->context, STAGE, found, n);
-    for (size_t i = 0; i < n; i++)
-        c->place[head(c, c->ring.data[i])] = (uint32_t)i + 1;
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) {
-            uint32_t a = c->place[star[i][k]], b = c->place[star[i][(k + 1) % 3]];
-            if (a == 0)
-                continue;
-            found[a - 1] |= 1;
-            if (b != 0 && b == a % n + 1)
-                found[a - 1] |= 2;
-            if (b != 0 && a == b % n + 1)
-                found[b - 1] |= 2;
-        }
-    for (size_t i = 0; i < n; i++) {
-        uint32_t h = c->ring.data[i];
-        if (!(found[i] & 1) && v < head(c, h))
-            STARG_PUSH(c->context, STAGE, &c->lost_edges, ((mesh_edge){v, head(c, h), h}));
-        if (!(found[i] & 2) && v < head(c, h) && v < apex(c, h))
-            STARG_PUSH(c->context, STAGE, &c->lost_faces, ((mesh_edge){v, head(c, h), h}));
+    c->work += count + c->ring.count;
+    find_in_star(c, star, count);
+    for (size_t i = 0; i < c->ring.count; i++) {
+        const spoke *s = &c->ring.data[i];
+        const mesh_edge e = {v, s->head, s->halfedge};
+        if (!s->edge && v < s->head)
+            STARG_PUSH(c->context, STAGE, &c->lost_edges, e);
+        if (!s->face && v < s->head && v < apex(c, s->halfedge))
+            STARG_PUSH(c->context, STAGE, &c->lost_faces, e);
     }
-    for (size_t i = 0; i < n; i++)
-        c->place[head(c, c->ring.data[i])] = 0;
 done:
-    starg_release(c->context, found);
     return status;
+}
+
+/* Is there anything new to find at v? All points of a tetrahedron that goes or comes have changed,
+ * so that an edge whose other end has not is where it was. */
+static bool is_to_look_at(conformer *c, uint32_t v) {
+    uint32_t first = c->mesh.leaving.data[v], h = first;
+    bool changed = delaunay_take_change(c->builder, v), dirty = c->mesh.dirty.data[v];
+    c->mesh.dirty.data[v] = false;
+    if (dirty || !changed)
+        return dirty;
+    do {
+        if (v < head(c, h) && delaunay_has_changed(c->builder, head(c, h)))
+            return true;
+        h = twin(c, corner_previous(h));
+    } while (h != first);
+    return false;
 }
 
 /* Takes over what was lost at v in the search before and, as nothing has changed there, still is.
@@ -199,17 +227,16 @@ static starg_status find_lost(conformer *c) {
     swap_lists(&c->lost_edges, &c->last_edges);
     swap_lists(&c->lost_faces, &c->last_faces);
     for (uint32_t v = 0; v < point_count(c); v++) {
-        bool changed = delaunay_take_change(c->builder, v);
-        if (!changed && !c->mesh.dirty.data[v]) {
+        if (c->mesh.leaving.data[v] == TOPOLOGY_NONE)
+            continue;
+        if (is_to_look_at(c, v)) {
+            skip_lost(&c->last_edges, v, &next_edge);
+            skip_lost(&c->last_faces, v, &next_face);
+            STARG_TRY(look_at(c, v));
+        } else {
             STARG_TRY(keep_lost(c, &c->last_edges, v, &next_edge, &c->lost_edges));
             STARG_TRY(keep_lost(c, &c->last_faces, v, &next_face, &c->lost_faces));
-            continue;
         }
-        skip_lost(&c->last_edges, v, &next_edge);
-        skip_lost(&c->last_faces, v, &next_face);
-        c->mesh.dirty.data[v] = false;
-        if (c->mesh.leaving.data[v] != TOPOLOGY_NONE)
-            STARG_TRY(look_at(c, v));
     }
 done:
     return status;
@@ -500,8 +527,9 @@ done:
     return status;
 }
 
+/* The next points would be about as many as there are faces lost. */
 static bool is_spent(const conformer *c) {
-    return point_count(c) > c->most_points || c->work > c->most_work;
+    return point_count(c) + c->lost_faces.count > c->most_points || c->work > c->most_work;
 }
 
 /* Points and flips in turn, from a state that is settled. */
@@ -611,17 +639,22 @@ done:
 }
 
 starg_status conform_samples(starg_context *context, surface_samples *samples,
-                             conformed results[CONFORM_MANNERS], size_t *count) {
+                             conformed results[CONFORM_RESULTS], size_t *count) {
     starg_status status = STARG_OK;
     conformer first = {.context = context};
     bool over = false;
     *count = 0;
-    memset(results, 0, CONFORM_MANNERS * sizeof *results);
+    memset(results, 0, CONFORM_RESULTS * sizeof *results);
     STARG_TRY(start(&first, samples));
-    for (const manner *how = MANNERS; how < MANNERS + CONFORM_MANNERS && !over; how++) {
+    for (const manner *how = MANNERS; how < MANNERS + MANNER_COUNT && !over; how++) {
         STARG_TRY(try_manner(&first, how, &results[(*count)++], &over));
         sort_in(results, *count);
         over = over || results[0].lost == 0;
+    }
+    /* Points may only have made more faces lost. */
+    if (results[0].lost > 0) {
+        STARG_TRY(hand_out(&first, &results[(*count)++]));
+        sort_in(results, *count);
     }
 done:
     conformer_free(&first);

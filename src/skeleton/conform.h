@@ -12,15 +12,15 @@ typedef struct conformed {
     size_t lost; /* faces of the samples that are no faces of tetrahedra */
 } conformed;
 
-/* As many ways there are of adding points. */
-enum { CONFORM_MANNERS = 5 };
+/* As many as there are manners of adding points, and one without any. */
+enum { CONFORM_RESULTS = 5 };
 
 /* Changes the samples, a closed manifold mesh, until each of its faces is a face of the Delaunay
  * tetrahedra of its points or the work is over. One manner after another is tried until no face is
  * lost; the results are in the order of the faces lost, the fewest first. The samples are taken
  * over. All results are to be freed, after errors too. Errors: MEMORY, CANCELLED. */
 starg_status conform_samples(starg_context *context, surface_samples *samples,
-                             conformed results[CONFORM_MANNERS], size_t *count);
+                             conformed results[CONFORM_RESULTS], size_t *count);
 void conformed_free(starg_context *context, conformed *result);
 
 #endif

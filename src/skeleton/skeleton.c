@@ -111,7 +111,7 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
     starg_status status = STARG_OK;
     attempt a = {0};
     surface_samples samples = {0};
-    conformed manners[CONFORM_MANNERS] = {0};
+    conformed manners[CONFORM_RESULTS] = {0};
     size_t count;
     STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
     STARG_TRY(conform_samples(context, &samples, manners, &count));
@@ -133,7 +133,7 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
 done:
     attempt_free(context, &a);
     samples_free(context, &samples);
-    for (size_t i = 0; i < CONFORM_MANNERS; i++)
+    for (size_t i = 0; i < CONFORM_RESULTS; i++)
         conformed_free(context, &manners[i]);
     return status;
 }

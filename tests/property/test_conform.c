@@ -68,7 +68,7 @@ static size_t conform(const shape *s, size_t wanted, size_t *lost) {
     starg_context *context = test_context(1);
     starg_solid *solid = test_solid_of(context, s);
     surface_samples samples = {0};
-    conformed results[CONFORM_MANNERS];
+    conformed results[CONFORM_RESULTS];
     size_t count;
     test_ok(context, samples_create(context, solid, wanted, &samples));
     size_t first = samples.point_count, faces = samples.face_count;
@@ -76,7 +76,7 @@ static size_t conform(const shape *s, size_t wanted, size_t *lost) {
     assert_non_null(points);
     memcpy(points, samples.points, 3 * first * sizeof *points);
     test_ok(context, conform_samples(context, &samples, results, &count));
-    assert_in_range(count, 1, CONFORM_MANNERS);
+    assert_in_range(count, 1, CONFORM_RESULTS);
     *lost = results[0].lost;
     for (size_t i = 0; i < count; i++) {
         const conformed *r = &results[i];
@@ -86,7 +86,7 @@ static size_t conform(const shape *s, size_t wanted, size_t *lost) {
         assert_int_equal(r->lost, count_lost(r));
         assert_true(i == 0 || (r->lost >= results[i - 1].lost && r->lost > 0));
     }
-    for (size_t i = 0; i < CONFORM_MANNERS; i++)
+    for (size_t i = 0; i < CONFORM_RESULTS; i++)
         conformed_free(context, &results[i]);
     free(points);
     starg_solid_free(solid);
