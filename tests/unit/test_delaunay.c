@@ -164,7 +164,7 @@ static void test_flat(void **state) {
 /* A copy and what it was made from go on by themselves, and both end as if there were no other. */
 static void test_copy(void **state) {
     (void)state;
-    enum { FIRST = 30, COUNT = 75 };
+    enum { FIRST = 25, COUNT = 50 };
     starg_context *context = test_context(1);
     double points[2][3 * COUNT]; /* the same at first, then not */
     starg_rng rng = starg_rng_make(7, 3, 0);
