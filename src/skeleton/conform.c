@@ -200,8 +200,8 @@ static bool is_to_look_at(conformer *c, uint32_t v) {
 
 /* Takes over what was lost at v in the search before and, as nothing has changed there, still is.
  * The lists are in the order of points; *next is where those of v start. */
-static starg_status keep_lost(conformer *c, const lost_list *last, uint32_t v, size_t *next,
-                              lost_list *lost) {
+static inline starg_status keep_lost(conformer *c, const lost_list *last, uint32_t v, size_t *next,
+                                     lost_list *lost) {
     starg_status status = STARG_OK;
     for (; *next < last->count && last->data[*next].u == v; ++*next)
         STARG_PUSH(c->context, STAGE, lost, last->data[*next]);

@@ -47,11 +47,12 @@ void sample_mesh_give(sample_mesh *m, surface_samples *samples) {
     sample_mesh_free(m);
 }
 
-/* TO = a copy of the growable array FROM, or leave by `done`. */
+/* TO = a copy of the growable array FROM with room to grow, or leave by `done`. */
 #define COPY_ARRAY(CONTEXT, FROM, TO)                                                              \
     do {                                                                                           \
-        STARG_NEW((CONTEXT), STAGE, (TO)->data, (FROM)->count);                                    \
-        (TO)->count = (TO)->capacity = (FROM)->count;                                              \
+        STARG_NEW((CONTEXT), STAGE, (TO)->data, (FROM)->capacity);                                 \
+        (TO)->count = (FROM)->count;                                                               \
+        (TO)->capacity = (FROM)->capacity;                                                         \
         if ((FROM)->count > 0)                                                                     \
             memcpy((TO)->data, (FROM)->data, (FROM)->count * sizeof *(FROM)->data);                \
     } while (0)
