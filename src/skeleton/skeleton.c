@@ -5,11 +5,11 @@
  * the medial axis; its erosion to a graph by collapses; pruning; resampling.
  *
  * When the samples conform, every stage after that keeps the homotopy type, as no coordinate takes
- * part in it. Conforming may fail at cracks and fins of next to no width; then other manners of
- * adding points are tried, and the attempt whose parts and loops are nearest to those that the
- * surface demands is taken. What it has in excess is cut and counted as mended.
+ * part in it. Conforming may fail at cracks and fins of next to no width; then of the manners that
+ * it has tried, the one whose parts and loops are nearest to those that the surface demands is
+ * taken. What it has in excess is cut and counted as mended.
  *
- * Cost: O(n log n) in practice for n samples, for each attempt. */
+ * Cost: O(n log n) in practice for n samples, for each manner that loses faces. */
 #include "skeleton/complex.h"
 #include "skeleton/conform.h"
 #include "skeleton/curve.h"
