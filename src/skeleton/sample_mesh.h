@@ -48,7 +48,7 @@ void sample_mesh_free(sample_mesh *m);
 
 /* Faces u v w and v u x, with h from u to v, become w u x and x v w; w x must be no edge. */
 void sample_mesh_flip(sample_mesh *m, uint32_t h);
-/* Puts a point on an edge, or into a face, but not where cuts are already `MAX_DEPTH` deep.
+/* Puts a point on an edge, or into a face, unless what it lies on was cut a dozen times before.
  * Errors: MEMORY. */
 starg_status sample_mesh_split_edge(sample_mesh *m, uint32_t h, const double place[3]);
 starg_status sample_mesh_split_face(sample_mesh *m, uint32_t f, const double place[3]);
