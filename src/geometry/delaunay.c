@@ -495,6 +495,37 @@ done:
     return status;
 }
 
+starg_status delaunay_copy(const delaunay_builder *b, delaunay_builder **out) {
+    starg_status status = STARG_OK;
+    starg_context *context = b->context;
+    builder *copy = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, "delaunay", copy, 1);
+    *copy = (builder){.context = context,
+                      .count = b->count,
+                      .free_cells = b->free_cells,
+                      .last = b->last,
+                      .stamp = b->stamp,
+                      .rng = b->rng,
+                      .star_of = NOWHERE};
+    STARG_NEW(context, "delaunay", copy->incident, b->count);
+    STARG_NEW(context, "delaunay", copy->changed, b->count);
+    STARG_NEW(context, "delaunay", copy->cells.data, b->cells.capacity);
+    copy->cells.count = b->cells.count;
+    copy->cells.capacity = b->cells.capacity;
+    if (b->count > 0) {
+        memcpy(copy->incident, b->incident, b->count * sizeof *b->incident);
+        memcpy(copy->changed, b->changed, b->count * sizeof *b->changed);
+    }
+    if (b->cells.count > 0)
+        memcpy(copy->cells.data, b->cells.data, b->cells.count * sizeof *b->cells.data);
+    *out = copy;
+    copy = NULL;
+done:
+    delaunay_builder_free(copy);
+    return status;
+}
+
 void delaunay_builder_free(delaunay_builder *b) {
     if (b == NULL)
         return;
@@ -509,22 +540,49 @@ void delaunay_builder_free(delaunay_builder *b) {
     starg_release(b->context, b);
 }
 
+bool delaunay_has_changed(const delaunay_builder *b, uint32_t point_index) {
+    return b->changed[point_index];
+}
+
 bool delaunay_take_change(delaunay_builder *b, uint32_t point_index) {
     bool changed = b->changed[point_index];
     b->changed[point_index] = false;
     return changed;
 }
 
-/* Room for the corners of as many cells as the star has. */
+/* Room for the corners of as many cells as the star can hold. */
 static starg_status reserve_corners(builder *b) {
     starg_status status = STARG_OK;
+    uint32_t(*corners)[3] = NULL;
     if (b->star.count <= b->corner_capacity)
         return STARG_OK;
-    starg_release(b->context, b->corners);
-    b->corners = NULL;
-    b->corner_capacity = 0;
-    STARG_NEW(b->context, "delaunay", b->corners, 2 * b->star.count);
-    b->corner_capacity = 2 * b->star.count;
+    corners =
+        starg_reallocate(b->context, b->corners, b->star_count, b->star.capacity, sizeof *corners);
+    if (corners == NULL)
+        return starg_fail_memory(b->context, "delaunay");
+    b->corners = corners;
+    b->corner_capacity = b->star.capacity;
+    return status;
+}
+
+/* The other corners of a cell at a vertex; the cells beyond the faces there join the star. */
+static starg_status leave_by_faces(builder *b, uint32_t index, uint32_t vertex) {
+    starg_status status = STARG_OK;
+    const cell *c = &b->cells.data[index];
+    uint32_t *out = b->corners[b->star_count];
+    bool ghost = false;
+    for (int k = 0; k < 4; k++) {
+        if (c->vertex[k] == vertex)
+            continue;
+        *out++ = c->vertex[k];
+        ghost = ghost || c->vertex[k] == GHOST;
+        cell *next = &b->cells.data[c->neighbour[k]];
+        if (next->mark == b->stamp)
+            continue;
+        next->mark = b->stamp;
+        STARG_PUSH(b->context, "delaunay", &b->star, c->neighbour[k]);
+    }
+    b->star_count += !ghost;
 done:
     return status;
 }
@@ -532,21 +590,15 @@ done:
 /* All cells at a vertex, ghosts among them, from one of them on across the faces at the vertex. */
 static starg_status find_star(builder *b, uint32_t vertex) {
     starg_status status = STARG_OK;
-    b->star.count = 0;
+    b->star.count = b->star_count = 0;
     b->stamp += 2;
     if (b->incident[vertex] == NOWHERE)
         return STARG_OK;
     b->cells.data[b->incident[vertex]].mark = b->stamp;
     STARG_PUSH(b->context, "delaunay", &b->star, b->incident[vertex]);
     for (size_t i = 0; i < b->star.count; i++) {
-        const cell *c = &b->cells.data[b->star.data[i]];
-        for (int k = 0; k < 4; k++) {
-            cell *next = &b->cells.data[c->neighbour[k]];
-            if (c->vertex[k] == vertex || next->mark == b->stamp)
-                continue;
-            next->mark = b->stamp;
-            STARG_PUSH(b->context, "delaunay", &b->star, c->neighbour[k]);
-        }
+        STARG_TRY(reserve_corners(b));
+        STARG_TRY(leave_by_faces(b, b->star.data[i], vertex));
     }
 done:
     return status;
@@ -555,26 +607,14 @@ done:
 starg_status delaunay_star(delaunay_builder *b, uint32_t point_index, uint32_t (**corners)[3],
                            size_t *count) {
     starg_status status = STARG_OK;
-    *count = b->star_count;
-    if (b->star_of == point_index)
-        goto done;
-    *count = 0;
-    b->star_of = NOWHERE;
-    STARG_TRY(find_star(b, point_index));
-    STARG_TRY(reserve_corners(b));
-    for (size_t i = 0; i < b->star.count; i++) {
-        const cell *c = &b->cells.data[b->star.data[i]];
-        if (ghost_side(c) >= 0)
-            continue;
-        for (int k = 0, n = 0; k < 4; k++)
-            if (c->vertex[k] != point_index)
-                b->corners[*count][n++] = c->vertex[k];
-        ++*count;
+    if (b->star_of != point_index) {
+        b->star_of = NOWHERE;
+        STARG_TRY(find_star(b, point_index));
+        b->star_of = point_index;
     }
-    b->star_of = point_index;
-    b->star_count = *count;
 done:
     *corners = b->corners;
+    *count = b->star_of == point_index ? b->star_count : 0;
     return status;
 }
 

@@ -39,8 +39,14 @@ starg_status delaunay_extend(delaunay_builder *builder, const double *points, si
 starg_status delaunay_star(delaunay_builder *builder, uint32_t point, uint32_t (**corners)[3],
                            size_t *count);
 
-/* Have the tetrahedra at a point changed since this was last asked? */
+/* Have the tetrahedra at a point changed since their change was last taken? A tetrahedron that goes
+ * or comes changes those at all of its points. */
+bool delaunay_has_changed(const delaunay_builder *builder, uint32_t point);
 bool delaunay_take_change(delaunay_builder *builder, uint32_t point);
+
+/* A second builder in the same state. It needs no points before it is extended, and then those of
+ * the first and its own behind them. Errors: MEMORY. */
+starg_status delaunay_copy(const delaunay_builder *builder, delaunay_builder **out);
 
 /* Copies the tetrahedra out; the builder must not be extended after that. */
 starg_status delaunay_finish(delaunay_builder *builder, delaunay **out);

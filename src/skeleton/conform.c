@@ -8,16 +8,20 @@
  *   - flip: a lost edge between faces u v w and v u x gives way to w x where it is not Delaunay in
  *     its plane, or where u w x and v w x are faces of tetrahedra and the fold is no sharp one.
  *     Most lost edges of scanned models are of this kind, and cost no point.
- *   - unfold: two lost faces that lie nearly on one another have their common edge flipped, which
- *     closes a crack or takes a fin of next to no volume away.
- *   - points, by manner: the middle of a lost edge, and where an edge of tetrahedra pierces a lost
- *     face; or the middle of the terminal longest edge, which keeps angles from getting small
- *     [Rivara 1997].
+ *   - unfold, once nothing else flips: an edge at which a lost face leans to its neighbour by less
+ *     than a certain angle is flipped, which closes a crack or takes a fin away.
+ *   - points: the middle of a lost edge, and where an edge of tetrahedra pierces a lost face; or
+ *     the middle of the terminal longest edge, which keeps angles from getting small [Rivara 1997].
+ *
+ * Manners differ in how they put points and in what they take for a fold. All start from the same
+ * state, which flips alone have led to, and one after another is tried until no face is lost.
  *
  * That a flip sweeps over no other part of the surface need not be proven: when all faces are faces
  * of tetrahedra in the end, the surface is embedded. Only points whose tetrahedra have changed are
  * looked at again. Edges that meet at next to no angle, and surfaces that cross themselves, may
  * never be followed: points, their depth and work are bounded, and what is still lost is counted.
+ * There a manner gets further than another by chance rather than by merit, so that several are
+ * worth more than one that is tried for longer.
  *
  * Cost: that of the Delaunay tetrahedra, and linear for each round in what has changed. */
 #include "skeleton/conform.h"
@@ -25,17 +29,21 @@
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/topology.h"
+#include "skeleton/sample_mesh.h"
 
 static const char STAGE[] = "surface samples";
 
 /* Flips of the two kinds could answer one another for ever, and so could points. WORK is for each
  * point: some thirty times what looking at all of them once takes. */
-enum { MAX_PASSES = 20, MAX_DEPTH = 12, WORK = 1000 };
+enum { MAX_PASSES = 20, WORK = 1000 };
 
 /* Rounds are given up when so many times the least number of faces ever lost are, or when so many
  * rounds have not brought fewer: points then only call for more points. */
 enum { SETBACK = 4, PATIENCE = 20 };
+
+/* When so many faces for a number of points are always lost, they are lost all over the surface,
+ * and not in single spots that another manner might do better with. */
+enum { HOPELESS = 20 };
 
 /* By its ends, as moves nearby renumber halfedges. */
 typedef struct mesh_edge {
@@ -45,233 +53,112 @@ typedef struct mesh_edge {
 
 typedef STARG_ARRAY(mesh_edge) lost_list;
 
+/* A halfedge that leaves the point looked at: which of it and the face on its left are found? */
+typedef struct spoke {
+    uint32_t halfedge, head;
+    bool edge, face;
+} spoke;
+
 /* Cosine of the bend that still counts as flat: eight degrees. */
 static const double FLAT = 0.99;
 /* And of the angle below which two faces lie on one another: eleven degrees. */
-static const double FOLD = -0.98;
+#define NARROW (-0.98)
+
+/* A manner of treating what flips cannot find. */
+typedef struct manner {
+    bool pierces; /* points where faces are pierced, or by bisection                  */
+    double fold;  /* cosine of the angle below which an edge is a fold; -1: none is */
+} manner;
+
+enum { MANNER_COUNT = CONFORM_RESULTS - 1 };
+
+/* No manner does best on all meshes. The first changes the surface least and adds the fewest
+ * points; the last two take every edge sharper than a right angle for a fold. */
+static const manner MANNERS[MANNER_COUNT] = {{false, -1}, {true, NARROW}, {false, 0}, {true, 0}};
 
 typedef struct conformer {
     starg_context *context;
     delaunay_builder *builder;
-    STARG_ARRAY(double) points; /* x, y, z, one after the other */
-    STARG_ARRAY(uint32_t) faces;
-    STARG_ARRAY(uint32_t) twins;      /* of each halfedge, named by its first corner */
-    STARG_ARRAY(uint32_t) leaving;    /* of each point: a halfedge that leaves it */
-    STARG_ARRAY(uint8_t) depth;       /* of each point: how often what it lies on had been cut */
-    STARG_ARRAY(bool) dirty;          /* of each point: to be looked at */
-    STARG_ARRAY(uint32_t) ring;       /* halfedges that leave the point looked at, in turn */
+    sample_mesh mesh;
+    STARG_ARRAY(spoke) ring;          /* of the point looked at, in turn */
     lost_list lost_edges, last_edges; /* now, and in the search before */
     lost_list lost_faces, last_faces; /* each by its halfedge from its lowest corner */
     uint32_t *place; /* of each point: its number in the ring looked at, from 1, or 0 */
     size_t place_capacity;
-    conform_manner manner;
-    size_t work; /* corners of tetrahedra looked at */
-    conform_report *report;
+    size_t least;                  /* faces lost, ever since the rounds began */
+    size_t work;                   /* corners of tetrahedra looked at, by all manners so far */
+    size_t most_points, most_work; /* the rounds end beyond */
 } conformer;
 
 static size_t point_count(const conformer *c) {
-    return c->points.count / 3;
+    return sample_mesh_points(&c->mesh);
 }
 
 static const double *at(const conformer *c, uint32_t v) {
-    return c->points.data + 3 * (size_t)v;
+    return sample_mesh_at(&c->mesh, v);
 }
 
 static uint32_t tail(const conformer *c, uint32_t h) {
-    return c->faces.data[h];
+    return sample_mesh_tail(&c->mesh, h);
 }
 
 static uint32_t head(const conformer *c, uint32_t h) {
-    return c->faces.data[corner_next(h)];
+    return sample_mesh_head(&c->mesh, h);
 }
 
 static uint32_t apex(const conformer *c, uint32_t h) {
-    return c->faces.data[corner_previous(h)];
+    return sample_mesh_apex(&c->mesh, h);
 }
 
-/* ---- the mesh ---- */
-
-static starg_status take_mesh(conformer *c, surface_samples *samples) {
-    starg_status status = STARG_OK;
-    mesh_topology *topology = NULL;
-    const starg_mesh mesh = {c->context, samples->point_count, samples->face_count, samples->points,
-                             samples->faces};
-    c->points.data = samples->points;
-    c->points.count = c->points.capacity = 3 * samples->point_count;
-    c->faces.data = samples->faces;
-    c->faces.count = c->faces.capacity = 3 * samples->face_count;
-    *samples = (surface_samples){0};
-    STARG_TRY(topology_create(c->context, &mesh, &topology));
-    for (size_t h = 0; h < 3 * mesh.face_count; h++)
-        STARG_PUSH(c->context, STAGE, &c->twins, topology->twin[h]);
-    for (size_t v = 0; v < mesh.vertex_count; v++) {
-        STARG_PUSH(c->context, STAGE, &c->leaving, TOPOLOGY_NONE);
-        STARG_PUSH(c->context, STAGE, &c->depth, 0);
-        STARG_PUSH(c->context, STAGE, &c->dirty, true);
-    }
-    for (uint32_t h = 0; h < 3 * mesh.face_count; h++)
-        c->leaving.data[mesh.faces[h]] = h;
-done:
-    topology_free(topology);
-    return status;
-}
-
-static void give_mesh(conformer *c, surface_samples *samples) {
-    samples->points = c->points.data;
-    samples->faces = c->faces.data;
-    samples->point_count = c->points.count / 3;
-    samples->face_count = c->faces.count / 3;
-    c->points.data = NULL;
-    c->faces.data = NULL;
-}
-
-static void join_halves(conformer *c, uint32_t a, uint32_t b) {
-    c->twins.data[a] = b;
-    c->twins.data[b] = a;
-}
-
-/* Writes face f; its halfedges become the ones that leave its corners. */
-static void set_face(conformer *c, uint32_t f, uint32_t a, uint32_t b, uint32_t d) {
-    const uint32_t v[3] = {a, b, d};
-    for (uint32_t k = 0; k < 3; k++) {
-        c->faces.data[3 * f + k] = v[k];
-        c->leaving.data[v[k]] = 3 * f + k;
-        c->dirty.data[v[k]] = true;
-    }
-}
-
-static starg_status new_face(conformer *c, uint32_t *f) {
-    starg_status status = STARG_OK;
-    *f = (uint32_t)(c->faces.count / 3);
-    for (int k = 0; k < 3; k++) {
-        STARG_PUSH(c->context, STAGE, &c->faces, 0);
-        STARG_PUSH(c->context, STAGE, &c->twins, TOPOLOGY_NONE);
-    }
-done:
-    return status;
-}
-
-static uint8_t deeper(uint8_t a, uint8_t b) {
-    return a > b ? a : b;
-}
-
-static starg_status new_point(conformer *c, const double p[3], uint8_t depth, uint32_t *v) {
-    starg_status status = STARG_OK;
-    *v = (uint32_t)point_count(c);
-    for (int k = 0; k < 3; k++)
-        STARG_PUSH(c->context, STAGE, &c->points, p[k]);
-    STARG_PUSH(c->context, STAGE, &c->leaving, TOPOLOGY_NONE);
-    STARG_PUSH(c->context, STAGE, &c->depth, depth);
-    STARG_PUSH(c->context, STAGE, &c->dirty, true);
-    c->report->added++;
-done:
-    return status;
-}
-
-/* Faces u v w and v u x become w u x and x v w. */
-static void flip(conformer *c, uint32_t h) {
-    uint32_t t = c->twins.data[h], f = h / 3, g = t / 3;
-    uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, t);
-    uint32_t vw = c->twins.data[corner_next(h)], wu = c->twins.data[corner_previous(h)];
-    uint32_t ux = c->twins.data[corner_next(t)], xv = c->twins.data[corner_previous(t)];
-    set_face(c, f, w, u, x);
-    set_face(c, g, x, v, w);
-    join_halves(c, 3 * f, wu);
-    join_halves(c, 3 * f + 1, ux);
-    join_halves(c, 3 * f + 2, 3 * g + 2);
-    join_halves(c, 3 * g, xv);
-    join_halves(c, 3 * g + 1, vw);
-    c->report->flips++;
-}
-
-/* Faces u v w and v u x become u p w, p v w, v p x and p u x. */
-static starg_status split_edge(conformer *c, uint32_t h, const double place[3]) {
-    starg_status status = STARG_OK;
-    uint32_t t = c->twins.data[h], f = h / 3, g = t / 3, f2, g2, p;
-    uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, t);
-    uint32_t vw = c->twins.data[corner_next(h)], wu = c->twins.data[corner_previous(h)];
-    uint32_t ux = c->twins.data[corner_next(t)], xv = c->twins.data[corner_previous(t)];
-    uint8_t depth = deeper(c->depth.data[u], c->depth.data[v]);
-    if (depth == MAX_DEPTH)
-        return STARG_OK;
-    STARG_TRY(new_point(c, place, depth + 1, &p));
-    STARG_TRY(new_face(c, &f2));
-    STARG_TRY(new_face(c, &g2));
-    set_face(c, f, u, p, w);
-    set_face(c, f2, p, v, w);
-    set_face(c, g, v, p, x);
-    set_face(c, g2, p, u, x);
-    join_halves(c, 3 * f, 3 * g2);
-    join_halves(c, 3 * f + 1, 3 * f2 + 2);
-    join_halves(c, 3 * f + 2, wu);
-    join_halves(c, 3 * f2, 3 * g);
-    join_halves(c, 3 * f2 + 1, vw);
-    join_halves(c, 3 * g + 1, 3 * g2 + 2);
-    join_halves(c, 3 * g + 2, xv);
-    join_halves(c, 3 * g2 + 1, ux);
-done:
-    return status;
-}
-
-/* Face a b d becomes a b p, b d p and d a p. */
-static starg_status split_face(conformer *c, uint32_t f, const double place[3]) {
-    starg_status status = STARG_OK;
-    uint32_t v[3], beyond[3], part[3] = {f}, p;
-    for (uint32_t k = 0; k < 3; k++) {
-        v[k] = c->faces.data[3 * f + k];
-        beyond[k] = c->twins.data[3 * f + k];
-    }
-    uint8_t depth = deeper(deeper(c->depth.data[v[0]], c->depth.data[v[1]]), c->depth.data[v[2]]);
-    if (depth == MAX_DEPTH)
-        return STARG_OK;
-    STARG_TRY(new_point(c, place, depth + 1, &p));
-    STARG_TRY(new_face(c, &part[1]));
-    STARG_TRY(new_face(c, &part[2]));
-    for (int k = 0; k < 3; k++)
-        set_face(c, part[k], v[k], v[(k + 1) % 3], p);
-    for (int k = 0; k < 3; k++) {
-        join_halves(c, 3 * part[k], beyond[k]);
-        join_halves(c, 3 * part[k] + 1, 3 * part[(k + 1) % 3] + 2);
-    }
-done:
-    return status;
-}
-
-/* The halfedges that leave v, counter-clockwise. */
-static starg_status find_ring(conformer *c, uint32_t v) {
-    starg_status status = STARG_OK;
-    uint32_t first = c->leaving.data[v], h = first;
-    c->ring.count = 0;
-    do {
-        STARG_PUSH(c->context, STAGE, &c->ring, h);
-        h = c->twins.data[corner_previous(h)];
-    } while (h != first);
-done:
-    return status;
-}
-
-/* The halfedge from v to w, or TOPOLOGY_NONE. */
-static uint32_t halfedge_between(const conformer *c, uint32_t v, uint32_t w) {
-    uint32_t first = c->leaving.data[v], h = first;
-    do {
-        if (head(c, h) == w)
-            return h;
-        h = c->twins.data[corner_previous(h)];
-    } while (h != first);
-    return TOPOLOGY_NONE;
+static uint32_t twin(const conformer *c, uint32_t h) {
+    return c->mesh.twins.data[h];
 }
 
 static uint32_t find_edge(const conformer *c, const mesh_edge *e) {
     if (tail(c, e->halfedge) == e->u && head(c, e->halfedge) == e->v)
         return e->halfedge;
-    return halfedge_between(c, e->u, e->v);
+    return sample_mesh_halfedge(&c->mesh, e->u, e->v);
 }
 
 static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
-    return halfedge_between(c, v, w) != TOPOLOGY_NONE;
+    return sample_mesh_halfedge(&c->mesh, v, w) != TOPOLOGY_NONE;
 }
 
 /* ---- what is lost ---- */
+
+/* The halfedges that leave v, counter-clockwise; nothing of them is found yet. */
+static starg_status find_ring(conformer *c, uint32_t v) {
+    starg_status status = STARG_OK;
+    uint32_t first = c->mesh.leaving.data[v], h = first;
+    c->ring.count = 0;
+    do {
+        STARG_PUSH(c->context, STAGE, &c->ring, ((spoke){.halfedge = h, .head = head(c, h)}));
+        h = twin(c, corner_previous(h));
+    } while (h != first);
+done:
+    return status;
+}
+
+/* Marks those edges and faces of the ring that tetrahedra of the star have. */
+static void find_in_star(conformer *c, uint32_t (*star)[3], size_t count) {
+    spoke *ring = c->ring.data;
+    uint32_t n = (uint32_t)c->ring.count;
+    for (uint32_t i = 0; i < n; i++)
+        c->place[ring[i].head] = i + 1;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            uint32_t a = c->place[star[i][k]], b = c->place[star[i][(k + 1) % 3]];
+            if (a == 0)
+                continue;
+            ring[a - 1].edge = true;
+            if (b != 0 && b == a % n + 1)
+                ring[a - 1].face = true;
+            if (b != 0 && a == b % n + 1)
+                ring[b - 1].face = true;
+        }
+    for (uint32_t i = 0; i < n; i++)
+        c->place[ring[i].head] = 0;
+}
 
 /* Looks for the edges and faces at v among the tetrahedra at v. Each edge is asked for at its lower
  * end and each face at its lowest corner. */
@@ -279,43 +166,42 @@ static starg_status look_at(conformer *c, uint32_t v) {
     starg_status status = STARG_OK;
     uint32_t(*star)[3];
     size_t count;
-    uint8_t *found = NULL; /* bit 0: the edge, bit 1: the face after it */
     STARG_TRY(find_ring(c, v));
     STARG_TRY(delaunay_star(c->builder, v, &star, &count));
-    size_t n = c->ring.count;
-    c->work += count + n;
-    STARG_NEW_ZERO(c->context, STAGE, found, n);
-    for (size_t i = 0; i < n; i++)
-        c->place[head(c, c->ring.data[i])] = (uint32_t)i + 1;
-    for (size_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) {
-            uint32_t a = c->place[star[i][k]], b = c->place[star[i][(k + 1) % 3]];
-            if (a == 0)
-                continue;
-            found[a - 1] |= 1;
-            if (b != 0 && b == a % n + 1)
-                found[a - 1] |= 2;
-            if (b != 0 && a == b % n + 1)
-                found[b - 1] |= 2;
-        }
-    for (size_t i = 0; i < n; i++) {
-        uint32_t h = c->ring.data[i];
-        if (!(found[i] & 1) && v < head(c, h))
-            STARG_PUSH(c->context, STAGE, &c->lost_edges, ((mesh_edge){v, head(c, h), h}));
-        if (!(found[i] & 2) && v < head(c, h) && v < apex(c, h))
-            STARG_PUSH(c->context, STAGE, &c->lost_faces, ((mesh_edge){v, head(c, h), h}));
+    c->work += count + c->ring.count;
+    find_in_star(c, star, count);
+    for (size_t i = 0; i < c->ring.count; i++) {
+        const spoke *s = &c->ring.data[i];
+        const mesh_edge e = {v, s->head, s->halfedge};
+        if (!s->edge && v < s->head)
+            STARG_PUSH(c->context, STAGE, &c->lost_edges, e);
+        if (!s->face && v < s->head && v < apex(c, s->halfedge))
+            STARG_PUSH(c->context, STAGE, &c->lost_faces, e);
     }
-    for (size_t i = 0; i < n; i++)
-        c->place[head(c, c->ring.data[i])] = 0;
 done:
-    starg_release(c->context, found);
     return status;
+}
+
+/* Is there anything new to find at v? All points of a tetrahedron that goes or comes have changed,
+ * so that an edge whose other end has not is where it was. */
+static bool is_to_look_at(conformer *c, uint32_t v) {
+    uint32_t first = c->mesh.leaving.data[v], h = first;
+    bool changed = delaunay_take_change(c->builder, v), dirty = c->mesh.dirty.data[v];
+    c->mesh.dirty.data[v] = false;
+    if (dirty || !changed)
+        return dirty;
+    do {
+        if (v < head(c, h) && delaunay_has_changed(c->builder, head(c, h)))
+            return true;
+        h = twin(c, corner_previous(h));
+    } while (h != first);
+    return false;
 }
 
 /* Takes over what was lost at v in the search before and, as nothing has changed there, still is.
  * The lists are in the order of points; *next is where those of v start. */
-static starg_status keep_lost(conformer *c, const lost_list *last, uint32_t v, size_t *next,
-                              lost_list *lost) {
+static inline starg_status keep_lost(conformer *c, const lost_list *last, uint32_t v, size_t *next,
+                                     lost_list *lost) {
     starg_status status = STARG_OK;
     for (; *next < last->count && last->data[*next].u == v; ++*next)
         STARG_PUSH(c->context, STAGE, lost, last->data[*next]);
@@ -341,17 +227,16 @@ static starg_status find_lost(conformer *c) {
     swap_lists(&c->lost_edges, &c->last_edges);
     swap_lists(&c->lost_faces, &c->last_faces);
     for (uint32_t v = 0; v < point_count(c); v++) {
-        bool changed = delaunay_take_change(c->builder, v);
-        if (!changed && !c->dirty.data[v]) {
+        if (c->mesh.leaving.data[v] == TOPOLOGY_NONE)
+            continue;
+        if (is_to_look_at(c, v)) {
+            skip_lost(&c->last_edges, v, &next_edge);
+            skip_lost(&c->last_faces, v, &next_face);
+            STARG_TRY(look_at(c, v));
+        } else {
             STARG_TRY(keep_lost(c, &c->last_edges, v, &next_edge, &c->lost_edges));
             STARG_TRY(keep_lost(c, &c->last_faces, v, &next_face, &c->lost_faces));
-            continue;
         }
-        skip_lost(&c->last_edges, v, &next_edge);
-        skip_lost(&c->last_faces, v, &next_face);
-        c->dirty.data[v] = false;
-        if (c->leaving.data[v] != TOPOLOGY_NONE)
-            STARG_TRY(look_at(c, v));
     }
 done:
     return status;
@@ -378,7 +263,7 @@ static starg_status is_face(conformer *c, uint32_t a, uint32_t b, uint32_t d, bo
 /* The old faces lean to one another by less than a quarter turn (or one has next to no area), and
  * the new ones face the same way. */
 static bool is_flat_enough(const conformer *c, uint32_t h) {
-    uint32_t t = c->twins.data[h];
+    uint32_t t = twin(c, h);
     const double *u = at(c, tail(c, h)), *v = at(c, head(c, h)), *w = at(c, apex(c, h)),
                  *x = at(c, apex(c, t));
     double m[2][3], n[2][3], sum[3];
@@ -395,7 +280,7 @@ static bool is_flat_enough(const conformer *c, uint32_t h) {
 /* Is the edge of two faces in one plane, but for rounding or a slight bend, and is it no Delaunay
  * edge in that plane (the angles opposite add up to more than a half turn)? */
 static bool is_flat_and_poor(const conformer *c, uint32_t h) {
-    uint32_t t = c->twins.data[h];
+    uint32_t t = twin(c, h);
     const double *u = at(c, tail(c, h)), *v = at(c, head(c, h)), *w = at(c, apex(c, h)),
                  *x = at(c, apex(c, t));
     double m[2][3], n[2][3], wu[3], wv[3], xu[3], xv[3];
@@ -416,13 +301,13 @@ static bool is_flat_and_poor(const conformer *c, uint32_t h) {
 
 static starg_status try_flip(conformer *c, uint32_t h, bool *flipped) {
     starg_status status = STARG_OK;
-    uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, c->twins.data[h]);
+    uint32_t u = tail(c, h), v = head(c, h), w = apex(c, h), x = apex(c, twin(c, h));
     bool one = false, other = false;
     *flipped = false;
     if (w == x || is_mesh_edge(c, w, x))
         return STARG_OK;
     if (is_flat_and_poor(c, h)) {
-        flip(c, h);
+        sample_mesh_flip(&c->mesh, h);
         *flipped = true;
         return STARG_OK;
     }
@@ -432,50 +317,50 @@ static starg_status try_flip(conformer *c, uint32_t h, bool *flipped) {
     if (one)
         STARG_TRY(is_face(c, w, v, x, &other));
     if (one && other) {
-        flip(c, h);
+        sample_mesh_flip(&c->mesh, h);
         *flipped = true;
     }
 done:
     return status;
 }
 
-/* Do the two faces of an edge lie nearly on one another? Then a flip closes the crack between them,
- * or takes the fin away. */
-static bool is_fold(const conformer *c, uint32_t h) {
-    uint32_t t = c->twins.data[h];
+/* Do the two faces of an edge lean to one another by less than a fold's angle? */
+static bool is_fold(const conformer *c, uint32_t h, double fold) {
     const double *u = at(c, tail(c, h)), *v = at(c, head(c, h));
     double m[2][3];
     vec3_triangle_normal(u, v, at(c, apex(c, h)), m[0]);
-    vec3_triangle_normal(v, u, at(c, apex(c, t)), m[1]);
-    return vec3_dot(m[0], m[1]) < FOLD * vec3_length(m[0]) * vec3_length(m[1]);
+    vec3_triangle_normal(v, u, at(c, apex(c, twin(c, h))), m[1]);
+    return vec3_dot(m[0], m[1]) < fold * vec3_length(m[0]) * vec3_length(m[1]);
 }
 
-static void unfold(conformer *c, uint32_t f, size_t *flips) {
-    const uint32_t *v = c->faces.data + 3 * (size_t)f;
-    if (deeper(deeper(c->depth.data[v[0]], c->depth.data[v[1]]), c->depth.data[v[2]]) == 0)
-        return; /* it may still be found as it is */
+/* Closes the crack between the face and one of its neighbours, or takes the fin away. A face that
+ * has not been cut yet may still be found as it is. */
+static void unfold(conformer *c, uint32_t f, double fold, size_t *flips) {
+    if (sample_mesh_depth(&c->mesh, f) == 0)
+        return;
     for (uint32_t k = 0; k < 3; k++) {
-        uint32_t h = 3 * f + k, w = apex(c, h), x = apex(c, c->twins.data[h]);
-        if (w != x && is_fold(c, h) && !is_mesh_edge(c, w, x)) {
-            flip(c, h);
+        uint32_t h = 3 * f + k, w = apex(c, h), x = apex(c, twin(c, h));
+        if (w != x && is_fold(c, h, fold) && !is_mesh_edge(c, w, x)) {
+            sample_mesh_flip(&c->mesh, h);
             ++*flips;
             return;
         }
     }
 }
 
-static starg_status flip_lost(conformer *c, size_t *flips) {
+/* Folds wait until nothing else flips: what is lost beside them for another reason would else be
+ * taken for a part of them. */
+static starg_status flip_lost(conformer *c, const manner *how, size_t *flips) {
     starg_status status = STARG_OK;
     *flips = 0;
-    for (size_t i = 0; c->manner != CONFORM_BISECT && i < c->lost_faces.count; i++)
-        unfold(c, c->lost_faces.data[i].halfedge / 3, flips);
-    if (*flips > 0)
-        return STARG_OK;
     for (size_t i = 0; i < c->lost_edges.count; i++) {
         bool flipped;
         STARG_TRY(try_flip(c, find_edge(c, &c->lost_edges.data[i]), &flipped));
         *flips += flipped;
     }
+    size_t waiting = *flips == 0 && how->fold > -1 ? c->lost_faces.count : 0;
+    for (size_t i = 0; i < waiting; i++)
+        unfold(c, c->lost_faces.data[i].halfedge / 3, how->fold, flips);
 done:
     return status;
 }
@@ -489,7 +374,7 @@ static starg_status cut_lost_edges(conformer *c) {
         double p[3];
         for (int k = 0; k < 3; k++)
             p[k] = 0.5 * at(c, u)[k] + 0.5 * at(c, v)[k];
-        STARG_TRY(split_edge(c, find_edge(c, &c->lost_edges.data[i]), p));
+        STARG_TRY(sample_mesh_split_edge(&c->mesh, find_edge(c, &c->lost_edges.data[i]), p));
     }
 done:
     return status;
@@ -551,7 +436,7 @@ static starg_status pierce_lost_faces(conformer *c, const bool *cut) {
             continue;
         STARG_TRY(find_piercing(c, h, p, &found));
         if (found)
-            STARG_TRY(split_face(c, h / 3, p));
+            STARG_TRY(sample_mesh_split_face(&c->mesh, h / 3, p));
     }
 done:
     return status;
@@ -572,7 +457,7 @@ static uint32_t longest_edge(const conformer *c, uint32_t h) {
 static uint32_t terminal_edge(const conformer *c, uint32_t h) {
     h = longest_edge(c, h);
     for (;;) {
-        uint32_t t = c->twins.data[h], next = longest_edge(c, t);
+        uint32_t t = twin(c, h), next = longest_edge(c, t);
         if (!(length_squared(c, next) > length_squared(c, h)))
             return h;
         h = next;
@@ -582,10 +467,10 @@ static uint32_t terminal_edge(const conformer *c, uint32_t h) {
 static starg_status cut_and_pierce(conformer *c) {
     starg_status status = STARG_OK;
     bool *cut = NULL; /* faces with a lost edge */
-    STARG_NEW_ZERO(c->context, STAGE, cut, c->faces.count / 3);
+    STARG_NEW_ZERO(c->context, STAGE, cut, c->mesh.faces.count / 3);
     for (size_t i = 0; i < c->lost_edges.count; i++) {
         uint32_t h = find_edge(c, &c->lost_edges.data[i]);
-        cut[h / 3] = cut[c->twins.data[h] / 3] = true;
+        cut[h / 3] = cut[twin(c, h) / 3] = true;
     }
     STARG_TRY(pierce_lost_faces(c, cut));
     STARG_TRY(cut_lost_edges(c));
@@ -605,7 +490,7 @@ static starg_status bisect_lost_faces(conformer *c) {
         double p[3];
         for (int k = 0; k < 3; k++)
             p[k] = 0.5 * at(c, tail(c, h))[k] + 0.5 * at(c, head(c, h))[k];
-        STARG_TRY(split_edge(c, h, p));
+        STARG_TRY(sample_mesh_split_edge(&c->mesh, h, p));
     }
 done:
     return status;
@@ -625,61 +510,159 @@ done:
     return status;
 }
 
-static starg_status run_rounds(conformer *c) {
+/* Flips until nothing flips any more. */
+static starg_status settle(conformer *c, const manner *how) {
     starg_status status = STARG_OK;
-    size_t most = 3 * point_count(c) / 2 + 2000, most_work = WORK * point_count(c);
-    size_t least = SIZE_MAX / SETBACK, least_round = 0;
-    for (;; c->report->rounds++) {
+    STARG_TRY(reserve_places(c));
+    for (int pass = 0;; pass++) {
         size_t flips;
-        STARG_TRY(starg_check_cancel(c->context, STAGE));
-        STARG_TRY(reserve_places(c));
-        for (int pass = 0;; pass++) {
-            STARG_TRY(find_lost(c));
-            if (pass == MAX_PASSES || c->work > most_work)
-                break;
-            STARG_TRY(flip_lost(c, &flips));
-            if (flips == 0)
-                break;
-        }
-        size_t before = point_count(c);
-        size_t lost = c->report->lost = c->lost_faces.count;
-        if (lost < least) {
-            least = lost;
-            least_round = c->report->rounds;
-        }
-        if (lost > SETBACK * least || c->report->rounds - least_round > PATIENCE)
-            return STARG_OK;
-        STARG_TRY(c->manner == CONFORM_PIERCE ? cut_and_pierce(c) : bisect_lost_faces(c));
-        if (point_count(c) == before || point_count(c) > most || c->work > most_work)
-            return STARG_OK;
-        STARG_TRY(delaunay_extend(c->builder, c->points.data, point_count(c)));
+        STARG_TRY(find_lost(c));
+        if (pass == MAX_PASSES || c->work > c->most_work)
+            break;
+        STARG_TRY(flip_lost(c, how, &flips));
+        if (flips == 0)
+            break;
     }
 done:
     return status;
 }
 
-starg_status conform_samples(starg_context *context, surface_samples *samples,
-                             conform_manner manner, delaunay **tetrahedra, conform_report *report) {
+/* The next points would be about as many as there are faces lost. */
+static bool is_spent(const conformer *c) {
+    return point_count(c) + c->lost_faces.count > c->most_points || c->work > c->most_work;
+}
+
+/* Points and flips in turn, from a state that is settled. */
+static starg_status run_rounds(conformer *c, const manner *how) {
     starg_status status = STARG_OK;
-    conformer c = {.context = context, .manner = manner, .report = report};
-    *tetrahedra = NULL;
-    *report = (conform_report){0};
-    STARG_TRY(take_mesh(&c, samples));
-    STARG_TRY(delaunay_begin(context, c.points.data, point_count(&c), &c.builder));
-    STARG_TRY(run_rounds(&c));
-    STARG_TRY(delaunay_finish(c.builder, tetrahedra));
+    size_t least_round = 0;
+    c->least = c->lost_faces.count;
+    for (size_t round = 0; c->lost_faces.count > 0; round++) {
+        STARG_TRY(starg_check_cancel(c->context, STAGE));
+        size_t before = point_count(c), lost = c->lost_faces.count;
+        if (lost < c->least) {
+            c->least = lost;
+            least_round = round;
+        }
+        if (lost > SETBACK * c->least || round - least_round > PATIENCE || is_spent(c))
+            return STARG_OK;
+        STARG_TRY(how->pierces ? cut_and_pierce(c) : bisect_lost_faces(c));
+        if (point_count(c) == before)
+            return STARG_OK;
+        STARG_TRY(delaunay_extend(c->builder, c->mesh.points.data, point_count(c)));
+        STARG_TRY(settle(c, how));
+    }
+    c->least = 0;
 done:
-    delaunay_builder_free(c.builder);
-    give_mesh(&c, samples);
-    STARG_ARRAY_FREE(context, &c.twins);
-    STARG_ARRAY_FREE(context, &c.leaving);
-    STARG_ARRAY_FREE(context, &c.dirty);
-    STARG_ARRAY_FREE(context, &c.depth);
-    STARG_ARRAY_FREE(context, &c.ring);
-    STARG_ARRAY_FREE(context, &c.lost_edges);
-    STARG_ARRAY_FREE(context, &c.lost_faces);
-    STARG_ARRAY_FREE(context, &c.last_edges);
-    STARG_ARRAY_FREE(context, &c.last_faces);
-    starg_release(context, c.place);
     return status;
+}
+
+/* ---- manners ---- */
+
+static void conformer_free(conformer *c) {
+    delaunay_builder_free(c->builder);
+    sample_mesh_free(&c->mesh);
+    STARG_ARRAY_FREE(c->context, &c->ring);
+    STARG_ARRAY_FREE(c->context, &c->lost_edges);
+    STARG_ARRAY_FREE(c->context, &c->lost_faces);
+    STARG_ARRAY_FREE(c->context, &c->last_edges);
+    STARG_ARRAY_FREE(c->context, &c->last_faces);
+    starg_release(c->context, c->place);
+    *c = (conformer){.context = c->context};
+}
+
+/* What all manners start from: flips alone. */
+static starg_status start(conformer *c, surface_samples *samples) {
+    starg_status status = STARG_OK;
+    STARG_TRY(sample_mesh_take(c->context, samples, &c->mesh));
+    STARG_TRY(delaunay_begin(c->context, c->mesh.points.data, point_count(c), &c->builder));
+    c->most_points = 3 * point_count(c) / 2 + 2000;
+    c->most_work = WORK * point_count(c);
+    STARG_TRY(settle(c, &MANNERS[0]));
+done:
+    return status;
+}
+
+static starg_status copy_list(starg_context *context, const lost_list *list, lost_list *copy) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < list->count; i++)
+        STARG_PUSH(context, STAGE, copy, list->data[i]);
+done:
+    return status;
+}
+
+static starg_status conformer_copy(const conformer *c, conformer *copy) {
+    starg_status status = STARG_OK;
+    copy->most_points = c->most_points;
+    copy->most_work = c->most_work;
+    copy->work = c->work;
+    STARG_TRY(sample_mesh_copy(&c->mesh, &copy->mesh));
+    STARG_TRY(delaunay_copy(c->builder, &copy->builder));
+    STARG_TRY(copy_list(c->context, &c->lost_edges, &copy->lost_edges));
+    STARG_TRY(copy_list(c->context, &c->lost_faces, &copy->lost_faces));
+done:
+    return status;
+}
+
+static starg_status hand_out(conformer *c, conformed *result) {
+    starg_status status = STARG_OK;
+    result->lost = c->lost_faces.count;
+    STARG_TRY(delaunay_finish(c->builder, &result->tetrahedra));
+    sample_mesh_give(&c->mesh, &result->samples);
+done:
+    return status;
+}
+
+/* Puts the last result among those before it, which are in order; of equals the earlier is first.
+ */
+static void sort_in(conformed *results, size_t count) {
+    conformed last = results[count - 1];
+    size_t i = count - 1;
+    for (; i > 0 && results[i - 1].lost > last.lost; i--)
+        results[i] = results[i - 1];
+    results[i] = last;
+}
+
+/* Goes on from a state that stays as it is but for the work. */
+static starg_status try_manner(conformer *from, const manner *how, conformed *result,
+                               bool *hopeless) {
+    starg_status status = STARG_OK;
+    conformer c = {.context = from->context};
+    STARG_TRY(conformer_copy(from, &c));
+    STARG_TRY(run_rounds(&c, how));
+    *hopeless = c.least > point_count(from) / HOPELESS || c.work > c.most_work;
+    from->work = c.work;
+    STARG_TRY(hand_out(&c, result));
+done:
+    conformer_free(&c);
+    return status;
+}
+
+starg_status conform_samples(starg_context *context, surface_samples *samples,
+                             conformed results[CONFORM_RESULTS], size_t *count) {
+    starg_status status = STARG_OK;
+    conformer first = {.context = context};
+    bool over = false;
+    *count = 0;
+    memset(results, 0, CONFORM_RESULTS * sizeof *results);
+    STARG_TRY(start(&first, samples));
+    for (const manner *how = MANNERS; how < MANNERS + MANNER_COUNT && !over; how++) {
+        STARG_TRY(try_manner(&first, how, &results[(*count)++], &over));
+        sort_in(results, *count);
+        over = over || results[0].lost == 0;
+    }
+    /* Points may only have made more faces lost. */
+    if (results[0].lost > 0) {
+        STARG_TRY(hand_out(&first, &results[(*count)++]));
+        sort_in(results, *count);
+    }
+done:
+    conformer_free(&first);
+    return status;
+}
+
+void conformed_free(starg_context *context, conformed *result) {
+    samples_free(context, &result->samples);
+    delaunay_free(result->tetrahedra);
+    *result = (conformed){0};
 }

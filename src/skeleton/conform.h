@@ -5,22 +5,22 @@
 #include "geometry/delaunay.h"
 #include "skeleton/samples.h"
 
-typedef struct conform_report {
-    size_t rounds, flips, added; /* edges turned, points inserted                     */
-    size_t lost;                 /* faces that are no faces of tetrahedra in the end  */
-} conform_report;
+/* Changed samples and their tetrahedra. */
+typedef struct conformed {
+    surface_samples samples;
+    delaunay *tetrahedra;
+    size_t lost; /* faces of the samples that are no faces of tetrahedra */
+} conformed;
 
-/* How points are added; no way does best on all meshes. The first is the one to try first. */
-typedef enum conform_manner {
-    CONFORM_BISECT = 0,        /* longest-edge bisection of lost faces, no folds flipped     */
-    CONFORM_PIERCE = 1,        /* in the middle of lost edges, and where faces are pierced   */
-    CONFORM_BISECT_UNFOLD = 2, /* the same, with folds                                       */
-    CONFORM_MANNERS = 3
-} conform_manner;
+/* As many as there are manners of adding points, and one without any. */
+enum { CONFORM_RESULTS = 5 };
 
 /* Changes the samples, a closed manifold mesh, until each of its faces is a face of the Delaunay
- * tetrahedra of its points or the work is over. Errors: MEMORY, CANCELLED. */
+ * tetrahedra of its points or the work is over. One manner after another is tried until no face is
+ * lost; the results are in the order of the faces lost, the fewest first. The samples are taken
+ * over. All results are to be freed, after errors too. Errors: MEMORY, CANCELLED. */
 starg_status conform_samples(starg_context *context, surface_samples *samples,
-                             conform_manner manner, delaunay **tetrahedra, conform_report *report);
+                             conformed results[CONFORM_RESULTS], size_t *count);
+void conformed_free(starg_context *context, conformed *result);
 
 #endif

@@ -5,7 +5,10 @@
  * The shortest loop of a graph leaves any spanning forest, so it is the shortest way between the
  * ends of some link outside one; breadth-first searches no longer than the best so far find it.
  *
- * Cost: linear for each loop cut, plus the searches, which end early. */
+ * A cut leaves the forest as it is and makes no way shorter, so that what a search has found is a
+ * bound for later ones; most links need none.
+ *
+ * Cost: linear, plus the searches, which end early, and for each loop cut the number of loops. */
 #include "skeleton/mend.h"
 
 #include "core/memory.h"
@@ -14,8 +17,15 @@
 
 static const char STAGE[] = "skeleton loops";
 
+/* A link outside the forest. */
+typedef struct closing_link {
+    uint32_t link;
+    uint32_t least; /* links that the way around it has at least */
+} closing_link;
+
 typedef struct searcher {
-    const curve_graph *graph;
+    curve_graph graph;
+    STARG_ARRAY(closing_link) closing; /* in the order of links */
     uint32_t *queue, *depth, *stamp;
     uint32_t stamps;
 } searcher;
@@ -30,8 +40,8 @@ static uint32_t way_around(searcher *s, uint32_t a, uint32_t b, uint32_t limit) 
         uint32_t v = s->queue[i];
         if (s->depth[v] + 1 >= limit)
             break;
-        for (uint32_t j = s->graph->first[v]; j < s->graph->first[v + 1]; j++) {
-            uint32_t w = s->graph->next[j];
+        for (uint32_t j = s->graph.first[v]; j < s->graph.first[v + 1]; j++) {
+            uint32_t w = s->graph.next[j];
             if (s->stamp[w] == s->stamps || (v == a && w == b))
                 continue;
             if (w == b)
@@ -44,27 +54,49 @@ static uint32_t way_around(searcher *s, uint32_t a, uint32_t b, uint32_t limit) 
     return limit;
 }
 
-/* A link of the shortest loop, or link_count. `sets` is scratch. */
-static size_t find_shortest(searcher *s, const medial_complex *complex, const bool *link_left,
-                            uint32_t *sets) {
-    size_t best = complex->link_count;
-    uint32_t shortest = UINT32_MAX;
+static starg_status find_closing(starg_context *context, const medial_complex *complex,
+                                 const bool *link_left, searcher *s) {
+    starg_status status = STARG_OK;
+    uint32_t *sets = NULL;
+    STARG_NEW(context, STAGE, sets, complex->node_count);
     sets_make(sets, complex->node_count);
-    for (size_t l = 0; l < complex->link_count; l++) {
+    for (uint32_t l = 0; l < complex->link_count; l++) {
         uint32_t a = complex->links[l][0], b = complex->links[l][1];
         if (!link_left[l])
             continue;
-        if (sets_find(sets, a) != sets_find(sets, b)) {
+        if (sets_find(sets, a) != sets_find(sets, b))
             sets_join(sets, a, b);
+        else
+            STARG_PUSH(context, STAGE, &s->closing, ((closing_link){.link = l}));
+    }
+done:
+    starg_release(context, sets);
+    return status;
+}
+
+/* The first closing link of a shortest loop, or their number. */
+static size_t find_shortest(searcher *s, const medial_complex *complex) {
+    size_t best = s->closing.count;
+    uint32_t shortest = UINT32_MAX;
+    for (size_t i = 0; i < s->closing.count; i++) {
+        closing_link *c = &s->closing.data[i];
+        if (c->least >= shortest)
             continue;
-        }
-        uint32_t way = way_around(s, a, b, shortest);
-        if (way < shortest) {
-            shortest = way;
-            best = l;
+        c->least = way_around(s, complex->links[c->link][0], complex->links[c->link][1], shortest);
+        if (c->least < shortest) {
+            shortest = c->least;
+            best = i;
         }
     }
     return best;
+}
+
+/* A node that is its own neighbour is passed by, as it has been seen. */
+static void part_from(curve_graph *graph, uint32_t v, uint32_t w) {
+    uint32_t j = graph->first[v];
+    while (graph->next[j] != w)
+        j++;
+    graph->next[j] = v;
 }
 
 starg_status mend_parts(starg_context *context, const medial_complex *complex, bool *link_left,
@@ -105,26 +137,29 @@ done:
 starg_status mend_loops(starg_context *context, const medial_complex *complex, bool *link_left,
                         size_t excess) {
     starg_status status = STARG_OK;
-    curve_graph graph = {0};
-    searcher s = {.graph = &graph};
-    uint32_t *sets = NULL;
-    STARG_NEW(context, STAGE, sets, complex->node_count);
+    searcher s = {0};
     STARG_NEW(context, STAGE, s.queue, complex->node_count);
     STARG_NEW(context, STAGE, s.depth, complex->node_count);
     STARG_NEW_ZERO(context, STAGE, s.stamp, complex->node_count);
+    STARG_TRY(graph_create(context, complex->node_count, complex->links, link_left,
+                           complex->link_count, &s.graph));
+    STARG_TRY(find_closing(context, complex, link_left, &s));
     for (size_t i = 0; i < excess; i++) {
         STARG_TRY(starg_check_cancel(context, STAGE));
-        graph_free(context, &graph);
-        STARG_TRY(graph_create(context, complex->node_count, complex->links, link_left,
-                               complex->link_count, &graph));
-        size_t link = find_shortest(&s, complex, link_left, sets);
-        if (link == complex->link_count)
+        size_t best = find_shortest(&s, complex);
+        if (best == s.closing.count)
             break;
+        uint32_t link = s.closing.data[best].link;
         link_left[link] = false;
+        part_from(&s.graph, complex->links[link][0], complex->links[link][1]);
+        part_from(&s.graph, complex->links[link][1], complex->links[link][0]);
+        s.closing.count--;
+        for (size_t j = best; j < s.closing.count; j++)
+            s.closing.data[j] = s.closing.data[j + 1];
     }
 done:
-    graph_free(context, &graph);
-    starg_release(context, sets);
+    graph_free(context, &s.graph);
+    STARG_ARRAY_FREE(context, &s.closing);
     starg_release(context, s.queue);
     starg_release(context, s.depth);
     starg_release(context, s.stamp);

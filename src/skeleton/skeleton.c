@@ -5,11 +5,11 @@
  * the medial axis; its erosion to a graph by collapses; pruning; resampling.
  *
  * When the samples conform, every stage after that keeps the homotopy type, as no coordinate takes
- * part in it. Conforming may fail at cracks and fins of next to no width; then other manners of
- * adding points are tried, and the attempt whose parts and loops are nearest to those that the
- * surface demands is taken. What it has in excess is cut and counted as mended.
+ * part in it. Conforming may fail at cracks and fins of next to no width; then of the manners that
+ * it has tried, the one whose parts and loops are nearest to those that the surface demands is
+ * taken. What it has in excess is cut and counted as mended.
  *
- * Cost: O(n log n) in practice for n samples, for each attempt. */
+ * Cost: O(n log n) in practice for n samples, for each manner that loses faces. */
 #include "skeleton/complex.h"
 #include "skeleton/conform.h"
 #include "skeleton/curve.h"
@@ -30,14 +30,13 @@ static const char STAGE[] = "skeleton";
 
 enum { LEAST_SAMPLES = 4000, MAX_MENDS = 600, MAX_NODES = 10000000 };
 
-/* What one manner of sampling leads to. */
+/* What one manner of conforming leads to. */
 typedef struct attempt {
     medial_complex *complex;
     inside_labels labels;
     erosion eroded;
     size_t parts, loops; /* of the eroded graph */
     double spacing;      /* of the samples, were they even */
-    size_t lost;         /* faces of the samples that the tetrahedra do not follow */
     bool *node_left;     /* nodes of parts that are kept */
     size_t mends;        /* parts and loops cut from it after that */
 } attempt;
@@ -79,24 +78,18 @@ static starg_status count_attempt(starg_context *context, attempt *a) {
                           a->eroded.link_left, a->complex->link_count, &a->parts, &a->loops);
 }
 
+/* Labels, complex and erosion of what conforming has led to. */
 static starg_status make_attempt(starg_context *context, const starg_solid *solid,
-                                 conform_manner manner, attempt *a) {
+                                 const conformed *from, attempt *a) {
     starg_status status = STARG_OK;
-    surface_samples samples = {0};
-    delaunay *tetrahedra = NULL;
-    conform_report report;
-    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
-    STARG_TRY(conform_samples(context, &samples, manner, &tetrahedra, &report));
-    STARG_TRY(labels_create(context, solid, &samples, tetrahedra, &a->labels));
-    STARG_TRY(complex_create(context, solid, samples.points, samples.point_count, tetrahedra,
-                             a->labels.inside, &a->complex));
+    const surface_samples *samples = &from->samples;
+    STARG_TRY(labels_create(context, solid, samples, from->tetrahedra, &a->labels));
+    STARG_TRY(complex_create(context, solid, samples->points, samples->point_count,
+                             from->tetrahedra, a->labels.inside, &a->complex));
     STARG_TRY(erosion_run(context, a->complex, &a->eroded));
     STARG_TRY(count_attempt(context, a));
-    a->lost = report.lost;
-    a->spacing = sqrt(1.1547 * solid->check->area / (double)samples.point_count);
+    a->spacing = sqrt(1.1547 * solid->check->area / (double)samples->point_count);
 done:
-    samples_free(context, &samples);
-    delaunay_free(tetrahedra);
     return status;
 }
 
@@ -117,9 +110,16 @@ static size_t count_faults(const starg_check *check, const attempt *a) {
 static starg_status find_best(starg_context *context, const starg_solid *solid, attempt *best) {
     starg_status status = STARG_OK;
     attempt a = {0};
-    int manners = solid->check->embedded ? CONFORM_MANNERS : 1;
-    for (int manner = 0; manner < manners; manner++) {
-        STARG_TRY(make_attempt(context, solid, (conform_manner)manner, &a));
+    surface_samples samples = {0};
+    conformed manners[CONFORM_RESULTS] = {0};
+    size_t count;
+    STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
+    STARG_TRY(conform_samples(context, &samples, manners, &count));
+    /* Counts decide between manners that lose faces. Where a surface crosses itself none is right.
+     */
+    size_t judged = manners[0].lost > 0 && solid->check->embedded ? count : 1;
+    for (size_t i = 0; i < judged; i++) {
+        STARG_TRY(make_attempt(context, solid, &manners[i], &a));
         if (best->complex == NULL ||
             count_faults(solid->check, &a) < count_faults(solid->check, best)) {
             attempt_free(context, best);
@@ -132,6 +132,9 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
     }
 done:
     attempt_free(context, &a);
+    samples_free(context, &samples);
+    for (size_t i = 0; i < CONFORM_RESULTS; i++)
+        conformed_free(context, &manners[i]);
     return status;
 }
 

@@ -11,13 +11,17 @@
 #include "starguard/skeleton.h"
 
 static const char *const MODELS[] = {
-    "solids/3holes.off",     "solids/eight.off",         "solids/elephant_g3.off",
-    "solids/femur_g2.off",   "solids/bull.off",          "solids/hand_1197.off",
-    "table2/kitten_400.off", "table2/kitten_10k.off",    "table2/bimba_752.off",
-    "table2/bunny_998.off",  "table2/beethoven_502.off", "table2/buddha_502.off",
-    "cad/bamboo_pen.off",    "cad/letter_p.off",         "cad/three_torus.off",
-    "cad/spool.off",         "cad/vase_374_g1.off",      "cad/star.off",
-    "tosca_paper/wolf0.off", "tosca_paper/david0.off",   "retrieval_shrec07/airplane_076.off",
+    "solids/3holes.off",         "solids/eight.off",
+    "solids/elephant_g3.off",    "solids/femur_g2.off",
+    "solids/bull.off",           "solids/hand_1197.off",
+    "table2/kitten_400.off",     "table2/kitten_10k.off",
+    "table2/bimba_752.off",      "table2/bunny_998.off",
+    "table2/beethoven_502.off",  "table2/buddha_502.off",
+    "cad/bamboo_pen.off",        "cad/letter_p.off",
+    "cad/three_torus.off",       "cad/spool.off",
+    "cad/vase_374_g1.off",       "cad/star.off",
+    "tosca_paper/wolf0.off",     "tosca_paper/david0.off",
+    "solids/chinese_dragon.off", "retrieval_shrec07/airplane_076.off",
 };
 
 /* Joins the ends of all pairs until nothing changes, and counts what is left. */
@@ -104,21 +108,21 @@ static void test_shared_models(void **state) {
     }
 }
 
-/* Ears or fins so thin that samples cannot follow both of their sides: counts are put right, and
- * that is told, as what was cut may have been another loop. */
+/* Boxes a hundredth apart, of faces a thousand times as long: samples cannot follow both sides.
+ * Counts are put right, and that is told, as what was cut may have been another loop. */
 static void test_mended_model(void **state) {
     (void)state;
     const char *folder = test_shared_data();
     if (folder == NULL)
         skip();
     starg_context *context = test_context(0);
-    starg_mesh *mesh = read_model(context, folder, "solids/chinese_dragon.off");
+    starg_mesh *mesh = read_model(context, folder, "cad/mpi_triang.off");
     starg_solid *solid = NULL;
     starg_skeleton *s = NULL;
     test_ok(context, starg_solid_create(context, mesh, &solid));
     test_ok(context, starg_skeleton_create(context, solid, NULL, &s));
     assert_int_equal(s->components, 1);
-    assert_int_equal(s->loops, 0);
+    assert_int_equal(s->loops, 1);
     assert_true(s->mends > 0);
     assert_false(s->homotopic);
     starg_skeleton_free(context, s);

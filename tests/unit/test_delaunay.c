@@ -161,9 +161,46 @@ static void test_flat(void **state) {
     test_context_free(context);
 }
 
+/* A copy and what it was made from go on by themselves, and both end as if there were no other. */
+static void test_copy(void **state) {
+    (void)state;
+    enum { FIRST = 25, COUNT = 50 };
+    starg_context *context = test_context(1);
+    double points[2][3 * COUNT]; /* the same at first, then not */
+    starg_rng rng = starg_rng_make(7, 3, 0);
+    for (size_t i = 0; i < 3 * COUNT; i++) {
+        points[0][i] = points[1][i] = (double)starg_rng_below(&rng, 6);
+        if (i >= (size_t)3 * FIRST)
+            points[1][i] = starg_rng_unit(&rng) * 5;
+    }
+    delaunay_builder *builders[2];
+    test_ok(context, delaunay_begin(context, points[0], FIRST, &builders[0]));
+    test_ok(context, delaunay_copy(builders[0], &builders[1]));
+    for (int i = 0; i < 2; i++)
+        test_ok(context, delaunay_extend(builders[i], points[i], COUNT));
+    for (int i = 0; i < 2; i++) {
+        delaunay *both = NULL, *alone = NULL;
+        delaunay_builder *builder = NULL;
+        test_ok(context, delaunay_finish(builders[i], &both));
+        delaunay_builder_free(builders[i]);
+        check_empty_spheres(both, points[i], COUNT);
+        check_neighbours(both);
+        test_ok(context, delaunay_begin(context, points[i], FIRST, &builder));
+        test_ok(context, delaunay_extend(builder, points[i], COUNT));
+        test_ok(context, delaunay_finish(builder, &alone));
+        delaunay_builder_free(builder);
+        assert_int_equal(both->count, alone->count);
+        assert_memory_equal(both->tetrahedra, alone->tetrahedra,
+                            alone->count * sizeof *alone->tetrahedra);
+        delaunay_free(alone);
+        delaunay_free(both);
+    }
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_lattice),
                                        cmocka_unit_test(test_random), cmocka_unit_test(test_sphere),
-                                       cmocka_unit_test(test_flat)};
+                                       cmocka_unit_test(test_flat), cmocka_unit_test(test_copy)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
