@@ -1,6 +1,7 @@
 #include "cover/weight_bound.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { MOST_STEPS = 300, STEPS_PER_REVIEW = 10, MOST_SHIFT = 20 };
 
@@ -19,19 +20,39 @@ static uint64_t largest_multiplier(const cover_instance *instance, unsigned shif
     return (instance->weights[column] << shift) / instance->demands[column];
 }
 
+/* The sum of the multipliers of a row's columns. What a point sees lies together, so that most
+ * words are empty or full; of a word that is nearly full, what is missing is taken off. */
+static uint64_t row_sum(const cover_instance *instance, const cover_weight_bound *bound,
+                        const uint64_t *row) {
+    uint64_t sum = 0;
+    for (size_t w = 0; w < instance->row_words; w++) {
+        const uint64_t *trial = bound->trial + 64 * w;
+        uint64_t word = row[w];
+        if (word == 0)
+            continue;
+        if (starg_bit_count(&word, 1) <= 32 || instance->columns - 64 * w < 64) {
+            STARG_FOR_BITS (bit, word)
+                sum += trial[bit];
+        } else {
+            sum += bound->word_sums[w];
+            STARG_FOR_BITS (bit, ~word)
+                sum -= trial[bit];
+        }
+    }
+    return sum;
+}
+
 /* What the columns keep, and the rows' scores in falling order. */
 static cover_wide evaluate(const cover_instance *instance, cover_weight_bound *bound) {
     cover_wide kept = 0;
-    for (size_t j = 0; j < instance->columns; j++)
+    memset(bound->word_sums, 0, instance->row_words * sizeof *bound->word_sums);
+    for (size_t j = 0; j < instance->columns; j++) {
         kept += (instance->weights[j] << bound->shift) - bound->trial[j] * instance->demands[j];
-    for (size_t i = 0; i < instance->rows; i++) {
-        uint64_t sum = 0;
-        for (size_t w = 0; w < instance->row_words; w++) {
-            STARG_FOR_BITS (bit, cover_row(instance, i)[w])
-                sum += bound->trial[64 * w + bit];
-        }
-        bound->scores[i] = (cover_score){sum, (uint32_t)i};
+        bound->word_sums[j / 64] += bound->trial[j];
     }
+    for (size_t i = 0; i < instance->rows; i++)
+        bound->scores[i] =
+            (cover_score){row_sum(instance, bound, cover_row(instance, i)), (uint32_t)i};
     cover_sort_scores(bound->scores, instance->rows);
     return kept;
 }
@@ -77,6 +98,7 @@ starg_status cover_weight_bound_create(const cover_instance *instance, size_t ro
     *out = (cover_weight_bound){.goal = goal};
     STARG_NEW(context, "bound", out->multipliers, instance->columns);
     STARG_NEW(context, "bound", out->trial, instance->columns);
+    STARG_NEW(context, "bound", out->word_sums, instance->row_words);
     STARG_NEW(context, "bound", out->scores, instance->rows);
     while (out->shift < MOST_SHIFT && instance->total >> (61 - out->shift) == 0)
         out->shift++;
@@ -90,6 +112,7 @@ done:
 void cover_weight_bound_free(const cover_instance *instance, cover_weight_bound *bound) {
     starg_release(instance->context, bound->multipliers);
     starg_release(instance->context, bound->trial);
+    starg_release(instance->context, bound->word_sums);
     starg_release(instance->context, bound->scores);
     *bound = (cover_weight_bound){0};
 }

@@ -2,10 +2,15 @@
 
 #include <math.h>
 
+#include "mesh/solid.h"
 #include "skeleton/medial.h"
+#include "starguard/simplify.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "candidates";
+
+/* For some thousand nodes more samples than these tell nothing new. */
+enum { MOST_SAMPLES = 100000 };
 
 starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
                              const double direction[3]) {
@@ -46,14 +51,30 @@ done:
     return status;
 }
 
-static starg_status skeletal_candidates(starg_context *context, const starg_solid *solid,
-                                        size_t wanted, double clearance, candidate_points *points) {
+/* The skeleton of a large model is that of a simpler version. */
+static starg_status make_skeleton(starg_context *context, const starg_solid *solid, size_t wanted,
+                                  starg_skeleton **out) {
     starg_status status = STARG_OK;
-    starg_skeleton *skeleton = NULL;
+    starg_mesh *simple = NULL;
+    starg_solid *coarse = NULL;
     starg_skeleton_options options;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
-    status = starg_skeleton_create(context, solid, &options, &skeleton);
+    if (solid->mesh->vertex_count > MOST_SAMPLES && solid->check->manifold) {
+        STARG_TRY(starg_mesh_simplify(context, solid->mesh, MOST_SAMPLES, NULL, NULL, &simple));
+        STARG_TRY(solid_make(context, simple, &coarse));
+    }
+    STARG_TRY(starg_skeleton_create(context, coarse ? coarse : solid, &options, out));
+done:
+    starg_solid_free(coarse);
+    starg_mesh_free(simple);
+    return status;
+}
+
+static starg_status skeletal_candidates(starg_context *context, const starg_solid *solid,
+                                        size_t wanted, double clearance, candidate_points *points) {
+    starg_skeleton *skeleton = NULL;
+    starg_status status = make_skeleton(context, solid, wanted, &skeleton);
     if (status == STARG_ERROR_MESH) {
         starg_log(context, STARG_LOG_NOTICE,
                   "there is no curve skeleton (%s): candidates are taken from the medial axis",

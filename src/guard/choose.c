@@ -2,12 +2,10 @@
 
 #include <math.h>
 
-static uint64_t coverable_weight(const guard_pool *pool, const column_weights *weights) {
-    uint64_t sum = 0;
-    for (size_t j = 0; j < pool->columns; j++)
-        if (starg_bit_test(pool->coverable, j))
-            sum += weights->weights[j];
-    return sum;
+/* The weight of which a part is wanted: of all that can be seen. Where that is not known, for want
+ * of looking at the last faces, it is at most that of all columns. */
+static double whole_weight(const guard_pool *pool, const column_weights *weights) {
+    return (double)(pool->curtailed ? weights->total : pool_coverable_weight(pool, weights));
 }
 
 starg_status choose_candidates(const guard_pool *pool, const column_weights *weights,
@@ -26,7 +24,7 @@ starg_status choose_candidates(const guard_pool *pool, const column_weights *wei
     if (wanted->coverage < 1 || wanted->max_guards > 0)
         problem.weights = weights->weights;
     if (wanted->coverage < 1)
-        problem.target = (uint64_t)ceil(wanted->coverage * (double)coverable_weight(pool, weights));
+        problem.target = (uint64_t)ceil(wanted->coverage * whole_weight(pool, weights));
     options.method = how->method;
     options.max_nodes = how->max_nodes;
     options.prices = how->prices;

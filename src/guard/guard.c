@@ -118,7 +118,7 @@ done:
 
 static starg_status complete_pool(guard_job *job) {
     starg_status status = STARG_OK;
-    STARG_TRY(pool_complete(&job->pool));
+    STARG_TRY(pool_complete(&job->pool, &job->weights));
     job->time_limited = job->pool.time_limited;
     if (pool_count(&job->pool) > 0)
         goto done;

@@ -154,7 +154,25 @@ static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
     }
 }
 
-starg_status pool_complete(guard_pool *pool) {
+uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *weights) {
+    uint64_t sum = 0;
+    for (size_t j = 0; j < pool->columns; j++)
+        if (starg_bit_test(pool->coverable, j))
+            sum += weights->weights[j];
+    return sum;
+}
+
+/* Candidates in the last crevices of a large model are thousands, for faces that need not be seen.
+ */
+static bool sees_enough(const guard_pool *pool, const column_weights *weights) {
+    const starg_guard_options *o = pool->options;
+    if (o->coverage == 1 || o->redundancy > 1 || o->max_guards > 0)
+        return false;
+    double missing = (double)(weights->total - pool_coverable_weight(pool, weights));
+    return missing <= 0.5 * (1 - o->coverage) * (double)weights->total;
+}
+
+starg_status pool_complete(guard_pool *pool, const column_weights *weights) {
     starg_status status = STARG_OK;
     uint8_t *unseen = NULL;
     candidate_points found = {0};
@@ -164,6 +182,9 @@ starg_status pool_complete(guard_pool *pool) {
     STARG_NEW_ZERO(pool->context, STAGE, all.tried, pool->solid->mesh->face_count);
     STARG_NEW(pool->context, STAGE, unseen, pool->solid->mesh->face_count);
     while (pending && !pool->time_limited) {
+        pool->curtailed = sees_enough(pool, weights);
+        if (pool->curtailed)
+            break;
         mark_unseen(pool, unseen);
         found.data.count = found.directions.count = 0;
         status = complete_candidates(pool->context, &all, unseen, &found, &pending);

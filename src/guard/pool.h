@@ -4,6 +4,7 @@
 
 #include "core/bits.h"
 #include "guard/candidates.h"
+#include "guard/weights.h"
 
 typedef struct guard_pool {
     starg_context *context;
@@ -14,6 +15,7 @@ typedef struct guard_pool {
     starg_bits *rows;    /* by candidate; columns are faces or vertices; NULL before the first */
     size_t columns;      /* of the rows */
     uint64_t *coverable; /* bits of the columns that some row holds */
+    bool curtailed;      /* completion ended before all faces were tried: enough can be seen */
     bool time_limited;   /* candidates were left out because the time was over */
 } guard_pool;
 
@@ -46,8 +48,12 @@ starg_status pool_add(guard_pool *pool, const candidate_points *points);
 starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out);
 
 /* Adds candidates for faces that none sees yet, until every face that can be seen is seen by one
- * (guard/complete.c); given candidates are left as they are. Errors: MEMORY, CANCELLED. */
-starg_status pool_complete(guard_pool *pool);
+ * (guard/complete.c), or, where a part of the area is enough, until what none sees is at most half
+ * of what may be left; given candidates are left as they are. Errors: MEMORY, CANCELLED. */
+starg_status pool_complete(guard_pool *pool, const column_weights *weights);
+
+/* The weight of the columns that some candidate holds. */
+uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *weights);
 
 /* Joins the rows of a matrix: a bit set per column that one of them holds; starg_release frees it.
  * Errors: MEMORY. */

@@ -136,6 +136,80 @@ static void test_shared(void **state) {
     test_context_free(context);
 }
 
+static void sample_solid(starg_context *context, const char *name, size_t vertices,
+                         starg_mesh **mesh, starg_solid **solid) {
+    starg_sample_options options;
+    starg_sample_options_default(&options);
+    options.vertex_count = vertices;
+    test_ok(context, starg_sample_create(context, name, &options, mesh));
+    test_ok(context, starg_solid_create(context, *mesh, solid));
+}
+
+/* Where a part is enough, crevices get no candidates of their own: that part is one of the whole
+ * area all the same. */
+static void test_part(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    const char *const names[] = {"gallery", "horse", "human"};
+    const double parts[] = {0.6, 0.9, 0.98};
+    bool fewer = false;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_mesh *mesh = NULL;
+        starg_solid *solid = NULL;
+        size_t all = 0;
+        sample_solid(context, names[i], 1500, &mesh, &solid);
+        for (size_t k = 0; k < 4; k++) {
+            starg_guards *guards = NULL;
+            starg_guard_options options = level_options();
+            options.coverage = k == 0 ? 1 : parts[k - 1];
+            test_ok(context, starg_guard(context, solid, &options, &guards));
+            test_verified(context, names[i], mesh, guards);
+            if (guards->coverage_area < options.coverage)
+                fail_msg("%s: %g of the area for %g", names[i], guards->coverage_area,
+                         options.coverage);
+            all = k == 0 ? guards->candidate_count : all;
+            fewer = fewer || guards->candidate_count < all;
+            starg_guards_free(context, guards);
+        }
+        starg_solid_free(solid);
+        starg_mesh_free(mesh);
+    }
+    assert_true(fewer);
+    test_context_free(context);
+}
+
+/* The part of the area that all candidates of a curve skeleton see. */
+static double seen_from_skeleton(starg_context *context, size_t vertices) {
+    starg_mesh *mesh = NULL;
+    starg_solid *solid = NULL;
+    starg_guards *guards = NULL;
+    double *points = NULL;
+    size_t count = 0;
+    sample_solid(context, "human", vertices, &mesh, &solid);
+    test_ok(context, starg_candidate_points(context, solid, STARG_CANDIDATES_SKELETON, 100, 0,
+                                            &points, &count));
+    assert_true(count >= 50);
+    for (size_t i = 0; i < count; i++)
+        assert_true(starg_solid_contains(solid, points + 3 * i));
+    test_ok(context, starg_guards_given(context, solid, points, count, &guards));
+    double seen = guards->coverage_area;
+    starg_guards_free(context, guards);
+    starg_points_free(context, points);
+    starg_solid_free(solid);
+    starg_mesh_free(mesh);
+    return seen;
+}
+
+/* Above 100,000 vertices the skeleton is that of a simpler version, and as good. */
+static void test_large(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    double small = seen_from_skeleton(context, 20000), large = seen_from_skeleton(context, 110000);
+    if (large < small - 0.01)
+        fail_msg("%g of the area seen, %g with fewer vertices", large, small);
+    test_context_free(context);
+}
+
 static void test_threads(void **state) {
     (void)state;
     starg_guards *first = NULL;
@@ -252,10 +326,9 @@ static void test_round_trip(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_shared),
-        cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_samples), cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_part),    cmocka_unit_test(test_large),
+        cmocka_unit_test(test_threads), cmocka_unit_test(test_round_trip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
