@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Seconds of each stage against the size of a model and against threads.
 
-usage: scale.py STARGUARD [--sample NAME] [--sizes N,N,...] [--threads N,N,...] [--at N]
-                [--results FILE] [--svg FOLDER]
+usage: scale.py STARGUARD [--commands NAME,...] [--sample NAME] [--sizes N,N,...]
+                [--threads N,N,...] [--at N] [--results FILE] [--svg FOLDER]
 
 For samples of the given sizes: seconds of each stage of `check`, `guard` (99 % of the area) and
 `decompose` (tetrahedra, the starts, and no search), their peak memory, and the slope of log seconds
@@ -21,7 +21,8 @@ import tempfile
 COMMANDS = {
     "check": [],
     "guard": ["-o", "guards.json", "--coverage", "0.99"],
-    "decompose": ["-o", "pieces.vtk", "--report", "pieces.json", "--binary", "--effort", "1"],
+    "decompose": ["-o", "pieces.vtk", "--report", "pieces.json", "--binary", "--effort", "1",
+                  "--time-limit", "3600"],
 }
 LEAST = 0.01  # seconds below which a stage is not told
 COLOURS = ("#1f6feb", "#d1495b", "#2e9e6b", "#b07d12", "#7b4bb3", "#0f8b8d", "#c2571a", "#66707f",
@@ -163,6 +164,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("starguard")
+    parser.add_argument("--commands", type=lambda text: text.split(","), default=list(COMMANDS))
     parser.add_argument("--sample", default="horse")
     parser.add_argument("--sizes", type=numbers, default=numbers("1e3,3e3,1e4,3e4,1e5,3e5,1e6"))
     parser.add_argument("--threads", type=numbers, default=[1, 2])
@@ -171,14 +173,14 @@ def main():
     parser.add_argument("--svg")
     options = parser.parse_args()
     results = Results(options)
-    for command in COMMANDS:
+    for command in options.commands:
         runs = [results.get(command, size, max(options.threads)) for size in options.sizes]
         print_table(f"`{command}`, s", [f"{n:,}" for n in options.sizes], runs, "slope",
                     options.sizes)
         if options.svg:
             draw(os.path.join(options.svg, f"scale_{command}.svg"),
                  f"starguard {command}: seconds of each stage by vertices", options.sizes, runs)
-    for command in COMMANDS:
+    for command in options.commands:
         runs = [results.get(command, options.at, count) for count in options.threads]
         print_table(f"`{command}`, {options.at:,} vertices", [f"{n} threads" for n in options.threads],
                     runs, "times as fast")

@@ -66,7 +66,7 @@ STARG_API void starg_context_cancel(starg_context *context);
 /* Forgets an earlier cancellation, so that the context can be used again. */
 STARG_API void starg_context_reset(starg_context *context);
 
-/* Wall-clock limit for the calls that follow, in seconds from now; 0 or less means none.
+/* Wall-clock limit for all calls that follow, in seconds from now; 0 or less means none.
  * A search that the limit stops returns the best it has found and says so in its result; what has
  * nothing to show before it is done (a check, a skeleton, a map) returns STARG_ERROR_TIME. */
 STARG_API void starg_context_set_time_limit(starg_context *context, double seconds);
