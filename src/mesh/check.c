@@ -240,9 +240,7 @@ static bool check_pair(void *user, uint32_t a, uint32_t b) {
 }
 
 static starg_status check_intersections(checker *c) {
-    starg_progress_begin(c->context, "check");
     bvh_query_pairs(c->tree, check_pair, c);
-    starg_progress_end(c->context);
     return starg_check_cancel(c->context, "check");
 }
 
@@ -297,6 +295,7 @@ static void summarise(checker *c) {
 starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_examination *out) {
     starg_status status = STARG_OK;
     checker c = {.context = context, .mesh = mesh};
+    starg_progress_begin(context, "check");
     STARG_NEW_ZERO(context, "check", c.check, 1);
     STARG_NEW_ZERO(context, "check", c.check->face_marks, mesh->face_count);
     STARG_TRY(topology_create(context, mesh, &c.topology));
@@ -316,6 +315,7 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     if (c.check->closed && c.check->manifold && c.check->oriented)
         STARG_TRY(check_shells(&c));
 done:
+    starg_progress_end(context);
     *out = (mesh_examination){c.check, c.topology, c.tree, c.shells};
     return status;
 }
