@@ -7,9 +7,9 @@
  *   2. project the remaining vertices to the six faces of a cube about p, and sort them by
  *      counting into the cells of a grid there, row by row, so that the cells that a face touches
  *      in one row are one run of vertices;
- *   3. for each kept face, near chunks first: the vertices in the cells of its bounding box that
- *      are not hidden yet are tested against the planes through p and its edges, and its own. Faces
- *      that lie behind a single one are left out.
+ *   3. for each kept face, near chunks first (grid_faces.h): the vertices in the cells of its
+ *      bounding box that are not hidden yet are tested against the planes through p and its edges,
+ *      and its own. Faces that lie behind a single one are left out.
  *
  * Cells only choose what is tested; they are chosen with a margin above the rounding of the
  * projection. With A, B, C, V the corners and the vertex relative to p and D = det(A, B, C) > 0,
@@ -23,7 +23,7 @@
  * behind each other, two kept faces in three are left out.
  *
  * Cost per point: O(n) for sorting plus the pairs of faces and vertices in common cells, about
- * ten a face. Memory per thread: 64 bytes a vertex and the cells. */
+ * ten a face. Memory per thread: about a hundred bytes a vertex. */
 #include "visibility/grid.h"
 
 #include <math.h>
