@@ -18,9 +18,8 @@ WORST = 10  # files to name
 
 
 def files_of(build):
-    words = ["gcovr", "-r", ROOT, "--object-directory", build, "--filter", f"{ROOT}/src/", "--filter",
-             f"{ROOT}/cli/",
-             "--gcov-ignore-parse-errors", "--json-summary", "-", build]
+    words = ["gcovr", "-r", ROOT, "--object-directory", build, "--filter", f"{ROOT}/src/",
+             "--filter", f"{ROOT}/cli/", "--gcov-ignore-parse-errors", "--json-summary", "-", build]
     done = subprocess.run(words, cwd=build, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         sys.exit(done.stderr)
