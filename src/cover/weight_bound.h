@@ -27,8 +27,7 @@ typedef struct cover_weight_bound {
     uint64_t most;         /* no K rows cover more                            */
     uint64_t goal;         /* T */
     size_t least;          /* no fewer rows cover T                           */
-    uint64_t *trial;       /* scratch: multipliers, their sums over the words
-                              of a row, scores */
+    uint64_t *trial;       /* scratch: multipliers, their sums by 64, scores */
     uint64_t *word_sums;
     cover_score *scores;
 } cover_weight_bound;
