@@ -365,6 +365,54 @@ static void check_weight_bound(cover_run *run, starg_rng *rng, cover_instance *i
     cover_weight_bound_free(instance, &bound);
 }
 
+/* Of what the bound is made: each row's score is the sum over its columns, one by one. */
+static void check_scores(const cover_instance *instance, const cover_weight_bound *bound) {
+    for (size_t k = 0; k < instance->rows; k++) {
+        uint64_t sum = 0;
+        for (size_t j = 0; j < instance->columns; j++)
+            if (cover_column(instance, j)[0] >> bound->scores[k].row & 1)
+                sum += bound->trial[j];
+        assert_true(bound->scores[k].score == sum);
+    }
+}
+
+/* Rows of several words, most of them full or nearly so. */
+static void wide_rows(void **state) {
+    (void)state;
+    enum { COLUMNS = 200 };
+    starg_context *context = test_context(1);
+    for (uint64_t item = 0; item < 100; item++) {
+        starg_rng rng = starg_rng_make(1, 12, item);
+        cover_run run = {.context = context, .max_nodes = 100000};
+        size_t rows = 2 + starg_rng_below(&rng, 6), columns = 60 + starg_rng_below(&rng, 140);
+        uint64_t density = 50 + starg_rng_below(&rng, 51), weights[COLUMNS], given;
+        starg_bits *bits;
+        cover_instance instance;
+        cover_weight_bound bound;
+        starg_cover_problem problem;
+        test_ok(context, starg_bits_create(context, rows, columns, &bits));
+        for (size_t j = 0; j < columns; j++) {
+            weights[j] = 1 + starg_rng_below(&rng, 9);
+            for (size_t i = 0; i < rows; i++)
+                if (starg_rng_below(&rng, 100) < density)
+                    starg_bits_set(bits, i, j);
+        }
+        starg_cover_problem_default(&problem);
+        problem.rows = bits;
+        problem.weights = weights;
+        test_ok(context, cover_instance_build(context, &problem, &instance, &given));
+        test_ok(context, cover_weight_bound_create(&instance, 1, instance.total, &bound));
+        check_scores(&instance, &bound);
+        test_ok(context, cover_weight_bound_improve(&run, &instance, 0, &bound));
+        check_scores(&instance, &bound);
+        assert_true(bound.most >= heaviest(&instance, 1));
+        cover_weight_bound_free(&instance, &bound);
+        cover_instance_free(&instance);
+        starg_bits_free(bits);
+    }
+    test_context_free(context);
+}
+
 #define STAGE(NAME, NUMBER, COUNT)                                                                 \
     static void NAME(void **state) {                                                               \
         (void)state;                                                                               \
@@ -389,9 +437,11 @@ static void local(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(essential),   cmocka_unit_test(rows),         cmocka_unit_test(columns),
-        cmocka_unit_test(blocks),      cmocka_unit_test(dual),         cmocka_unit_test(ilp),
-        cmocka_unit_test(reduce_full), cmocka_unit_test(weight_bound), cmocka_unit_test(local),
+        cmocka_unit_test(essential),   cmocka_unit_test(rows),
+        cmocka_unit_test(columns),     cmocka_unit_test(blocks),
+        cmocka_unit_test(dual),        cmocka_unit_test(ilp),
+        cmocka_unit_test(reduce_full), cmocka_unit_test(weight_bound),
+        cmocka_unit_test(wide_rows),   cmocka_unit_test(local),
         cmocka_unit_test(relax),       cmocka_unit_test(lazy_columns),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
