@@ -81,16 +81,19 @@ static starg_status bound_by_lp(block_solve *block, cover_dual *dual, bool *foun
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
     cover_relaxation relaxation = {0};
-    int64_t *scratch = NULL;
+    int64_t *reduced = NULL;
     *found = false;
     if (is_too_large(block, RELAXATION_ENTRIES))
         return STARG_OK;
-    STARG_NEW(context, "bound", scratch, block->rest.rows);
+    STARG_NEW(context, "bound", reduced, block->rest.rows);
     STARG_TRY(cover_relax(block->run, &block->rest, &relaxation, found));
-    if (*found)
-        cover_dual_offer(&block->rest, dual, relaxation.multipliers, scratch);
+    if (*found) {
+        const int64_t *multipliers = relaxation.multipliers;
+        int64_t value = cover_dual_value(&block->rest, multipliers, reduced);
+        cover_dual_offer(&block->rest, dual, multipliers, reduced, value);
+    }
 done:
-    starg_release(context, scratch);
+    starg_release(context, reduced);
     cover_relaxation_free(&block->rest, &relaxation);
     return status;
 }

@@ -1,22 +1,50 @@
 #include "cover/dual.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+/* Rows are gone through in strips of a cache line, and of those only the columns that have a
+ * multiplier at all: once the method has run for a while most have none. */
+enum { STRIP = 8 };
+
+/* Bits of the columns of a strip whose multiplier is not zero. */
+static void mark_strip(const cover_instance *instance, const int64_t *multipliers, size_t first,
+                       size_t count, uint64_t *marks) {
+    for (size_t k = 0; k < count; k++) {
+        size_t column = 64 * (first + k);
+        marks[k] = 0;
+        for (size_t bit = 0; bit < 64 && column + bit < instance->columns; bit++)
+            marks[k] |= (uint64_t)(multipliers[column + bit] != 0) << bit;
+    }
+}
+
+static int64_t strip_sum(const uint64_t *words, const uint64_t *marks, size_t count,
+                         const int64_t *multipliers) {
+    int64_t sum = 0;
+    for (size_t k = 0; k < count; k++) {
+        STARG_FOR_BITS (bit, words[k] & marks[k])
+            sum += multipliers[64 * k + bit];
+    }
+    return sum;
+}
 
 int64_t cover_dual_value(const cover_instance *instance, const int64_t *multipliers,
                          int64_t *reduced) {
     int64_t value = 0;
+    uint64_t marks[STRIP];
     for (size_t j = 0; j < instance->columns; j++)
         value += multipliers[j] * instance->demands[j];
-    for (size_t i = 0; i < instance->rows; i++) {
-        int64_t sum = 0;
-        for (size_t w = 0; w < instance->row_words; w++) {
-            STARG_FOR_BITS (bit, cover_row(instance, i)[w])
-                sum += multipliers[64 * w + bit];
-        }
-        reduced[i] = COVER_ONE - sum;
-        if (reduced[i] < 0)
-            value += reduced[i];
+    for (size_t i = 0; i < instance->rows; i++)
+        reduced[i] = COVER_ONE;
+    for (size_t first = 0; first < instance->row_words; first += STRIP) {
+        size_t left = instance->row_words - first, count = left < STRIP ? left : STRIP;
+        mark_strip(instance, multipliers, first, count, marks);
+        for (size_t i = 0; i < instance->rows; i++)
+            reduced[i] -=
+                strip_sum(cover_row(instance, i) + first, marks, count, multipliers + 64 * first);
     }
+    for (size_t i = 0; i < instance->rows; i++)
+        value += reduced[i] < 0 ? reduced[i] : 0;
     return value;
 }
 
@@ -92,15 +120,12 @@ void cover_dual_free(const cover_instance *instance, cover_dual *dual) {
 }
 
 void cover_dual_offer(const cover_instance *instance, cover_dual *dual, const int64_t *multipliers,
-                      int64_t *scratch) {
-    int64_t value = cover_dual_value(instance, multipliers, scratch);
+                      const int64_t *reduced, int64_t value) {
     if (value <= dual->value)
         return;
     dual->value = value;
-    for (size_t j = 0; j < instance->columns; j++)
-        dual->multipliers[j] = multipliers[j];
-    for (size_t i = 0; i < instance->rows; i++)
-        dual->reduced[i] = scratch[i];
+    memcpy(dual->multipliers, multipliers, instance->columns * sizeof *multipliers);
+    memcpy(dual->reduced, reduced, instance->rows * sizeof *reduced);
 }
 
 bool cover_dual_fix(const cover_instance *instance, const cover_dual *dual, size_t most,

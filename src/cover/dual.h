@@ -40,10 +40,10 @@ typedef struct cover_dual {
 starg_status cover_dual_create(const cover_instance *instance, cover_dual *out);
 void cover_dual_free(const cover_instance *instance, cover_dual *dual);
 
-/* Evaluates other multipliers and takes them over when their value is larger. `scratch` has one
- * entry per row. */
+/* Takes other multipliers over, with their reduced costs and value as from cover_dual_value, when
+ * the value is larger. */
 void cover_dual_offer(const cover_instance *instance, cover_dual *dual, const int64_t *multipliers,
-                      int64_t *scratch);
+                      const int64_t *reduced, int64_t value);
 
 /* Improves the dual by the subgradient method and `best`, a cover of everything, on the way; stops
  * when they meet. Errors: MEMORY, CANCELLED. */

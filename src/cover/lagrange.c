@@ -48,8 +48,7 @@ static void evaluate(lagrange *search) {
     for (size_t j = 0; j < instance->columns; j++)
         search->rounded[j] = (int64_t)(search->point[j] * (double)COVER_ONE);
     search->value = cover_dual_value(instance, search->rounded, search->reduced);
-    if (search->value > search->dual->value)
-        cover_dual_offer(instance, search->dual, search->rounded, search->reduced);
+    cover_dual_offer(instance, search->dual, search->rounded, search->reduced, search->value);
     if (search->value > search->reached)
         search->reached = search->value;
 }

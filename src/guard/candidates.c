@@ -2,15 +2,11 @@
 
 #include <math.h>
 
-#include "mesh/solid.h"
+#include "guard/samples.h"
 #include "skeleton/medial.h"
-#include "starguard/simplify.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "candidates";
-
-/* For some thousand nodes more samples than these tell nothing new. */
-enum { MOST_SAMPLES = 100000 };
 
 starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
                              const double direction[3]) {
@@ -34,56 +30,40 @@ bool candidates_allowed(const starg_solid *solid, const double p[3], double clea
            (clearance <= 0 || starg_solid_distance(solid, p) >= clearance);
 }
 
-static starg_status medial_candidates(starg_context *context, const starg_solid *solid,
-                                      size_t wanted, double clearance, candidate_points *points) {
+static starg_status medial_candidates(starg_context *context, const candidate_shape *shape,
+                                      size_t wanted, candidate_points *points) {
     starg_status status = STARG_OK;
     medial_ball *balls = NULL;
     double *scratch = NULL;
     size_t count = 0;
-    STARG_TRY(medial_balls(context, solid, clearance, &balls, &count));
+    STARG_TRY(medial_balls(context, shape->samples, shape->clearance, &balls, &count));
     STARG_NEW(context, STAGE, scratch, count);
     size_t chosen = medial_thin(balls, count, wanted, scratch);
     for (size_t i = 0; i < chosen; i++)
-        STARG_TRY(candidates_push(context, points, balls[i].centre, NULL));
+        if (candidates_allowed(shape->solid, balls[i].centre, shape->clearance))
+            STARG_TRY(candidates_push(context, points, balls[i].centre, NULL));
 done:
     starg_release(context, balls);
     starg_release(context, scratch);
     return status;
 }
 
-/* The skeleton of a large model is that of a simpler version. */
-static starg_status make_skeleton(starg_context *context, const starg_solid *solid, size_t wanted,
-                                  starg_skeleton **out) {
-    starg_status status = STARG_OK;
-    starg_mesh *simple = NULL;
-    starg_solid *coarse = NULL;
+static starg_status skeletal_candidates(starg_context *context, const candidate_shape *shape,
+                                        size_t wanted, candidate_points *points) {
+    starg_skeleton *skeleton = NULL;
     starg_skeleton_options options;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
-    if (solid->mesh->vertex_count > MOST_SAMPLES && solid->check->manifold) {
-        STARG_TRY(starg_mesh_simplify(context, solid->mesh, MOST_SAMPLES, NULL, NULL, &simple));
-        STARG_TRY(solid_make(context, simple, &coarse));
-    }
-    STARG_TRY(starg_skeleton_create(context, coarse ? coarse : solid, &options, out));
-done:
-    starg_solid_free(coarse);
-    starg_mesh_free(simple);
-    return status;
-}
-
-static starg_status skeletal_candidates(starg_context *context, const starg_solid *solid,
-                                        size_t wanted, double clearance, candidate_points *points) {
-    starg_skeleton *skeleton = NULL;
-    starg_status status = make_skeleton(context, solid, wanted, &skeleton);
+    starg_status status = starg_skeleton_create(context, shape->samples, &options, &skeleton);
     if (status == STARG_ERROR_MESH) {
         starg_log(context, STARG_LOG_NOTICE,
                   "there is no curve skeleton (%s): candidates are taken from the medial axis",
                   starg_context_error(context)->message);
-        return medial_candidates(context, solid, wanted, clearance, points);
+        return medial_candidates(context, shape, wanted, points);
     }
     STARG_TRY(status);
     for (size_t i = 0; i < skeleton->node_count; i++)
-        if (candidates_allowed(solid, skeleton->positions + 3 * i, clearance))
+        if (candidates_allowed(shape->solid, skeleton->positions + 3 * i, shape->clearance))
             STARG_TRY(candidates_push(context, points, skeleton->positions + 3 * i, NULL));
 done:
     starg_skeleton_free(context, skeleton);
@@ -139,14 +119,14 @@ done:
 
 /* The step follows from the volume, two points a cubic cell; where clearance or thin walls leave
  * fewer points than wanted it is made smaller, some times. */
-static starg_status interior_candidates(starg_context *context, const starg_solid *solid,
-                                        size_t wanted, double clearance, candidate_points *points) {
+static starg_status interior_candidates(starg_context *context, const candidate_shape *shape,
+                                        size_t wanted, candidate_points *points) {
     enum { ROUNDS = 6 };
     const double most = 10000 * (double)wanted + 1000;
-    double step = cbrt(2 * solid->check->volume / (double)wanted);
+    double step = cbrt(2 * shape->solid->check->volume / (double)wanted);
     for (int round = 0; round < ROUNDS; round++) {
-        double used = coarse_enough(solid, step, most);
-        starg_status status = lattice_points(context, solid, used, clearance, points);
+        double used = coarse_enough(shape->solid, step, most);
+        starg_status status = lattice_points(context, shape->solid, used, shape->clearance, points);
         if (status != STARG_OK)
             return status;
         size_t found = points->data.count / 3;
@@ -158,35 +138,46 @@ static starg_status interior_candidates(starg_context *context, const starg_soli
     return STARG_OK;
 }
 
+starg_status candidates_check(starg_context *context, starg_candidates source, size_t wanted,
+                              double clearance) {
+    if (source > STARG_CANDIDATES_SKELETON || source == STARG_CANDIDATES_GIVEN)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "given candidates are not made: pass them in the options");
+    if (wanted == 0 || wanted > 10000000 || !(clearance >= 0))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "1 to 10000000 candidates can be asked for, with a clearance of zero "
+                          "or more; got %zu and %g",
+                          wanted, clearance);
+    return STARG_OK;
+}
+
+starg_status candidates_find(starg_context *context, const candidate_shape *shape,
+                             starg_candidates source, size_t wanted, candidate_points *points) {
+    if (source == STARG_CANDIDATES_SKELETON)
+        return skeletal_candidates(context, shape, wanted, points);
+    if (source == STARG_CANDIDATES_MEDIAL)
+        return medial_candidates(context, shape, wanted, points);
+    return interior_candidates(context, shape, wanted, points);
+}
+
 starg_status starg_candidate_points(starg_context *context, const starg_solid *solid,
                                     starg_candidates source, size_t wanted, double clearance,
                                     double **points, size_t *count) {
     starg_status status = STARG_OK;
     candidate_points found = {0};
+    starg_solid *samples = NULL;
     *points = NULL;
     *count = 0;
-    if (wanted == 0 || wanted > 10000000 || !(clearance >= 0)) {
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "1 to 10000000 candidates can be asked for, with a clearance of zero "
-                            "or more; got %zu and %g",
-                            wanted, clearance);
-        goto done;
-    }
-    if (source == STARG_CANDIDATES_SKELETON) {
-        STARG_TRY(skeletal_candidates(context, solid, wanted, clearance, &found));
-    } else if (source == STARG_CANDIDATES_MEDIAL) {
-        STARG_TRY(medial_candidates(context, solid, wanted, clearance, &found));
-    } else if (source == STARG_CANDIDATES_INTERIOR) {
-        STARG_TRY(interior_candidates(context, solid, wanted, clearance, &found));
-    } else {
-        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                            "given candidates are not made: pass them in the options");
-        goto done;
-    }
+    STARG_TRY(candidates_check(context, source, wanted, clearance));
+    if (samples_wanted(solid))
+        STARG_TRY(samples_make(context, solid, &samples));
+    const candidate_shape shape = {solid, samples ? samples : solid, clearance};
+    STARG_TRY(candidates_find(context, &shape, source, wanted, &found));
     *points = found.data.data;
     *count = found.data.count / 3;
     found.data.data = NULL;
 done:
+    starg_solid_free(samples);
     candidates_free(context, &found);
     return status;
 }

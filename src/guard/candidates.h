@@ -29,6 +29,22 @@ starg_status candidates_turn(starg_context *context, const candidate_points *poi
 /* May a guard stand at p: strictly inside, with the clearance? */
 bool candidates_allowed(const starg_solid *solid, const double p[3], double clearance);
 
+/* What candidates are of. */
+typedef struct candidate_shape {
+    const starg_solid *solid;   /* what they must be inside of                               */
+    const starg_solid *samples; /* what medial axis and skeleton are taken from: the solid or
+                                   a simpler version (guard/samples.h)                       */
+    double clearance;
+} candidate_shape;
+
+/* Errors: ARGUMENT (a number out of range, or candidates that cannot be made). */
+starg_status candidates_check(starg_context *context, starg_candidates source, size_t wanted,
+                              double clearance);
+
+/* Adds about `wanted` points of a source, all checked. Errors: MEMORY, CANCELLED, TIME. */
+starg_status candidates_find(starg_context *context, const candidate_shape *shape,
+                             starg_candidates source, size_t wanted, candidate_points *points);
+
 /* Adds candidates for faces that no candidate sees (guard/complete.c): `unseen` marks the faces
  * (by index) for which points are wanted. The points that are appended see at least one of them
  * each; a face stays unseen only if none of the points tried sees it. Does at most a bounded

@@ -1,7 +1,8 @@
 /* Guarding a solid [YL11, section 3]: candidates, what they see, the fewest that see everything.
  *
- * Stages: candidate points; their visibility rows; more candidates until every face that can be
- * seen is seen by one (guard/complete.c); the choice, by one cover problem or from coarse to fine
+ * Stages: levels of detail; candidate points, of a large model from one of the levels
+ * (guard/samples.c); their visibility rows; more candidates until every face that can be seen is
+ * seen by one (guard/complete.c); the choice, by one cover problem or from coarse to fine
  * (guard/progressive.c); candidates added where they pay (guard/refine.c); what the chosen guards
  * see (guard/measure.c).
  *
@@ -13,6 +14,7 @@
 
 #include "geometry/vec3.h"
 #include "guard/job.h"
+#include "guard/samples.h"
 
 static const char STAGE[] = "guard";
 
@@ -32,11 +34,10 @@ void starg_guard_options_default(starg_guard_options *options) {
 }
 
 static void set_defaults(starg_guard_options *o, size_t vertices) {
-    size_t more = vertices > o->coarsest ? (vertices - o->coarsest) / 4 : 0;
     if (o->max_nodes == STARG_DEFAULT_NODES)
         o->max_nodes = o->method == STARG_GUARD_PILP ? 30 : 100000;
     if (o->step == STARG_DEFAULT_STEP)
-        o->step = more > 10000 ? more : 10000;
+        o->step = samples_step(vertices, o->coarsest);
 }
 
 static starg_status check_enums(starg_context *context, const starg_guard_options *o) {
@@ -47,7 +48,7 @@ static starg_status check_enums(starg_context *context, const starg_guard_option
 }
 
 static starg_status check_progressive(starg_context *context, const starg_guard_options *o) {
-    if (o->method == STARG_GUARD_PILP && o->step == 0)
+    if (o->step == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "levels of detail must grow by one vertex at least");
     if (!(o->significance >= 0 && o->significance <= 1))
@@ -59,6 +60,8 @@ static starg_status check_progressive(starg_context *context, const starg_guard_
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
     starg_status status = STARG_OK;
     STARG_TRY(check_enums(context, o));
+    if (o->candidates != STARG_CANDIDATES_GIVEN)
+        STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
     STARG_TRY(check_progressive(context, o));
     if (!(o->coverage > 0 && o->coverage <= 1))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
@@ -97,19 +100,46 @@ done:
     return status;
 }
 
+static bool needs_samples(const guard_job *job) {
+    return job->options->candidates != STARG_CANDIDATES_GIVEN && samples_wanted(job->solid);
+}
+
+/* Levels of detail, for the method or as samples. Without the time to make them there is the model
+ * alone. */
+static starg_status make_levels(guard_job *job) {
+    const starg_guard_options *options = job->options;
+    if (options->method != STARG_GUARD_PILP && !needs_samples(job))
+        return STARG_OK;
+    starg_progress_begin(job->context, "levels");
+    starg_status status = starg_mesh_levels(job->context, job->solid->mesh, options->coarsest,
+                                            options->step, NULL, &job->detail);
+    starg_progress_end(job->context);
+    if (status != STARG_ERROR_TIME)
+        return status;
+    job->time_limited = true;
+    return STARG_OK;
+}
+
+static starg_status choose_samples(guard_job *job) {
+    starg_status status = STARG_OK;
+    if (needs_samples(job) && job->detail != NULL)
+        STARG_TRY(samples_of_levels(job->context, job->detail, &job->samples));
+    job->shape = (candidate_shape){job->solid, job->samples ? job->samples : job->solid,
+                                   job->options->clearance};
+done:
+    return status;
+}
+
 /* The first candidates, before completion. */
 static starg_status make_candidates(guard_job *job) {
     starg_status status = STARG_OK;
     const starg_guard_options *options = job->options;
     candidate_points points = {0};
-    if (options->candidates == STARG_CANDIDATES_GIVEN) {
+    if (options->candidates == STARG_CANDIDATES_GIVEN)
         STARG_TRY(take_given(job, &points));
-    } else {
-        STARG_TRY(starg_candidate_points(job->context, job->solid, options->candidates,
-                                         options->candidate_count, options->clearance,
-                                         &points.data.data, &points.data.count));
-        points.data.count *= 3;
-    }
+    else
+        STARG_TRY(candidates_find(job->context, &job->shape, options->candidates,
+                                  options->candidate_count, &points));
     STARG_TRY(pool_add(&job->pool, &points));
 done:
     candidates_free(job->context, &points);
@@ -119,7 +149,7 @@ done:
 static starg_status complete_pool(guard_job *job) {
     starg_status status = STARG_OK;
     STARG_TRY(pool_complete(&job->pool, &job->weights));
-    job->time_limited = job->pool.time_limited;
+    job->time_limited = job->time_limited || job->pool.time_limited;
     if (pool_count(&job->pool) > 0)
         goto done;
     if (job->time_limited)
@@ -257,6 +287,8 @@ static void job_free(guard_job *job) {
     STARG_ARRAY_FREE(job->context, &job->levels);
     column_weights_free(job->context, &job->weights);
     pool_free(&job->pool);
+    starg_solid_free(job->samples);
+    starg_levels_free(job->context, job->detail);
 }
 
 starg_status starg_guard(starg_context *context, const starg_solid *solid,
@@ -272,6 +304,8 @@ starg_status starg_guard(starg_context *context, const starg_solid *solid,
     STARG_TRY(pool_create(context, solid, job.options, &job.pool));
     STARG_TRY(
         column_weights_create(context, solid->mesh, job.options->visibility.target, &job.weights));
+    STARG_TRY(make_levels(&job));
+    STARG_TRY(choose_samples(&job));
     STARG_TRY(make_candidates(&job));
     STARG_TRY(complete_pool(&job));
     STARG_TRY(choose(&job));

@@ -3,11 +3,15 @@
 #define STARG_GUARD_JOB_H
 
 #include "guard/choose.h"
+#include "starguard/simplify.h"
 
 typedef struct guard_job {
     starg_context *context;
     const starg_solid *solid;
     const starg_guard_options *options;
+    starg_levels *detail;  /* NULL: none are wanted, or there was no time */
+    starg_solid *samples;  /* NULL: the solid itself                      */
+    candidate_shape shape; /* what candidates are of                      */
     guard_pool pool;
     column_weights weights;
     STARG_ARRAY(uint32_t) chosen; /* candidates, the one that adds most first */

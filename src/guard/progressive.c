@@ -20,7 +20,6 @@
 #include "geometry/vec3.h"
 #include "guard/job.h"
 #include "mesh/solid.h"
-#include "starguard/simplify.h"
 
 static const char STAGE[] = "levels";
 
@@ -198,28 +197,14 @@ done:
     return status;
 }
 
-/* Without the time to make levels there is the model alone: NULL. */
-static starg_status make_levels(guard_job *job, starg_levels **levels) {
-    starg_progress_begin(job->context, STAGE);
-    starg_status status = starg_mesh_levels(job->context, job->solid->mesh, job->options->coarsest,
-                                            job->options->step, NULL, levels);
-    starg_progress_end(job->context);
-    if (status != STARG_ERROR_TIME)
-        return status;
-    job->time_limited = true;
-    return STARG_OK;
-}
-
 starg_status progressive_guards(guard_job *job) {
     starg_status status = STARG_OK;
-    starg_levels *levels = NULL;
-    STARG_TRY(make_levels(job, &levels));
+    const starg_levels *levels = job->detail;
     int last = levels == NULL ? 0 : (int)levels->count - 1;
     for (int level = 0; level < last && !job->time_limited && job->pool.first_count > 0; level++)
         STARG_TRY(guard_coarse_level(job, level, levels->levels[level].mesh));
     /* levels that were skipped have no number */
     STARG_TRY(guard_level(job, (int)job->records.count, &job->pool));
 done:
-    starg_levels_free(job->context, levels);
     return status;
 }

@@ -105,15 +105,10 @@ done:
 
 /* The medial axis, unless guards stand there already. */
 static starg_status find_places(guard_job *job, candidate_points *places) {
-    starg_status status = STARG_OK;
     if (job->options->candidates == STARG_CANDIDATES_MEDIAL)
         return STARG_OK;
-    STARG_TRY(starg_candidate_points(job->context, job->solid, STARG_CANDIDATES_MEDIAL,
-                                     job->options->candidate_count, job->options->clearance,
-                                     &places->data.data, &places->data.count));
-    places->data.count *= 3;
-done:
-    return status;
+    return candidates_find(job->context, &job->shape, STARG_CANDIDATES_MEDIAL,
+                           job->options->candidate_count, places);
 }
 
 starg_status refine_guards(guard_job *job) {

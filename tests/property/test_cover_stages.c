@@ -324,8 +324,29 @@ static void make_wide_instance(starg_context *context, starg_rng *rng, cover_ins
     starg_bits_free(bits);
 }
 
+/* The dual's value and reduced costs are the sums that define them, column by column. */
+static void check_dual_sums(starg_rng *rng, const cover_instance *instance) {
+    enum { MOST_ROWS = 14, MOST_COLUMNS = 700 };
+    int64_t multipliers[MOST_COLUMNS], reduced[MOST_ROWS], value = 0;
+    for (size_t j = 0; j < instance->columns; j++) {
+        multipliers[j] = (int64_t)(starg_rng_below(rng, 5) * starg_rng_below(rng, COVER_ONE / 100));
+        value += multipliers[j] * instance->demands[j];
+    }
+    int64_t told = cover_dual_value(instance, multipliers, reduced);
+    for (size_t i = 0; i < instance->rows; i++) {
+        int64_t cost = COVER_ONE;
+        for (size_t j = 0; j < instance->columns; j++)
+            if (cover_column(instance, j)[0] >> i & 1)
+                cost -= multipliers[j];
+        assert_true(reduced[i] == cost);
+        value += cost < 0 ? cost : 0;
+    }
+    assert_true(told == value);
+}
+
 static void lazy_columns(void **state) {
     (void)state;
+    size_t widest = 0;
     starg_context *context = test_context(1);
     for (uint64_t item = 0; item < 20; item++) {
         starg_rng rng = starg_rng_make(1, 9, item);
@@ -333,11 +354,14 @@ static void lazy_columns(void **state) {
         cover_instance instance;
         make_wide_instance(context, &rng, &instance);
         assert_true(instance.columns > 200);
+        widest = instance.columns > widest ? instance.columns : widest;
+        check_dual_sums(&rng, &instance);
         check_relax(&run, &rng, &instance);
         check_ilp(&run, &rng, &instance);
         check_local(&run, &rng, &instance);
         cover_instance_free(&instance);
     }
+    assert_true(widest > 512); /* several strips of cover_dual_value */
     test_context_free(context);
 }
 

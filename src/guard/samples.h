@@ -1,0 +1,22 @@
+/* Which vertices the medial axis and the skeleton of a model are made from. */
+#ifndef STARG_GUARD_SAMPLES_H
+#define STARG_GUARD_SAMPLES_H
+
+#include "mesh/solid.h"
+#include "starguard/simplify.h"
+
+/* Vertices from one level of detail to the next, unless told otherwise: 10,000 as in the paper, for
+ * large models so many that there are four levels. */
+size_t samples_step(size_t vertices, size_t coarsest);
+
+/* Is the model so large that a level of detail serves better? */
+bool samples_wanted(const starg_solid *solid);
+
+/* The solid of the level that serves, the caller's. Errors: MEMORY, CANCELLED. */
+starg_status samples_of_levels(starg_context *context, const starg_levels *levels,
+                               starg_solid **out);
+
+/* The same of levels that are made for it. Errors: MEMORY, CANCELLED, TIME. */
+starg_status samples_make(starg_context *context, const starg_solid *solid, starg_solid **out);
+
+#endif
