@@ -5,7 +5,10 @@ SECONDS ?= 60
 CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
-.PHONY: build demo check check-long coverage mpi lint sanitize fuzz bench install package deps deps-check clean
+LONG_PARTS := analysis slow exact memory threads mpi matrix
+.PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
+	coverage mpi lint fuzz bench install package deps deps-check clean
+.NOTPARALLEL: # JOBS of one target at a time
 
 build: deps
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=OFF > /dev/null
@@ -15,38 +18,55 @@ build: deps
 demo: build
 	@scripts/demo.sh $(BUILD)
 
-check: deps-check lint
+tests: deps-check
 	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=ON > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
+
+check: lint tests
 	@$(CTEST) --test-dir $(BUILD) -LE slow
 	@$(MAKE) --no-print-directory sanitize
 
-# The test suite once more, under the address and undefined-behaviour sanitizers.
-sanitize: deps-check
+sanitize-build: deps-check
 	@$(CMAKE) -S . -B $(BUILD)-sanitize -DSTARGUARD_SANITIZE=address,undefined > /dev/null
 	@cmake --build $(BUILD)-sanitize -j $(JOBS)
+
+# The test suite once more, under the address and undefined-behaviour sanitizers.
+sanitize: sanitize-build
 	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
-# What takes too long for every change: static analysis, tests labelled slow (every case of memory and
-# kills, and what sanitizers make slow), a million cases for each exact decision, a clang build, the
-# thread sanitizer, the lines that tests reach, the package on a clean root, runs by mpirun, and all results of six builds at four
-# numbers of threads.
-check-long: check
+# What takes too long for every change, hours in all; each part can be asked for alone.
+check-long: check $(LONG_PARTS:%=check-%) coverage package
+
+# Static: clang-tidy and cppcheck.
+check-analysis: tests
 	@scripts/tidy.sh $(BUILD)
 	@scripts/cppcheck.sh
+
+# Every allocation that can fail, 200 kills of each command, and what sanitizers make slow.
+check-slow: tests sanitize-build
 	@$(CTEST) --test-dir $(BUILD) -L slow
-	@STARGUARD_LONG=100 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
-	@CC=clang $(CMAKE) -S . -B $(BUILD)-clang > /dev/null
-	@cmake --build $(BUILD)-clang -j $(JOBS)
-	@$(CTEST) --test-dir $(BUILD)-clang -LE slow
+
+# A million cases for each exact decision.
+check-exact: tests
+	@STARGUARD_LONG=100 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
+
+# Memory that is read before it is written: valgrind.
+check-memory: tests
+	@scripts/install-deps.sh memory
+	@scripts/memory.sh $(BUILD)
+
+# Races: the thread sanitizer, built by clang.
+check-threads: deps-check
 	@CC=clang CXX=clang++ $(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
 	@$(CTEST) --timeout 3000 --test-dir $(BUILD)-thread
-	@$(MAKE) --no-print-directory coverage
-	@scripts/package-test.sh $(BUILD)
-	@$(MAKE) --no-print-directory mpi
+
+check-mpi: mpi
 	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
+
+# All results of six builds at four numbers of threads.
+check-matrix: deps-check
 	@JOBS=$(JOBS) scripts/determinism.py --matrix $(BUILD)-matrix
 
 # Which lines the tests reach. Left out are tests of what an instrumented build cannot have: its time,
@@ -95,4 +115,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-clang $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix demo
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix demo

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Installs the Debian packages that are missing, as root or with sudo.
-# Usage: install-deps.sh build|check|coverage|mpi|bench ...
+# Usage: install-deps.sh build|check|coverage|memory|mpi|bench ...
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 
@@ -16,6 +16,7 @@ for purpose in "$@"; do
     build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libarpack2-dev libsuitesparse-dev $(viewer_packages)" ;;
     check) packages="$packages libcmocka-dev libgmp-dev cppcheck clang clang-format clang-tidy libclang-rt-14-dev llvm python3 python3-jsonschema jq man-db tetgen chromium python3-cffi python3-numpy python3-setuptools python3-pip python3-wheel mypy python3-vtk9 python3-meshio assimp-utils" ;;
     coverage) packages="$packages gcovr" ;;
+    memory) packages="$packages valgrind" ;;
     mpi) packages="$packages libopenmpi-dev openmpi-bin" ;;
     bench) packages="$packages libembree-dev hyperfine" ;;
     *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;

@@ -24,7 +24,7 @@
 #include "geometry/linear_program.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "morph/cholesky.h"
+#include "morph/entries.h"
 #include "morph/morph.h"
 #include "tetra/tetmesh.h"
 
@@ -45,7 +45,7 @@ typedef struct walk {
     carried *c;
     size_t inner;            /* vertices behind the fixed ones */
     uint32_t *first, *about; /* tetrahedra about inner vertex i: about[first[i]] and on */
-    cholesky *system;
+    sparse_factors *system;
     double *frame;   /* the morph's */
     double *next;    /* x 3 per vertex: places after the step */
     double *sides;   /* inner + inner: a right-hand side, and room to solve it */
@@ -60,7 +60,7 @@ static void walk_free(walk *w) {
                             w->sides, w->marked, w->rows.data, w->order.data};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(context, blocks[i]);
-    cholesky_free(w->system);
+    sparse_free(w->system);
 }
 
 /* ---- tetrahedra ---- */
@@ -134,7 +134,7 @@ static starg_status make_system(walk *w) {
     for (uint32_t v = 0; v < w->inner; v++) /* what no tetrahedron has stays */
         if (w->first[v] == w->first[v + 1])
             entries[count++] = (matrix_entry){v, v, 1};
-    STARG_TRY(cholesky_create(c->context, w->inner, entries, count, &w->system));
+    STARG_TRY(entries_factorise(c->context, w->inner, entries, count, &w->system));
 done:
     starg_release(c->context, entries);
     return status;
@@ -166,7 +166,7 @@ static void displace(walk *w, size_t axis) {
         if (a >= c->fixed && b < c->fixed)
             w->sides[a - c->fixed] += w->next[3 * b + axis] - now[3 * b + axis];
     }
-    cholesky_solve(w->system, w->sides, w->sides + w->inner);
+    sparse_solve(w->system, w->sides, w->sides + w->inner);
     for (size_t v = 0; v < w->inner; v++)
         w->next[3 * (c->fixed + v) + axis] = now[3 * (c->fixed + v) + axis] + w->sides[v];
 }

@@ -17,8 +17,8 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "morph/cholesky.h"
 #include "morph/composition.h"
+#include "morph/entries.h"
 
 static const char STAGE[] = "map";
 enum { HALVINGS = 5, SWEEPS = 2, ENTRIES = 4 };
@@ -31,7 +31,7 @@ typedef struct flow {
     size_t count;   /* unknowns                              */
     double *sides;  /* 3 x count: right-hand sides, solutions */
     double *work;
-    cholesky *system;
+    sparse_factors *system;
 } flow;
 
 static double weight_of_staying(const flow *f, uint32_t v) {
@@ -85,7 +85,8 @@ static starg_status make_system(flow *f) {
             if (triangle_at(s, v, i, corner))
                 next = put_triangle(f, corner, next);
     }
-    STARG_TRY(cholesky_create(s->context, f->count, entries, (size_t)(next - entries), &f->system));
+    STARG_TRY(
+        entries_factorise(s->context, f->count, entries, (size_t)(next - entries), &f->system));
 done:
     starg_release(s->context, entries);
     return status;
@@ -172,7 +173,7 @@ static void find_places(const flow *f) {
             if (triangle_at(s, s->alive[k], i, corner))
                 add_triangle(f, corner);
     for (size_t j = 0; j < 3; j++)
-        cholesky_solve(f->system, f->sides + j * f->count, f->work);
+        sparse_solve(f->system, f->sides + j * f->count, f->work);
 }
 
 /* Takes a vertex towards its place, along the surface. */
@@ -232,6 +233,6 @@ done:
     starg_release(context, f.slot);
     starg_release(context, f.sides);
     starg_release(context, f.work);
-    cholesky_free(f.system);
+    sparse_free(f.system);
     return status;
 }

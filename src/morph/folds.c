@@ -91,7 +91,7 @@ static double *part_of(const filling *f, size_t face, int part) {
     return part < 3 ? &path->rotation[part] : &path->stretch[part - 3];
 }
 
-static starg_status make_system(const filling *f, cholesky **out) {
+static starg_status make_system(const filling *f, sparse_factors **out) {
     starg_status status = STARG_OK;
     matrix_entry *entries = NULL, *next;
     STARG_NEW(f->m->context, STAGE, entries, FACE_ENTRIES * f->count);
@@ -108,7 +108,7 @@ static starg_status make_system(const filling *f, cholesky **out) {
         if (f->number[twin / 3] != NONE)
             *next++ = (matrix_entry){own, f->number[twin / 3], -1};
     }
-    STARG_TRY(cholesky_create(f->m->context, f->count, entries, (size_t)(next - entries), out));
+    STARG_TRY(entries_factorise(f->m->context, f->count, entries, (size_t)(next - entries), out));
 done:
     starg_release(f->m->context, entries);
     return status;
@@ -131,18 +131,18 @@ static void sum_given(const filling *f, int part, double *sums) {
 static starg_status fill(const filling *f) {
     starg_status status = STARG_OK;
     double *values = NULL;
-    cholesky *system = NULL;
+    sparse_factors *system = NULL;
     STARG_NEW(f->m->context, STAGE, values, 2 * f->count);
     STARG_TRY(make_system(f, &system));
     for (int part = 0; part < PARTS; part++) {
         sum_given(f, part, values);
-        cholesky_solve(system, values, values + f->count);
+        sparse_solve(system, values, values + f->count);
         for (size_t face = 0; face < f->m->mesh->face_count; face++)
             if (f->number[face] != NONE)
                 *part_of(f, face, part) = values[f->number[face]];
     }
 done:
-    cholesky_free(system);
+    sparse_free(system);
     starg_release(f->m->context, values);
     return status;
 }

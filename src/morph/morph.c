@@ -168,7 +168,7 @@ void starg_morph_free(starg_morph *m) {
                             m->places[1],     m->pieces,    m->guarded,   m->guard_paths,
                             m->folded,        m->late};
     starg_mesh_free(m->mesh);
-    cholesky_free(m->system);
+    sparse_free(m->system);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
         starg_release(m->context, blocks[i]);
     starg_release(m->context, m);

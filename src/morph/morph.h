@@ -3,7 +3,7 @@
 #define STARG_MORPH_MORPH_H
 
 #include "mesh/mesh.h"
-#include "morph/cholesky.h"
+#include "morph/entries.h"
 #include "starguard/morph.h"
 #include "starguard/solid.h"
 
@@ -46,7 +46,7 @@ struct starg_morph {
     size_t linked;           /* guards that are unknowns: all for star, else none    */
     size_t unknowns;         /* vertices, then guards                                */
     uint32_t *component;     /* per unknown a name of its connected part             */
-    cholesky *system;
+    sparse_factors *system;
     double *remainder; /* vertex_count x 3: what the least squares leave at 1  */
     double *late;      /* the part of it that comes last; NULL: none           */
     size_t fold_count; /* folded faces (star)                                  */

@@ -18,7 +18,7 @@ static const double REACH = 0.03;       /* of the diffusion, to the larger box *
 static const double LEAST_MASS = 1e-18; /* of a vertex without area about it   */
 enum { LATE = 8 };                      /* the power of t                      */
 
-static starg_status make_system(const starg_morph *m, double *masses, cholesky **out) {
+static starg_status make_system(const starg_morph *m, double *masses, sparse_factors **out) {
     starg_status status = STARG_OK;
     const starg_mesh *mesh = m->mesh;
     matrix_entry *entries = NULL, *next;
@@ -31,8 +31,8 @@ static starg_status make_system(const starg_morph *m, double *masses, cholesky *
                                mesh->vertices + 3 * (size_t)c[2]);
         for (size_t k = 0; k < 3; k++) {
             masses[c[k]] += area / 3;
-            next = matrix_put_link(c[(k + 1) % 3], c[(k + 2) % 3],
-                                   REACH * REACH * m->weights[FACE_WEIGHTS * f + k], next);
+            next = entries_put_link(c[(k + 1) % 3], c[(k + 2) % 3],
+                                    REACH * REACH * m->weights[FACE_WEIGHTS * f + k], next);
         }
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
@@ -40,7 +40,7 @@ static starg_status make_system(const starg_morph *m, double *masses, cholesky *
         *next++ = (matrix_entry){v, v, masses[v]};
     }
     STARG_TRY(
-        cholesky_create(m->context, mesh->vertex_count, entries, (size_t)(next - entries), out));
+        entries_factorise(m->context, mesh->vertex_count, entries, (size_t)(next - entries), out));
 done:
     starg_release(m->context, entries);
     return status;
@@ -50,7 +50,7 @@ starg_status morph_part_remainder(starg_morph *m) {
     starg_status status = STARG_OK;
     size_t count = m->mesh->vertex_count;
     double *masses = NULL, *values = NULL;
-    cholesky *system = NULL;
+    sparse_factors *system = NULL;
     if (m->fold_count == 0)
         return STARG_OK;
     STARG_NEW_ZERO(m->context, STAGE, masses, count);
@@ -60,14 +60,14 @@ starg_status morph_part_remainder(starg_morph *m) {
     for (size_t k = 0; k < 3; k++) {
         for (size_t v = 0; v < count; v++)
             values[v] = masses[v] * m->remainder[3 * v + k];
-        cholesky_solve(system, values, values + count);
+        sparse_solve(system, values, values + count);
         for (size_t v = 0; v < count; v++) {
             m->late[3 * v + k] = m->remainder[3 * v + k] - values[v];
             m->remainder[3 * v + k] = values[v];
         }
     }
 done:
-    cholesky_free(system);
+    sparse_free(system);
     starg_release(m->context, masses);
     starg_release(m->context, values);
     return status;

@@ -79,7 +79,7 @@ static matrix_entry *put_face(const starg_morph *m, size_t face, matrix_entry *n
     const uint32_t *corner = m->mesh->faces + 3 * face;
     const double *weights = m->weights + FACE_WEIGHTS * face;
     for (size_t k = 0; k < 3; k++)
-        next = matrix_put_link(corner[(k + 1) % 3], corner[(k + 2) % 3], weights[k], next);
+        next = entries_put_link(corner[(k + 1) % 3], corner[(k + 2) % 3], weights[k], next);
     if (m->method != STARG_MORPH_STAR)
         return next;
     const uint32_t unknowns[4] = {corner[0], corner[1], corner[2],
@@ -90,8 +90,8 @@ static matrix_entry *put_face(const starg_morph *m, size_t face, matrix_entry *n
 static matrix_entry *put_guards(const starg_morph *m, matrix_entry *next) {
     for (uint32_t i = 0; i < m->linked; i++)
         if (m->guard_paths[i].parent != i)
-            next = matrix_put_link(guard_unknown(m, i), guard_unknown(m, m->guard_paths[i].parent),
-                                   LINK, next);
+            next = entries_put_link(guard_unknown(m, i), guard_unknown(m, m->guard_paths[i].parent),
+                                    LINK, next);
     return next;
 }
 
@@ -128,7 +128,7 @@ static starg_status make_system(starg_morph *m) {
     for (uint32_t v = 0; v < m->unknowns; v++)
         *next++ = (matrix_entry){v, v, m->component[v] == v ? 1 : 0};
     STARG_TRY(
-        cholesky_create(m->context, m->unknowns, entries, (size_t)(next - entries), &m->system));
+        entries_factorise(m->context, m->unknowns, entries, (size_t)(next - entries), &m->system));
 done:
     starg_release(m->context, entries);
     return status;
@@ -237,7 +237,7 @@ static starg_status rigid_part(const starg_morph *m, double t, double *out) {
         add_face(m, f, whole, t, &s);
     add_guards(m, whole, t, &s);
     for (size_t c = 0; c < 3; c++)
-        cholesky_solve(m->system, s.values + c * s.count, work);
+        sparse_solve(m->system, s.values + c * s.count, work);
     STARG_TRY(center_parts(m, t, &s));
     for (size_t v = 0; v < m->mesh->vertex_count; v++)
         for (size_t c = 0; c < 3; c++)

@@ -280,6 +280,24 @@ starg_status laplacian_create_shell(starg_context *context, const starg_mesh *me
     return create(context, mesh, thickness, true, out);
 }
 
+/* Its entries with the masses on the diagonal, which comes first by column. */
+starg_status laplacian_factorise(starg_context *context, const laplacian *l, double shift,
+                                 sparse_factors **out) {
+    starg_status status = STARG_OK;
+    size_t entries = (size_t)l->starts[l->count];
+    double *values = NULL;
+    *out = NULL;
+    STARG_NEW(context, STAGE, values, entries);
+    memcpy(values, l->values, entries * sizeof *values);
+    for (size_t i = 0; i < l->count; i++)
+        values[l->starts[i]] += shift * l->masses[i];
+    const sparse_matrix matrix = {l->count, l->starts, l->rows, values};
+    STARG_TRY(sparse_factorise(context, STAGE, &matrix, out));
+done:
+    starg_release(context, values);
+    return status;
+}
+
 void laplacian_free(starg_context *context, laplacian *l) {
     starg_release(context, l->starts);
     starg_release(context, l->rows);

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/context.h"
+#include "core/sparse.h"
 #include "starguard/mesh.h"
 
 /* A symmetric, positive semidefinite matrix with zero row sums, stored by columns (all of it), and
@@ -33,6 +33,10 @@ starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, co
  * thicker it holds more and lets more through, in proportion. Only ratios count. */
 starg_status laplacian_create_shell(starg_context *context, const starg_mesh *mesh,
                                     const double *thickness, laplacian *out);
+
+/* Factorises L + shift M, which is positive definite for shift > 0. Errors: SOLVER, MEMORY. */
+starg_status laplacian_factorise(starg_context *context, const laplacian *l, double shift,
+                                 sparse_factors **out);
 void laplacian_free(starg_context *context, laplacian *l);
 
 #endif

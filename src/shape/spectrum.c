@@ -1,8 +1,8 @@
 /* The smallest eigenvalues of a Laplacian by shifted inversion.
  *
  * Implicitly restarted Lanczos iterations (ARPACK) on M^1/2 (L + M)^-1 M^1/2, whose largest
- * eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is factorised once (factor.c);
- * each step costs one solution with it.
+ * eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is factorised once
+ * (core/sparse.h); each step costs one solution with it.
  *
  * ARPACK keeps its state in static variables: one run at a time, behind a lock. Its start vector is
  * given, so that the result depends on the matrix only.
@@ -19,7 +19,6 @@
 
 #include "core/memory.h"
 #include "core/rng.h"
-#include "shape/factor.h"
 
 static const char STAGE[] = "spectrum";
 
@@ -36,7 +35,7 @@ static void make_lock(void) {
 
 typedef struct iteration {
     const laplacian *l;
-    const factor *f;
+    const sparse_factors *f;
     double *roots; /* of the masses */
     double *solution, *residual, *vectors, *work, *small;
     a_int *chosen;
@@ -47,7 +46,7 @@ typedef struct iteration {
 static void apply(const iteration *it, const double *x, double *y) {
     for (size_t i = 0; i < it->l->count; i++)
         y[i] = it->roots[i] * x[i];
-    factor_solve(it->f, y, it->solution);
+    sparse_solve(it->f, y, it->solution);
     for (size_t i = 0; i < it->l->count; i++)
         y[i] *= it->roots[i];
 }
@@ -117,7 +116,9 @@ static starg_status sort_modes(starg_context *context, const iteration *it, mode
     for (size_t i = 0; i < wanted; i++) {
         modes[i] = (mode){.eigenvalue = 1 / eigenvalues[i] - SHIFT, .column = i};
         if (!(isfinite(modes[i].eigenvalue) && modes[i].eigenvalue > -0.5 * SHIFT))
-            return factor_fail(context);
+            return starg_fail(context, STARG_ERROR_SOLVER, STAGE,
+                              "the spectrum cannot be found: the faces' shapes are too extreme; "
+                              "'starguard repair' may help");
     }
     qsort(modes, wanted, sizeof *modes, by_eigenvalue);
     for (size_t i = 0; i < wanted; i++) {
@@ -133,16 +134,17 @@ starg_status spectrum_smallest(starg_context *context, const laplacian *l, size_
                                double *eigenvalues, double *functions) {
     starg_status status = STARG_OK;
     size_t n = l->count, vectors = 2 * wanted + SPARE_VECTORS;
-    factor f = {0};
+    sparse_factors *factors = NULL;
     mode *modes = NULL;
-    iteration it = {.l = l, .f = &f, .functions = functions != NULL};
+    iteration it = {.l = l, .functions = functions != NULL};
     if (vectors > n)
         vectors = n;
     if (wanted >= n || n * sizeof(double) > INT_MAX)
         return starg_fail(context, STARG_ERROR_MESH, STAGE,
                           "a mesh of %zu vertices has too %s for its spectrum", n,
                           wanted >= n ? "few" : "many");
-    STARG_TRY(factor_create(context, l, SHIFT, &f));
+    STARG_TRY(laplacian_factorise(context, l, SHIFT, &factors));
+    it.f = factors;
     STARG_NEW(context, STAGE, it.roots, n);
     STARG_NEW(context, STAGE, it.solution, n);
     STARG_NEW(context, STAGE, it.residual, n);
@@ -164,6 +166,6 @@ done:
     starg_release(context, it.work);
     starg_release(context, it.small);
     starg_release(context, it.chosen);
-    factor_free(context, &f);
+    sparse_free(factors);
     return status;
 }

@@ -26,7 +26,6 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
-#include "shape/factor.h"
 #include "shape/spectrum.h"
 #include "shape/waves.h"
 #include "star/piece_faces.h"
@@ -130,24 +129,24 @@ done:
 static starg_status diffuse(starg_context *context, const starg_mesh *boundary, double *at) {
     starg_status status = STARG_OK;
     laplacian l = {0};
-    factor f = {0};
+    sparse_factors *f = NULL;
     double *x = NULL, *scratch = NULL, mean = 0;
     STARG_TRY(laplacian_create(context, boundary, at, &l));
-    STARG_TRY(factor_create(context, &l, RATE, &f));
+    STARG_TRY(laplacian_factorise(context, &l, RATE, &f));
     STARG_NEW(context, STAGE, x, l.count);
     STARG_NEW(context, STAGE, scratch, l.count);
     for (size_t i = 0; i < l.count; i++) {
         x[i] = RATE * l.masses[i] * l.field[i];
         mean += l.masses[i] * l.field[i];
     }
-    factor_solve(&f, x, scratch);
+    sparse_solve(f, x, scratch);
     for (size_t v = 0; v < starg_mesh_vertex_count(boundary); v++)
         at[v] = l.row_of[v] != LAPLACIAN_NO_ROW && x[l.row_of[v]] > THINNEST * mean
                     ? x[l.row_of[v]]
                     : THINNEST * fmax(mean, 1e-9);
 done:
     laplacian_free(context, &l);
-    factor_free(context, &f);
+    sparse_free(f);
     starg_release(context, x);
     starg_release(context, scratch);
     return status;

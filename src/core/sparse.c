@@ -1,0 +1,109 @@
+/* L D L' without pivoting (LDL), in the order of AMD: stable for positive definite matrices. AMD
+ * takes its memory from malloc; all other memory is the context's.
+ *
+ * Cost: the fill-in; for surfaces of n vertices about 30 n to 60 n numbers, for each solution. */
+#include "core/sparse.h"
+
+#include <suitesparse/amd.h>
+#include <suitesparse/ldl.h>
+
+#include "core/memory.h"
+
+struct sparse_factors {
+    starg_context *context;
+    int64_t size;
+    int64_t *order, *starts, *rows;
+    double *values, *diagonal;
+};
+
+/* What only the making needs. */
+typedef struct making {
+    int64_t *inverse, *parents, *sizes, *flags, *pattern;
+    double *row;
+} making;
+
+static void making_free(starg_context *context, making *m) {
+    void *const blocks[] = {m->inverse, m->parents, m->sizes, m->flags, m->pattern, m->row};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+        starg_release(context, blocks[i]);
+}
+
+void sparse_free(sparse_factors *f) {
+    if (f == NULL)
+        return;
+    starg_release(f->context, f->order);
+    starg_release(f->context, f->starts);
+    starg_release(f->context, f->rows);
+    starg_release(f->context, f->values);
+    starg_release(f->context, f->diagonal);
+    starg_release(f->context, f);
+}
+
+static starg_status make_room(sparse_factors *f, const char *stage, making *m) {
+    starg_status status = STARG_OK;
+    size_t n = (size_t)f->size;
+    int64_t **const lists[] = {&f->order, &m->inverse, &m->parents,
+                               &m->sizes, &m->flags,   &m->pattern};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
+        STARG_NEW(f->context, stage, *lists[i], n);
+    STARG_NEW(f->context, stage, f->starts, n + 1);
+    STARG_NEW(f->context, stage, f->diagonal, n);
+    STARG_NEW(f->context, stage, m->row, n);
+done:
+    return status;
+}
+
+static starg_status choose_order(sparse_factors *f, const char *stage, const sparse_matrix *a) {
+    double information[AMD_INFO];
+    SuiteSparse_long result = amd_l_order(f->size, a->starts, a->rows, f->order, NULL, information);
+    if (result == AMD_OUT_OF_MEMORY)
+        return starg_fail_memory(f->context, stage);
+    if (result != AMD_OK && result != AMD_OK_BUT_JUMBLED)
+        return starg_fail(f->context, STARG_ERROR_SOLVER, stage, "the matrix cannot be ordered");
+    return STARG_OK;
+}
+
+static starg_status fill_factors(sparse_factors *f, const char *stage, const sparse_matrix *a,
+                                 making *m) {
+    starg_status status = STARG_OK;
+    ldl_l_symbolic(f->size, a->starts, a->rows, f->starts, m->parents, m->sizes, m->flags, f->order,
+                   m->inverse);
+    STARG_NEW(f->context, stage, f->rows, (size_t)f->starts[f->size]);
+    STARG_NEW(f->context, stage, f->values, (size_t)f->starts[f->size]);
+    if (ldl_l_numeric(f->size, a->starts, a->rows, a->values, f->starts, m->parents, m->sizes,
+                      f->rows, f->values, f->diagonal, m->row, m->pattern, m->flags, f->order,
+                      m->inverse) != f->size)
+        status = starg_fail(f->context, STARG_ERROR_SOLVER, stage,
+                            "a system of the faces cannot be solved: their shapes are too extreme; "
+                            "'starguard repair' may help");
+done:
+    return status;
+}
+
+starg_status sparse_factorise(starg_context *context, const char *stage,
+                              const sparse_matrix *matrix, sparse_factors **out) {
+    starg_status status = STARG_OK;
+    sparse_factors *f = NULL;
+    making m = {0};
+    *out = NULL;
+    STARG_NEW_ZERO(context, stage, f, 1);
+    f->context = context;
+    f->size = (int64_t)matrix->size;
+    STARG_TRY(make_room(f, stage, &m));
+    STARG_TRY(choose_order(f, stage, matrix));
+    STARG_TRY(fill_factors(f, stage, matrix, &m));
+    *out = f;
+    f = NULL;
+done:
+    making_free(context, &m);
+    sparse_free(f);
+    return status;
+}
+
+void sparse_solve(const sparse_factors *f, double *values, double *work) {
+    ldl_l_perm(f->size, work, values, f->order);
+    ldl_l_lsolve(f->size, work, f->starts, f->rows, f->values);
+    ldl_l_dsolve(f->size, work, f->diagonal);
+    ldl_l_ltsolve(f->size, work, f->starts, f->rows, f->values);
+    ldl_l_permt(f->size, values, work, f->order);
+}

@@ -1,0 +1,27 @@
+/* Sparse symmetric positive definite systems that are solved for many right-hand sides. */
+#ifndef STARG_CORE_SPARSE_H
+#define STARG_CORE_SPARSE_H
+
+#include <stdint.h>
+
+#include "core/context.h"
+
+/* A matrix by columns, both triangles; entries of one place count as their sum. */
+typedef struct sparse_matrix {
+    size_t size;
+    int64_t *starts; /* of the columns, size + 1 */
+    int64_t *rows;
+    double *values;
+} sparse_matrix;
+
+typedef struct sparse_factors sparse_factors;
+
+/* Factorises a matrix. `stage` is told with errors: SOLVER (not positive definite), MEMORY. */
+starg_status sparse_factorise(starg_context *context, const char *stage,
+                              const sparse_matrix *matrix, sparse_factors **out);
+void sparse_free(sparse_factors *f);
+
+/* Solves for one right-hand side in place; `work` holds `size` doubles. Any thread. */
+void sparse_solve(const sparse_factors *f, double *values, double *work);
+
+#endif

@@ -1,0 +1,44 @@
+#include "morph/entries.h"
+
+#include "core/memory.h"
+
+static const char STAGE[] = "factorise";
+
+matrix_entry *entries_put_link(uint32_t a, uint32_t b, double w, matrix_entry *next) {
+    *next++ = (matrix_entry){a, a, w};
+    *next++ = (matrix_entry){b, b, w};
+    *next++ = (matrix_entry){a, b, -w};
+    *next++ = (matrix_entry){b, a, -w};
+    return next;
+}
+
+/* By columns, in the order given: a counting sort whose starts are one place ahead while it runs.
+ */
+static void lay_out(const matrix_entry *entries, size_t count, sparse_matrix *m) {
+    for (size_t i = 0; i < count; i++)
+        m->starts[entries[i].column + (size_t)2]++;
+    for (size_t i = 0; i < m->size; i++)
+        m->starts[i + 2] += m->starts[i + 1];
+    for (size_t i = 0; i < count; i++) {
+        int64_t at = m->starts[entries[i].column + (size_t)1]++;
+        m->rows[at] = entries[i].row;
+        m->values[at] = entries[i].value;
+    }
+}
+
+starg_status entries_factorise(starg_context *context, size_t size, const matrix_entry *entries,
+                               size_t count, sparse_factors **out) {
+    starg_status status = STARG_OK;
+    sparse_matrix m = {.size = size};
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, m.starts, size + 2);
+    STARG_NEW(context, STAGE, m.rows, count);
+    STARG_NEW(context, STAGE, m.values, count);
+    lay_out(entries, count, &m);
+    STARG_TRY(sparse_factorise(context, STAGE, &m, out));
+done:
+    starg_release(context, m.starts);
+    starg_release(context, m.rows);
+    starg_release(context, m.values);
+    return status;
+}
