@@ -182,7 +182,7 @@ def main():
                  f"starguard {command}: seconds of each stage by vertices", options.sizes, runs)
     for command in options.commands:
         runs = [results.get(command, options.at, count) for count in options.threads]
-        print_table(f"`{command}`, {options.at:,} vertices", [f"{n} threads" for n in options.threads],
+        print_table(f"`{command}`, {options.at:,} vertices", [f"{n} thread" + "s" * (n > 1) for n in options.threads],
                     runs, "times as fast")
 
 

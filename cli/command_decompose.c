@@ -420,6 +420,8 @@ static starg_status make_options(cli_session *session, const values *v, double *
     wanted->max_pieces = v->max_pieces;
     wanted->effort = v->effort;
     wanted->tetra.density = v->density;
+    /* half of the time is left for the pieces */
+    wanted->tetra.tetgen_limit = fmax(wanted->tetra.tetgen_limit, session->common.time_limit / 2);
     if (v->guards != NULL)
         CLI_TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));
     wanted->guards = *points;

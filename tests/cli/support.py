@@ -8,7 +8,8 @@ import unittest
 PROGRAM = os.environ.get("STARGUARD", "build/starguard")
 SHARED = os.environ.get("STARGUARD_SHARED", "../shared")
 # Programs under a sanitizer are several times slower; limits on time grow with them.
-SLOWNESS = 8 if os.environ.get("STARGUARD_SANITIZE") else 1
+SANITIZE = os.environ.get("STARGUARD_SANITIZE")
+SLOWNESS = 8 if SANITIZE else 1
 
 COMMANDS = ["sample", "check", "repair", "skeleton", "visible", "kernel", "guard", "decompose",
             "describe", "match", "verify", "map", "morph", "completion"]

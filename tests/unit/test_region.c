@@ -391,6 +391,49 @@ static void test_center(void **state) {
     assert_true(empty > 20 && all - empty > 20);
 }
 
+/* ---- some facets ---- */
+
+static bool has_row(const region *r, const double *row) {
+    for (size_t i = 0; i < r->rows.count; i += 4)
+        if (memcmp(r->rows.data + i, row, 4 * sizeof *row) == 0)
+            return true;
+    return false;
+}
+
+/* Some facets ask for nothing that all of them do not ask for, and leave nothing behind that
+ * another gathering could trip over. */
+static void check_some(setting *s, uint32_t most) {
+    region part = {.vertices = {0}};
+    double center[3], whole_radius, part_radius;
+    test_ok(s->context, region_gather_some(&s->p, s->pieces, s->count, most, &s->scratch, &part));
+    assert_true(part.triangles.count < 2 * s->count * most);
+    for (size_t i = 0; i < part.rows.count; i += 4)
+        assert_true(has_row(&s->r, part.rows.data + i));
+    test_ok(s->context, region_find_center(&part, NULL, 0, &s->scratch, center, &part_radius));
+    test_ok(s->context, region_find_center(&s->r, NULL, 0, &s->scratch, center, &whole_radius));
+    assert_true(part_radius > whole_radius - 1e-8);
+    test_ok(s->context, region_gather(&s->p, s->pieces, s->count, &s->scratch, &s->r));
+    check_rows(s);
+    region_free(s->context, &part);
+}
+
+static void test_some(void **state) {
+    (void)state;
+    size_t fewer = 0;
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        setting s = make(seed);
+        starg_rng rng = starg_rng_make(seed, 85, 0);
+        for (int turn = 0; turn < 20; turn++) {
+            choose_union(&s, &rng);
+            uint32_t most = 1 + (uint32_t)starg_rng_below(&rng, 40);
+            fewer += s.r.triangles.count > 2 * s.count * most;
+            check_some(&s, most);
+        }
+        release(&s);
+    }
+    assert_true(fewer > 40);
+}
+
 /* ---- clipping ---- */
 
 /* The part above a plane: its volume is that of the piece that a slice cuts off, and its kernel
@@ -454,7 +497,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_scan),   cmocka_unit_test(test_gather),
         cmocka_unit_test(test_reach),  cmocka_unit_test(test_reach_about),
-        cmocka_unit_test(test_center), cmocka_unit_test(test_clip),
+        cmocka_unit_test(test_center), cmocka_unit_test(test_some),
+        cmocka_unit_test(test_clip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

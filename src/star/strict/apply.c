@@ -9,6 +9,8 @@
  * facets of the partition. */
 #include "star/strict/apply.h"
 
+#include <math.h>
+
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "star/strict/slice.h"
@@ -211,17 +213,32 @@ done:
     return status;
 }
 
+/* The largest ball from which all of two pieces is seen. Most pairs have none, and mostly some of
+ * their facets tell. */
+static starg_status find_common_ball(const partition *p, const uint32_t pair[2], double margin,
+                                     region_scratch *scratch, double center[3], double *radius) {
+    static const uint32_t most[] = {256, 8192, UINT32_MAX};
+    starg_status status = STARG_OK;
+    region r = {.vertices = {0}};
+    *radius = INFINITY;
+    for (size_t i = 0; i < sizeof most / sizeof *most && *radius >= margin; i++) {
+        STARG_TRY(region_gather_some(p, pair, 2, most[i], scratch, &r));
+        STARG_TRY(region_find_center(&r, NULL, 0, scratch, center, radius));
+    }
+done:
+    region_free(p->context, &r);
+    return status;
+}
+
 starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
                         region_scratch *scratch, bool *done) {
     starg_status status = STARG_OK;
     const uint32_t pair[2] = {a, b};
-    region r = {.vertices = {0}};
     partition_triangles triangles = {0};
     piece fresh = {.stamp = p->stamps + 1};
     double center[3];
     *done = false;
-    STARG_TRY(region_gather(p, pair, 2, scratch, &r));
-    STARG_TRY(region_find_center(&r, NULL, 0, scratch, center, &fresh.radius));
+    STARG_TRY(find_common_ball(p, pair, margin, scratch, center, &fresh.radius));
     if (fresh.radius < margin)
         goto done;
     partition_from_unit(p, center, fresh.guard);
@@ -236,7 +253,6 @@ starg_status apply_join(partition *p, uint32_t a, uint32_t b, double margin,
     partition_renumber(p, (uint32_t)p->pieces.count - 1, b);
     STARG_TRY(partition_build_index(p));
 done:
-    region_free(p->context, &r);
     STARG_ARRAY_FREE(p->context, &triangles);
     return status;
 }

@@ -115,6 +115,7 @@ static starg_status join_all(improver *m) {
         for (uint32_t a = 0; a < m->p->pieces.count; a++) {
             bool done = true;
             STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
+            starg_progress_step(m->p->context, a, m->p->pieces.count);
             while (done && a < m->p->pieces.count && !starg_time_is_over(m->p->context)) {
                 STARG_TRY(join_one(m, a, &done));
                 any = any || done;
@@ -375,9 +376,11 @@ starg_status improve_join(partition *p) {
     starg_status status = STARG_OK;
     improve_report report = {.trials = 0};
     improver m = {.p = p, .report = &report, .scratch = {.context = p->context}};
+    starg_progress_begin(p->context, "join");
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
 done:
+    starg_progress_end(p->context);
     improver_free(&m);
     return status;
 }

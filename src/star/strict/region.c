@@ -132,11 +132,18 @@ done:
     return status;
 }
 
+/* From one facet of a piece that is looked at to the next. */
+static uint32_t stride_of(const partition *p, uint32_t number, uint32_t most) {
+    uint32_t facets = p->start.data[number + 1] - p->start.data[number];
+    return facets > most ? facets / most : 1;
+}
+
 /* The tables are all zero between calls. */
-static void forget(const partition *p, const uint32_t *pieces, size_t count,
+static void forget(const partition *p, const uint32_t *pieces, size_t count, uint32_t most,
                    region_scratch *scratch) {
     for (size_t i = 0; i < count; i++)
-        for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1]; k++) {
+        for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1];
+             k += stride_of(p, pieces[i], most)) {
             const facet *f = &p->facets.data[p->index.data[k] / 2];
             for (int c = 0; c < 3; c++)
                 scratch->vertex_of.data[f->corners[c]] = 0;
@@ -160,8 +167,8 @@ done:
     return status;
 }
 
-starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
-                           region_scratch *scratch, region *out) {
+starg_status region_gather_some(const partition *p, const uint32_t *pieces, size_t count,
+                                uint32_t most, region_scratch *scratch, region *out) {
     starg_status status = STARG_OK;
     out->vertices.count = out->triangles.count = out->rows.count = 0;
     STARG_TRY(grow_zero(p->context, &scratch->vertex_of.data, &scratch->vertex_of.count,
@@ -169,17 +176,23 @@ starg_status region_gather(const partition *p, const uint32_t *pieces, size_t co
     STARG_TRY(grow_zero(p->context, &scratch->row_of.data, &scratch->row_of.count,
                         &scratch->row_of.capacity, 2 * p->planes.count));
     for (size_t i = 0; i < count; i++)
-        for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1]; k++) {
+        for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1];
+             k += stride_of(p, pieces[i], most)) {
             uint32_t entry = p->index.data[k];
             if (!is_chosen(pieces, count, p->facets.data[entry / 2].side[1 - entry % 2]))
                 STARG_TRY(gather_facet(p, entry, scratch, out));
             if (i == 0)
                 out->first_rows = out->rows.count / ROW;
         }
-    forget(p, pieces, count, scratch);
+    forget(p, pieces, count, most, scratch);
     STARG_TRY(make_blocks(p->context, out));
 done:
     return status;
+}
+
+starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
+                           region_scratch *scratch, region *out) {
+    return region_gather_some(p, pieces, count, UINT32_MAX, scratch, out);
 }
 
 /* ---- clipping ---- */

@@ -50,6 +50,11 @@ void region_free_scratch(starg_context *context, void *scratch);
  * Errors: MEMORY. */
 starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
                            region_scratch *scratch, region *out);
+
+/* The same from about `most` facets of each piece, evenly spread over its list (below twice as
+ * many): where these leave no room for a guard, all of them leave none. */
+starg_status region_gather_some(const partition *p, const uint32_t *pieces, size_t count,
+                                uint32_t most, region_scratch *scratch, region *out);
 void region_free(starg_context *context, region *r);
 
 /* The part of a region above a plane, closed by it. Errors: MEMORY. */
