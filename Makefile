@@ -60,7 +60,7 @@ check-memory: tests
 check-threads: deps-check
 	@CC=clang CXX=clang++ $(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
-	@$(CTEST) --timeout 3000 --test-dir $(BUILD)-thread
+	@$(CTEST) --timeout 3000 --test-dir $(BUILD)-thread -LE slow
 
 check-mpi: mpi
 	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
