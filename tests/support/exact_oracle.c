@@ -267,77 +267,129 @@ static void add_multiple(row *out, const mpq_t factor, const row *r) {
     mpq_clear(t);
 }
 
+/* ---- elimination ----
+ *
+ * Rows of whole numbers, and only positive multiples of inequalities: no fraction has to be reduced
+ * on the way, which is what rational arithmetic spends its time on. */
+
+static mpz_ptr whole(row *r, int i) {
+    return mpq_numref(r->k[i]);
+}
+
+/* Multiplies a row by its common denominator. */
+static void clear_denominators(row *r) {
+    mpq_t common;
+    mpq_init(common);
+    mpq_set_ui(common, 1, 1);
+    for (int i = 0; i <= VARIABLES; i++)
+        mpz_lcm(mpq_numref(common), mpq_numref(common), mpq_denref(r->k[i]));
+    for (int i = 0; i <= VARIABLES; i++)
+        mpq_mul(r->k[i], r->k[i], common);
+    mpq_clear(common);
+}
+
+/* Takes out the powers of two that all numbers of a row have in common. */
+static void shorten(row *r) {
+    mp_bitcnt_t shift = ~(mp_bitcnt_t)0;
+    for (int i = 0; i <= VARIABLES; i++) {
+        mp_bitcnt_t zeros = mpz_scan1(whole(r, i), 0); /* the most there is for 0 */
+        shift = zeros < shift ? zeros : shift;
+    }
+    if (shift > 0)
+        for (int i = 0; i <= VARIABLES; i++)
+            mpz_tdiv_q_2exp(whole(r, i), whole(r, i), shift);
+}
+
+/* out = a r - b q, where out may be r. */
+static void combine(row *out, mpz_srcptr a, row *r, mpz_srcptr b, row *q) {
+    for (int i = 0; i <= VARIABLES; i++) {
+        mpz_mul(whole(out, i), a, whole(r, i));
+        mpz_submul(whole(out, i), b, whole(q, i));
+    }
+    shorten(out);
+}
+
 /* Takes the equation `from` out of the system and removes `variable` from all others with it. */
 static void substitute(linear_system *s, size_t from, int variable) {
     row equation = s->rows[from];
     s->rows[from] = s->rows[--s->count];
-    mpq_t factor;
-    mpq_init(factor);
+    if (mpz_sgn(whole(&equation, variable)) < 0)
+        for (int i = 0; i <= VARIABLES; i++)
+            mpz_neg(whole(&equation, i), whole(&equation, i));
+    mpz_t factor;
+    mpz_init(factor);
     for (size_t i = 0; i < s->count; i++) {
-        row *r = &s->rows[i];
-        if (mpq_sgn(r->k[variable]) == 0)
-            continue;
-        mpq_div(factor, r->k[variable], equation.k[variable]);
-        mpq_neg(factor, factor);
-        add_multiple(r, factor, &equation);
+        mpz_set(factor, whole(&s->rows[i], variable));
+        if (mpz_sgn(factor) != 0)
+            combine(&s->rows[i], whole(&equation, variable), &s->rows[i], factor, &equation);
     }
-    mpq_clear(factor);
+    mpz_clear(factor);
     clear_row(&equation);
 }
 
 /* Fourier-Motzkin: every lower bound of `variable` must lie below every upper bound. */
 static void eliminate(linear_system *s, int variable) {
     linear_system rest = {0};
-    mpq_t factor;
-    mpq_init(factor);
     for (size_t i = 0; i < s->count; i++) {
-        const row *low = &s->rows[i];
-        int side = mpq_sgn(low->k[variable]);
-        if (side == 0)
-            for (int j = 0; j <= VARIABLES; j++) {
-                if (j == 0)
-                    new_row(&rest, low->relation);
-                mpq_set(rest.rows[rest.count - 1].k[j], low->k[j]);
-            }
-        if (side <= 0)
-            continue;
-        for (size_t j = 0; j < s->count; j++) {
-            const row *high = &s->rows[j];
-            if (mpq_sgn(high->k[variable]) >= 0)
+        row *low = &s->rows[i];
+        int side = mpz_sgn(whole(low, variable));
+        if (side == 0) {
+            row *same = new_row(&rest, low->relation);
+            for (int j = 0; j <= VARIABLES; j++)
+                mpz_swap(whole(same, j), whole(low, j));
+        }
+        for (size_t j = 0; j < s->count && side > 0; j++) {
+            row *high = &s->rows[j];
+            if (mpz_sgn(whole(high, variable)) >= 0)
                 continue;
             bool strict = low->relation == ABOVE_ZERO || high->relation == ABOVE_ZERO;
             row *sum = new_row(&rest, strict ? ABOVE_ZERO : AT_LEAST_ZERO);
-            mpq_neg(factor, high->k[variable]);
-            add_multiple(sum, factor, low);
-            add_multiple(sum, low->k[variable], high);
+            combine(sum, whole(low, variable), high, whole(high, variable), low);
         }
     }
-    mpq_clear(factor);
     clear_system(s);
     *s = rest;
 }
 
-static bool constants_hold(const linear_system *s) {
-    for (size_t i = 0; i < s->count; i++) {
-        int sign = mpq_sgn(s->rows[i].k[VARIABLES]);
-        relation r = s->rows[i].relation;
-        if (r == EQUAL_ZERO ? sign != 0 : r == AT_LEAST_ZERO ? sign < 0 : sign <= 0)
+static bool is_constant(row *r) {
+    for (int i = 0; i < VARIABLES; i++)
+        if (mpz_sgn(whole(r, i)) != 0)
             return false;
-    }
     return true;
+}
+
+/* Takes out the rows without variables; false when one of them does not hold. */
+static bool constants_hold(linear_system *s) {
+    bool hold = true;
+    for (size_t i = s->count; i-- > 0;) {
+        row *r = &s->rows[i];
+        if (!is_constant(r))
+            continue;
+        int sign = mpz_sgn(whole(r, VARIABLES));
+        hold = hold && (r->relation == EQUAL_ZERO      ? sign == 0
+                        : r->relation == AT_LEAST_ZERO ? sign >= 0
+                                                       : sign > 0);
+        clear_row(r);
+        *r = s->rows[--s->count];
+    }
+    return hold;
 }
 
 /* Has the system a solution? Consumes it. */
 static bool solvable(linear_system *s) {
+    for (size_t i = 0; i < s->count; i++)
+        clear_denominators(&s->rows[i]);
     for (int variable = 0; variable < VARIABLES; variable++)
         for (size_t i = 0; i < s->count; i++)
-            if (s->rows[i].relation == EQUAL_ZERO && mpq_sgn(s->rows[i].k[variable]) != 0) {
+            if (s->rows[i].relation == EQUAL_ZERO && mpz_sgn(whole(&s->rows[i], variable)) != 0) {
                 substitute(s, i, variable);
                 break;
             }
-    for (int variable = 0; variable < VARIABLES; variable++)
-        eliminate(s, variable);
     bool yes = constants_hold(s);
+    for (int variable = 0; variable < VARIABLES && yes; variable++) {
+        eliminate(s, variable);
+        yes = constants_hold(s);
+    }
     clear_system(s);
     return yes;
 }

@@ -111,10 +111,10 @@ enum { LEAST = 10, MOST = 2000 }; /* n that are tried one by one */
 typedef struct manner {
     int threads;
     bool for_good;
-    double seconds; /* of processor time for the first n, where not every n is tried */
+    double seconds, thorough; /* of processor time for the first n; thorough 0: for every n */
 } manner;
 
-static const manner manners[] = {{1, false, 0.2}, {1, true, 0.04}, {2, false, 0.04}};
+static const manner manners[] = {{1, false, 0.2, 0}, {1, true, 0.04, 4}, {2, false, 0.04, 4}};
 
 typedef struct tally {
     size_t allocations, attempts, failed, ok;
@@ -188,8 +188,8 @@ static extent measure(const failing_call *call) {
 }
 
 /* How many n are tried one by one: as many as there is time for. */
-static size_t choose_limit(const manner *how, const extent *whole) {
-    double limit = whole->seconds > 0 ? how->seconds / whole->seconds : MOST;
+static size_t choose_limit(double seconds, const extent *whole) {
+    double limit = whole->seconds > 0 ? seconds / whole->seconds : MOST;
     return limit < LEAST ? LEAST : limit < MOST ? (size_t)limit : MOST;
 }
 
@@ -207,9 +207,10 @@ static void try_all(const failing_call *call, const manner *how) {
 }
 
 /* All n up to a limit, and then some, about a quarter as many, evenly from somewhere on. */
-static void try_some(const failing_call *call, const manner *how, const extent *whole) {
+static void try_some(const failing_call *call, const manner *how, double seconds,
+                     const extent *whole) {
     tally sum = {0};
-    size_t limit = choose_limit(how, whole), last = whole->allocations, stride = 1;
+    size_t limit = choose_limit(seconds, whole), last = whole->allocations, stride = 1;
     starg_rng rng = starg_rng_make(1, limit, last);
     if (last > limit)
         stride = 1 + (last - limit) / (limit / 4 + 1);
@@ -222,21 +223,23 @@ static void try_some(const failing_call *call, const manner *how, const extent *
     tell(call, how, &sum);
 }
 
-/* STARGUARD_LONG=1 (make check-long): every n. What earlier tests have lost is theirs. */
+/* STARGUARD_LONG=1 (make check-long): every n, alone. What earlier tests have lost is theirs. */
 void failing_run(const failing_call *calls, size_t count) {
-    const char *all = getenv("STARGUARD_LONG");
-    bool whole = all != NULL && strcmp(all, "1") == 0;
+    const char *asked = getenv("STARGUARD_LONG");
+    bool thorough = asked != NULL && strcmp(asked, "1") == 0;
     atomic_store(&memory.blocks, 0);
     atomic_store(&memory.bytes, 0);
     printf("%-34s %-24s %7s %-6s %11s %8s %8s %8s\n", "call", "", "threads", "fails", "allocations",
            "attempts", "failed", "ok");
     for (size_t i = 0; i < count; i++) {
         extent once = measure(&calls[i]);
-        for (size_t m = 0; m < sizeof manners / sizeof *manners; m++)
-            if (whole)
+        for (size_t m = 0; m < sizeof manners / sizeof *manners; m++) {
+            double seconds = thorough ? manners[m].thorough : manners[m].seconds;
+            if (seconds == 0)
                 try_all(&calls[i], &manners[m]);
             else
-                try_some(&calls[i], &manners[m], &once);
+                try_some(&calls[i], &manners[m], seconds, &once);
+        }
     }
     remove_folder();
 }

@@ -12,7 +12,7 @@
 #include "star/strict/scan.h"
 #include "star/strict/slice.h"
 
-enum { UNION_MOST = 5 };
+enum { UNION_MOST = 5, TURNS = 20 };
 
 typedef struct setting {
     starg_context *context;
@@ -79,6 +79,24 @@ static void release(setting *s) {
     region_scratch_free(&s->scratch);
     partition_free(&s->p);
     test_context_free(s->context);
+}
+
+/* Something to check of s->r; tells how often it was a case that must come up. */
+typedef size_t union_check(setting *s, starg_rng *rng);
+
+/* The sum over some unions of each of some partitions. */
+static size_t for_unions(uint64_t seeds, uint64_t stage, union_check *check) {
+    size_t sum = 0;
+    for (uint64_t seed = 0; seed < seeds; seed++) {
+        setting s = make(seed);
+        starg_rng rng = starg_rng_make(seed, stage, 0);
+        for (int turn = 0; turn < TURNS; turn++) {
+            choose_union(&s, &rng);
+            sum += check(&s, &rng);
+        }
+        release(&s);
+    }
+    return sum;
 }
 
 /* ---- the scan ---- */
@@ -159,18 +177,16 @@ static void check_triangles(const setting *s) {
     assert_true(fabs(region_volume_above(r, up, 0.25) - volume) < 1e-13);
 }
 
+static size_t check_gathered(setting *s, starg_rng *rng) {
+    (void)rng;
+    check_rows(s);
+    check_triangles(s);
+    return s->r.triangles.count > 0;
+}
+
 static void test_gather(void **state) {
     (void)state;
-    for (uint64_t seed = 0; seed < 4; seed++) {
-        setting s = make(seed);
-        starg_rng rng = starg_rng_make(seed, 82, 0);
-        for (int turn = 0; turn < 30; turn++) {
-            choose_union(&s, &rng);
-            check_rows(&s);
-            check_triangles(&s);
-        }
-        release(&s);
-    }
+    assert_int_equal(for_unions(6, 82, check_gathered), 6 * TURNS);
 }
 
 /* ---- slow answers ---- */
@@ -344,7 +360,8 @@ static void test_reach_about(void **state) {
 
 /* ---- centres ---- */
 
-static void check_center(const setting *s, const double *normal, double height, size_t *empty) {
+/* Is it empty? */
+static bool check_center(const setting *s, const double *normal, double height) {
     static const double anywhere[3] = {0, 0, 0};
     const region *r = &s->r;
     size_t count = r->rows.count / 4;
@@ -364,30 +381,22 @@ static void check_center(const setting *s, const double *normal, double height, 
                         radius - 1e-9);
     if (normal != NULL && radius > 0)
         assert_true(height - dot(normal, center) > radius - 1e-9);
-    *empty += radius <= 0;
     region_scratch_free(&scratch);
     free(lowest);
+    return radius <= 0;
+}
+
+static size_t check_centers(setting *s, starg_rng *rng) {
+    double normal[3];
+    random_direction(rng, normal);
+    const region_triangle *t = &s->r.triangles.data[starg_rng_below(rng, s->r.triangles.count)];
+    double height = dot(normal, vertex_of(&s->r, t, 0)) + 0.01 * starg_rng_unit(rng);
+    return (size_t)check_center(s, NULL, 0) + check_center(s, normal, height);
 }
 
 static void test_center(void **state) {
     (void)state;
-    size_t empty = 0, all = 0;
-    for (uint64_t seed = 0; seed < 12; seed++) {
-        setting s = make(seed);
-        starg_rng rng = starg_rng_make(seed, 84, 0);
-        for (int turn = 0; turn < 20; turn++) {
-            double normal[3];
-            choose_union(&s, &rng);
-            random_direction(&rng, normal);
-            const region_triangle *t =
-                &s.r.triangles.data[starg_rng_below(&rng, s.r.triangles.count)];
-            double height = dot(normal, vertex_of(&s.r, t, 0)) + 0.01 * starg_rng_unit(&rng);
-            check_center(&s, NULL, 0, &empty);
-            check_center(&s, normal, height, &empty);
-            all += 2;
-        }
-        release(&s);
-    }
+    size_t empty = for_unions(12, 84, check_centers), all = 2 * 12 * TURNS;
     assert_true(empty > 20 && all - empty > 20);
 }
 
@@ -402,7 +411,9 @@ static bool has_row(const region *r, const double *row) {
 
 /* Some facets ask for nothing that all of them do not ask for, and leave nothing behind that
  * another gathering could trip over. */
-static void check_some(setting *s, uint32_t most) {
+static size_t check_some(setting *s, starg_rng *rng) {
+    uint32_t most = 1 + (uint32_t)starg_rng_below(rng, 40);
+    bool fewer = s->r.triangles.count > 2 * s->count * most;
     region part = {.vertices = {0}};
     double center[3], whole_radius, part_radius;
     test_ok(s->context, region_gather_some(&s->p, s->pieces, s->count, most, &s->scratch, &part));
@@ -415,30 +426,20 @@ static void check_some(setting *s, uint32_t most) {
     test_ok(s->context, region_gather(&s->p, s->pieces, s->count, &s->scratch, &s->r));
     check_rows(s);
     region_free(s->context, &part);
+    return fewer;
 }
 
 static void test_some(void **state) {
     (void)state;
-    size_t fewer = 0;
-    for (uint64_t seed = 0; seed < 12; seed++) {
-        setting s = make(seed);
-        starg_rng rng = starg_rng_make(seed, 85, 0);
-        for (int turn = 0; turn < 20; turn++) {
-            choose_union(&s, &rng);
-            uint32_t most = 1 + (uint32_t)starg_rng_below(&rng, 40);
-            fewer += s.r.triangles.count > 2 * s.count * most;
-            check_some(&s, most);
-        }
-        release(&s);
-    }
-    assert_true(fewer > 40);
+    assert_true(for_unions(12, 85, check_some) > 40);
 }
 
 /* ---- clipping ---- */
 
 /* The part above a plane: its volume is that of the piece that a slice cuts off, and its kernel
  * that of the region's far side. */
-static void check_clip(setting *s, const partition_plane *plane, size_t *sliced) {
+static size_t check_clip(setting *s, starg_rng *rng) {
+    const partition_plane cut = random_plane_across(&s->p, s->pieces[0], rng), *plane = &cut;
     region above = {.vertices = {0}};
     double back[3], radius[2], center[3];
     for (int k = 0; k < 3; k++)
@@ -457,40 +458,29 @@ static void check_clip(setting *s, const partition_plane *plane, size_t *sliced)
             region_find_center(&s->r, back, -plane->offset, &s->scratch, center, &radius[1]));
     assert_true(fabs(fmax(radius[0], 0) - fmax(radius[1], 0)) < 1e-8);
 
-    bool done;
+    bool sliced = false;
     piece fresh = {.volume = 0};
     starg_status status = STARG_OK;
     partition copy = partition_oracle_copy(&s->p);
     partition_join(&copy, s->pieces, s->count);
     uint32_t high = (uint32_t)copy.pieces.count;
     STARG_PUSH(s->context, PARTITION_STAGE, &copy.pieces, fresh);
-    STARG_TRY(partition_slice(&copy, s->pieces[0], high, plane, &done));
-    if (done) {
+    STARG_TRY(partition_slice(&copy, s->pieces[0], high, plane, &sliced));
+    if (sliced) {
         double volume = region_volume_above(&above, plane->normal, plane->offset);
         assert_true(volume > 0);
         assert_true(fabs(volume - partition_oracle_volume(&copy, high)) < 1e-12);
     }
-    *sliced += done;
 done:
     test_ok(s->context, status);
     partition_free(&copy);
     region_free(s->context, &above);
+    return sliced;
 }
 
 static void test_clip(void **state) {
     (void)state;
-    size_t sliced = 0;
-    for (uint64_t seed = 0; seed < 8; seed++) {
-        setting s = make(seed);
-        starg_rng rng = starg_rng_make(seed, 85, 0);
-        for (int turn = 0; turn < 20; turn++) {
-            choose_union(&s, &rng);
-            partition_plane plane = random_plane_across(&s.p, s.pieces[0], &rng);
-            check_clip(&s, &plane, &sliced);
-        }
-        release(&s);
-    }
-    assert_true(sliced > 100);
+    assert_true(for_unions(8, 85, check_clip) > 100);
 }
 
 int main(void) {
