@@ -19,7 +19,9 @@ import sqlite3
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
+JOBS = int(os.environ.get("JOBS", os.cpu_count()))  # builds and runs at a time
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 # Of a run, not of its result (docs/formats.md).
@@ -153,10 +155,11 @@ def print_table(names, columns):
 
 def compare(programs, threads):
     """All results of all programs at all numbers of threads; what differs, as lines of text."""
-    columns = []
-    for title, program in programs:
-        for count in threads:
-            columns.append((f"{title}, {count} threads", results(program, count)))
+    runs = [(title, program, count) for title, program in programs for count in threads]
+    with ThreadPoolExecutor(JOBS) as pool:
+        found = pool.map(lambda run: results(*run[1:]), runs)
+        columns = [(f"{title}, {count} threads", column)
+                   for (title, _, count), column in zip(runs, found)]
     names = sorted({name for _, column in columns for name in column})
     print_table(names, columns)
     differing = []
@@ -179,7 +182,7 @@ def build(folder, compiler, flags):
          "-DSTARGUARD_TESTS=OFF", f"-DCMAKE_BUILD_TYPE={'Debug' if debug else 'None'}",
          f"-DCMAKE_C_FLAGS={flags}"],
         ["cmake", "--build", place, "--target", "starguard_cli", "-j",
-         os.environ.get("JOBS", str(os.cpu_count()))],
+         str(JOBS)],
     ]
     for words in commands:
         process = subprocess.run(words, capture_output=True, text=True, check=False)
