@@ -2,7 +2,9 @@
 no output is left or changed. With STARGUARD_LONG=1 in many more steps."""
 import os
 import resource
+import shutil
 import sqlite3
+import stat
 import subprocess
 import unittest
 
@@ -154,6 +156,19 @@ class TimeLimits(support.Case):
                 _, err = self.run_text(*words, "--time-limit", "0.001", status=3)
                 self.assertIn("time limit", err)
                 self.assertEqual(self.names(), before)
+
+    @unittest.skipUnless(LONG, "this takes more than half a minute")
+    @unittest.skipUnless(shutil.which("tetgen"), "the program tetgen is not installed")
+    def test_slow_tetgen(self):
+        """TetGen may take longer than its usual 30 s where the run may, and no longer than half of that."""
+        tool = self.write("tetgen", f"#!/bin/sh\nsleep 33\nexec {shutil.which('tetgen')} \"$@\"\n")
+        os.chmod(self.path(tool), stat.S_IRWXU)
+        words = ["decompose", self.sample(), "-o", "p.vtk", "--effort", "1"]
+        path = {"PATH": f"{self.folder}:{os.environ['PATH']}"}
+        report = self.run_json(*words, "--time-limit", "200", environment=path)
+        self.assertEqual((report["surface"], report["log"]), ("kept", []))
+        report = self.run_json(*words, "--time-limit", "40", environment=path)
+        self.assertIn("tetgen", str(report["log"]))
 
 
 if __name__ == "__main__":
