@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "csv.h"
 #include "database.h"
+#include "endings.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/picture.h"

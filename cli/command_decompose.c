@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "endings.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/decompose.h"

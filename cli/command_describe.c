@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "commands.h"
+#include "endings.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/descriptor.h"

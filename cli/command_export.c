@@ -1,8 +1,7 @@
 /* starguard export: a model with its results in one file for other programs. */
-#include <string.h>
-#include <strings.h>
 
 #include "commands.h"
+#include "endings.h"
 #include "report.h"
 #include "show.h"
 #include "starguard/scene.h"
@@ -23,25 +22,15 @@ static const cli_option options[] = {
 
 static starg_status choose_format(cli_session *session, const char *name,
                                   starg_scene_format *format) {
-    static const struct {
-        const char *ending;
-        starg_scene_format format;
-    } known[] = {{".glb", STARG_SCENE_GLB},
-                 {".vtu", STARG_SCENE_VTU},
-                 {".ply", STARG_SCENE_PLY},
-                 {".obj", STARG_SCENE_OBJ}};
-    *format = STARG_SCENE_GLB;
-    if (strcmp(name, "-") == 0)
-        return STARG_OK;
-    const char *dot = strrchr(name, '.');
-    for (size_t i = 0; dot != NULL && i < sizeof known / sizeof *known; i++)
-        if (strcasecmp(dot, known[i].ending) == 0) {
-            *format = known[i].format;
-            return STARG_OK;
-        }
-    return cli_fail(session, STARG_ERROR_ARGUMENT,
-                    "'%.200s' does not tell a format; end the name with .glb, .vtu, .ply or .obj",
-                    name);
+    static const cli_ending known[] = {{".glb", STARG_SCENE_GLB},
+                                       {".vtu", STARG_SCENE_VTU},
+                                       {".ply", STARG_SCENE_PLY},
+                                       {".obj", STARG_SCENE_OBJ}};
+    int found;
+    starg_status status = cli_format_by_ending(session, name, known, sizeof known / sizeof *known,
+                                               STARG_SCENE_GLB, &found);
+    *format = (starg_scene_format)found;
+    return status;
 }
 
 static starg_status prepare(cli_session *session, void *data) {

@@ -1,9 +1,9 @@
 /* starguard skeleton: the curve skeleton of a solid. */
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "commands.h"
+#include "endings.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/picture.h"
@@ -43,22 +43,13 @@ static void set_defaults(void *data) {
 
 static starg_status choose_format(cli_session *session, const char *name,
                                   starg_skeleton_format *format) {
-    static const struct {
-        const char *ending;
-        starg_skeleton_format format;
-    } known[] = {
+    static const cli_ending known[] = {
         {".obj", STARG_SKELETON_OBJ}, {".cg", STARG_SKELETON_CG}, {".vtk", STARG_SKELETON_VTK}};
-    *format = STARG_SKELETON_VTK;
-    if (strcmp(name, "-") == 0)
-        return STARG_OK;
-    const char *dot = strrchr(name, '.');
-    for (size_t i = 0; dot != NULL && i < sizeof known / sizeof *known; i++)
-        if (strcasecmp(dot, known[i].ending) == 0) {
-            *format = known[i].format;
-            return STARG_OK;
-        }
-    return cli_fail(session, STARG_ERROR_ARGUMENT,
-                    "'%s' does not tell a format; end the name with .obj, .cg or .vtk", name);
+    int found;
+    starg_status status = cli_format_by_ending(session, name, known, sizeof known / sizeof *known,
+                                               STARG_SKELETON_VTK, &found);
+    *format = (starg_skeleton_format)found;
+    return status;
 }
 
 static starg_status prepare(cli_session *session, void *data) {

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "commands.h"
+#include "endings.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/picture.h"

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 #include "commands.h"
+#include "endings.h"
 #include "report.h"
 #include "starguard/picture.h"
 
@@ -34,13 +34,12 @@ done:
     return status;
 }
 
-static bool has_ending(const char *name, const char *ending) {
-    size_t size = strlen(name), tail = strlen(ending);
-    return size > tail && strcasecmp(name + size - tail, ending) == 0;
-}
-
 static bool is_standard(const char *name) {
     return strcmp(name, "-") == 0;
+}
+
+static const char *shown_name(const char *name) {
+    return is_standard(name) ? "standard input" : name;
 }
 
 /* Standard input and pipes can be read once only. */
@@ -95,29 +94,44 @@ static starg_status read_head(cli_session *session, const char *name, input_head
     FILE *file = is_standard(name) ? stdin : fopen(name, "rb");
     *head = (input_head){.whole = file != NULL && is_read_once(name)};
     if (file != NULL)
-        status = fill_head(session, is_standard(name) ? "standard input" : name, file, head);
+        status = fill_head(session, shown_name(name), file, head);
     if (file != NULL && file != stdin)
         fclose(file);
     return status;
 }
 
-/* The content tells a surface from tetrahedra. */
+static starg_status read_mesh(cli_session *session, const char *file, const input_head *head,
+                              starg_mesh **mesh) {
+    return head->whole ? starg_mesh_read_memory(session->context, head->bytes, head->size,
+                                                shown_name(file), mesh)
+                       : starg_mesh_read(session->context, file, mesh);
+}
+
+static starg_status read_tetmesh(cli_session *session, const char *file, const input_head *head,
+                                 starg_tetmesh **tetmesh) {
+    return head->whole ? starg_tetmesh_read_memory(session->context, head->bytes, head->size,
+                                                   shown_name(file), tetmesh)
+                       : starg_tetmesh_read(session->context, file, tetmesh);
+}
+
+static starg_status read_descriptor(cli_session *session, const char *file, const input_head *head,
+                                    starg_descriptor **descriptor) {
+    return head->whole ? starg_descriptor_read_memory(session->context, head->bytes, head->size,
+                                                      shown_name(file), descriptor)
+                       : starg_descriptor_read(session->context, file, descriptor);
+}
+
 starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
                             starg_tetmesh **tetmesh) {
     starg_status status = STARG_OK;
-    const char *name = is_standard(file) ? "standard input" : file;
     input_head head;
     *mesh = NULL;
     *tetmesh = NULL;
     CLI_TRY(read_head(session, file, &head));
     if (head.bytes != NULL && starg_tetmesh_recognized(head.bytes, head.size, file))
-        status = head.whole ? starg_tetmesh_read_memory(session->context, head.bytes, head.size,
-                                                        name, tetmesh)
-                            : starg_tetmesh_read(session->context, file, tetmesh);
+        status = read_tetmesh(session, file, &head, tetmesh);
     else
-        status = head.whole
-                     ? starg_mesh_read_memory(session->context, head.bytes, head.size, name, mesh)
-                     : starg_mesh_read(session->context, file, mesh);
+        status = read_mesh(session, file, &head, mesh);
 done:
     free(head.bytes);
     return status;
@@ -126,52 +140,29 @@ done:
 starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
                                 starg_descriptor **descriptor) {
     starg_status status = STARG_OK;
-    const char *name = is_standard(file) ? "standard input" : file;
     input_head head;
     *mesh = NULL;
     *descriptor = NULL;
     CLI_TRY(read_head(session, file, &head));
     if (head.bytes != NULL && starg_descriptor_recognized(head.bytes, head.size))
-        status = head.whole ? starg_descriptor_read_memory(session->context, head.bytes, head.size,
-                                                           name, descriptor)
-                            : starg_descriptor_read(session->context, file, descriptor);
+        status = read_descriptor(session, file, &head, descriptor);
     else
-        status = head.whole
-                     ? starg_mesh_read_memory(session->context, head.bytes, head.size, name, mesh)
-                     : starg_mesh_read(session->context, file, mesh);
+        status = read_mesh(session, file, &head, mesh);
 done:
     free(head.bytes);
     return status;
 }
 
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format) {
-    static const struct {
-        const char *ending;
-        starg_mesh_format format;
-    } known[] = {{".off", STARG_MESH_OFF},
-                 {".obj", STARG_MESH_OBJ},
-                 {".ply", STARG_MESH_PLY_BINARY},
-                 {".stl", STARG_MESH_STL_BINARY}};
-    *format = STARG_MESH_OFF;
-    if (strcmp(name, "-") == 0)
-        return STARG_OK;
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        if (has_ending(name, known[i].ending)) {
-            *format = known[i].format;
-            return STARG_OK;
-        }
-    }
-    return cli_fail(session, STARG_ERROR_ARGUMENT,
-                    "the ending of '%.200s' names no mesh format; use .off, .obj, .ply or .stl",
-                    name);
-}
-
-starg_status cli_announce_with_ending(cli_session *session, const char *option, const char *name,
-                                      const char *ending) {
-    if (name != NULL && strcmp(name, "-") != 0 && !has_ending(name, ending))
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "%s writes a file that ends in %s, not '%.200s'", option, ending, name);
-    return cli_announce(session, name);
+    static const cli_ending known[] = {{".off", STARG_MESH_OFF},
+                                       {".obj", STARG_MESH_OBJ},
+                                       {".ply", STARG_MESH_PLY_BINARY},
+                                       {".stl", STARG_MESH_STL_BINARY}};
+    int found;
+    starg_status status = cli_format_by_ending(session, name, known, sizeof known / sizeof *known,
+                                               STARG_MESH_OFF, &found);
+    *format = (starg_mesh_format)found;
+    return status;
 }
 
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,

@@ -23,10 +23,6 @@ starg_status cli_described_read(cli_session *session, const char *file, starg_me
 /* The format for an output mesh by its name's ending; OFF for "-". Errors: ARGUMENT. */
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);
 
-/* Announces an output that must have the ending, for example ".ply"; NULL is fine. */
-starg_status cli_announce_with_ending(cli_session *session, const char *option, const char *name,
-                                      const char *ending);
-
 /* Writes a mesh with face colours (or NULL) to an announced output. */
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
                             const uint8_t *colors, const char *name);

@@ -2,9 +2,9 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
+#include "endings.h"
 #include "model.h"
 #include "starguard/animation.h"
 
@@ -21,11 +21,6 @@ typedef enum kind {
     KIND_DATABASE,
     KIND_TABLE
 } kind;
-
-static bool has_ending(const char *name, const char *ending) {
-    size_t size = strlen(name), tail = strlen(ending);
-    return size > tail && strcasecmp(name + size - tail, ending) == 0;
-}
 
 /* Does an OBJ file have no face, or edges before the first one? */
 static bool is_curve(FILE *file) {
@@ -54,9 +49,9 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
         return KIND_SKELETON;
     if (*first == '{')
         return KIND_RESULT;
-    if (has_ending(name, ".csv"))
+    if (cli_has_ending(name, ".csv"))
         return KIND_TABLE;
-    return has_ending(name, ".obj") && is_curve(file) ? KIND_SKELETON : KIND_MODEL;
+    return cli_has_ending(name, ".obj") && is_curve(file) ? KIND_SKELETON : KIND_MODEL;
 }
 
 /* What cannot be opened is left to a reader, which says why. */

@@ -8,9 +8,9 @@
 #include "export/scene.h"
 
 #include <math.h>
-#include <strings.h>
 
 #include "core/memory.h"
+#include "mesh/io.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "scene";
@@ -169,23 +169,23 @@ double scene_ball_radius(const scene_job *job) {
 
 /* ---- writing ---- */
 
+static starg_scene_format format_of(const char *path) {
+    static const char *const endings[] = {[STARG_SCENE_GLB] = ".glb",
+                                          [STARG_SCENE_VTU] = ".vtu",
+                                          [STARG_SCENE_PLY] = ".ply",
+                                          [STARG_SCENE_OBJ] = ".obj"};
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
+        if (endings[i] != NULL && starg_has_ending(path, endings[i]))
+            return (starg_scene_format)i;
+    return STARG_SCENE_AUTO;
+}
+
 static starg_status choose_format(starg_context *context, const char *path,
                                   starg_scene_format *format) {
-    static const struct {
-        const char *ending;
-        starg_scene_format format;
-    } known[] = {{".glb", STARG_SCENE_GLB},
-                 {".vtu", STARG_SCENE_VTU},
-                 {".ply", STARG_SCENE_PLY},
-                 {".obj", STARG_SCENE_OBJ}};
+    if (*format == STARG_SCENE_AUTO)
+        *format = format_of(path);
     if (*format != STARG_SCENE_AUTO)
         return STARG_OK;
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot != NULL && i < sizeof known / sizeof *known; i++)
-        if (strcasecmp(dot, known[i].ending) == 0) {
-            *format = known[i].format;
-            return STARG_OK;
-        }
     return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                       "'%.300s' does not tell a format; end the name with .glb, .vtu, .ply or .obj",
                       path);

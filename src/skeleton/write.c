@@ -1,8 +1,6 @@
 /* Skeleton files. OBJ: v and l, from 1. CG: a line of counts, then v and e, from 1. VTK: legacy
  * polydata, from 0, with the radius of every point. */
 #include <inttypes.h>
-#include <string.h>
-#include <strings.h>
 
 #include "core/file.h"
 #include "mesh/io.h"
@@ -11,15 +9,12 @@
 static const char STAGE[] = "skeleton file";
 
 static starg_skeleton_format format_of(const char *path) {
-    static const struct {
-        const char *ending;
-        starg_skeleton_format format;
-    } known[] = {
-        {".obj", STARG_SKELETON_OBJ}, {".cg", STARG_SKELETON_CG}, {".vtk", STARG_SKELETON_VTK}};
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot != NULL && i < sizeof known / sizeof *known; i++)
-        if (strcasecmp(dot, known[i].ending) == 0)
-            return known[i].format;
+    if (starg_has_ending(path, ".obj"))
+        return STARG_SKELETON_OBJ;
+    if (starg_has_ending(path, ".cg"))
+        return STARG_SKELETON_CG;
+    if (starg_has_ending(path, ".vtk"))
+        return STARG_SKELETON_VTK;
     return STARG_SKELETON_AUTO;
 }
 
