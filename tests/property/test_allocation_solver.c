@@ -8,10 +8,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "starguard/cover.h"
+#include "cover_oracle.h"
 #include "support.h"
 
-enum { POINTS = 27, LINES = 117, OPTIMUM = 18 };
+enum { OPTIMUM = 18 }; /* of cover_oracle_lines in three dimensions */
 
 static size_t asked, failing; /* 0: none fails */
 
@@ -38,30 +38,8 @@ void _ZdlPvm(void *block, size_t size) {
     free(block);
 }
 
-/* The lines of the affine space of three dimensions over three elements: Steiner triples, hard for
- * their size. */
-static starg_bits *make_lines(starg_context *context) {
-    starg_bits *bits = NULL;
-    size_t line = 0;
-    test_ok(context, starg_bits_create(context, POINTS, LINES, &bits));
-    for (size_t a = 0; a < POINTS; a++) {
-        for (size_t b = a + 1; b < POINTS; b++) {
-            size_t c = 0, x = a, y = b; /* a + b + c = 0 in each coordinate */
-            for (size_t unit = 1; unit < POINTS; unit *= 3, x /= 3, y /= 3)
-                c += (6 - x % 3 - y % 3) % 3 * unit;
-            if (c < b)
-                continue; /* each line once */
-            starg_bits_set(bits, a, line);
-            starg_bits_set(bits, b, line);
-            starg_bits_set(bits, c, line++);
-        }
-    }
-    assert_int_equal(line, LINES);
-    return bits;
-}
-
 static bool is_cover(const starg_bits *bits, const starg_cover *cover) {
-    for (size_t j = 0; j < LINES; j++) {
+    for (size_t j = 0; j < starg_bits_columns(bits); j++) {
         bool held = false;
         for (size_t i = 0; i < cover->count; i++)
             held = held || starg_bits_test(bits, cover->rows[i], j);
@@ -77,7 +55,7 @@ enum { FINE = 0, NO_COVER = 1, WRONG_COVER = 2, WRONG_BOUND = 3, LEAK = 4, NOT_R
 /* Solves with the n-th allocation failing, twice: the second time the solver is left alone. */
 static int solve(size_t n) {
     starg_context *context = test_context(1);
-    starg_bits *bits = make_lines(context);
+    starg_bits *bits = cover_oracle_lines(context, 3);
     starg_cover_problem problem;
     starg_cover_options options;
     starg_cover_problem_default(&problem);

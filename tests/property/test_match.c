@@ -7,7 +7,6 @@
 #include "core/rng.h"
 #include "models.h"
 #include "starguard/descriptor.h"
-#include "starguard/sample.h"
 #include "starguard/simplify.h"
 
 /* The layouts of docs/formats.md. */
@@ -52,16 +51,6 @@ static double star_by_definition(const starg_signature *a, const starg_signature
     return sum / 3;
 }
 
-static starg_mesh *posed(starg_context *context, const char *name, int pose) {
-    starg_mesh *mesh = NULL;
-    starg_sample_options options;
-    starg_sample_options_default(&options);
-    options.pose = pose;
-    options.vertex_count = 2000;
-    test_ok(context, starg_sample_create(context, name, &options, &mesh));
-    return mesh;
-}
-
 /* The same figure in another pose is nearer than a figure of another kind. */
 static void poses_are_nearer_than_classes(void **state) {
     (void)state;
@@ -69,7 +58,7 @@ static void poses_are_nearer_than_classes(void **state) {
     const char *names[] = {"human", "giraffe", "bird"};
     starg_signature *s[6];
     for (size_t i = 0; i < 6; i++) {
-        starg_mesh *mesh = posed(context, names[i / 2], (int)(i % 2));
+        starg_mesh *mesh = test_pose(context, names[i / 2], (int)(i % 2), 2000);
         s[i] = signature_of(context, mesh, STARG_SIGNATURE_STAR);
         starg_mesh_free(mesh);
     }
@@ -119,7 +108,7 @@ static void copies_find_their_original(void **state) {
     starg_signature *originals[3];
     starg_mesh *meshes[3];
     for (size_t i = 0; i < 3; i++) {
-        meshes[i] = posed(context, names[i], 0);
+        meshes[i] = test_pose(context, names[i], 0, 2000);
         originals[i] = signature_of(context, meshes[i], STARG_SIGNATURE_STAR);
     }
     for (size_t i = 0; i < 3; i++) {
@@ -192,7 +181,8 @@ static void motions_hardly_count(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     const starg_signature_kind kinds[] = {STARG_SIGNATURE_STAR, STARG_SIGNATURE_PAPER};
-    starg_mesh *mesh = posed(context, "horse", 0), *other = posed(context, "human", 0);
+    starg_mesh *mesh = test_pose(context, "horse", 0, 2000),
+               *other = test_pose(context, "human", 0, 2000);
     starg_descriptor *d = NULL, *unlike = NULL;
     test_ok(context, starg_descriptor_create(context, mesh, NULL, &d));
     test_ok(context, starg_descriptor_create(context, other, NULL, &unlike));

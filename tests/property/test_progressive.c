@@ -106,11 +106,7 @@ static void test_samples(void **state) {
     starg_context *context = test_context(2);
     const char *const names[] = {"gallery", "human", "plate"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        starg_sample_options options;
-        starg_mesh *mesh = NULL;
-        starg_sample_options_default(&options);
-        options.vertex_count = 1500;
-        test_ok(context, starg_sample_create(context, names[i], &options, &mesh));
+        starg_mesh *mesh = test_sample_mesh(context, names[i], 1500);
         check_model(context, names[i], mesh);
         starg_mesh_free(mesh);
     }
@@ -138,10 +134,7 @@ static void test_shared(void **state) {
 
 static void sample_solid(starg_context *context, const char *name, size_t vertices,
                          starg_mesh **mesh, starg_solid **solid) {
-    starg_sample_options options;
-    starg_sample_options_default(&options);
-    options.vertex_count = vertices;
-    test_ok(context, starg_sample_create(context, name, &options, mesh));
+    *mesh = test_sample_mesh(context, name, vertices);
     test_ok(context, starg_solid_create(context, *mesh, solid));
 }
 

@@ -95,3 +95,26 @@ size_t cover_oracle_fewest(const uint64_t *best, size_t rows, uint64_t weight) {
         count++;
     return count;
 }
+
+starg_bits *cover_oracle_lines(starg_context *context, int dimension) {
+    size_t points = 1;
+    for (int d = 0; d < dimension; d++)
+        points *= 3;
+    starg_bits *bits = NULL;
+    size_t line = 0;
+    test_ok(context, starg_bits_create(context, points, points * (points - 1) / 6, &bits));
+    for (size_t a = 0; a < points; a++) {
+        for (size_t b = a + 1; b < points; b++) {
+            size_t c = 0, x = a, y = b; /* a + b + c = 0 in each coordinate */
+            for (size_t unit = 1; unit < points; unit *= 3, x /= 3, y /= 3)
+                c += (6 - x % 3 - y % 3) % 3 * unit;
+            if (c < b)
+                continue; /* each line once */
+            starg_bits_set(bits, a, line);
+            starg_bits_set(bits, b, line);
+            starg_bits_set(bits, c, line++);
+        }
+    }
+    assert_int_equal(line, starg_bits_columns(bits));
+    return bits;
+}

@@ -22,4 +22,9 @@ void cover_oracle_best(const starg_cover_problem *problem, uint64_t best[COVER_O
  */
 size_t cover_oracle_fewest(const uint64_t *best, size_t rows, uint64_t weight);
 
+/* Rows are the points of the affine space of `dimension` over three elements, columns its lines: a
+ * Steiner triple system, hard for its size, whose linear relaxation is a third of the points. The
+ * fewest points that meet all lines are 5 of 9, 18 of 27. */
+starg_bits *cover_oracle_lines(starg_context *context, int dimension);
+
 #endif

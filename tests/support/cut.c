@@ -8,6 +8,28 @@
 
 #include "support.h"
 
+const grid GRID_HALVES = {"AaBb"
+                          "aabb"
+                          "aabb"
+                          "aabb",
+                          {4, 2, 2}};
+const grid GRID_CORNER = {"Aaa"
+                          "B.."
+                          "b..",
+                          {3, 3, 1}};
+const grid GRID_BEND = {"Aaa"
+                        "a.."
+                        "a..",
+                        {3, 3, 1}};
+const grid GRID_RING = {"Aaa"
+                        "D.B"
+                        "Ccc",
+                        {3, 3, 1}};
+const grid GRID_CAVITY = {"Aaaaaaaaa"
+                          "BbbC.DEee"
+                          "Fffffffff",
+                          {3, 3, 3}};
+
 /* ---- coning cells ---- */
 
 uint32_t cut_add_vertex(cut *c, const double p[3]) {

@@ -24,6 +24,8 @@ typedef struct grid {
     int size[3];
 } grid;
 
+extern const grid GRID_HALVES, GRID_CORNER, GRID_BEND, GRID_RING, GRID_CAVITY;
+
 /* Cones every piece of a grid from its guard, and recounts. To be freed. */
 cut *cut_new(const grid *g);
 cut *cut_copy(const cut *from);

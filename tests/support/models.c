@@ -24,17 +24,33 @@ starg_solid *test_solid_of(starg_context *context, const shape *s) {
     return solid_from(context, test_mesh_of(context, s));
 }
 
-starg_mesh *test_sample_mesh(starg_context *context, const char *name, size_t vertices) {
+starg_mesh *test_pose(starg_context *context, const char *name, int pose, size_t vertices) {
     starg_sample_options options;
     starg_mesh *mesh = NULL;
     starg_sample_options_default(&options);
+    options.pose = pose;
     options.vertex_count = vertices;
     test_ok(context, starg_sample_create(context, name, &options, &mesh));
     return mesh;
 }
 
+starg_mesh *test_sample_mesh(starg_context *context, const char *name, size_t vertices) {
+    return test_pose(context, name, 0, vertices);
+}
+
 starg_solid *test_sample(starg_context *context, const char *name, size_t vertices) {
     return solid_from(context, test_sample_mesh(context, name, vertices));
+}
+
+starg_morph *test_morph(starg_context *context, const starg_mesh *a, const double *images,
+                        starg_morph_method method) {
+    starg_morph_options options;
+    starg_morph *morph = NULL;
+    starg_morph_options_default(&options);
+    options.method = method;
+    options.candidates = 200;
+    test_ok(context, starg_morph_create(context, a, images, &options, &morph));
+    return morph;
 }
 
 bool test_same_mesh(const starg_mesh *a, const starg_mesh *b) {

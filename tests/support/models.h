@@ -9,13 +9,15 @@
 #include "shapes.h"
 #include "starguard/guard.h"
 #include "starguard/mesh.h"
+#include "starguard/morph.h"
 #include "starguard/solid.h"
 #include "support.h"
 
 starg_mesh *test_mesh_of(starg_context *context, const shape *s);
 starg_solid *test_solid_of(starg_context *context, const shape *s);
 
-/* A procedural solid in its first pose. */
+/* A procedural solid, and the same in its first pose. */
+starg_mesh *test_pose(starg_context *context, const char *name, int pose, size_t vertices);
 starg_mesh *test_sample_mesh(starg_context *context, const char *name, size_t vertices);
 starg_solid *test_sample(starg_context *context, const char *name, size_t vertices);
 
@@ -30,6 +32,10 @@ void test_verified(starg_context *context, const char *name, const starg_mesh *m
 /* Guards that test_verified has found right. */
 starg_guards *test_guard(starg_context *context, const starg_solid *solid,
                          const starg_guard_options *options);
+
+/* A morph with few candidates for its guards. */
+starg_morph *test_morph(starg_context *context, const starg_mesh *a, const double *images,
+                        starg_morph_method method);
 
 /* A row about a surface file in the tables of the shared data. */
 typedef struct test_row {

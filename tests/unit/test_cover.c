@@ -34,30 +34,6 @@ static starg_cover_problem problem_of(const starg_bits *bits) {
     return problem;
 }
 
-/* Rows are the points of the affine space of dimension `dimension` over three elements, columns
- * its lines: a Steiner triple system, whose linear relaxation is a third of the points. */
-static starg_bits *make_lines(starg_context *context, int dimension) {
-    size_t points = 1;
-    for (int d = 0; d < dimension; d++)
-        points *= 3;
-    starg_bits *bits = make_bits(context, points, points * (points - 1) / 6);
-    size_t line = 0;
-    for (size_t a = 0; a < points; a++) {
-        for (size_t b = a + 1; b < points; b++) {
-            size_t c = 0, x = a, y = b; /* a + b + c = 0 in each coordinate */
-            for (size_t unit = 1; unit < points; unit *= 3, x /= 3, y /= 3)
-                c += (6 - x % 3 - y % 3) % 3 * unit;
-            if (c < b)
-                continue; /* each line once */
-            starg_bits_set(bits, a, line);
-            starg_bits_set(bits, b, line);
-            starg_bits_set(bits, c, line++);
-        }
-    }
-    assert_int_equal(line, starg_bits_columns(bits));
-    return bits;
-}
-
 /* `copies` separate cycles of `length` rows; each column is held by two neighbours. */
 static starg_bits *make_cycles(starg_context *context, size_t copies, size_t length) {
     starg_bits *bits = make_bits(context, copies * length, copies * length);
@@ -89,9 +65,10 @@ static void expect_optimum(starg_context *context, starg_bits *bits, uint32_t re
 static void known_optima(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    expect_optimum(context, make_lines(context, 2), 1, 5);  /* the largest cap has 4 points */
-    expect_optimum(context, make_lines(context, 3), 1, 18); /* 9 points */
-    expect_optimum(context, make_lines(context, 2), 3, 9);
+    expect_optimum(context, cover_oracle_lines(context, 2), 1,
+                   5); /* the largest cap has 4 points */
+    expect_optimum(context, cover_oracle_lines(context, 3), 1, 18); /* 9 points */
+    expect_optimum(context, cover_oracle_lines(context, 2), 3, 9);
     expect_optimum(context, make_cycles(context, 1, 3), 1, 2);
     expect_optimum(context, make_cycles(context, 1, 31), 1, 16);
     expect_optimum(context, make_cycles(context, 7, 5), 1, 21);
@@ -401,7 +378,7 @@ static void memory_runs_out(void **state) {
     (void)state;
     size_t left = SIZE_MAX;
     starg_context *context = test_scarce_context(0, &left);
-    starg_bits *bits = make_lines(context, 2);
+    starg_bits *bits = cover_oracle_lines(context, 2);
     starg_cover_problem problem = problem_of(bits);
     for (int mode = 0; mode < 4; mode++) {
         problem.redundancy = mode == 1 ? 2 : 1;

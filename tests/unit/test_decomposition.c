@@ -335,29 +335,14 @@ static void test_arguments(void **state) {
 
 /* ---- memory ---- */
 
-static void *allocate_rationed(void *user, size_t size) {
-    size_t *left = user;
-    return *left == 0 ? NULL : (--*left, malloc(size));
-}
-
-static void release_rationed(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 /* Everything in one go; true when the ration was enough. */
 static bool run_rationed(size_t ration, const char *report) {
     size_t left = SIZE_MAX;
-    starg_context_options options;
-    starg_context_options_default(&options);
-    options.threads = 1;
-    options.allocator = (starg_allocator){allocate_rationed, release_rationed, &left};
-    starg_context *context = NULL;
+    starg_context *context = test_scarce_context(1, &left);
     starg_decomposition *d = NULL;
     starg_mesh *all = NULL;
     uint32_t *first = NULL;
     double guards[3 * 4] = {0};
-    assert_int_equal(starg_context_create(&options, &context), STARG_OK);
     starg_rng rng = starg_rng_make(1, 2, 3);
     starg_tetmesh *mesh = random_tetmesh(context, 5, 20, false, 1);
     int32_t *labels = random_labels(context, &rng, mesh, 4, guards);

@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include "models.h"
-#include "starguard/morph.h"
-#include "starguard/sample.h"
 
 static const starg_morph_method METHODS[] = {STARG_MORPH_STAR, STARG_MORPH_ARAP, STARG_MORPH_LINEAR,
                                              STARG_MORPH_SPHERICAL};
@@ -16,16 +14,6 @@ static double diagonal_of(const starg_mesh *mesh) {
     double lower[3], upper[3];
     starg_mesh_bounds(mesh, lower, upper);
     return hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
-}
-
-static starg_mesh *pose_of(starg_context *context, const char *name, int pose) {
-    starg_sample_options options;
-    starg_mesh *mesh;
-    starg_sample_options_default(&options);
-    options.pose = pose;
-    options.vertex_count = 800;
-    test_ok(context, starg_sample_create(context, name, &options, &mesh));
-    return mesh;
 }
 
 static double *room_for(const starg_mesh *mesh) {
@@ -41,26 +29,15 @@ static double farthest(const double *a, const double *b, size_t count) {
     return most;
 }
 
-static starg_morph *make_morph(starg_context *context, const starg_mesh *a, const double *images,
-                               starg_morph_method method) {
-    starg_morph_options options;
-    starg_morph *morph;
-    starg_morph_options_default(&options);
-    options.method = method;
-    options.candidates = 200;
-    test_ok(context, starg_morph_create(context, a, images, &options, &morph));
-    return morph;
-}
-
 /* The ends to the bit, and nothing jumps next to them. */
 static void test_ends(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *a = pose_of(context, "horse", 0), *b = pose_of(context, "horse", 1);
+    starg_mesh *a = test_pose(context, "horse", 0, 800), *b = test_pose(context, "horse", 1, 800);
     size_t size = 3 * starg_mesh_vertex_count(a);
     double *frame = room_for(a);
     for (size_t i = 0; i < sizeof METHODS / sizeof *METHODS; i++) {
-        starg_morph *morph = make_morph(context, a, starg_mesh_vertices(b), METHODS[i]);
+        starg_morph *morph = test_morph(context, a, starg_mesh_vertices(b), METHODS[i]);
         test_ok(context, starg_morph_frame(morph, 0, frame));
         assert_memory_equal(frame, starg_mesh_vertices(a), size * sizeof *frame);
         test_ok(context, starg_morph_frame(morph, 1, frame));
@@ -111,12 +88,12 @@ static double longest_change(const starg_mesh *mesh, const double *frame) {
 static void test_rigid(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *a = pose_of(context, "dog", 0);
+    starg_mesh *a = test_pose(context, "dog", 0, 800);
     double *images = room_for(a), *frame = room_for(a);
     for (double angle = 0.2; angle < 3.1; angle += 0.7) {
         turn_and_move(a, angle, images);
         for (int i = 0; i < 2; i++) {
-            starg_morph *morph = make_morph(context, a, images, METHODS[i]);
+            starg_morph *morph = test_morph(context, a, images, METHODS[i]);
             for (double t = 0.1; t < 1; t += 0.2) {
                 test_ok(context, starg_morph_frame(morph, t, frame));
                 assert_true(longest_change(a, frame) < 1e-8 * diagonal_of(a));
@@ -156,7 +133,7 @@ static void test_twist(void **state) {
     starg_context *context = test_context(1);
     starg_mesh *a;
     test_ok(context, starg_mesh_create(context, rest, VERTICES, faces, FACES, &a));
-    starg_morph *morph = make_morph(context, a, images, STARG_MORPH_ARAP);
+    starg_morph *morph = test_morph(context, a, images, STARG_MORPH_ARAP);
     test_ok(context, starg_morph_frame(morph, 0.5, frame));
     for (size_t v = 0; v < VERTICES; v++) /* a tube of the same width all along */
         assert_true(fabs(hypot(frame[3 * v], frame[3 * v + 1]) - 1) < 0.1);
@@ -182,14 +159,14 @@ static void fold(const starg_mesh *mesh, double *images) {
 static void test_folds(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_mesh *a = pose_of(context, "dog", 0), *b = pose_of(context, "dog", 1);
+    starg_mesh *a = test_pose(context, "dog", 0, 800), *b = test_pose(context, "dog", 1, 800);
     size_t size = 3 * starg_mesh_vertex_count(a);
     double *images = room_for(a), *frame = room_for(a);
     size_t pairs[2] = {0, 0};
     memcpy(images, starg_mesh_vertices(b), size * sizeof *images);
     fold(a, images);
     for (int i = 0; i < 2; i++) {
-        starg_morph *morph = make_morph(context, a, images, METHODS[i]);
+        starg_morph *morph = test_morph(context, a, images, METHODS[i]);
         starg_frame_measures measures;
         for (double t = 0.25; t < 1; t += 0.25) {
             test_ok(context, starg_morph_frame(morph, t, frame));
@@ -359,7 +336,7 @@ static void test_map_round(void **state) {
 static void test_memory(void **state) {
     (void)state;
     starg_context *plenty = test_context(1);
-    starg_mesh *a = pose_of(plenty, "cat", 0), *b = pose_of(plenty, "cat", 1);
+    starg_mesh *a = test_pose(plenty, "cat", 0, 800), *b = test_pose(plenty, "cat", 1, 800);
     double *images = room_for(a);
     memcpy(images, starg_mesh_vertices(b), 3 * starg_mesh_vertex_count(b) * sizeof *images);
     fold(a, images);

@@ -277,27 +277,12 @@ static void test_smoothing(void **state) {
 
 /* ---- memory ---- */
 
-static void *allocate_rationed(void *user, size_t size) {
-    size_t *left = user;
-    return *left == 0 ? NULL : (--*left, malloc(size));
-}
-
-static void release_rationed(void *user, void *block) {
-    (void)user;
-    free(block);
-}
-
 static bool run_rationed(size_t ration) {
     size_t left = SIZE_MAX;
     double guards[3 * 6];
-    starg_context_options setup;
-    starg_context_options_default(&setup);
-    setup.threads = 1;
-    setup.allocator = (starg_allocator){allocate_rationed, release_rationed, &left};
-    starg_context *context = NULL;
+    starg_context *context = test_scarce_context(1, &left);
     starg_decomposition *d = NULL;
     starg_decompose_options options = paper_options();
-    assert_int_equal(starg_context_create(&setup, &context), STARG_OK);
     starg_tetmesh *mesh = random_tetmesh(context, 7, 30, false, 1);
     options.guards = guards;
     options.guard_count = random_guards(mesh, 3, guards);

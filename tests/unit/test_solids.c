@@ -8,8 +8,6 @@
 
 #include "decomposition_oracle.h"
 #include "models.h"
-#include "starguard/morph.h"
-#include "starguard/sample.h"
 
 enum { VERTICES = 500 };
 
@@ -18,27 +16,6 @@ static bool has_tetgen(void) {
     if (!found)
         printf("skipped: the program tetgen is not installed\n");
     return found;
-}
-
-static starg_mesh *pose_of(starg_context *context, const char *name, int pose) {
-    starg_sample_options options;
-    starg_mesh *mesh;
-    starg_sample_options_default(&options);
-    options.pose = pose;
-    options.vertex_count = VERTICES;
-    test_ok(context, starg_sample_create(context, name, &options, &mesh));
-    return mesh;
-}
-
-static starg_morph *morph_to(starg_context *context, const starg_mesh *a, const double *images,
-                             starg_morph_method method) {
-    starg_morph_options options;
-    starg_morph *morph;
-    starg_morph_options_default(&options);
-    options.method = method;
-    options.candidates = 200;
-    test_ok(context, starg_morph_create(context, a, images, &options, &morph));
-    return morph;
 }
 
 static void free_both(starg_context *context, starg_decomposition *out[2]) {
@@ -85,9 +62,10 @@ static void test_poses(void **state) {
         skip();
     starg_context *context = test_context(1), *many = test_context(3);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        starg_mesh *a = pose_of(context, names[i], 0), *b = pose_of(context, names[i], 1);
-        starg_morph *one = morph_to(context, a, starg_mesh_vertices(b), STARG_MORPH_STAR);
-        starg_morph *three = morph_to(many, a, starg_mesh_vertices(b), STARG_MORPH_STAR);
+        starg_mesh *a = test_pose(context, names[i], 0, VERTICES),
+                   *b = test_pose(context, names[i], 1, VERTICES);
+        starg_morph *one = test_morph(context, a, starg_mesh_vertices(b), STARG_MORPH_STAR);
+        starg_morph *three = test_morph(many, a, starg_mesh_vertices(b), STARG_MORPH_STAR);
         starg_decomposition *pieces[2], *same[2];
         test_ok(context, starg_morph_solids(one, pieces));
         test_ok(many, starg_morph_solids(three, same));
@@ -118,7 +96,7 @@ static void test_convex(void **state) {
     assert_non_null(images);
     for (size_t i = 0; i < size; i++)
         images[i] = starg_mesh_vertices(a)[i] * (i % 3 == 0 ? 3 : 1);
-    starg_morph *morph = morph_to(context, a, images, STARG_MORPH_LINEAR);
+    starg_morph *morph = test_morph(context, a, images, STARG_MORPH_LINEAR);
     starg_decomposition *out[2];
     test_ok(context, starg_morph_solids(morph, out));
     check(context, out, a, images);
@@ -132,7 +110,7 @@ static void test_convex(void **state) {
 
 static void expect(starg_context *context, const starg_mesh *a, const double *images,
                    const char *says) {
-    starg_morph *morph = morph_to(context, a, images, STARG_MORPH_LINEAR);
+    starg_morph *morph = test_morph(context, a, images, STARG_MORPH_LINEAR);
     starg_decomposition *out[2];
     assert_int_equal(starg_morph_solids(morph, out), STARG_ERROR_MESH);
     assert_null(out[0]);
@@ -163,7 +141,7 @@ static void test_bent(void **state) {
             images[3 * v + 1] = p[1];
             images[3 * v + 2] = radius * sin(turn);
         }
-        starg_morph *morph = morph_to(context, a, images, STARG_MORPH_STAR);
+        starg_morph *morph = test_morph(context, a, images, STARG_MORPH_STAR);
         starg_decomposition *out[2];
         test_ok(context, starg_morph_solids(morph, out));
         check(context, out, a, images);
@@ -212,8 +190,9 @@ static void test_time(void **state) {
     if (!has_tetgen())
         skip();
     starg_context *context = test_context(1);
-    starg_mesh *a = pose_of(context, "cat", 0), *b = pose_of(context, "cat", 1);
-    starg_morph *morph = morph_to(context, a, starg_mesh_vertices(b), STARG_MORPH_LINEAR);
+    starg_mesh *a = test_pose(context, "cat", 0, VERTICES),
+               *b = test_pose(context, "cat", 1, VERTICES);
+    starg_morph *morph = test_morph(context, a, starg_mesh_vertices(b), STARG_MORPH_LINEAR);
     starg_decomposition *out[2];
     starg_context_set_time_limit(context, 1e-6);
     assert_int_equal(starg_morph_solids(morph, out), STARG_ERROR_TIME);
@@ -235,7 +214,7 @@ static void test_memory(void **state) {
     starg_context *context = test_scarce_context(1, &left);
     shape s = shape_room();
     starg_mesh *a = test_mesh_of(context, &s);
-    starg_morph *morph = morph_to(context, a, starg_mesh_vertices(a), STARG_MORPH_LINEAR);
+    starg_morph *morph = test_morph(context, a, starg_mesh_vertices(a), STARG_MORPH_LINEAR);
     size_t before = starg_context_live_blocks(context);
     for (; status != STARG_OK && ration < 100000; ration += 1 + ration / 8) {
         starg_decomposition *out[2];

@@ -10,28 +10,6 @@
 #include "support.h"
 #include "visibility_oracle.h"
 
-static const grid HALVES = {"AaBb"
-                            "aabb"
-                            "aabb"
-                            "aabb",
-                            {4, 2, 2}};
-static const grid CORNER = {"Aaa"
-                            "B.."
-                            "b..",
-                            {3, 3, 1}};
-static const grid BEND = {"Aaa"
-                          "a.."
-                          "a..",
-                          {3, 3, 1}};
-static const grid RING = {"Aaa"
-                          "D.B"
-                          "Ccc",
-                          {3, 3, 1}};
-static const grid CAVITY = {"Aaaaaaaaa"
-                            "BbbC.DEee"
-                            "Fffffffff",
-                            {3, 3, 3}};
-
 /* ---- claims ---- */
 
 static starg_mesh *make_mesh(starg_context *context, const shape *s) {
@@ -88,7 +66,8 @@ static void expect_failure(starg_context *context, const shape *model, const cut
     starg_verdict_free(context, verdict);
 }
 
-static const grid *const GRIDS[] = {&HALVES, &CORNER, &BEND, &RING, &CAVITY};
+static const grid *const GRIDS[] = {&GRID_HALVES, &GRID_CORNER, &GRID_BEND, &GRID_RING,
+                                    &GRID_CAVITY};
 enum { GRID_COUNT = sizeof GRIDS / sizeof *GRIDS };
 
 static void test_true_decompositions_pass(void **state) {
@@ -114,8 +93,8 @@ static void test_scales(void **state) {
     } places[] = {{1e90, 0}, {1e-90, 0}, {1e-110, 0}, {1, 1048576}, {0.1, 1000.1}, {3e-7, -0.3}};
     starg_context *context = test_context(1);
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-        shape model = grid_model(&CAVITY);
-        cut *c = cut_new(&CAVITY);
+        shape model = grid_model(&GRID_CAVITY);
+        cut *c = cut_new(&GRID_CAVITY);
         shape_place(&model, places[i].scale, places[i].offset);
         for (size_t k = 0; k < 3 * c->mesh.vertex_count; k++)
             c->vertices[k] = places[i].scale * c->vertices[k] + places[i].offset;
@@ -385,8 +364,8 @@ static const falsification FALSIFICATIONS[] = {
 static void test_each_falsification_fails(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&RING);
-    cut *truth = cut_new(&RING);
+    shape model = grid_model(&GRID_RING);
+    cut *truth = cut_new(&GRID_RING);
     expect_pass(context, &model, truth);
     for (size_t i = 0; i < sizeof FALSIFICATIONS / sizeof *FALSIFICATIONS; i++) {
         cut *c = cut_copy(truth);
@@ -403,8 +382,8 @@ static void test_each_falsification_fails(void **state) {
 static void test_guard_at_a_plane(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&HALVES);
-    cut *c = cut_new(&HALVES);
+    shape model = grid_model(&GRID_HALVES);
+    cut *c = cut_new(&GRID_HALVES);
     c->pieces[0].guard[0] = nextafter(2, 0);
     expect_pass(context, &model, c);
     c->pieces[0].guard[0] = 2;
@@ -423,8 +402,8 @@ static void test_subdivided(void **state) {
     (void)state;
     static const double a[3] = {0, 1, 0}, b[3] = {1, 1, 1}, o[3] = {0, 0, 0}, x[3] = {1, 0, 0};
     starg_context *context = test_context(1);
-    shape model = grid_model(&RING);
-    cut *c = cut_new(&RING);
+    shape model = grid_model(&GRID_RING);
+    cut *c = cut_new(&GRID_RING);
     cut_split_middle(c, o, x, CUT_ALL);
     cut_split_middle(c, a, b, CUT_ALL);
     expect_pass(context, &model, c);
@@ -453,8 +432,8 @@ static void test_subdivided(void **state) {
 static void test_far_vertex(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&RING);
-    cut *c = cut_new(&RING);
+    shape model = grid_model(&GRID_RING);
+    cut *c = cut_new(&GRID_RING);
     const double far[3] = {1e50, 0, 0};
     model.vertices = realloc(model.vertices, 3 * (model.vertex_count + 1) * sizeof(double));
     memcpy(model.vertices + 3 * model.vertex_count++, far, sizeof far);
@@ -537,10 +516,10 @@ static void test_one_shell_for_another(void **state) {
 static void test_model_turned_inside_out(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&CAVITY), turned = {0};
+    shape model = grid_model(&GRID_CAVITY), turned = {0};
     const double nowhere[3] = {0, 0, 0};
     shape_append(&turned, &model, nowhere, 1);
-    cut *c = cut_new(&CAVITY);
+    cut *c = cut_new(&GRID_CAVITY);
     expect_pass(context, &turned, c); /* shells are turned */
     shape_free(&model);
     model = shape_cube(3); /* without the cavity */
@@ -554,8 +533,8 @@ static void test_model_turned_inside_out(void **state) {
 static void test_approximated(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&RING);
-    cut *c = cut_new(&RING);
+    shape model = grid_model(&GRID_RING);
+    cut *c = cut_new(&GRID_RING);
     shape_place(&model, 1, 0.0625);
     c->report.approximated = true;
     c->report.distance = c->report.distance_back = 0.0625 * sqrt(3);
@@ -583,8 +562,8 @@ static void test_overlap_of_shells(void **state) {
     (void)state;
     static const grid small = {"A", {1, 1, 1}};
     starg_context *context = test_context(1);
-    cut *c = cut_new(&HALVES), *inner = cut_new(&small);
-    shape model = grid_model(&HALVES);
+    cut *c = cut_new(&GRID_HALVES), *inner = cut_new(&small);
+    shape model = grid_model(&GRID_HALVES);
     uint32_t base = (uint32_t)c->mesh.vertex_count;
     for (size_t v = 0; v < inner->mesh.vertex_count; v++)
         for (int k = 0; k < 3; k++)
@@ -611,7 +590,7 @@ static void test_overlap_of_shells(void **state) {
 static void test_tetmesh_model(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    cut *c = cut_new(&CAVITY);
+    cut *c = cut_new(&GRID_CAVITY);
     starg_tetmesh *tetmesh = NULL;
     starg_verdict *verdict = NULL;
     test_ok(context, starg_tetmesh_create(context, c->vertices, c->mesh.vertex_count, c->tetrahedra,
@@ -670,10 +649,10 @@ static double fraction_seen(const cut *c) {
 static void test_visible_vertices(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&CAVITY);
+    shape model = grid_model(&GRID_CAVITY);
     size_t partial = 0;
     for (uint64_t round = 0; round < 12; round++) {
-        cut *c = cut_new(&CAVITY);
+        cut *c = cut_new(&GRID_CAVITY);
         starg_rng rng = starg_rng_make(23, round, 0);
         c->report.mode = STARG_DECOMPOSE_PAPER;
         for (size_t p = 0; p < 3; p++) {
@@ -822,9 +801,9 @@ static void test_lines_drawn_at_random(void **state) {
 static void test_bad_arrays(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&HALVES);
+    shape model = grid_model(&GRID_HALVES);
     starg_mesh *mesh = make_mesh(context, &model);
-    cut *c = cut_new(&HALVES);
+    cut *c = cut_new(&GRID_HALVES);
     starg_verdict *verdict;
     c->tetrahedra[7] = (uint32_t)c->mesh.vertex_count;
     assert_int_equal(starg_verify_pieces(context, mesh, &c->mesh, &c->report, &verdict),
@@ -850,9 +829,9 @@ static void test_bad_arrays(void **state) {
 static void test_without_report(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    shape model = grid_model(&RING);
+    shape model = grid_model(&GRID_RING);
     starg_mesh *mesh = make_mesh(context, &model);
-    cut *c = cut_new(&RING);
+    cut *c = cut_new(&GRID_RING);
     starg_verdict *verdict;
     test_ok(context, starg_verify_pieces(context, mesh, &c->mesh, NULL, &verdict));
     expect_consistent(verdict);
@@ -907,8 +886,8 @@ static starg_status read_and_verify(starg_context *context, const starg_mesh *me
 
 static void test_out_of_memory(void **state) {
     (void)state;
-    shape model = grid_model(&RING);
-    cut *c = cut_new(&RING);
+    shape model = grid_model(&GRID_RING);
+    cut *c = cut_new(&GRID_RING);
     purse own = {1000000};
     starg_context_options options;
     starg_context_options_default(&options);

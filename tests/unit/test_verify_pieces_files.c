@@ -8,20 +8,6 @@
 #include "cut.h"
 #include "support.h"
 
-static const grid HALVES = {"AaBb"
-                            "aabb"
-                            "aabb"
-                            "aabb",
-                            {4, 2, 2}};
-static const grid BEND = {"Aaa"
-                          "a.."
-                          "a..",
-                          {3, 3, 1}};
-static const grid CAVITY = {"Aaaaaaaaa"
-                            "BbbC.DEee"
-                            "Fffffffff",
-                            {3, 3, 3}};
-
 static void expect_same_mesh(const starg_pieces_mesh *a, const starg_pieces_mesh *b) {
     assert_int_equal(a->vertex_count, b->vertex_count);
     assert_int_equal(a->count, b->count);
@@ -33,7 +19,7 @@ static void expect_same_mesh(const starg_pieces_mesh *a, const starg_pieces_mesh
 static void test_files_give_back_what_was_written(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    cut *c = cut_new(&CAVITY);
+    cut *c = cut_new(&GRID_CAVITY);
     for (coding code = TEXT; code < CODINGS; code++) {
         cut_file vtk = cut_write_vtk(&c->mesh, code);
         starg_pieces_mesh *mesh = NULL;
@@ -92,7 +78,7 @@ static starg_status read_any(starg_context *context, bool json, const char *byte
 static void test_truncated_files(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    cut *c = cut_new(&HALVES);
+    cut *c = cut_new(&GRID_HALVES);
     for (int kind = 0; kind < 3; kind++) {
         cut_file whole =
             kind < 2 ? cut_write_vtk(&c->mesh, (coding)kind) : cut_write_report(&c->report);
@@ -110,7 +96,7 @@ static void test_truncated_files(void **state) {
 static void test_mutilated_files(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    cut *c = cut_new(&BEND);
+    cut *c = cut_new(&GRID_BEND);
     size_t read = 0, refused = 0;
     for (int kind = 0; kind < 3; kind++) {
         cut_file whole =
@@ -216,7 +202,7 @@ static void test_bad_files(void **state) {
         {"]}", "]", "line"},
     };
     starg_context *context = test_context(1);
-    cut *c = cut_new(&HALVES);
+    cut *c = cut_new(&GRID_HALVES);
     cut_file vtk = cut_write_vtk(&c->mesh, TEXT), json = cut_write_report(&c->report);
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         expect_refusal(context, false, vtk, texts[i].old, texts[i].new, texts[i].says);

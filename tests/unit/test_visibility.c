@@ -1,6 +1,4 @@
 /* All engines, and all forms of the grid, against visibility by definition (the oracle). */
-#include "support.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +6,7 @@
 
 #include "core/bits.h"
 #include "core/rng.h"
+#include "models.h"
 #include "starguard/sample.h"
 #include "starguard/visibility.h"
 #include "visibility/contours.h"
@@ -102,11 +101,7 @@ static void test_samples(void **state) {
     starg_context *context = test_context(2);
     for (size_t i = 0; i < starg_sample_count(); i++) {
         const char *name = starg_sample_at(i)->name;
-        starg_sample_options options;
-        starg_mesh *mesh = NULL;
-        starg_sample_options_default(&options);
-        options.vertex_count = 500;
-        test_ok(context, starg_sample_create(context, name, &options, &mesh));
+        starg_mesh *mesh = test_sample_mesh(context, name, 500);
         check_mesh(context, name, mesh, 2);
         starg_mesh_free(mesh);
     }
@@ -211,11 +206,8 @@ typedef struct form_case {
 } form_case;
 
 static void make_form_case(const char *name, form_case *c) {
-    starg_sample_options sample;
-    starg_sample_options_default(&sample);
-    sample.vertex_count = 3000;
     *c = (form_case){.context = test_context(1)};
-    test_ok(c->context, starg_sample_create(c->context, name, &sample, &c->mesh));
+    c->mesh = test_sample_mesh(c->context, name, 3000);
     test_ok(c->context, starg_solid_create(c->context, c->mesh, &c->solid));
     test_ok(c->context, scene_create(c->context, c->solid, &c->scene));
     test_ok(c->context, scene_add_net(c->scene));
