@@ -42,7 +42,7 @@ check-analysis: tests
 	@scripts/tidy.sh $(BUILD)
 	@scripts/cppcheck.sh
 
-# Every allocation that can fail, 200 kills of each command, and what sanitizers make slow.
+# 200 kills of each command; every allocation that can fail, and what else sanitizers make slow.
 check-slow: tests sanitize-build
 	@$(CTEST) --test-dir $(BUILD) -L slow
 	@$(CTEST) --test-dir $(BUILD)-sanitize -L slow
