@@ -1,6 +1,6 @@
-/* Memory of CBC and Clp that fails: the n-th call of C++'s operator new throws, in a process of its
- * own for each n. The cover that comes back is a cover all the same, with a bound that holds, and
- * the library's own memory is given back; only what the solver held is lost.
+/* Memory of CBC and Clp that fails: the n-th call of C++'s operator new has none, in a process of
+ * its own for each n. The cover that comes back is a cover all the same, with a bound that holds,
+ * and the library's own memory is given back; only what the solver held is lost.
  *
  * The program has an operator new of its own for that, which libraries find before theirs. */
 #include <stdio.h>
@@ -19,13 +19,20 @@ void *_Znwm(size_t size) __attribute__((visibility("default")));
 void _ZdlPv(void *block) __attribute__((visibility("default")));
 void _ZdlPvm(void *block, size_t size) __attribute__((visibility("default")));
 void _ZSt17__throw_bad_allocv(void) __attribute__((noreturn));
+void (*_ZSt15get_new_handlerv(void))(void);
 
 /* operator new(unsigned long), as the C++ ABI calls it */
 void *_Znwm(size_t size) {
-    void *block = ++asked == failing ? NULL : malloc(size > 0 ? size : 1);
-    if (block == NULL)
-        _ZSt17__throw_bad_allocv(); /* std::__throw_bad_alloc() */
-    return block;
+    bool fails = ++asked == failing;
+    for (;;) {
+        void *block = fails ? NULL : malloc(size > 0 ? size : 1);
+        void (*handler)(void) = _ZSt15get_new_handlerv(); /* std::get_new_handler() */
+        if (block != NULL)
+            return block;
+        if (handler == NULL)
+            _ZSt17__throw_bad_allocv(); /* std::__throw_bad_alloc() */
+        handler();
+    }
 }
 
 /* operator delete(void *), with and without the size */
@@ -102,7 +109,7 @@ static int solve_apart(size_t n) {
 static void test_solver(void **state) {
     (void)state;
     bool more = getenv("STARGUARD_LONG") != NULL;
-    size_t first = more ? 2000 : 40, part = more ? 64 : 6, attempts = 0, last = 0;
+    size_t first = more ? 6000 : 40, part = more ? 64 : 6, attempts = 0, last = 0;
     for (size_t n = 1;; n += n < first ? 1 : 1 + n / part) {
         int result = solve_apart(n);
         if (result == NOT_REACHED)
