@@ -57,7 +57,15 @@ static bool is_cover(const starg_bits *bits, const starg_cover *cover) {
 }
 
 /* What the process that has failed ends with. */
-enum { FINE = 0, NO_COVER = 1, WRONG_COVER = 2, WRONG_BOUND = 3, LEAK = 4, NOT_REACHED = 5 };
+enum {
+    FINE = 0,
+    NO_COVER = 1,
+    WRONG_COVER = 2,
+    WRONG_BOUND = 3,
+    LEAK = 4,
+    HANDLER = 5,
+    NOT_REACHED = 6
+};
 
 /* Solves with the n-th allocation failing, twice: the second time the solver is left alone. */
 static int solve(size_t n) {
@@ -89,6 +97,8 @@ static int solve(size_t n) {
     if (starg_context_live_blocks(context) != 0)
         result = LEAK;
     starg_context_free(context);
+    if (_ZSt15get_new_handlerv() != NULL)
+        result = HANDLER; /* the process has got its own back */
     return result != FINE ? result : reached ? FINE : NOT_REACHED;
 }
 
