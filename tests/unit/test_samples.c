@@ -7,7 +7,7 @@ enum { MESHES = 4 };
 /* The level that is chosen among some of the meshes, of which the last is the model. */
 static void expect_level(starg_context *context, starg_mesh *const meshes[MESHES],
                          const size_t *some, size_t count, size_t wanted) {
-    starg_level entries[MESHES] = {{NULL}};
+    starg_level entries[MESHES] = {{.mesh = NULL}};
     starg_solid *chosen = NULL;
     for (size_t i = 0; i < count; i++)
         entries[i].mesh = meshes[some[i]];
