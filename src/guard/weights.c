@@ -7,15 +7,29 @@
 
 static const char STAGE[] = "guard";
 
+/* Of the largest coordinate. */
+static int find_exponent(const starg_mesh *mesh) {
+    double most = 0;
+    int exponent = 0;
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        most = fmax(most, fabs(mesh->vertices[i]));
+    frexp(most, &exponent);
+    return exponent;
+}
+
+/* Of the model made as large as 1 by a power of two: shares are the same, and areas of tiny or huge
+ * models are numbers. */
 static starg_status measure_areas(starg_context *context, const starg_mesh *mesh,
                                   column_weights *out) {
     starg_status status = STARG_OK;
+    int exponent = find_exponent(mesh);
     STARG_NEW(context, STAGE, out->areas, mesh->face_count);
     for (size_t f = 0; f < mesh->face_count; f++) {
-        const uint32_t *c = mesh->faces + 3 * f;
-        out->areas[f] =
-            vec3_triangle_area(mesh->vertices + 3 * (size_t)c[0], mesh->vertices + 3 * (size_t)c[1],
-                               mesh->vertices + 3 * (size_t)c[2]);
+        double corner[3][3];
+        for (size_t k = 0; k < 9; k++)
+            corner[k / 3][k % 3] =
+                ldexp(mesh->vertices[3 * (size_t)mesh->faces[3 * f + k / 3] + k % 3], -exponent);
+        out->areas[f] = vec3_triangle_area(corner[0], corner[1], corner[2]);
         out->area += out->areas[f];
     }
 done:

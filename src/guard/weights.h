@@ -8,7 +8,7 @@
 #include "starguard/visibility.h"
 
 typedef struct column_weights {
-    double *areas; /* by face */
+    double *areas; /* by face, in units of their own */
     double area;   /* of all faces */
     uint64_t *weights;
     uint64_t total;
