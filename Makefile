@@ -58,7 +58,7 @@ check-memory: tests
 
 # Races: the thread sanitizer, built by clang.
 check-threads: deps-check
-	@CC=clang CXX=clang++ $(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
+	@CC=clang $(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
 	@$(CTEST) --timeout 3000 --test-dir $(BUILD)-thread -LE slow
 
@@ -73,8 +73,7 @@ check-matrix: deps-check
 # and symbols and files that are installed.
 coverage: deps-check
 	@scripts/install-deps.sh coverage
-	@CC=gcc CXX=g++ $(CMAKE) -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O1 -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
-		-DSTARGUARD_COVERAGE=ON -S . -B $(BUILD)-coverage > /dev/null
+	@CC=gcc $(CMAKE) -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O1 -DSTARGUARD_COVERAGE=ON -S . -B $(BUILD)-coverage > /dev/null
 	@cmake --build $(BUILD)-coverage -j $(JOBS)
 	@find $(BUILD)-coverage -name '*.gcda' -delete
 	@$(CTEST) --test-dir $(BUILD)-coverage -LE slow -E '^install/|cli/test_(interrupt|limits)'

@@ -133,7 +133,7 @@ class Contract(Database):
 
     def test_same_bytes(self):
         """The same models in the same order give the same results on any number of threads."""
-        files = self.boxes(6)
+        files = self.boxes(4)
         texts = []
         for threads in "1", "4":
             self.run_text("db", "create", f"{threads}.db")
@@ -252,7 +252,7 @@ class Harm(Database):
     def test_disk_full(self):
         """A limit on the size of files stands for a full disk: nothing is stored, nothing harmed."""
         name = self.create()
-        files = self.boxes(12)
+        files = self.boxes(4)
         size = len(self.read(name))
         with self.start("db", "add", name, *files, stdin=None) as process:
             os.system(f"prlimit --pid {process.pid} --fsize={size}")
@@ -283,9 +283,9 @@ class Several(Database):
 
     def test_killed(self):
         """Killed at several moments of adding: the file stays in order, and adding goes on."""
-        files = self.boxes(24)
+        files = self.boxes(12)
         self.create()
-        for wanted in 0, 1, 1, 9:
+        for wanted in 0, 1, 1, 5:
             process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
             time.sleep(0.05)
             while self.count() < wanted and process.poll() is None:
@@ -293,11 +293,11 @@ class Several(Database):
             process.kill()
             process.communicate()
             count = self.whole()
-            self.assertTrue(wanted <= count < 24)
+            self.assertTrue(wanted <= count < 12)
             self.assertEqual([m["name"] for m in sorted(self.stored(), key=lambda m: m["id"])],
                              files[:count])
         self.run_text("db", "add", "shapes.db", *files, timeout=120)
-        self.assertEqual(self.whole(), 24)
+        self.assertEqual(self.whole(), 12)
 
     def test_killed_while_writing(self):
         """A journal that a dead writer left behind is played back."""
@@ -318,7 +318,7 @@ class Several(Database):
         self.assertEqual(self.whole(), 3)
 
     def test_interrupted(self):
-        files = self.boxes(24)
+        files = self.boxes(10)
         self.create()
         process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
         while self.count() < 1 and process.poll() is None:
@@ -326,22 +326,22 @@ class Several(Database):
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=60 * SLOWNESS)
         self.assertEqual(process.returncode, 130)
-        self.assertTrue(1 <= self.whole() < 24)
+        self.assertTrue(1 <= self.whole() < 10)
 
     def test_two_writers(self):
         """Two processes add at once, some models both: nothing is lost, nothing is double."""
-        files = self.boxes(16)
+        files = self.boxes(10)
         self.create()
-        first = self.start("db", "add", "shapes.db", *files[:11], "--json")
-        second = self.start("db", "add", "shapes.db", *files[5:], "--json")
+        first = self.start("db", "add", "shapes.db", *files[:7], "--json")
+        second = self.start("db", "add", "shapes.db", *files[3:], "--json")
         reports = []
         for process in first, second:
             out, err = process.communicate(timeout=120 * SLOWNESS)
             self.assertEqual(process.returncode, 0, err)
             reports.append(json.loads(out))
-        self.assertEqual(sum(r["added"] for r in reports), 16)
-        self.assertEqual(sum(r["known"] for r in reports), 6)
-        self.assertEqual(self.whole(), 16)
+        self.assertEqual(sum(r["added"] for r in reports), 10)
+        self.assertEqual(sum(r["known"] for r in reports), 4)
+        self.assertEqual(self.whole(), 10)
         self.assertEqual(sorted(m["name"] for m in self.stored()), sorted(files))
 
     def test_waits_for_a_writer(self):
