@@ -62,8 +62,11 @@ class Terminal(support.Case):
 
     def test_no_bar_for_short_stages(self):
         model = self.sample("l-room")
-        if SLOWNESS == 1:
-            self.assertNotIn(b" left", self.on_terminal("guard", model, "-o", "g.json"))
+        began = time.monotonic()
+        seen = self.on_terminal("guard", model, "-o", "g.json")
+        if time.monotonic() - began >= 1:
+            self.skipTest("on this machine the stages may not be short")
+        self.assertNotIn(b" left", seen)
 
 
 if __name__ == "__main__":
