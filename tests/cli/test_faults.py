@@ -12,8 +12,6 @@ import support
 from support import PROGRAM, SLOWNESS, TETRAHEDRON
 from writing import Writing, limit
 
-SANITIZED = SLOWNESS > 1
-
 
 class Full(Writing):
     """The disk is full: status 3, a message that names the file, and everything as it was."""
@@ -189,7 +187,7 @@ class NamedFiles(support.Case):
             process.kill()
             self.fail(f"{words} opened what the file names")
         self.assertIn(process.returncode, (0, 2))
-        if SANITIZED or shutil.which("strace") is None:
+        if support.SANITIZE or shutil.which("strace") is None:
             return ""
         trace = subprocess.run(["strace", "-f", "-e", "trace=%file", os.path.abspath(PROGRAM), *words],
                                cwd=self.folder, stdin=subprocess.DEVNULL, capture_output=True,

@@ -12,10 +12,8 @@ import support
 from support import PROGRAM, SLOWNESS
 from writing import LONG, Writing, limit
 
-SANITIZED = SLOWNESS > 1
 
-
-@unittest.skipIf(SANITIZED, "sanitizers need all the addresses there are")
+@unittest.skipIf(support.SANITIZE, "sanitizers need all the addresses there are")
 class Memory(Writing):
     """RLIMIT_AS: done, or status 3 with a message about memory; never a signal, never half a file.
     What CBC, SQLite, ARPACK, jansson and the C library allocate on their own counts here."""

@@ -117,7 +117,7 @@ class Outputs(support.Case):
         self.refuse("check", "m.off", "--marks", "c.ply", preexec_fn=limit_file_size(100),
                     says="'c.ply'")
 
-    @unittest.skipIf(support.SLOWNESS > 1, "sanitizers need all the addresses there are")
+    @unittest.skipIf(support.SANITIZE, "sanitizers need all the addresses there are")
     def test_out_of_memory(self):
         self.write("t.ply", "old")
         self.refuse("sample", "knot", "--vertices", "1000000", "-o", "t.ply",

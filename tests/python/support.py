@@ -8,8 +8,9 @@ import starguard
 
 SOURCE = os.environ.get("STARGUARD_SOURCE", os.path.join(os.path.dirname(__file__), "..", ".."))
 PROGRAM = os.environ.get("STARGUARD", "build/starguard")
-# Under a sanitizer everything is several times slower; limits on time grow with it.
-SLOWNESS = 8 if os.environ.get("STARGUARD_SANITIZE") else 1
+SANITIZE = os.environ.get("STARGUARD_SANITIZE")
+# Limits on time grow with it: programs under a sanitizer, or that count lines, are several times slower.
+SLOWNESS = int(os.environ.get("STARGUARD_SLOWNESS", "1"))
 
 VERTICES = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
 FACES = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]

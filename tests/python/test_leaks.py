@@ -8,7 +8,7 @@ import numpy as np
 
 import starguard
 from starguard import _session
-from support import FACES, SLOWNESS, VERTICES, Case, main
+from support import FACES, SANITIZE, VERTICES, Case, main
 
 
 def live():
@@ -125,7 +125,7 @@ class Leaks(Case):
             thread.join()
         self.assertEqual(live(), before)
 
-    @unittest.skipIf(SLOWNESS > 1, "sanitizers keep freed memory for a while")
+    @unittest.skipIf(SANITIZE, "sanitizers keep freed memory for a while")
     @unittest.skipUnless(sys.platform == "linux", "/proc/self/statm tells the memory on Linux")
     def test_memory_of_a_thousand_calls(self):
         vertices = np.array(VERTICES, float)
