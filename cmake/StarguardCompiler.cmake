@@ -19,9 +19,9 @@ target_compile_options(starguard_compiler INTERFACE
 if(CMAKE_C_COMPILER_ID STREQUAL "GNU")
     target_compile_options(starguard_compiler INTERFACE -Wduplicated-cond -Wlogical-op)
 endif()
-if(STARGUARD_SANITIZE)
+if(STARGUARD_SANITIZE) # -g1: lines are enough; where variables are takes minutes to work out
     target_compile_options(starguard_compiler INTERFACE
-        -fsanitize=${STARGUARD_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+        -fsanitize=${STARGUARD_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
     target_link_options(starguard_compiler INTERFACE -fsanitize=${STARGUARD_SANITIZE})
 endif()
 if(STARGUARD_COVERAGE) # atomic: threads count the same lines

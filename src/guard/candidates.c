@@ -35,10 +35,10 @@ static starg_status medial_candidates(starg_context *context, const candidate_sh
     starg_status status = STARG_OK;
     medial_ball *balls = NULL;
     double *scratch = NULL;
-    size_t count = 0;
+    size_t count = 0, chosen = 0;
     STARG_TRY(medial_balls(context, shape->samples, shape->clearance, &balls, &count));
     STARG_NEW(context, STAGE, scratch, count);
-    size_t chosen = medial_thin(balls, count, wanted, scratch);
+    STARG_TRY(medial_thin(context, balls, count, wanted, scratch, &chosen));
     for (size_t i = 0; i < chosen; i++)
         if (candidates_allowed(shape->solid, balls[i].centre, shape->clearance))
             STARG_TRY(candidates_push(context, points, balls[i].centre, NULL));

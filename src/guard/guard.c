@@ -130,6 +130,15 @@ done:
     return status;
 }
 
+/* Without candidates there is nothing to show. */
+static starg_status find_candidates(guard_job *job, candidate_points *points) {
+    starg_deadline_begin(job->context);
+    starg_status status = candidates_find(job->context, &job->shape, job->options->candidates,
+                                          job->options->candidate_count, points);
+    starg_deadline_end(job->context);
+    return status;
+}
+
 /* The first candidates, before completion. */
 static starg_status make_candidates(guard_job *job) {
     starg_status status = STARG_OK;
@@ -138,8 +147,7 @@ static starg_status make_candidates(guard_job *job) {
     if (options->candidates == STARG_CANDIDATES_GIVEN)
         STARG_TRY(take_given(job, &points));
     else
-        STARG_TRY(candidates_find(job->context, &job->shape, options->candidates,
-                                  options->candidate_count, &points));
+        STARG_TRY(find_candidates(job, &points));
     STARG_TRY(pool_add(&job->pool, &points));
 done:
     candidates_free(job->context, &points);

@@ -3,6 +3,17 @@
 
 static const char STAGE[] = "guard";
 
+/* By the fastest engine, whichever chose the guards: all give the same bits, and what was found is
+ * measured in full after a time limit has struck. */
+static starg_visibility_options view_of(const guard_job *job, starg_target target,
+                                        const double *directions) {
+    starg_visibility_options view = job->options->visibility;
+    view.engine = STARG_VISIBILITY_FASTEST;
+    view.target = target;
+    view.directions = directions;
+    return view;
+}
+
 /* Lists the columns that are not in `joined`; `skip` (may be NULL) leaves some out. */
 static starg_status list_missing(guard_job *job, const uint64_t *joined, size_t columns,
                                  const uint64_t *skip, uint32_t **missing, size_t *count) {
@@ -42,11 +53,9 @@ done:
 
 static starg_status measure_faces(guard_job *job, starg_guards *result) {
     starg_status status = STARG_OK;
-    starg_visibility_options options = job->options->visibility;
+    const starg_visibility_options options = view_of(job, STARG_TARGET_FACES, result->directions);
     starg_bits *seen = NULL;
     uint64_t *joined = NULL;
-    options.target = STARG_TARGET_FACES;
-    options.directions = result->directions;
     STARG_TRY(starg_visibility(job->context, job->solid, result->positions, result->count, &options,
                                &seen));
     for (size_t i = 0; i < result->count; i++)
@@ -83,8 +92,8 @@ static starg_status measure_vertices(guard_job *job, starg_guards *result) {
     starg_bits *seen = NULL;
     uint64_t *joined = NULL, *unused = NULL;
     size_t used = 0;
-    starg_visibility_options options = job->options->visibility;
-    options.directions = result->directions;
+    const starg_visibility_options options =
+        view_of(job, STARG_TARGET_VERTICES, result->directions);
     STARG_TRY(find_unused(job, &unused, &used));
     STARG_TRY(starg_visibility(job->context, job->solid, result->positions, result->count, &options,
                                &seen));
@@ -110,9 +119,8 @@ static starg_status count_coverable_faces(guard_job *job, starg_guards *result) 
         result->coverable_faces = starg_bit_count(pool->coverable, pool->rows->words);
         return STARG_OK;
     }
-    starg_visibility_options options = job->options->visibility;
-    options.target = STARG_TARGET_FACES;
-    options.directions = pool->points.directions.data;
+    const starg_visibility_options options =
+        view_of(job, STARG_TARGET_FACES, pool->points.directions.data);
     STARG_TRY(starg_visibility(job->context, job->solid, pool->points.data.data, pool_count(pool),
                                &options, &rows));
     STARG_TRY(pool_join_rows(job->context, rows, &joined));

@@ -103,12 +103,19 @@ done:
     return status;
 }
 
-/* The medial axis, unless guards stand there already. */
+/* The medial axis, unless guards stand there already. None where the time does not last for it:
+ * then no round follows. */
 static starg_status find_places(guard_job *job, candidate_points *places) {
     if (job->options->candidates == STARG_CANDIDATES_MEDIAL)
         return STARG_OK;
-    return candidates_find(job->context, &job->shape, STARG_CANDIDATES_MEDIAL,
-                           job->options->candidate_count, places);
+    starg_deadline_begin(job->context);
+    starg_status status = candidates_find(job->context, &job->shape, STARG_CANDIDATES_MEDIAL,
+                                          job->options->candidate_count, places);
+    starg_deadline_end(job->context);
+    if (status != STARG_ERROR_TIME)
+        return status;
+    job->time_limited = true;
+    return STARG_OK;
 }
 
 starg_status refine_guards(guard_job *job) {

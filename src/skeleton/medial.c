@@ -109,26 +109,38 @@ static void swap_balls(medial_ball *a, medial_ball *b) {
     *b = swap;
 }
 
-size_t medial_thin(medial_ball *balls, size_t count, size_t wanted, double *scratch) {
-    size_t chosen = 0;
+/* The ball after `last` that is farthest from those that are chosen. */
+static size_t farthest(const double *scratch, size_t last, size_t count) {
+    size_t best = last;
+    for (size_t i = last + 1; i < count; i++)
+        if (scratch[i] > scratch[best])
+            best = i;
+    return best;
+}
+
+starg_status medial_thin(starg_context *context, medial_ball *balls, size_t count, size_t wanted,
+                         double *scratch, size_t *chosen) {
+    size_t done = 0;
     for (size_t i = 0; i < count; i++)
         scratch[i] = balls[i].radius; /* the first is the largest */
-    while (chosen < wanted && chosen < count) {
-        size_t best = chosen;
-        for (size_t i = chosen + 1; i < count; i++)
-            if (scratch[i] > scratch[best])
-                best = i;
+    *chosen = 0;
+    while (done < wanted && done < count) {
+        size_t best = farthest(scratch, done, count);
+        starg_status status = starg_check_cancel(context, STAGE);
+        if (status != STARG_OK)
+            return status;
         if (!(scratch[best] > 0))
             break; /* only copies of chosen centres are left */
-        swap_balls(&balls[chosen], &balls[best]);
-        scratch[best] = scratch[chosen];
-        const medial_ball *last = &balls[chosen++];
+        swap_balls(&balls[done], &balls[best]);
+        scratch[best] = scratch[done];
+        const medial_ball *last = &balls[done++];
         double weight = 1 / (last->radius * last->radius);
-        for (size_t i = chosen; i < count; i++) {
+        for (size_t i = done; i < count; i++) {
             double d = vec3_distance_squared(balls[i].centre, last->centre) * weight;
-            if (chosen == 1 || d < scratch[i])
+            if (done == 1 || d < scratch[i])
                 scratch[i] = d;
         }
     }
-    return chosen;
+    *chosen = done;
+    return STARG_OK;
 }

@@ -18,8 +18,9 @@ bool medial_circumscribe(const double *const v[4], medial_ball *ball);
 starg_status medial_balls(starg_context *context, const starg_solid *solid, double clearance,
                           medial_ball **balls, size_t *count);
 
-/* Moves a spread-out subset of at most `wanted` balls to the front of the array and returns their
- * number. */
-size_t medial_thin(medial_ball *balls, size_t count, size_t wanted, double *scratch);
+/* Moves a spread-out subset of at most `wanted` balls to the front of the array; *chosen: their
+ * number. Errors: CANCELLED, TIME. */
+starg_status medial_thin(starg_context *context, medial_ball *balls, size_t count, size_t wanted,
+                         double *scratch, size_t *chosen);
 
 #endif

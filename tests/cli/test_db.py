@@ -133,7 +133,7 @@ class Contract(Database):
 
     def test_same_bytes(self):
         """The same models in the same order give the same results on any number of threads."""
-        files = self.boxes(4)
+        files = self.boxes(3)
         texts = []
         for threads in "1", "4":
             self.run_text("db", "create", f"{threads}.db")
@@ -330,18 +330,18 @@ class Several(Database):
 
     def test_two_writers(self):
         """Two processes add at once, some models both: nothing is lost, nothing is double."""
-        files = self.boxes(10)
+        files = self.boxes(6)
         self.create()
-        first = self.start("db", "add", "shapes.db", *files[:7], "--json")
-        second = self.start("db", "add", "shapes.db", *files[3:], "--json")
+        first = self.start("db", "add", "shapes.db", *files[:4], "--json")
+        second = self.start("db", "add", "shapes.db", *files[2:], "--json")
         reports = []
         for process in first, second:
             out, err = process.communicate(timeout=120 * SLOWNESS)
             self.assertEqual(process.returncode, 0, err)
             reports.append(json.loads(out))
-        self.assertEqual(sum(r["added"] for r in reports), 10)
-        self.assertEqual(sum(r["known"] for r in reports), 4)
-        self.assertEqual(self.whole(), 10)
+        self.assertEqual(sum(r["added"] for r in reports), 6)
+        self.assertEqual(sum(r["known"] for r in reports), 2)
+        self.assertEqual(self.whole(), 6)
         self.assertEqual(sorted(m["name"] for m in self.stored()), sorted(files))
 
     def test_waits_for_a_writer(self):

@@ -1,5 +1,5 @@
 """Killed at any moment (docs/robustness.md): outputs are there whole or not at all, databases stay in
-order, and what is left behind is in nobody's way. 8 kills of each command, with STARGUARD_LONG=1 200."""
+order, and what is left behind is in nobody's way. 6 kills of each command, with STARGUARD_LONG=1 200."""
 import json
 import os
 import random
@@ -12,7 +12,7 @@ import support
 from support import PROGRAM, TETRAHEDRON
 from writing import LONG, Writing, is_leftover
 
-KILLS = 200 if LONG else 8
+KILLS = 200 if LONG else 6
 
 
 class Killed(Writing):
@@ -90,7 +90,7 @@ class Killed(Writing):
         return [path for path, _ in rows]
 
     def test_database_add(self):
-        files = [f"m_{i}.off" for i in range(4)]
+        files = [f"m_{i}.off" for i in range(3)]
         for i, file in enumerate(files):
             self.write(file, TETRAHEDRON.replace("0 0 1\n", f"0 {0.01 * i} 1\n"))
         self.run_text("db", "create", "empty.db")

@@ -1,5 +1,6 @@
 """Memory and time end (docs/robustness.md): the status and the message are those of the contract, and
 no output is left or changed. With STARGUARD_LONG=1 in many more steps."""
+import json
 import os
 import resource
 import shutil
@@ -143,9 +144,20 @@ class TimeLimits(support.Case):
                 with self.subTest(words=words, seconds=seconds):
                     self.spend(seconds, *words)
 
+    def test_something_to_show(self):
+        """Struck at several moments; what was found is shown soon after. The slowest engine makes the
+        candidates' rows last."""
+        for seconds in (2, 3, 4, 5, 6, 8, 10) if LONG else (5,):
+            with self.subTest(seconds=seconds):
+                self.spend(seconds, "guard", "horse.off", "-o", "g.json", "--visibility", "sweep")
+                if "g.json" in self.names():
+                    self.assertTrue(json.loads(self.read("g.json"))["time_limited"])
+                    os.remove(self.path("g.json"))
+
     def test_nothing_to_show(self):
         """What is whole or nothing ends with a message, and leaves no file."""
-        self.run_text("guard", "maze.off", "-o", "g.json", "--quiet", "--no-refine", "--coverage", "0.5")
+        self.run_text("guard", "maze.off", "-o", "g.json", "--method", "greedy", "--candidates", "interior",
+                      "--count", "50", "--coverage", "0.5", "--quiet")
         before = self.names()
         for words in (["check", "horse.off", "--marks", "m.ply"], ["repair", "horse.off", "-o", "r.off"],
                       ["kernel", "horse.off"], ["skeleton", "horse.off", "-o", "s.obj"],

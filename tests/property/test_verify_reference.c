@@ -230,7 +230,7 @@ static void change_guards(starg_rng *rng, const shape *s, result *r) {
 
 static void test_guards(void **state) {
     (void)state;
-    size_t rounds = test_rounds(600, 60000), held = 0;
+    size_t rounds = test_rounds(400, 60000), held = 0;
     starg_context *context = test_context(1);
     for (uint64_t round = 0; round < rounds; round++) {
         starg_rng rng = starg_rng_make(37, 0, round);
@@ -529,7 +529,7 @@ static void change_cut(starg_rng *rng, cut *c) {
 
 static void test_pieces(void **state) {
     (void)state;
-    size_t rounds = test_rounds(250, 10000), held = 0;
+    size_t rounds = test_rounds(160, 10000), held = 0;
     starg_context *context = test_context(1);
     for (uint64_t round = 0; round < rounds; round++) {
         starg_rng rng = starg_rng_make(41, 0, round);

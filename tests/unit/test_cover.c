@@ -266,11 +266,9 @@ static void same_on_any_threads(void **state) {
         problem.max_rows = mode == 3 ? 5 : 0;
         starg_cover *a = solve(one, &problem, STARG_COVER_ILP);
         starg_cover *b = solve(four, &problem, STARG_COVER_ILP);
-        starg_cover *c = solve(one, &problem, STARG_COVER_ILP);
-        assert_true(same_cover(a, b) && same_cover(a, c));
+        assert_true(same_cover(a, b));
         starg_cover_free(a);
         starg_cover_free(b);
-        starg_cover_free(c);
     }
     starg_bits_free(bits);
     test_context_free(one);

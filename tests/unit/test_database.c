@@ -176,8 +176,8 @@ static void stored_signatures(void **state) {
             assert_int_equal(a->signature->count, b->signature->count);
             assert_memory_equal(a->signature->numbers, b->signature->numbers,
                                 8 * a->signature->count);
-            if (i % 2 != 0)
-                continue;
+            if (i % STARG_SIGNATURE_KINDS != (size_t)k)
+                continue; /* each kind is made anew of a model or two */
             test_ok(contexts[0], starg_mesh_read(contexts[0], a->path, &mesh));
             test_ok(contexts[0], starg_signature_create(contexts[0], mesh, kind, &fresh));
             assert_int_equal(a->vertices, starg_mesh_vertex_count(mesh));

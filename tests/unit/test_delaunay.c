@@ -121,7 +121,7 @@ static void test_lattice(void **state) {
 static void test_random(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    for (uint64_t seed = 0; seed < 8; seed++) {
+    for (uint64_t seed = 0, most = test_rounds(5, 8); seed < most; seed++) {
         double points[3 * 80];
         starg_rng rng = starg_rng_make(7, 2, seed);
         for (size_t i = 0; i < 3 * 80; i++)
