@@ -148,11 +148,15 @@ done:
     return status;
 }
 
+/* Without the time for a level, it is skipped. */
 static starg_status guard_coarse_level(guard_job *job, int level, const starg_mesh *mesh) {
-    starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     guard_pool pool = {0};
-    STARG_TRY(solid_make(job->context, mesh, &solid));
+    starg_status status = starg_solid_create(job->context, mesh, &solid);
+    job->time_limited = job->time_limited || status == STARG_ERROR_TIME;
+    if (status == STARG_ERROR_TIME)
+        return STARG_OK;
+    STARG_TRY(status);
     STARG_TRY(pool_on_level(&job->pool, solid, &pool));
     if (!pool.time_limited)
         STARG_TRY(guard_level(job, level, &pool));

@@ -208,8 +208,8 @@ class Schemas(support.Case):
         def db(name, *words, **options):
             out, _ = self.run_text("db", name, "d.db", *words, "--json", **options)
             self.check(f"report-db-{name}", json.loads(out))
-        models = [self.sample("torus", 500, f"torus_{i}.off", "--pose", "0") for i in range(1)]
-        models += [self.sample("cat", 500, f"cat_{i}.off", "--pose", str(i)) for i in range(2)]
+        models = [self.sample("torus", 520, f"torus_{i}.off", "--pose", "0") for i in range(1)]
+        models += [self.sample("cat", 520, f"cat_{i}.off", "--pose", str(i)) for i in range(2)]
         db("create")
         db("add", *models, models[0], "none.off", status=3)
         db("list")

@@ -63,8 +63,9 @@ class Cupboard:
             file.write(text)
 
     def sample(self, name, *files, pose=0):
+        """Of 520 vertices: spectra are taken of a surface of 2,000 at least, so one of 500 is subdivided twice."""
         for file in files:
-            self.starguard("sample", name, "--pose", str(pose), "--vertices", "500", "-o", file)
+            self.starguard("sample", name, "--pose", str(pose), "--vertices", "520", "-o", file)
 
     def fill(self):
         self.sample("l-room", "model.off", "model.obj", "room.off", "room.obj", "scan.off")

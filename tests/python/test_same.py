@@ -91,7 +91,7 @@ class Same(Case):
                           for name, found in told["findings"].items()})
 
     def test_shapes(self):
-        a, b = self.model("l-room", 500), self.model("star", 500)
+        a, b = self.model("l-room", 520), self.model("star", 520)
         self.cli("describe", a, "-o", "a.json", "--quiet")
         starguard.describe(a).write("b.json")
         self.assertEqual(self.read("a.json"), self.read("b.json"))
@@ -101,7 +101,7 @@ class Same(Case):
         self.assertEqual(starguard.match("b.json", b), starguard.match(a, b))
 
     def test_databases(self):
-        files = [self.model(name, 500) for name in ("l-room", "star", "torus")]
+        files = [self.model(name, 520) for name in ("l-room", "star", "torus")]
         self.cli("db", "create", "a.db", "--quiet")
         self.cli("db", "add", "a.db", *files, "--quiet")
         with starguard.Database.create("b.db") as ours:

@@ -34,7 +34,7 @@ static int make_folder(void **state) {
         return 1;
     starg_context *context = test_context(1);
     for (size_t i = 0; i < MODELS; i++) {
-        shape s = i < 2 ? shape_cube(2) : i < 4 ? shape_room() : shape_tetrahedron();
+        shape s = i < 2 ? shape_cube(5) : i < 4 ? shape_room() : shape_tetrahedron();
         if (i % 2 == 1)
             s.vertices[0] -= 0.125;
         starg_mesh *mesh = test_mesh_of(context, &s);

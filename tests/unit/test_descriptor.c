@@ -113,7 +113,7 @@ static void pieces_of_figures(void **state) {
 static void reconstruction_gets_closer(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    starg_mesh *mesh = test_sample_mesh(context, "sphere", 500);
+    starg_mesh *mesh = test_sample_mesh(context, "sphere", 520);
     starg_reconstruction coarse, fine;
     starg_descriptor *a = describe(context, mesh, 100), *b = describe(context, mesh, 6400);
     test_ok(context, starg_descriptor_reconstruct(context, a, mesh, &coarse));

@@ -413,7 +413,7 @@ static void resolution_hardly_counts(void **state) {
 static void same_bytes_on_any_threads(void **state) {
     (void)state;
     starg_context *one = test_context(1), *four = test_context(4);
-    starg_mesh *mesh = test_sample_mesh(one, "dog", 1500);
+    starg_mesh *mesh = test_sample_mesh(one, "dog", 2010);
     for (int kind = 0; kind < STARG_SIGNATURE_KINDS; kind++) {
         starg_signature *a = describe(one, mesh, (starg_signature_kind)kind);
         starg_signature *b = describe(four, mesh, (starg_signature_kind)kind);
