@@ -217,6 +217,8 @@ static starg_status choose(guard_job *job) {
     if (options->method != STARG_GUARD_PILP)
         return choose_at_once(job);
     STARG_TRY(progressive_guards(job));
+    if (job->lower_bound > 0 && starg_time_is_over(job->context))
+        return STARG_OK; /* to build the whole problem once more takes seconds on large models */
     if (options->refine && options->coverage == 1 && options->max_guards == 0 &&
         options->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(refine_guards(job));

@@ -139,6 +139,10 @@ static starg_status guard_level(guard_job *job, int level, const guard_pool *poo
                         .given_count = work.kept.count};
     STARG_TRY(choose_candidates(pool, &work.weights, &how, &added));
     job->time_limited = job->time_limited || added->time_limited;
+    if (pool == &job->pool && work.kept.count == 0) { /* that was the whole problem */
+        job->lower_bound = added->lower_bound;
+        job->weight_bound = added->weight_bound;
+    }
     STARG_TRY(take_needed(&work, added));
     STARG_TRY(record_level(&work));
 done:
