@@ -151,13 +151,21 @@ starg_status candidates_check(starg_context *context, starg_candidates source, s
     return STARG_OK;
 }
 
-starg_status candidates_find(starg_context *context, const candidate_shape *shape,
-                             starg_candidates source, size_t wanted, candidate_points *points) {
+static starg_status find(starg_context *context, const candidate_shape *shape,
+                         starg_candidates source, size_t wanted, candidate_points *points) {
     if (source == STARG_CANDIDATES_SKELETON)
         return skeletal_candidates(context, shape, wanted, points);
     if (source == STARG_CANDIDATES_MEDIAL)
         return medial_candidates(context, shape, wanted, points);
     return interior_candidates(context, shape, wanted, points);
+}
+
+starg_status candidates_find(starg_context *context, const candidate_shape *shape,
+                             starg_candidates source, size_t wanted, candidate_points *points) {
+    starg_deadline_begin(context);
+    starg_status status = find(context, shape, source, wanted, points);
+    starg_deadline_end(context);
+    return status;
 }
 
 starg_status starg_candidate_points(starg_context *context, const starg_solid *solid,

@@ -130,15 +130,6 @@ done:
     return status;
 }
 
-/* Without candidates there is nothing to show. */
-static starg_status find_candidates(guard_job *job, candidate_points *points) {
-    starg_deadline_begin(job->context);
-    starg_status status = candidates_find(job->context, &job->shape, job->options->candidates,
-                                          job->options->candidate_count, points);
-    starg_deadline_end(job->context);
-    return status;
-}
-
 /* The first candidates, before completion. */
 static starg_status make_candidates(guard_job *job) {
     starg_status status = STARG_OK;
@@ -147,7 +138,8 @@ static starg_status make_candidates(guard_job *job) {
     if (options->candidates == STARG_CANDIDATES_GIVEN)
         STARG_TRY(take_given(job, &points));
     else
-        STARG_TRY(find_candidates(job, &points));
+        STARG_TRY(candidates_find(job->context, &job->shape, options->candidates,
+                                  options->candidate_count, &points));
     STARG_TRY(pool_add(&job->pool, &points));
 done:
     candidates_free(job->context, &points);
@@ -217,8 +209,10 @@ static starg_status choose(guard_job *job) {
     if (options->method != STARG_GUARD_PILP)
         return choose_at_once(job);
     STARG_TRY(progressive_guards(job));
-    if (job->lower_bound > 0 && starg_time_is_over(job->context))
-        return STARG_OK; /* to build the whole problem once more takes seconds on large models */
+    if (job->lower_bound > 0 && starg_time_is_over(job->context)) {
+        job->time_limited = true; /* to build the whole problem once more takes seconds */
+        return STARG_OK;
+    }
     if (options->refine && options->coverage == 1 && options->max_guards == 0 &&
         options->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(refine_guards(job));

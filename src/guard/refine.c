@@ -108,10 +108,8 @@ done:
 static starg_status find_places(guard_job *job, candidate_points *places) {
     if (job->options->candidates == STARG_CANDIDATES_MEDIAL)
         return STARG_OK;
-    starg_deadline_begin(job->context);
     starg_status status = candidates_find(job->context, &job->shape, STARG_CANDIDATES_MEDIAL,
                                           job->options->candidate_count, places);
-    starg_deadline_end(job->context);
     if (status != STARG_ERROR_TIME)
         return status;
     job->time_limited = true;
