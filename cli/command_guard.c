@@ -85,8 +85,8 @@ static const cli_option options[] = {
                      "pilp: vertices of the coarsest level. Default 5,000."),
     CLI_COUNT_OPTION(
         "step", step, "N", 1, UINT32_MAX,
-        "pilp: vertices that each finer level has more. Default 10,000, or a quarter of what the "
-        "model has more than the coarsest level."),
+        "pilp: vertices that each finer level has more. Default 10,000; of models that have more "
+        "than 40,000 above the coarsest level, each level has a quarter of the next finer one."),
     CLI_REAL_OPTION(
         "significance", significance, "F", 0, 1,
         "pilp: guards that see less than this fraction of a level's area are chosen anew "

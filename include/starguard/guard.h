@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "simplify.h"
 #include "solid.h"
 #include "visibility.h"
 
@@ -24,8 +25,8 @@ typedef enum starg_guard_method {
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
-/* Vertices that each finer level has more: 10,000, or a quarter of what the model has more than the
- * coarsest level, where that is more: each level costs a row of bits for every candidate. */
+/* Vertices that each finer level has more: 10,000, or STARG_QUARTERS for a model that has more than
+ * 40,000 above the coarsest level: each level costs a row of bits for every candidate. */
 #define STARG_DEFAULT_STEP SIZE_MAX
 
 /* Where guards may stand. */
@@ -54,7 +55,7 @@ typedef struct starg_guard_options {
     /* STARG_GUARD_PILP: the paper's constants */
     size_t coarsest;     /* vertices of the coarsest level                              */
     size_t step;         /* vertices that each finer level has more, at least 1, or
-                            STARG_DEFAULT_STEP                                          */
+                            STARG_QUARTERS or STARG_DEFAULT_STEP                        */
     double significance; /* a guard that sees less than this fraction of a level's area is
                             chosen anew there, 0 to 1                                   */
 

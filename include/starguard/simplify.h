@@ -53,12 +53,17 @@ typedef struct starg_levels {
     starg_level *levels;
 } starg_levels;
 
+/* As a step: each level has a quarter of the vertices of the next finer one, `coarsest` at least.
+ */
+#define STARG_QUARTERS (SIZE_MAX - 1)
+
 /* Makes levels of about `coarsest`, `coarsest` + `step`, `coarsest` + 2 `step`, ... vertices, and
- * the input [YL11, section 3.3, with 5,000 and 10,000]; every level is simplified further into
- * the next coarser one. A level that would be less than a quarter of a step smaller than the next
- * finer one is left out, also where the target cannot be reached; so there may be the input
- * alone. Levels, meshes and maps belong to the result. `options` and errors are those of
- * starg_mesh_simplify, and ARGUMENT (step is 0). */
+ * the input [YL11, section 3.3, with 5,000 and 10,000], or of a quarter of the input's vertices,
+ * a sixteenth, ... (STARG_QUARTERS); every level is simplified further into the next coarser one. A
+ * level that would be less than a quarter of a step smaller than the next finer one is left out,
+ * also where the target cannot be reached; so there may be the input alone. Levels, meshes and maps
+ * belong to the result. `options` and errors are those of starg_mesh_simplify, and ARGUMENT (step
+ * is 0). */
 STARG_API starg_status starg_mesh_levels(starg_context *context, const starg_mesh *mesh,
                                          size_t coarsest, size_t step,
                                          const starg_simplify_options *options, starg_levels **out);

@@ -26,6 +26,8 @@ _FORMATS = {"auto": lib.STARG_MESH_AUTO, "off": lib.STARG_MESH_OFF, "obj": lib.S
             "ply": lib.STARG_MESH_PLY_BINARY, "ply-ascii": lib.STARG_MESH_PLY_ASCII,
             "stl": lib.STARG_MESH_STL_BINARY, "stl-ascii": lib.STARG_MESH_STL_ASCII}
 
+_QUARTERS = int(ffi.cast("size_t", -2))  # STARG_QUARTERS
+
 
 class Mesh:
     """An immutable triangle mesh: vertices and faces, counter-clockwise seen from outside.
@@ -218,16 +220,21 @@ class Mesh:
                               time_limit=time_limit)
         return Mesh._of(handle), vertex_map
 
-    def levels(self, coarsest: int = 5000, step: int = 10000, *, allow_intersections: bool = False,
-               threads: int | None = None, time_limit: float | None = None,
-               progress: Progress | None = None) -> list[Level]:
+    def levels(self, coarsest: int = 5000, step: int | None = 10000, *,
+               allow_intersections: bool = False, threads: int | None = None,
+               time_limit: float | None = None, progress: Progress | None = None) -> list[Level]:
         """Levels of detail of about `coarsest`, `coarsest` + `step`, ... vertices, the last one a
-        copy of the mesh.
+        copy of the mesh; with None as the step each level has a quarter of the vertices of the next
+        finer one.
 
         >>> import starguard
         >>> [len(level.mesh.vertices) for level in starguard.sample("dog").levels(1000, 2000)]
         [1000, 3000, 5000]
+        >>> [len(level.mesh.vertices) for level in starguard.sample("dog").levels(500, None)]
+        [500, 1250, 5000]
         """
+        if step is None:
+            step = _QUARTERS
         session = Session(threads)
         options = ffi.new("starg_simplify_options *")
         lib.starg_simplify_options_default(options)

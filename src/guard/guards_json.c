@@ -21,6 +21,10 @@ static json_t *real_or_null(double x) {
     return isfinite(x) ? json_real(x) : json_null();
 }
 
+static json_t *step_or_null(size_t step) {
+    return step == STARG_QUARTERS ? json_null() : json_integer((json_int_t)step);
+}
+
 static int set(json_t *object, const char *key, json_t *value) {
     return json_object_set_new(object, key, value);
 }
@@ -37,7 +41,7 @@ static json_t *options_json(const starg_guard_options *o) {
     if (json == NULL || o->method != STARG_GUARD_PILP)
         return json;
     int failed = set(json, "coarsest", json_integer((json_int_t)o->coarsest)) |
-                 set(json, "step", json_integer((json_int_t)o->step)) |
+                 set(json, "step", step_or_null(o->step)) |
                  set(json, "significance", json_real(o->significance)) |
                  set(json, "refine", json_boolean(o->refine));
     if (failed == 0)

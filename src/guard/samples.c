@@ -2,11 +2,10 @@
  * enough vertices: for some thousand points more tell nothing new. Cost: that of the levels. */
 #include "guard/samples.h"
 
-enum { MANY = 100000, ENOUGH = 50000, COARSEST = 5000 };
+enum { STEP = 10000, LARGE = 40000, MANY = 100000, ENOUGH = 25000, COARSEST = 5000 };
 
 size_t samples_step(size_t vertices, size_t coarsest) {
-    size_t quarter = vertices > coarsest ? (vertices - coarsest) / 4 : 0;
-    return quarter > 10000 ? quarter : 10000;
+    return vertices > coarsest && vertices - coarsest > LARGE ? STARG_QUARTERS : STEP;
 }
 
 bool samples_wanted(const starg_solid *solid) {

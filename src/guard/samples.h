@@ -5,8 +5,8 @@
 #include "mesh/solid.h"
 #include "starguard/simplify.h"
 
-/* Vertices from one level of detail to the next, unless told otherwise: 10,000 as in the paper, for
- * large models so many that there are four levels. */
+/* The step from one level of detail to the next, unless told otherwise: 10,000 vertices as in the
+ * paper, for large models STARG_QUARTERS. */
 size_t samples_step(size_t vertices, size_t coarsest);
 
 /* Is the model so large that a level of detail serves better? */

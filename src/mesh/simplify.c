@@ -322,19 +322,42 @@ typedef struct level_list {
     uint32_t *of_finest; /* per vertex of the input its one of the last level */
 } level_list;
 
+/* The sizes of the levels. */
+typedef struct ladder {
+    size_t coarsest, step;
+} ladder;
+
+/* The vertices of the level below one that has `finer`, more than the coarsest. */
+static size_t next_target(const ladder *sizes, size_t finer) {
+    if (sizes->step == STARG_QUARTERS)
+        return finer / 4 > sizes->coarsest ? finer / 4 : sizes->coarsest;
+    return sizes->coarsest + (finer - sizes->coarsest - 1) / sizes->step * sizes->step;
+}
+
+/* How many vertices less than the level above, with `finer`, are worth a level: a quarter of a
+ * step. */
+static size_t least_difference(const ladder *sizes, size_t finer) {
+    size_t step = sizes->step == STARG_QUARTERS ? finer - finer / 4 : sizes->step;
+    return step - 3 * (step / 4);
+}
+
 /* The number of levels: the input and one for each target below it. */
-static size_t most_levels(size_t vertices, size_t coarsest, size_t step) {
-    return vertices <= coarsest ? 1 : 2 + (vertices - coarsest - 1) / step;
+static size_t most_levels(const ladder *sizes, size_t vertices) {
+    size_t count = 1;
+    for (size_t left = vertices; left > sizes->coarsest; count++)
+        left = next_target(sizes, left);
+    return count;
 }
 
 /* Adds the surface as a level, unless it is too much like the last one. */
-static starg_status add_level(simplifier *s, level_list *list, size_t step, uint32_t *number) {
+static starg_status add_level(simplifier *s, level_list *list, const ladder *sizes,
+                              uint32_t *number) {
     starg_status status = STARG_OK;
     starg_context *context = s->context;
     size_t finer = list->out->levels[list->out->count - 1].mesh->vertex_count;
     uint32_t *map = NULL;
     starg_mesh *mesh = NULL;
-    if (finer - s->surface->vertices_left < step - 3 * (step / 4))
+    if (finer - s->surface->vertices_left < least_difference(sizes, finer))
         return STARG_OK;
     STARG_NEW(context, "simplify", map, finer);
     STARG_TRY(snapshot(s->surface, number, &mesh));
@@ -351,17 +374,17 @@ done:
     return status;
 }
 
-static starg_status add_levels(starg_context *context, const starg_mesh *mesh, size_t coarsest,
-                               size_t step, const starg_simplify_options *options,
-                               level_list *list) {
+static starg_status add_levels(starg_context *context, const starg_mesh *mesh, const ladder *sizes,
+                               const starg_simplify_options *options, level_list *list) {
     starg_status status = STARG_OK;
     simplifier s = {0};
     uint32_t *number = NULL;
     STARG_TRY(begin(&s, context, mesh, options));
     STARG_NEW(context, "simplify", number, mesh->vertex_count);
-    for (size_t left = most_levels(mesh->vertex_count, coarsest, step) - 1; left-- > 0;) {
-        STARG_TRY(reduce(&s, coarsest + left * step));
-        STARG_TRY(add_level(&s, list, step, number));
+    for (size_t target = mesh->vertex_count; target > sizes->coarsest;) {
+        target = next_target(sizes, target);
+        STARG_TRY(reduce(&s, target));
+        STARG_TRY(add_level(&s, list, sizes, number));
     }
 done:
     starg_release(context, number);
@@ -383,20 +406,20 @@ starg_status starg_mesh_levels(starg_context *context, const starg_mesh *mesh, s
                                starg_levels **out) {
     starg_status status = STARG_OK;
     level_list list = {0};
+    const ladder sizes = {coarsest, step};
     *out = NULL;
     if (step == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "simplify",
                           "the step between levels is 0 vertices; it must be at least 1");
     STARG_NEW_ZERO(context, "simplify", list.out, 1);
-    STARG_NEW_ZERO(context, "simplify", list.out->levels,
-                   most_levels(mesh->vertex_count, coarsest, step));
+    STARG_NEW_ZERO(context, "simplify", list.out->levels, most_levels(&sizes, mesh->vertex_count));
     STARG_NEW(context, "simplify", list.of_finest, mesh->vertex_count);
     for (size_t v = 0; v < mesh->vertex_count; v++)
         list.of_finest[v] = (uint32_t)v;
     STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
                                 mesh->face_count, &list.out->levels[0].mesh));
     list.out->count = 1;
-    STARG_TRY(add_levels(context, mesh, coarsest, step, options, &list));
+    STARG_TRY(add_levels(context, mesh, &sizes, options, &list));
     reverse(list.out);
     *out = list.out;
     list.out = NULL;

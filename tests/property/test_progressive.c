@@ -60,13 +60,15 @@ static void check_level(starg_context *context, const char *name, const starg_me
     starg_solid_free(solid);
 }
 
-static void check_model(starg_context *context, const char *name, const starg_mesh *mesh) {
+static void check_model(starg_context *context, const char *name, const starg_mesh *mesh,
+                        size_t step) {
     starg_solid *solid = NULL;
     starg_guards *guards = NULL, *refined = NULL, *best = NULL;
     starg_levels *levels = NULL;
     starg_guard_options options = level_options();
     double *candidates = NULL;
     size_t count = 0;
+    options.step = step;
     test_ok(context, starg_solid_create(context, mesh, &solid));
     test_ok(context, starg_guard(context, solid, &options, &guards));
     test_verified(context, name, mesh, guards);
@@ -107,7 +109,7 @@ static void test_samples(void **state) {
     const char *const names[] = {"gallery", "human", "plate"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         starg_mesh *mesh = test_sample_mesh(context, names[i], 1500);
-        check_model(context, names[i], mesh);
+        check_model(context, names[i], mesh, i == 1 ? STARG_QUARTERS : 400);
         starg_mesh_free(mesh);
     }
     test_context_free(context);
@@ -126,7 +128,7 @@ static void test_shared(void **state) {
         starg_mesh *mesh = NULL;
         snprintf(path, sizeof path, "%s/%s", data, names[i]);
         test_ok(context, starg_mesh_read(context, path, &mesh));
-        check_model(context, names[i], mesh);
+        check_model(context, names[i], mesh, 400);
         starg_mesh_free(mesh);
     }
     test_context_free(context);
@@ -277,6 +279,20 @@ static void refute_falsifications(starg_context *context, const starg_mesh *mesh
         guards->directions[k] = -guards->directions[k];
 }
 
+/* How the file tells the step. */
+static void expect_step(starg_context *context, const starg_guards *guards, const char *wanted) {
+    char text[2000] = "", found[16] = "";
+    test_ok(context, starg_guards_write(context, guards, "human.off", "test_progressive.json"));
+    FILE *file = fopen("test_progressive.json", "r");
+    assert_non_null(file);
+    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    fclose(file);
+    const char *step = strstr(text, "\"step\":");
+    assert_non_null(step);
+    assert_int_equal(sscanf(step + 7, "%15[0-9a-z]", found), 1);
+    assert_string_equal(found, wanted);
+}
+
 /* Written and read back, nothing is lost. */
 static void test_round_trip(void **state) {
     (void)state;
@@ -310,6 +326,9 @@ static void test_round_trip(void **state) {
     test_verified(context, "human", mesh, back);
     refute_falsifications(context, mesh, back);
     test_verified(context, "human", mesh, back);
+    expect_step(context, guards, "400");
+    guards->options.step = STARG_QUARTERS;
+    expect_step(context, guards, "null");
     remove("test_progressive.json");
     starg_guards_free(context, guards);
     starg_guards_free(context, back);

@@ -521,6 +521,37 @@ static void test_levels(void **state) {
     test_context_free(context);
 }
 
+/* Each a quarter of the next finer one; the last clamped to the coarsest, if that is worth it. */
+static void test_levels_by_quarters(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_mesh *mesh = test_sample_mesh(context, "horse", 3600);
+    const size_t n = starg_mesh_vertex_count(mesh);
+    const struct {
+        size_t coarsest, count, vertices[4];
+    } cases[] = {{100, 4, {100, n / 16, n / 4, n}},
+                 {n / 16, 3, {n / 16, n / 4, n}},
+                 {n / 16 + 1, 3, {n / 16 + 1, n / 4, n}},
+                 {n / 4 - 10, 2, {n / 4, n}}, /* ten fewer are not worth a level */
+                 {n / 2, 2, {n / 2, n}},
+                 {n - n / 8, 1, {n}},
+                 {n, 1, {n}}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        starg_levels *levels;
+        test_ok(context,
+                starg_mesh_levels(context, mesh, cases[i].coarsest, STARG_QUARTERS, NULL, &levels));
+        assert_int_equal(levels->count, cases[i].count);
+        for (size_t k = 0; k < levels->count; k++)
+            assert_int_equal(starg_mesh_vertex_count(levels->levels[k].mesh), cases[i].vertices[k]);
+        for (size_t k = 0; k + 1 < levels->count; k++)
+            assert_map(levels->levels[k + 1].mesh, levels->levels[k].mesh,
+                       levels->levels[k].vertex_map);
+        starg_levels_free(context, levels);
+    }
+    starg_mesh_free(mesh);
+    test_context_free(context);
+}
+
 static void test_levels_that_are_left_out(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -727,6 +758,7 @@ int main(void) {
         cmocka_unit_test(test_extreme_places),
         cmocka_unit_test(test_crossing_input_keeps_its_topology),
         cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_levels_by_quarters),
         cmocka_unit_test(test_levels_that_are_left_out),
         cmocka_unit_test(test_other_meshes_are_refused),
         cmocka_unit_test(test_vertices_of_no_face_go),
