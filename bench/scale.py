@@ -163,7 +163,7 @@ def numbers(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("starguard")
+    parser.add_argument("starguard", type=os.path.abspath)  # runs in folders of their own
     parser.add_argument("--commands", type=lambda text: text.split(","), default=list(COMMANDS))
     parser.add_argument("--sample", default="horse")
     parser.add_argument("--sizes", type=numbers, default=numbers("1e3,3e3,1e4,3e4,1e5,3e5,1e6"))

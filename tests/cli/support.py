@@ -100,7 +100,8 @@ class Case(unittest.TestCase):
         self.assertIn("--help", err)
         self.assertEqual(self.names(), before)
 
-    def sample(self, name="l-room", vertices=500, file=None, *more):
+    def sample(self, name="l-room", vertices=520, file=None, *more):
+        """Of 520: spectra are taken of a surface of 2,000 at least, so one of 500 is subdivided twice."""
         file = file or f"{name}.off"
         self.run_text("sample", name, "--vertices", str(vertices), "-o", file, "--quiet", *more)
         return file

@@ -69,13 +69,18 @@ class TimeLimit(support.Case):
         self.assertEqual(self.names(), names)
 
     def test_something_found(self):
+        """Once there is the time to make candidates: how much that is differs from machine to machine."""
         model = self.sample("horse", 30000)
-        limit = 3.0 * SLOWNESS
-        began = time.monotonic()
-        out, _ = self.run_text("guard", model, "-o", "g.json", "--visibility", "sweep",
-                               "--time-limit", str(limit))
-        self.assertLess(time.monotonic() - began, 1.05 * limit + 2 * SLOWNESS)
-        self.assertIn("time limit", out)
+        for limit in 2, 4, 8, 16, 32, 64:
+            began = time.monotonic()
+            with self.start("guard", model, "-o", "g.json", "--visibility", "sweep", "--time-limit",
+                            str(limit)) as process:
+                out, err = process.communicate()
+            self.assertLess(time.monotonic() - began, 1.05 * limit + 2 * SLOWNESS)
+            self.assertIn(b"time limit", out + err)
+            self.assertEqual(process.returncode, 0 if "g.json" in self.names() else 3)
+            if process.returncode == 0:
+                break
         self.run_text("verify", model, "g.json")
 
     def test_enough(self):

@@ -67,7 +67,7 @@ class Writing(support.Case):
         self.results = os.path.join(self.store.name, "results")
 
     def make_inputs(self):
-        self.sample("l-room", 500, "room.off")
+        self.sample("l-room", 520, "room.off")
         self.sample("cat", 600, "cat.off")
         self.sample("cat", 600, "cat_1.off", "--pose", "1")
         self.sample("sphere", 600, "ball.off")

@@ -310,7 +310,7 @@ static void test_random_tetrahedra(void **state) {
     starg_context *context = test_context(2);
     for (uint64_t seed = 0; seed < (thorough() ? 24 : 15); seed++) {
         starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + 2 * seed, seed % 3 == 1, 1);
-        check_tetmesh(context, "random", mesh, 100);
+        check_tetmesh(context, "random", mesh, thorough() ? 100 : 20);
         starg_tetmesh_free(mesh);
     }
     test_context_free(context);
