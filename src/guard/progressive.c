@@ -15,8 +15,8 @@
  *
  * Invariant: the guards of every level see all of it that one of these candidates sees (or as much
  * as asked).
- * Cost: visibility of all candidates on all levels, which is below twice that of the model where
- * each level is twice the one before; an ILP per level on what is left of it. */
+ * Cost: visibility of all candidates on all levels, which is a third more than that of the model
+ * where each level is a quarter of the next; an ILP per level on what is left of it. */
 #include "geometry/vec3.h"
 #include "guard/job.h"
 #include "mesh/solid.h"
