@@ -13,6 +13,8 @@
 #include "star/strict/slice.h"
 #include "tetrahedra.h"
 
+enum { LOOKS = 1500 };
+
 /* All pieces in one. */
 static void join_everything(partition *p) {
     uint32_t *all = calloc(p->pieces.count, sizeof *all);
@@ -34,12 +36,12 @@ static double volume_of_all(const partition *p) {
 
 /* ---- parts ---- */
 
-static bool share_vertex(const facet *a, const facet *b) {
+static bool share_edge(const facet *a, const facet *b) {
+    int shared = 0;
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            if (a->corners[i] == b->corners[k])
-                return true;
-    return false;
+            shared += a->corners[i] == b->corners[k];
+    return shared >= 2;
 }
 
 /* The lowest facet that each facet of a piece hangs together with, by going over all pairs until
@@ -54,7 +56,7 @@ static uint32_t *find_parts(const partition *p) {
         changed = false;
         for (size_t i = 0; i < p->facets.count; i++)
             for (size_t k = 0; k < p->facets.count; k++)
-                if (part[k] < part[i] && share_vertex(&p->facets.data[i], &p->facets.data[k])) {
+                if (part[k] < part[i] && share_edge(&p->facets.data[i], &p->facets.data[k])) {
                     part[i] = part[k];
                     changed = true;
                 }
@@ -93,7 +95,7 @@ static partition cubes(starg_context *context, const int (*places)[3], size_t co
     return p;
 }
 
-/* Random cubes of a grid: some touch in a vertex only, which is enough. */
+/* Random cubes of a grid: some touch in a vertex only, which is not enough. */
 static void test_parts(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -165,19 +167,20 @@ static void test_cubes(void **state) {
     static const int corner[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     static const int trough[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {2, 1, 0}};
     static const int apart[][3] = {{0, 0, 0}, {2, 0, 0}, {4, 4, 4}};
+    static const int touch[][3] = {{0, 0, 0}, {1, 1, 1}}; /* at a vertex */
     static const int ring[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0},
                                   {2, 1, 0}, {0, 2, 0}, {1, 2, 0}, {2, 2, 0}};
     static const struct {
         const int (*places)[3];
         size_t count, least, most;
-    } solids[] = {
-        {one, 1, 1, 1}, {corner, 4, 1, 1}, {trough, 5, 2, 2}, {apart, 3, 3, 3}, {ring, 8, 2, 4}};
+    } solids[] = {{one, 1, 1, 1},   {corner, 4, 1, 1}, {trough, 5, 2, 2},
+                  {apart, 3, 3, 3}, {touch, 2, 2, 2},  {ring, 8, 2, 4}};
     starg_context *context = test_context(1);
     for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
         partition first = cubes(context, solids[i].places, solids[i].count);
         partition p = partition_oracle_copy(&first);
         bool done = false;
-        test_ok(context, bisect(&p, 0, &done));
+        test_ok(context, bisect(&p, 0, LOOKS, &done));
         assert_true(done);
         check_bisected(&first, &p);
         assert_true(p.pieces.count >= solids[i].least && p.pieces.count <= solids[i].most);
@@ -217,7 +220,7 @@ static bool bisect_sample(starg_context *context, const char *name, size_t targe
     test_ok(context, partition_touches_itself(first, 0, &touches));
     assert_int_equal(touches, touching);
     *after = partition_oracle_copy(first);
-    test_ok(context, bisect(after, 0, &done));
+    test_ok(context, bisect(after, 0, LOOKS, &done));
     assert_true(done || touching);
     if (done) {
         check_bisected(first, after);
@@ -262,7 +265,7 @@ static void test_crumbs(void **state) {
         join_everything(&first);
         partition p = partition_oracle_copy(&first);
         bool done = false;
-        test_ok(context, bisect(&p, 0, &done));
+        test_ok(context, bisect(&p, 0, LOOKS, &done));
         if (done)
             check_bisected(&first, &p);
         finished += done;
@@ -273,17 +276,22 @@ static void test_crumbs(void **state) {
     test_context_free(context);
 }
 
-/* With no time there is no result. */
-static void test_no_time(void **state) {
+/* With too few looks, or no time, there is no result. */
+static void test_limits(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    partition p = claimed_sample(context, "knot", 1500);
-    bool done = true;
-    join_everything(&p);
-    starg_context_set_time_limit(context, 1e-9);
-    test_ok(context, bisect(&p, 0, &done));
-    assert_false(done);
-    partition_free(&p);
+    partition all = claimed_sample(context, "horse", 2000);
+    join_everything(&all);
+    for (int limited = 0; limited < 3; limited++) {
+        partition p = partition_oracle_copy(&all);
+        bool done = limited > 0;
+        if (limited == 2)
+            starg_context_set_time_limit(context, 1e-9);
+        test_ok(context, bisect(&p, 0, limited == 1 ? 1 : LOOKS, &done));
+        assert_int_equal(done, limited == 0);
+        partition_free(&p);
+    }
+    partition_free(&all);
     test_context_free(context);
 }
 
@@ -291,7 +299,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_parts),  cmocka_unit_test(test_cavity),
         cmocka_unit_test(test_cubes),  cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_crumbs), cmocka_unit_test(test_no_time),
+        cmocka_unit_test(test_crumbs), cmocka_unit_test(test_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

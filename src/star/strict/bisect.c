@@ -27,14 +27,7 @@
 #include "star/strict/slice.h"
 #include "star/strict/tidy.h"
 
-enum {
-    ATTEMPTS_MOST = 12,
-    FAIR_FROM = 1,
-    HALVE_FROM = 4,
-    EFFORT_MOST = 3,
-    JOBS_MOST = 1500,
-    UNDONE_MOST = 24
-};
+enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3, UNDONE_MOST = 24 };
 
 static const uint32_t NO_PIECE = UINT32_MAX;
 
@@ -59,6 +52,7 @@ typedef struct bisector {
     STARG_ARRAY(job) jobs;
     STARG_ARRAY(job) next;
     uint64_t stream;
+    size_t most;     /* jobs, after which it is given up */
     size_t done;     /* jobs so far */
     int undone;      /* cuts that were taken back */
     size_t crowded;  /* facets from which on it is time to tidy up */
@@ -299,7 +293,7 @@ static void swap_lists(bisector *b) {
 }
 
 static bool may_go_on(const bisector *b) {
-    return b->jobs.count > 0 && !b->hopeless && b->done < JOBS_MOST &&
+    return b->jobs.count > 0 && !b->hopeless && b->done < b->most &&
            !starg_time_is_over(b->p->context);
 }
 
@@ -340,9 +334,9 @@ done:
     return status;
 }
 
-starg_status bisect(partition *p, uint64_t stream, bool *done) {
+starg_status bisect(partition *p, uint64_t stream, size_t most, bool *done) {
     starg_status status = STARG_OK;
-    bisector b = {.p = p, .stream = stream, .scratch = {.context = p->context}};
+    bisector b = {.p = p, .stream = stream, .most = most, .scratch = {.context = p->context}};
     *done = false;
     starg_progress_begin(p->context, "planes");
     STARG_TRY(open_all(&b));

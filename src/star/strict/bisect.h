@@ -6,8 +6,9 @@
 
 /* Cuts the pieces of a partition, whose guards need not see anything, until each has a certified
  * guard. *done is false, and the partition of no use, when some piece resists (as one whose surface
- * touches itself along an edge does), or when the time is over. Another stream of random numbers
- * gives another result. Errors: MEMORY, CANCELLED. */
-starg_status bisect(partition *p, uint64_t stream, bool *done);
+ * touches itself along an edge does) until open pieces have been looked at `most` times, some two
+ * or three times for each piece if none resists; or when the time is over. Another stream of random
+ * numbers gives another result. Errors: MEMORY, CANCELLED. */
+starg_status bisect(partition *p, uint64_t stream, size_t most, bool *done);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include "star/strict/partition.h"
 
-/* Parts of piece `number` that share no vertex become pieces: the first keeps the number, the
+/* Parts of piece `number` that share no edge become pieces: the first keeps the number, the
  * others come last. A piece with a cavity stays whole, for the cavity's surface belongs to a part
  * that it does not touch. Needs the index and builds it again. Guards are the caller's. Errors:
  * MEMORY. */

@@ -19,7 +19,10 @@
 
 enum {
     SEARCHES = 6,
-    IDLE_MOST = 2 /* searches in a row that bring nothing: then no more */
+    IDLE_MOST = 2, /* searches in a row that bring nothing: then no more */
+    LOOKS_LEAST = 100,
+    LOOKS_EACH = 20, /* for each piece by claims; starts by planes that are done take 1 to 17 */
+    LOOKS_MOST = 1500
 };
 
 static starg_status collect_guards(const partition *p, double **guards) {
@@ -65,16 +68,22 @@ done:
     return status;
 }
 
+/* How long a start by planes is worth while, where claims have made so many pieces. */
+static size_t looks_for(size_t pieces) {
+    size_t looks = LOOKS_LEAST + LOOKS_EACH * pieces;
+    return looks < LOOKS_MOST ? looks : LOOKS_MOST;
+}
+
 /* All in one piece, then cut. */
-static starg_status start_by_planes(const starg_tetmesh *mesh, uint64_t stream, partition *p,
-                                    bool *done) {
+static starg_status start_by_planes(const starg_tetmesh *mesh, uint64_t stream, size_t looks,
+                                    partition *p, bool *done) {
     starg_status status = STARG_OK;
     static const double nowhere[3] = {0, 0, 0};
     uint32_t *labels = NULL;
     *done = false;
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(mesh));
     STARG_TRY(partition_create(p->context, mesh, labels, nowhere, 1, p));
-    STARG_TRY(bisect(p, stream, done));
+    STARG_TRY(bisect(p, stream, looks, done));
     if (*done)
         STARG_TRY(improve_join(p));
 done:
@@ -93,13 +102,14 @@ static void keep_better(partition *p, partition *other) {
 /* Both starts, the better one first; `other` is without pieces where one will do. Guards that were
  * given are what the claims begin with. */
 static starg_status begin(const starg_tetmesh *mesh, const starg_decompose_options *options,
-                          partition *p, partition *other) {
+                          partition *p, partition *other, size_t *looks) {
     starg_status status = STARG_OK;
     bool done;
     STARG_TRY(start_by_claims(mesh, options, p));
+    *looks = looks_for(p->pieces.count);
     if (options->guard_count > 0 || p->pieces.count < 2 || starg_time_is_over(p->context))
         goto done;
-    STARG_TRY(start_by_planes(mesh, 0, other, &done));
+    STARG_TRY(start_by_planes(mesh, 0, *looks, other, &done));
     if (done)
         keep_better(p, other);
     else
@@ -114,6 +124,7 @@ typedef struct searches {
     const starg_tetmesh *mesh;
     uint64_t trials_left;
     size_t enough;
+    size_t looks;   /* of a start by planes */
     uint64_t count; /* searches so far */
     int idle;       /* of them, since the last that was better */
     bool time_limited;
@@ -141,7 +152,7 @@ static starg_status search_again(searches *s, partition *p, partition *other) {
     starg_status status = STARG_OK;
     bool done = other->pieces.count > 0;
     if (!done)
-        STARG_TRY(start_by_planes(s->mesh, s->count, other, &done));
+        STARG_TRY(start_by_planes(s->mesh, s->count, s->looks, other, &done));
     if (done) {
         STARG_TRY(run_search(s, other));
         s->idle = other->pieces.count < p->pieces.count ? 0 : s->idle + 1;
@@ -163,7 +174,7 @@ starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
                   .trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
-    STARG_TRY(begin(mesh, options, &p, &other));
+    STARG_TRY(begin(mesh, options, &p, &other, &s.looks));
     STARG_TRY(run_search(&s, &p));
     while (options->guard_count == 0 && may_search_again(&s, &p))
         STARG_TRY(search_again(&s, &p, &other));
