@@ -100,11 +100,16 @@ class Case(unittest.TestCase):
         self.assertIn("--help", err)
         self.assertEqual(self.names(), before)
 
+    sampled = {}  # which are wanted again and again
+
     def sample(self, name="l-room", vertices=520, file=None, *more):
         """Of 520: spectra are taken of a surface of 2,000 at least, so one of 500 is subdivided twice."""
         file = file or f"{name}.off"
-        self.run_text("sample", name, "--vertices", str(vertices), "-o", file, "--quiet", *more)
-        return file
+        wanted = (name, vertices, os.path.splitext(file)[1], *more)
+        if wanted not in self.sampled:
+            self.run_text("sample", name, "--vertices", str(vertices), "-o", file, "--quiet", *more)
+            self.sampled[wanted] = self.read(file)
+        return self.write(file, self.sampled[wanted])
 
 
 def main():

@@ -95,10 +95,12 @@ class Same(Case):
         self.cli("describe", a, "-o", "a.json", "--quiet")
         starguard.describe(a).write("b.json")
         self.assertEqual(self.read("a.json"), self.read("b.json"))
-        for kind in ("star", "paper", "shape-dna", "d2"):
-            told = json.loads(self.cli("match", a, b, "--distance", kind, "--json"))
-            self.assertEqual(starguard.match(a, b, kind), told["distance"])
-        self.assertEqual(starguard.match("b.json", b), starguard.match(a, b))
+        starguard.describe(b).write("c.json")
+        for kind, first, second in (("star", a, b), ("paper", "b.json", "c.json"), ("shape-dna", a, b),
+                                    ("d2", a, b)):
+            told = json.loads(self.cli("match", first, second, "--distance", kind, "--json"))
+            self.assertEqual(starguard.match(first, second, kind), told["distance"])
+        self.assertEqual(starguard.match("b.json", b), starguard.match("b.json", "c.json"))
 
     def test_databases(self):
         files = [self.model(name, 520) for name in ("l-room", "star", "torus")]
