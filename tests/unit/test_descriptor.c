@@ -414,7 +414,7 @@ static void memory_may_give_out(void **state) {
     (void)state;
     size_t left = SIZE_MAX, size, failures = 0;
     starg_context *context = test_scarce_context(1, &left);
-    starg_mesh *mesh = test_sample_mesh(context, "l-room", 500);
+    starg_mesh *mesh = test_sample_mesh(context, "l-room", 520);
     starg_descriptor *d = describe(context, mesh, 12), *back = NULL;
     char *text = text_of(context, d, &size);
     size_t before = starg_context_live_blocks(context);
