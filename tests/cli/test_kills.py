@@ -1,5 +1,6 @@
 """Killed at any moment (docs/robustness.md): outputs are there whole or not at all, databases stay in
 order, and what is left behind is in nobody's way. 6 kills of each command, with STARGUARD_LONG=1 200."""
+import collections
 import json
 import os
 import random
@@ -18,22 +19,30 @@ KILLS = 200 if LONG else 6
 class Killed(Writing):
     """SIGKILL at random moments of each command that writes."""
 
-    def kill_at(self, moment, *words):
-        """True if it was still running."""
+    def kill_at(self, moment, words):
+        """How long it ran if it ended before, else None: it was killed."""
+        began = time.monotonic()
         with self.start(*words, "--threads", "1", "--quiet") as process:
             try:
                 process.wait(timeout=moment)
             except subprocess.TimeoutExpired:
                 pass
+            took = time.monotonic() - began
             process.kill()
             process.communicate()
-        return process.returncode == -signal.SIGKILL
+        return None if process.returncode == -signal.SIGKILL else took
 
-    def moments(self, name, took):
-        """Half of them anywhere, half near the end, where files are written."""
-        choice = random.Random(f"kills of {name}")
-        for i in range(KILLS):
-            yield choice.uniform(0, took) if i % 2 else choice.uniform(0.8 * took, 1.1 * took)
+    def kills(self, name, took, words, prepare):
+        """Yields after each run, until KILLS of them were killed. Half of the moments are anywhere, half
+        near the end, where files are written; how long it takes is believed of the last run that ended."""
+        choice, killed, runs = random.Random(f"kills of {name}"), 0, 0
+        while killed < KILLS:
+            self.assertLess(runs, 20 + 4 * KILLS, f"{name}: only {killed} of the runs were killed")
+            prepare(runs)
+            moment = choice.uniform(0, took) if runs % 2 else choice.uniform(0.8 * took, 1.1 * took)
+            ended = self.kill_at(moment, words)
+            killed, took, runs = killed + (ended is None), ended or took, runs + 1
+            yield runs
 
     def check_whole(self, outputs, old, wanted):
         """How many of the outputs are there; each is as it was or as it shall be."""
@@ -48,35 +57,37 @@ class Killed(Writing):
         return [name for name in self.names() if is_leftover(name)]
 
     def test_outputs(self):
-        print(f"{'command':12} {'seconds':>8} {'kills':>6} {'nothing':>8} {'all':>6} {'some':>6} "
+        print(f"{'command':12} {'seconds':>8} {'kills':>6} {'runs':>6} {'nothing':>8} {'all':>6} {'some':>6} "
               f"{'leftovers':>10}")
         for name, words, outputs in self.commands():
             with self.subTest(command=name):
                 wanted, took = self.reference(name, words, outputs)
-                kills, counts = 0, {}
-                for i, moment in enumerate(self.moments(name, took)):
-                    self.clear(outputs)
-                    old = None
-                    if i % 3 == 0 and "/" not in outputs[0]:
-                        old = b"old"
-                        for output in outputs:
-                            self.write(output, old)
-                    kills += self.kill_at(moment, *words)
-                    there = self.check_whole(outputs, old, wanted)
-                    state = {0: "nothing", len(outputs): "all"}.get(there, "some")
-                    counts[state] = counts.get(state, 0) + 1
-                    strange = [n for n in self.names() if n not in self.made and n not in outputs
-                               and n != "frames" and not is_leftover(n)]
-                    self.assertEqual(strange, [])
-                left = len(self.leftovers())
-                self.run_bytes(*words, "--quiet")  # what was left does not matter
-                self.assertEqual(self.check_whole(outputs, None, wanted), len(outputs))
-                self.clear(outputs)
-                for leftover in self.leftovers():
-                    os.remove(self.path(leftover))
-                print(f"{name:12} {took:8.2f} {kills:6} {counts.get('nothing', 0):8} "
-                      f"{counts.get('all', 0):6} {counts.get('some', 0):6} {left:10}")
-                self.assertGreater(kills, 0)
+                self.check_kills(name, words, outputs, wanted, took)
+
+    def check_kills(self, name, words, outputs, wanted, took):
+        old, counts = None, collections.Counter()
+
+        def prepare(run):
+            nonlocal old
+            self.clear(outputs)
+            old = b"old" if run % 3 == 0 and "/" not in outputs[0] else None
+            for output in outputs if old else ():
+                self.write(output, old)
+
+        for _ in self.kills(name, took, words, prepare):
+            there = self.check_whole(outputs, old, wanted)
+            counts[{0: "nothing", len(outputs): "all"}.get(there, "some")] += 1
+            strange = [n for n in self.names() if n not in self.made and n not in outputs
+                       and n != "frames" and not is_leftover(n)]
+            self.assertEqual(strange, [])
+        left = len(self.leftovers())
+        self.run_bytes(*words, "--quiet")  # what was left does not matter
+        self.assertEqual(self.check_whole(outputs, None, wanted), len(outputs))
+        self.clear(outputs)
+        for leftover in self.leftovers():
+            os.remove(self.path(leftover))
+        print(f"{name:12} {took:8.2f} {KILLS:6} {counts.total():6} {counts['nothing']:8} {counts['all']:6} "
+              f"{counts['some']:6} {left:10}")
 
     def whole(self, name):
         """Is every stored model stored whole? Their file names in the order of storing."""
@@ -96,15 +107,17 @@ class Killed(Writing):
         self.run_text("db", "create", "empty.db")
         empty = self.read("empty.db")
         words = ["db", "add", "a.db", *files]
-        self.write("a.db", empty)
-        began = time.monotonic()
-        self.run_text(*words, "--threads", "1")
-        took, stored = time.monotonic() - began, []
-        for moment in self.moments("db add", took):
+
+        def prepare(_run):
             self.write("a.db", empty)
             if os.path.exists(self.path("a.db-journal")):
                 os.remove(self.path("a.db-journal"))
-            self.kill_at(moment, *words)
+
+        prepare(0)
+        began = time.monotonic()
+        self.run_text(*words, "--threads", "1")
+        took, stored = time.monotonic() - began, []
+        for _ in self.kills("db add", took, words, prepare):
             listed = json.loads(self.run_text("db", "list", "a.db", "--json")[0])["models"]
             found = self.whole("a.db")
             self.assertEqual(found, files[:len(found)])
@@ -116,21 +129,23 @@ class Killed(Writing):
 
     def test_database_remove(self):
         before = self.read("shapes.db")
-        for moment in self.moments("db remove", 0.03):
-            self.write("shapes.db", before)
-            self.kill_at(moment, "db", "remove", "shapes.db", "ball.off")
+        for _ in self.kills("db remove", 0.03, ["db", "remove", "shapes.db", "ball.off"],
+                            lambda _run: self.write("shapes.db", before)):
             self.run_text("db", "list", "shapes.db")
             self.assertIn(self.whole("shapes.db"), ([], ["ball.off"]))
 
     def test_database_create(self):
+        def prepare(_run):
+            if os.path.exists(self.path("new.db")):
+                os.remove(self.path("new.db"))
+
         made = 0
-        for moment in self.moments("db create", 0.04):
-            self.kill_at(moment, "db", "create", "new.db")
+        for runs in self.kills("db create", 0.04, ["db", "create", "new.db"], prepare):
             if os.path.exists(self.path("new.db")):
                 made += 1
                 self.assertEqual(self.whole("new.db"), [])
-                os.remove(self.path("new.db"))
-        print(f"db create: made {made} of {KILLS} times")
+        print(f"db create: made {made} of {runs} times")
+        prepare(runs)
         self.run_text("db", "create", "new.db")
         self.assertEqual(self.whole("new.db"), [])
 
