@@ -64,8 +64,9 @@ static uint32_t *find_parts(const partition *p) {
     return part;
 }
 
-/* Unit cubes, six tetrahedra each, at given places of a grid. */
-static partition cubes(starg_context *context, const int (*places)[3], size_t count) {
+/* Boxes, six tetrahedra each, at given places of a grid; it is regular but for the width along x
+ * from 1 to 2. */
+static partition boxes(starg_context *context, const int (*places)[3], size_t count, double width) {
     static const int steps[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                     {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
     enum { SIDE = 6, CUBES_MOST = 27 };
@@ -75,9 +76,12 @@ static partition cubes(starg_context *context, const int (*places)[3], size_t co
     uint32_t tetrahedra[24 * CUBES_MOST], labels[6 * CUBES_MOST] = {0};
     starg_tetmesh *mesh = NULL;
     partition p;
-    for (size_t v = 0; v < SIDE * SIDE * SIDE; v++)
+    for (size_t v = 0; v < SIDE * SIDE * SIDE; v++) {
         for (size_t k = 0; k < 3; k++)
             vertices[3 * v + k] = (double)(v / stride[k] % SIDE);
+        if (v % SIDE >= 2)
+            vertices[3 * v] += width - 1;
+    }
     for (size_t t = 0; t < 6 * count; t++) {
         const int *at = places[t / 6];
         uint32_t corner = 0;
@@ -93,6 +97,10 @@ static partition cubes(starg_context *context, const int (*places)[3], size_t co
     test_ok(context, partition_create(context, mesh, labels, guard, 1, &p));
     starg_tetmesh_free(mesh);
     return p;
+}
+
+static partition cubes(starg_context *context, const int (*places)[3], size_t count) {
+    return boxes(context, places, count, 1);
 }
 
 /* Random cubes of a grid: some touch in a vertex only, which is not enough. */
@@ -276,6 +284,28 @@ static void test_crumbs(void **state) {
     test_context_free(context);
 }
 
+/* A fin on a slab. Where it is thinner than the least room of a guard, cuts are taken back in vain,
+ * but what they leave is in order. */
+static void test_fins(void **state) {
+    (void)state;
+    static const int fin[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}};
+    static const double widths[] = {1, 1e-6, 1e-9};
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
+        partition first = boxes(context, fin, 4, widths[i]), p = partition_oracle_copy(&first);
+        bool done = false;
+        test_ok(context, bisect(&p, 0, LOOKS / 5, &done));
+        assert_int_equal(done, widths[i] > 2e-9);
+        if (done)
+            check_bisected(&first, &p);
+        partition_oracle_check(&p);
+        assert_true(fabs(volume_of_all(&first) - volume_of_all(&p)) < 1e-12);
+        partition_free(&p);
+        partition_free(&first);
+    }
+    test_context_free(context);
+}
+
 /* With too few looks, or no time, there is no result. */
 static void test_limits(void **state) {
     (void)state;
@@ -297,9 +327,9 @@ static void test_limits(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_parts),  cmocka_unit_test(test_cavity),
-        cmocka_unit_test(test_cubes),  cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_crumbs), cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_parts),   cmocka_unit_test(test_cavity), cmocka_unit_test(test_cubes),
+        cmocka_unit_test(test_samples), cmocka_unit_test(test_crumbs), cmocka_unit_test(test_fins),
+        cmocka_unit_test(test_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
