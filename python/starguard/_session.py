@@ -24,7 +24,7 @@ from ._types import Progress
 
 logger = logging.getLogger("starguard")
 _LEVELS = {lib.STARG_LOG_NOTICE: logging.INFO, lib.STARG_LOG_WARNING: logging.WARNING}
-_TICK = 0.05  # seconds between looks at the reports of progress
+_TICK = 0.05  # seconds between looks at signals and reports of progress
 
 
 @dataclass
@@ -163,7 +163,7 @@ class Session:
         finished = False
         while interruption is None and not finished:
             try:
-                finished = done.wait(_TICK if progress is not None else None)
+                finished = done.wait(_TICK)  # a signal just before the wait does not end it
                 self._deliver(reports, progress)
             except BaseException as error:
                 interruption = error

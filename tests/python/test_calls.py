@@ -100,6 +100,17 @@ class Interruption(Case):
         self.assertLess(taken, 10 * SLOWNESS)
         self.assertTrue(seen)
 
+    def test_a_signal_that_does_not_end_the_wait(self):
+        """Another thread gets it, as it may; else it is rare: one that comes just before the wait."""
+        def shielded():
+            signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                long_work()
+            finally:
+                signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+        self.assertLess(self.interrupt(shielded), 5 * SLOWNESS)
+
     def test_objects_with_a_context_of_their_own_go_on(self):
         mesh = starguard.sample("dog", vertex_count=1000)
         for i in range(12):
