@@ -15,10 +15,6 @@ typedef struct values {
     int distance;
 } values;
 
-static void set_defaults(void *data) {
-    *(values *)data = (values){.distance = STARG_SIGNATURE_DEFAULT, .classes = "by-prefix"};
-}
-
 static void report_head(cli_session *session, const values *v, const char *format) {
     cli_report_head(session, format, NULL, NULL);
     cli_put(session, session->report, "database", cli_json_text(session->operands[0]));
@@ -103,7 +99,6 @@ const cli_command cli_command_db_matrix = {
     .option_count = sizeof matrix_options / sizeof *matrix_options,
     .values_size = sizeof(values),
     CLI_OPERANDS(1, 1),
-    .defaults = set_defaults,
     .prepare = prepare_matrix,
     .run = run_matrix,
 };
@@ -231,7 +226,7 @@ static starg_status draw_precision(cli_session *session, const char *name, const
 
 static starg_status make_classes(cli_session *session, const values *v, const cli_table *t,
                                  starg_classes **out) {
-    if (strcmp(v->classes, "by-prefix") == 0)
+    if (v->classes == NULL || strcmp(v->classes, "by-prefix") == 0)
         return starg_classes_by_prefix(session->context, t->models, out);
     return starg_classes_read(session->context, v->classes, t->models, out);
 }
@@ -295,7 +290,6 @@ const cli_command cli_command_db_evaluate = {
     .option_count = sizeof evaluate_options / sizeof *evaluate_options,
     .values_size = sizeof(values),
     CLI_OPERANDS(1, 1),
-    .defaults = set_defaults,
     .prepare = prepare_evaluate,
     .run = run_evaluate,
 };

@@ -9,14 +9,10 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    {CLI_OPTION("count", CLI_COUNT, count, "N", "How many models to list. Default 10."),
-     .letter = 'k', .least = 1, .most = UINT32_MAX},
+    {CLI_OPTION("count", STARG_FIELD_COUNT, count, "N", "How many models to list."), .letter = 'k',
+     .least = 1, .most = UINT32_MAX, .initial = 10},
     CLI_DISTANCE_OPTION,
 };
-
-static void set_defaults(void *data) {
-    *(values *)data = (values){.count = 10, .distance = STARG_SIGNATURE_DEFAULT};
-}
 
 static void tell(cli_session *session, const starg_database_models *found) {
     for (size_t i = 0; i < found->count; i++)
@@ -76,6 +72,5 @@ const cli_command cli_command_db_query = {
                 "starguard db query shapes.db new.off -k 1 --distance star --json | jq .models[0]",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),
-    .defaults = set_defaults,
     .run = run,
 };

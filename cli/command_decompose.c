@@ -11,98 +11,39 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 
-static const char *const mode_words[] = {"strict", "paper", NULL};
-
 static const double TIME_LIMIT = 60; /* seconds, unless another one is asked for */
 static const double APART = 0.18;    /* pictures: how far pieces are moved from the middle of all */
 
 typedef struct values {
     const char *output, *report, *guards, *tets, *surfaces, *picture;
-    int mode;
-    double density;
-    uint64_t max_pieces, effort;
+    starg_decompose_options wanted;
     bool binary;
 } values;
 
 static const cli_option options[] = {
-    {.name = "output",
-     .letter = 'o',
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, output),
-     .value = "PIECES.vtk",
-     .help = "Where to write the tetrahedra, each with the number of its piece: a VTK unstructured "
-             "grid (ParaView opens it); '-' writes to standard output."},
-    {.name = "report",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, report),
-     .value = "PIECES.json",
-     .help = "Where to write the guard, size and proof of each piece, and which pieces touch over "
-             "what area (docs/formats.md)."},
-    {.name = "mode",
-     .kind = CLI_CHOICE,
-     .offset = offsetof(values, mode),
-     .value = "strict|paper",
-     .choices = mode_words,
-     .help = "strict (default): every piece is proven to be star-shaped. paper: growth from "
-             "guards as Yu and Li published it; nearly all vertices are seen by their guards, and "
-             "which pieces are star-shaped is told."},
-    {.name = "guards",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, guards),
-     .value = "GUARDS.json",
-     .help = "Guards to begin with: a result of 'starguard guard', or text of three numbers a "
-             "line. Default for --mode paper: those that 'starguard guard' places."},
-    {.name = "tets",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, tets),
-     .value = "FILE",
-     .help = "Read the solid as tetrahedra from this file, in place of MODEL: MEDIT .mesh, .vtk, "
-             "Gmsh .msh, or TetGen .node with its .ele beside it."},
-    {.name = "density",
-     .kind = CLI_REAL,
-     .offset = offsetof(values, density),
-     .value = "T",
-     .high = 1e6,
-     .help =
-         "Tetrahedra to begin with for each vertex of the surface; 0: as few as can be. Default "
-         "0 for strict, which makes its own in the end, and 17.5 for paper, as in the paper."},
-    {.name = "max-pieces",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, max_pieces),
-     .value = "N",
-     .most = UINT32_MAX,
-     .help = "strict: stop searching once there are no more than N pieces. paper: no more than N "
-             "pieces, at the cost of what their guards see. Default 0: as few as can be found."},
-    {.name = "effort",
-     .kind = CLI_COUNT,
-     .offset = offsetof(values, effort),
-     .value = "N",
-     .most = UINT64_MAX,
-     .help = "strict: trials after which the search ends, whatever the time. Default 0: the "
-             "library's choice."},
-    {.name = "surfaces",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, surfaces),
-     .value = "DIR",
-     .help = "Write the closed surface of each piece into this folder, which is made if need be: "
-             "piece_0000.ply and so on, coloured, and all of them as groups of pieces.obj."},
-    {.name = "picture",
-     .kind = CLI_TEXT,
-     .offset = offsetof(values, picture),
-     .value = "FILE.png",
-     .help = "Draw the pieces in colours, a little apart."},
-    {.name = "binary",
-     .kind = CLI_FLAG,
-     .offset = offsetof(values, binary),
-     .help = "Write PIECES.vtk in binary: smaller, faster to read, the same numbers."},
+    CLI_OUTPUT_OPTION(
+        "PIECES.vtk",
+        "Where to write the tetrahedra, each with the number of its piece: a VTK unstructured "
+        "grid (ParaView opens it); '-' writes to standard output."),
+    CLI_TEXT_OPTION(
+        "report", report, "PIECES.json",
+        "Where to write the guard, size and proof of each piece, and which pieces touch "
+        "over what area (docs/formats.md)."),
+    CLI_TEXT_OPTION("guards", guards, "GUARDS.json",
+                    "Guards to begin with: a result of 'starguard guard', or text of three numbers "
+                    "a line. Default for --mode paper: those that 'starguard guard' places."),
+    CLI_TEXT_OPTION("tets", tets, "FILE",
+                    "Read the solid as tetrahedra from this file, in place of MODEL: MEDIT .mesh, "
+                    ".vtk, Gmsh .msh, or TetGen .node with its .ele beside it."),
+    CLI_TEXT_OPTION(
+        "surfaces", surfaces, "DIR",
+        "Write the closed surface of each piece into this folder, which is made if need "
+        "be: piece_0000.ply and so on, coloured, and all of them as groups of "
+        "pieces.obj."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the pieces in colours, a little apart."),
+    CLI_FLAG_OPTION("binary", binary,
+                    "Write PIECES.vtk in binary: smaller, faster to read, the same numbers."),
 };
-
-static void set_defaults(void *data) {
-    values *v = data;
-    starg_decompose_options library;
-    starg_decompose_options_default(&library);
-    v->density = library.tetra.density;
-}
 
 /* ---- the model ---- */
 
@@ -192,7 +133,8 @@ static json_t *pieces_json(cli_session *session, const starg_decomposition *d) {
 static void report_pieces(cli_session *session, const starg_decomposition *d, const values *v) {
     json_t *report = session->report;
     cli_put(session, report, "output", cli_json_text(v->output));
-    cli_put(session, report, "mode", json_string(mode_words[d->mode]));
+    cli_put(session, report, "mode",
+            json_string(starg_fields_word(starg_decompose_options_fields(), "mode", d->mode)));
     cli_put(session, report, "surface",
             json_string(d->tetra.surface_kept ? "kept" : "approximated"));
     if (!d->tetra.surface_kept) {
@@ -416,11 +358,7 @@ done:
 static starg_status make_options(cli_session *session, const values *v, double **points,
                                  starg_decompose_options *wanted) {
     starg_status status = STARG_OK;
-    starg_decompose_options_default(wanted);
-    wanted->mode = (starg_decompose_mode)v->mode;
-    wanted->max_pieces = v->max_pieces;
-    wanted->effort = v->effort;
-    wanted->tetra.density = v->density;
+    *wanted = v->wanted;
     /* half of the time is left for the pieces */
     wanted->tetra.tetgen_limit = fmax(wanted->tetra.tetgen_limit, session->common.time_limit / 2);
     if (v->guards != NULL)
@@ -476,10 +414,8 @@ const cli_command cli_command_decompose = {
                 "starguard decompose model.off -o pieces.vtk --mode paper --guards guards.json\n"
                 "# tetrahedra of your own; the surface of each piece as a file\n"
                 "starguard decompose --tets solid.msh -o pieces.vtk --surfaces pieces",
-    .options = options,
-    .option_count = sizeof options / sizeof *options,
+    CLI_OPTIONS(options),
+    CLI_LIBRARY(starg_decompose_options_fields, wanted),
     .most_operands = 1,
-    .values_size = sizeof(values),
-    .defaults = set_defaults,
     .run = run,
 };

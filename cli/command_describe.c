@@ -13,21 +13,12 @@
 
 typedef struct values {
     const char *output, *reconstruct, *picture, *histograms;
-    uint64_t directions, effort, detail;
+    starg_descriptor_options wanted;
 } values;
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("FILE.json", "Where to write the descriptor (docs/formats.md); '-' writes "
                                    "to standard output."),
-    CLI_COUNT_OPTION("directions", directions, "N", 12, 65536,
-                     "In how many directions each guard looks, evenly spread. Default 256."),
-    CLI_COUNT_OPTION("effort", effort, "N", 1, INT64_MAX,
-                     "Trials of the star decomposition that places the guards. Default 200: a "
-                     "quick one; more give fewer guards."),
-    CLI_COUNT_OPTION("detail", detail, "N", 0, INT32_MAX / 8,
-                     "Bring the model down to N vertices first, smooth and free of local "
-                     "self-intersections, so that noise and resolution count little; 0 describes "
-                     "it as it is. Default 3000."),
     CLI_TEXT_OPTION("reconstruct", reconstruct, "FILE.ply",
                     "Write the boundary as the descriptor knows it: a point where each look ends."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the model and its guards."),
@@ -35,13 +26,6 @@ static const cli_option options[] = {
                     "Draw what the guards of the eight largest pieces see: in which part of all "
                     "directions the boundary is nearer than that."),
 };
-
-static void set_defaults(void *data) {
-    starg_descriptor_options library;
-    starg_descriptor_options_default(&library);
-    *(values *)data = (values){
-        .directions = library.direction_count, .effort = library.effort, .detail = library.detail};
-}
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
@@ -203,9 +187,7 @@ static starg_status run(cli_session *session, void *data) {
     starg_status status = STARG_OK;
     starg_descriptor *descriptor = NULL;
     starg_reconstruction reconstruction;
-    const starg_descriptor_options wanted = {
-        .direction_count = v->directions, .effort = v->effort, .detail = v->detail};
-    CLI_TRY(starg_descriptor_create(context, session->mesh, &wanted, &descriptor));
+    CLI_TRY(starg_descriptor_create(context, session->mesh, &v->wanted, &descriptor));
     CLI_TRY(starg_descriptor_reconstruct(context, descriptor, session->mesh, &reconstruction));
     CLI_TRY(write_files(session, descriptor, v));
     tell(session, descriptor, &reconstruction);
@@ -233,7 +215,7 @@ const cli_command cli_command_describe = {
     .input = CLI_INPUT_MESH,
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
-    .defaults = set_defaults,
     .prepare = prepare,
+    CLI_LIBRARY(starg_descriptor_options_fields, wanted),
     .run = run,
 };

@@ -11,9 +11,7 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "suggest.h"
-#include "view.h"
 
-static const char *const method_words[] = {"ilp", "greedy", "pilp", NULL};
 static const struct {
     const char *word;
     starg_candidates source;
@@ -24,73 +22,20 @@ static const struct {
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
 
 typedef struct values {
-    const char *output, *marks, *picture;
-    const char *candidates;
-    int method;
-    uint64_t count, max_guards, redundancy, max_nodes, coarsest, step, refine_lines;
-    double coverage, clearance, significance, cone;
-    bool no_refine;
-    cli_view view;
-    starg_guard_options wanted; /* all of the above for the library */
-    double *points;             /* --candidates FILE               */
+    const char *output, *marks, *picture, *candidates;
+    starg_guard_options wanted;
+    double *points; /* --candidates FILE */
 } values;
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION(
         "GUARDS.json",
         "Where to write the guards (docs/formats.md); '-' writes to standard output."),
-    CLI_CHOICE_OPTION(
-        "method", method, method_words, "pilp|ilp|greedy",
-        "pilp (default) goes from coarse to fine levels of detail and then refines; ilp finds "
-        "the fewest of the candidates and proves it, or gives its best and a bound; greedy "
-        "is fastest, with more guards and a weaker bound."),
     CLI_TEXT_OPTION(
         "candidates", candidates, "skeleton|medial|interior|FILE",
         "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
         "lattice inside, or at the points of a file: three numbers a line, or another "
         "GUARDS.json."),
-    CLI_COUNT_OPTION(
-        "count", count, "N", 1, 10000000,
-        "About how many candidates to make; more are added for faces that none of them sees. "
-        "Default 1,000."),
-    CLI_VIEW_OPTIONS("visibility"),
-    CLI_POSITIVE_OPTION(
-        "cone", cone, "DEGREES", 360,
-        "Guards look in one direction, with this full opening angle, like cameras. Default "
-        "360: all around."),
-    CLI_POSITIVE_OPTION(
-        "coverage", coverage, "F", 1,
-        "Fraction of the coverable area that must be seen (of the vertices with --target "
-        "vertices), above 0 and at most 1. Default 1."),
-    CLI_COUNT_OPTION(
-        "max-guards", max_guards, "K", 0, UINT32_MAX,
-        "No more than K guards, which see as much area as possible. Default 0: as many as it "
-        "takes."),
-    CLI_COUNT_OPTION(
-        "redundancy", redundancy, "K", 1, 1000,
-        "Every face is to be seen by K guards, as far as there are so many candidates that "
-        "see it. Default 1."),
-    CLI_REAL_OPTION("clearance", clearance, "D", 0, 1e100,
-                    "Guards stand at least D from the walls, in units of the model. Default 0."),
-    CLI_COUNT_OPTION(
-        "max-nodes", max_nodes, "N", 0, UINT32_MAX,
-        "Branch-and-bound nodes for each independent part before the best so far is taken. "
-        "Default 100,000 for ilp, 30 for each level of pilp."),
-    CLI_FLAG_OPTION(
-        "no-refine", no_refine,
-        "pilp: leave the guards as the levels give them; do not look for better places."),
-    CLI_COUNT_OPTION("refine-lines", refine_lines, "N", 0, UINT32_MAX,
-                     "pilp: sight lines that refinement may test. Default 10 million."),
-    CLI_COUNT_OPTION("coarsest", coarsest, "N", 4, UINT32_MAX,
-                     "pilp: vertices of the coarsest level. Default 5,000."),
-    CLI_COUNT_OPTION(
-        "step", step, "N", 1, UINT32_MAX,
-        "pilp: vertices that each finer level has more. Default 10,000; of models that have more "
-        "than 40,000 above the coarsest level, each level has a quarter of the next finer one."),
-    CLI_REAL_OPTION(
-        "significance", significance, "F", 0, 1,
-        "pilp: guards that see less than this fraction of a level's area are chosen anew "
-        "there. Default 0.1."),
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
         "Draw the model half transparent with its guards; uncovered faces are dark red."),
@@ -98,26 +43,6 @@ static const cli_option options[] = {
                     "Write the model with each face in the colour of the first guard that sees it; "
                     "uncovered faces are dark red."),
 };
-
-static void set_defaults(void *data) {
-    values *v = data;
-    starg_guard_options library;
-    starg_guard_options_default(&library);
-    v->candidates = "skeleton";
-    v->method = (int)library.method;
-    v->count = library.candidate_count;
-    v->max_guards = library.max_guards;
-    v->redundancy = library.redundancy;
-    v->max_nodes = UINT64_MAX;
-    v->coarsest = library.coarsest;
-    v->step = UINT64_MAX;
-    v->significance = library.significance;
-    v->cone = library.visibility.cone;
-    v->refine_lines = library.refine_lines;
-    v->coverage = library.coverage;
-    v->clearance = library.clearance;
-    cli_view_default(&v->view);
-}
 
 /* ---- what was asked for ---- */
 
@@ -148,28 +73,6 @@ static starg_status take_candidates(cli_session *session, const char *word,
     starg_status status = starg_points_read(session->context, word, points, &wanted->point_count);
     wanted->points = *points;
     return status;
-}
-
-static starg_guard_options make_options(const values *v) {
-    starg_guard_options wanted;
-    starg_guard_options_default(&wanted);
-    wanted.method = (starg_guard_method)v->method;
-    wanted.candidate_count = v->count;
-    wanted.visibility = cli_view_options(&v->view);
-    wanted.visibility.cone = v->cone;
-    wanted.coverage = v->coverage;
-    wanted.max_guards = v->max_guards;
-    wanted.redundancy = (uint32_t)v->redundancy;
-    wanted.clearance = v->clearance;
-    if (v->max_nodes != UINT64_MAX)
-        wanted.max_nodes = v->max_nodes;
-    wanted.coarsest = v->coarsest;
-    if (v->step != UINT64_MAX)
-        wanted.step = v->step;
-    wanted.significance = v->significance;
-    wanted.refine = !v->no_refine;
-    wanted.refine_lines = v->refine_lines;
-    return wanted;
 }
 
 /* ---- what was found ---- */
@@ -208,67 +111,18 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "time limit    reached; this is the best that was found\n");
 }
 
-static json_t *curve_json(cli_session *session, const starg_guards *g) {
-    json_t *list = json_array();
-    for (size_t i = 0; i < g->count; i++)
-        cli_append(session, list, json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));
-    return list;
-}
-
-/* The levels in numbers; their guards stand in the file. */
-static json_t *levels_json(cli_session *session, const starg_guards *g) {
-    json_t *list = json_array();
-    for (size_t i = 0; i < g->level_count; i++) {
-        const starg_guard_level *level = &g->level_list[i];
-        cli_append(session, list,
-                   json_pack("{s:I, s:I, s:I, s:I}", "vertices", (json_int_t)level->vertex_count,
-                             "faces", (json_int_t)level->face_count, "guards",
-                             (json_int_t)level->count, "kept", (json_int_t)level->kept));
-    }
-    return list;
-}
-
-static json_t *coverage_json(cli_session *session, const starg_guards *g) {
-    json_t *coverage = json_object();
-    cli_put(session, coverage, "faces", cli_json_real(g->coverage_faces));
-    cli_put(session, coverage, "area", cli_json_real(g->coverage_area));
-    cli_put(session, coverage, "coverable_faces", json_integer((json_int_t)g->coverable_faces));
-    cli_put(session, coverage, "uncovered_faces",
-            cli_json_indices(session, g->uncovered, g->uncovered_count));
-    cli_put(session, coverage, "curve", curve_json(session, g));
-    if (g->options.max_guards > 0)
-        cli_put(session, coverage, "area_bound", cli_json_real(g->area_bound));
-    if (g->options.visibility.target != STARG_TARGET_VERTICES)
-        return coverage;
-    cli_put(session, coverage, "vertices", cli_json_real(g->coverage_vertices));
-    cli_put(session, coverage, "coverable_vertices",
-            json_integer((json_int_t)g->coverable_vertices));
-    cli_put(session, coverage, "uncovered_vertices",
-            cli_json_indices(session, g->uncovered_vertices, g->uncovered_vertex_count));
-    return coverage;
-}
-
-static void report_guards(cli_session *session, const starg_guards *g, const char *output) {
-    json_t *report = session->report, *list = json_array();
-    for (size_t i = 0; i < g->count; i++) {
-        json_t *guard = json_object();
-        cli_put(session, guard, "position", cli_json_point(g->positions + 3 * i));
-        if (g->directions != NULL)
-            cli_put(session, guard, "direction", cli_json_point(g->directions + 3 * i));
-        cli_put(session, guard, "faces", json_integer((json_int_t)g->seen_faces[i]));
-        cli_put(session, guard, "level", json_integer(g->levels[i]));
-        cli_append(session, list, guard);
-    }
-    cli_put(session, report, "output", cli_json_text(output));
-    cli_put(session, report, "guards", list);
-    cli_put(session, report, "coverage", coverage_json(session, g));
-    if (g->level_count > 0)
-        cli_put(session, report, "levels", levels_json(session, g));
-    cli_put(session, report, "sight_lines", json_integer((json_int_t)g->lines_tested));
-    cli_put(session, report, "candidates", json_integer((json_int_t)g->candidate_count));
-    cli_put(session, report, "lower_bound", json_integer((json_int_t)g->lower_bound));
-    cli_put(session, report, "optimal", json_boolean(g->optimal));
-    cli_put(session, report, "time_limited", json_boolean(g->time_limited));
+/* What the file holds, and what is of the run. */
+static starg_status report_guards(cli_session *session, const starg_guards *g, const char *output) {
+    char *text;
+    size_t size;
+    starg_status status =
+        starg_guards_write_memory(session->context, g, session->operands[0], &text, &size);
+    if (status == STARG_OK)
+        cli_report_take(session, text, size);
+    starg_text_free(session->context, text);
+    cli_put(session, session->report, "output", cli_json_text(output));
+    cli_put(session, session->report, "sight_lines", json_integer((json_int_t)g->lines_tested));
+    return status;
 }
 
 /* ---- files ---- */
@@ -335,8 +189,8 @@ static starg_status prepare(cli_session *session, void *data) {
     CLI_TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
     CLI_TRY(cli_announce_with_ending(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
-    v->wanted = make_options(v);
-    CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
+    if (v->candidates != NULL)
+        CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
 done:
     return status;
 }
@@ -349,7 +203,7 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(write_files(session, v, session->solid, guards));
     say_guards(session, guards);
     if (session->report != NULL)
-        report_guards(session, guards, v->output);
+        CLI_TRY(report_guards(session, guards, v->output));
 done:
     starg_guards_free(session->context, guards);
     return status;
@@ -380,7 +234,7 @@ const cli_command cli_command_guard = {
                 "starguard guard hall.stl -o cameras.json --max-guards 5 --range 20",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
-    .defaults = set_defaults,
+    CLI_LIBRARY(starg_guard_options_fields, wanted),
     .input = CLI_INPUT_SOLID,
     .prepare = prepare,
     .run = run,

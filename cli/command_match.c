@@ -9,15 +9,11 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {CLI_CHOICE_OPTION(
-    "distance", distance, cli_distance_words, "star|paper|shape-dna|d2",
-    "star (default): what is seen from the pieces and how they conduct, whatever the pose. paper: "
+    "distance", distance, cli_distance_words, STARG_SIGNATURE_STAR, "star|paper|shape-dna|d2",
+    "star: what is seen from the pieces and how they conduct, whatever the pose. paper: "
     "the deformation of one guarding "
     "graph into the other. shape-dna: the spectrum of the surface. d2: the distances between "
     "points of the surface.")};
-
-static void set_defaults(void *data) {
-    *(values *)data = (values){.distance = STARG_SIGNATURE_STAR};
-}
 
 static starg_status make_signature(cli_session *session, const char *file,
                                    starg_signature_kind kind, starg_signature **out) {
@@ -79,6 +75,5 @@ const cli_command cli_command_match = {
                 "starguard match cat.json dog.json --distance paper",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),
-    .defaults = set_defaults,
     .run = run,
 };

@@ -12,29 +12,22 @@
 
 typedef struct values {
     const char *output, *map, *landmarks, *glb, *picture;
-    uint64_t frames, candidates;
-    int method, up;
+    starg_morph_options wanted;
+    uint64_t frames;
+    int up;
     bool guards, pieces;
 } values;
 
 enum { SHEET_COLUMNS = 5, TILE_WIDTH = 480, TILE_HEIGHT = 360 };
 static const double SECONDS = 2; /* of an animation */
 
-/* In the order of starg_morph_method. */
-static const char *const methods[] = {"star", "arap", "linear", "spherical", NULL};
-
 /* In the order of starg_picture_options.up. */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off and so on; it is made if it is not there."),
-    CLI_COUNT_OPTION("frames", frames, "N", 2, 10000,
-                     "Number of frames with both ends, evenly in time. Default 21."),
-    CLI_CHOICE_OPTION(
-        "method", method, methods, "star|arap|linear|spherical",
-        "star (default): pieces about guards that correspond; arap: as rigid as "
-        "possible without guards; linear: each vertex on a line; spherical: spherical "
-        "coordinates about the guards."),
+    CLI_COUNT_OPTION("frames", frames, "N", 2, 10000, 21, NULL,
+                     "Number of frames with both ends, evenly in time."),
     CLI_TEXT_OPTION("map", map, "FILE",
                     "A map of 'starguard map'; by default one is made, as that command does."),
     CLI_TEXT_OPTION("landmarks", landmarks, "FILE", "Landmarks for a map that is made."),
@@ -42,7 +35,7 @@ static const cli_option options[] = {
                     "The frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Draw five moments by the methods star, arap and linear, a row each."),
-    CLI_CHOICE_OPTION("up", up, axes, "x|y|z", "The axis that points up in --picture. Default y."),
+    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "The axis that points up in --picture."),
     CLI_FLAG_OPTION(
         "guards", guards,
         "Write guards_a.json and guards_b.json into DIR as well, guards of A and of the "
@@ -53,19 +46,10 @@ static const cli_option options[] = {
         "Cut both solids into the same star-shaped pieces and write pieces_a.vtk, pieces_a.json, "
         "pieces_b.vtk and pieces_b.json into DIR as well, for A and for the last frame. Neither "
         "may intersect itself; needs TetGen."),
-    CLI_COUNT_OPTION("candidates", candidates, "N", 1, 100000,
-                     "About how many places are tried for guards. Default 1,000."),
 };
 
-static void set_defaults(void *data) {
-    starg_morph_options library;
-    starg_picture_options picture;
-    starg_morph_options_default(&library);
-    starg_picture_options_default(&picture);
-    *(values *)data = (values){.frames = 21,
-                               .candidates = library.candidates,
-                               .method = (int)library.method,
-                               .up = picture.up};
+static const char *method_word(const values *v) {
+    return starg_fields_word(starg_morph_options_fields(), "method", v->wanted.method);
 }
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -80,10 +64,11 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(
             session, STARG_ERROR_ARGUMENT,
             "--landmarks are for a map that is made, --map gives one; name one of them");
-    if (v->guards && v->method != STARG_MORPH_STAR && v->method != STARG_MORPH_SPHERICAL)
+    if (v->guards && v->wanted.method != STARG_MORPH_STAR &&
+        v->wanted.method != STARG_MORPH_SPHERICAL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--guards: the method %s has no guards; take star or spherical",
-                        methods[v->method]);
+                        method_word(v));
     CLI_TRY(cli_announce_with_ending(session, "--glb", v->glb, ".glb"));
     CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
     if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
@@ -389,7 +374,7 @@ static starg_status write_picture(cli_session *session, const values *v, const s
     if (positions == NULL)
         return cli_fail_memory(session);
     for (size_t i = 0; i < ROWS; i++)
-        CLI_TRY(draw_row(session, s, (starg_morph_options){rows[i], (size_t)v->candidates},
+        CLI_TRY(draw_row(session, s, (starg_morph_options){rows[i], v->wanted.candidates},
                          positions, meshes + i * SHEET_COLUMNS));
     starg_picture_options_default(&picture);
     picture.width = TILE_WIDTH;
@@ -421,7 +406,7 @@ static void report_morph(cli_session *session, const values *v, const starg_morp
     json_t *report = session->report;
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
-    cli_put(session, report, "method", json_string(methods[v->method]));
+    cli_put(session, report, "method", json_string(method_word(v)));
     cli_put(session, report, "guards", guards_json(session, morph, 0));
     cli_put(session, report, "counterparts", guards_json(session, morph, 1));
     cli_put(session, report, "unguarded_faces",
@@ -460,11 +445,9 @@ static starg_status run(cli_session *session, void *data) {
     starg_morph *morph = NULL;
     totals sum = {0};
     extras found = {0};
-    const starg_morph_options wanted = {.method = (starg_morph_method)v->method,
-                                        .candidates = (size_t)v->candidates};
     json_t *frames = json_array();
     CLI_TRY(read_subject(session, v, &s));
-    CLI_TRY(starg_morph_create(session->context, session->mesh, s.images, &wanted, &morph));
+    CLI_TRY(starg_morph_create(session->context, session->mesh, s.images, &v->wanted, &morph));
     CLI_TRY(write_frames(session, v, morph, frames, &sum));
     if (v->guards)
         CLI_TRY(write_guards(session, v, &s, morph, &found.alone));
@@ -513,7 +496,7 @@ const cli_command cli_command_morph = {
                 "    --method linear",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),
-    .defaults = set_defaults,
+    CLI_LIBRARY(starg_morph_options_fields, wanted),
     .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,

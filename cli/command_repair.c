@@ -6,8 +6,7 @@
 
 typedef struct values {
     const char *output;
-    double merge_distance;
-    uint64_t max_hole_edges, rounds;
+    starg_repair_options wanted;
     starg_mesh_format format; /* by the name of the output */
 } values;
 
@@ -16,24 +15,7 @@ static const cli_option options[] = {
         "FILE",
         "Where to write the mended mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
         "output."),
-    CLI_REAL_OPTION(
-        "merge-distance", merge_distance, "D", 0, 1,
-        "Vertices this close become one; a fraction of the model's diagonal. Default 0: only "
-        "equal positions."),
-    CLI_COUNT_OPTION("max-hole-edges", max_hole_edges, "N", 0, UINT32_MAX,
-                     "Leave holes of more edges open. Default 0: fill all."),
-    CLI_COUNT_OPTION("rounds", rounds, "N", 0, 10000,
-                     "Attempts to resolve self-intersections. Default 10."),
 };
-
-static void set_defaults(void *data) {
-    values *v = data;
-    starg_repair_options library;
-    starg_repair_options_default(&library);
-    v->merge_distance = library.merge_distance;
-    v->max_hole_edges = library.max_hole_edges;
-    v->rounds = library.max_rounds;
-}
 
 /* What was done, for people and for programs. */
 static void tell(cli_session *session, const starg_repair_report *r) {
@@ -82,10 +64,7 @@ static starg_status run(cli_session *session, void *data) {
     starg_status status = STARG_OK;
     starg_mesh *mended = NULL;
     starg_repair_report report;
-    const starg_repair_options wanted = {.merge_distance = v->merge_distance,
-                                         .max_hole_edges = v->max_hole_edges,
-                                         .max_rounds = v->rounds};
-    CLI_TRY(starg_mesh_repair(session->context, mesh, &wanted, &mended, &report));
+    CLI_TRY(starg_mesh_repair(session->context, mesh, &v->wanted, &mended, &report));
     CLI_TRY(cli_mesh_write(session, mended, v->format, NULL, v->output));
     cli_say(session, "%zu vertices, %zu faces in; %zu vertices, %zu faces out\n",
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh),
@@ -116,7 +95,7 @@ const cli_command cli_command_repair = {
                 "starguard repair scan.ply -o solid.ply --merge-distance 0.001 --max-hole-edges 50",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
-    .defaults = set_defaults,
+    CLI_LIBRARY(starg_repair_options_fields, wanted),
     .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,

@@ -7,7 +7,7 @@
 
 typedef struct values {
     const char *output;
-    uint64_t pose, vertices;
+    starg_sample_options wanted;
     bool list;
 } values;
 
@@ -15,20 +15,8 @@ static const cli_option options[] = {
     CLI_OUTPUT_OPTION(
         "FILE", "Where to write the mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
                 "output."),
-    CLI_COUNT_OPTION("pose", pose, "K", 0, 1000,
-                     "Which pose, from 0 (default). All poses of a sample have the same faces."),
-    CLI_COUNT_OPTION("vertices", vertices, "N", 500, 1000000,
-                     "About how many vertices, 500 to 1,000,000. Default 5,000."),
     CLI_FLAG_OPTION("list", list, "List the samples and their numbers of poses."),
 };
-
-static void set_defaults(void *data) {
-    values *v = data;
-    starg_sample_options library;
-    starg_sample_options_default(&library);
-    v->pose = (uint64_t)library.pose;
-    v->vertices = library.vertex_count;
-}
 
 static const char *sample_word(size_t index) {
     const starg_sample_info *info = starg_sample_at(index);
@@ -79,13 +67,12 @@ static starg_status run(cli_session *session, void *data) {
                         "name a sample and an output: starguard sample NAME -o FILE; --list "
                         "lists the names");
     const char *name = session->operands[0];
-    const starg_sample_options wanted = {.pose = (int)v->pose, .vertex_count = v->vertices};
     CLI_TRY(check_name(session, name));
     CLI_TRY(cli_mesh_format(session, v->output, &format));
     CLI_TRY(cli_announce(session, v->output));
-    CLI_TRY(starg_sample_create(session->context, name, &wanted, &mesh));
+    CLI_TRY(starg_sample_create(session->context, name, &v->wanted, &mesh));
     CLI_TRY(cli_mesh_write(session, mesh, format, NULL, v->output));
-    cli_say(session, "%s, pose %d: %zu vertices, %zu faces\n", name, wanted.pose,
+    cli_say(session, "%s, pose %d: %zu vertices, %zu faces\n", name, v->wanted.pose,
             starg_mesh_vertex_count(mesh), starg_mesh_face_count(mesh));
     cli_report_head(session, "starguard-sample", v->output, mesh);
 done:
@@ -109,6 +96,6 @@ const cli_command cli_command_sample = {
     CLI_OPTIONS(options),
     CLI_OPERANDS(0, 1),
     .operand_word = sample_word,
-    .defaults = set_defaults,
+    CLI_LIBRARY(starg_sample_options_fields, wanted),
     .run = run,
 };

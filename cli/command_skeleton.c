@@ -11,8 +11,7 @@
 
 typedef struct values {
     const char *output, *picture;
-    uint64_t nodes;
-    double prune;
+    starg_skeleton_options wanted;
     starg_skeleton_format format; /* by the name of the output */
 } values;
 
@@ -21,25 +20,9 @@ static const cli_option options[] = {
         "FILE.obj|.cg|.vtk",
         "Where to write the skeleton, by the name's ending: OBJ lines, a curve graph, or VTK "
         "with radii (docs/formats.md); '-' writes VTK to standard output."),
-    CLI_COUNT_OPTION(
-        "nodes", nodes, "N", 1, 10000000,
-        "About how many nodes; joints, ends and what loops need are kept in any case. Default "
-        "1,000."),
-    CLI_REAL_OPTION(
-        "prune", prune, "X", 1, 1e6,
-        "A branch must reach X times as far from its joint as the solid is wide there (half "
-        "its width). 1 keeps the most branches. Default 1.5."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Draw the model half transparent with its skeleton."),
 };
-
-static void set_defaults(void *data) {
-    values *v = data;
-    starg_skeleton_options library;
-    starg_skeleton_options_default(&library);
-    v->nodes = library.node_count;
-    v->prune = library.prune;
-}
 
 static starg_status choose_format(cli_session *session, const char *name,
                                   starg_skeleton_format *format) {
@@ -119,8 +102,7 @@ static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     starg_skeleton *skeleton = NULL;
-    const starg_skeleton_options wanted = {.node_count = (size_t)v->nodes, .prune = v->prune};
-    CLI_TRY(starg_skeleton_create(session->context, session->solid, &wanted, &skeleton));
+    CLI_TRY(starg_skeleton_create(session->context, session->solid, &v->wanted, &skeleton));
     if (v->picture != NULL)
         CLI_TRY(write_picture(session, session->solid, skeleton, v->picture));
     CLI_TRY(starg_skeleton_write(session->context, skeleton,
@@ -150,8 +132,8 @@ const cli_command cli_command_skeleton = {
         "starguard skeleton horse.off -o horse.cg --json",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
-    .defaults = set_defaults,
     .input = CLI_INPUT_SOLID,
     .prepare = prepare,
+    CLI_LIBRARY(starg_skeleton_options_fields, wanted),
     .run = run,
 };

@@ -18,10 +18,6 @@ static const cli_option options[] = {
     CLI_DISTANCE_OPTION,
 };
 
-static void set_defaults(void *data) {
-    *(values *)data = (values){.distance = STARG_SIGNATURE_DEFAULT};
-}
-
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
@@ -97,7 +93,6 @@ const cli_command cli_command_view = {
                 "starguard view shapes.db -o shapes.html --distance star",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, SIZE_MAX),
-    .defaults = set_defaults,
     .prepare = prepare,
     .run = run,
 };

@@ -6,11 +6,11 @@
 #include "model.h"
 #include "report.h"
 #include "starguard/picture.h"
-#include "view.h"
+#include "starguard/visibility.h"
 
 typedef struct values {
-    cli_points from;
-    cli_view view;
+    starg_places from;
+    starg_visibility_options view;
     const char *output;
 } values;
 
@@ -23,13 +23,7 @@ static const cli_option options[] = {
         "Write the model with each face in the colour of the first point that sees it; faces "
         "that none sees are grey. With --target vertices a face counts whose vertices one "
         "point sees."),
-    CLI_VIEW_OPTIONS("engine"),
 };
-
-static void set_defaults(void *data) {
-    values *v = data;
-    cli_view_default(&v->view);
-}
 
 /* Everything about one call. */
 typedef struct look {
@@ -69,13 +63,11 @@ static void tell_point(cli_session *session, const look *l, size_t row) {
     cli_put(session, point, "count", json_integer((json_int_t)count));
     if (faces)
         cli_put(session, point, "area", cli_json_real(area));
-    cli_put(session, point, cli_target_words[l->wanted->view.target],
-            cli_json_row(session, l->seen, row));
+    cli_put(session, point, faces ? "faces" : "vertices", cli_json_row(session, l->seen, row));
     cli_append(session, l->points, point);
 }
 
 static starg_status tell(cli_session *session, look *l) {
-    const cli_view *view = &l->wanted->view;
     l->points = json_array();
     for (size_t row = 0; row < starg_bits_rows(l->seen); row++)
         tell_point(session, l, row);
@@ -84,9 +76,7 @@ static starg_status tell(cli_session *session, look *l) {
         return STARG_OK;
     }
     cli_put(session, session->report, "options",
-            json_pack("{s:s, s:s, s:s, s:o}", "engine", cli_engine_words[view->engine], "target",
-                      cli_target_words[view->target], "faces", cli_face_rule_words[view->face_rule],
-                      "range", cli_json_real(view->range)));
+            cli_json_record(session, starg_visibility_options_fields(), &l->wanted->view));
     cli_put(session, session->report, "points", l->points);
     return STARG_OK;
 }
@@ -130,8 +120,8 @@ static starg_status run(cli_session *session, void *data) {
     starg_status status = STARG_OK;
     starg_bits *seen = NULL;
     double *fractions = NULL;
-    const starg_visibility_options view = cli_view_options(&v->view);
-    CLI_TRY(starg_visibility(session->context, solid, v->from.values, v->from.count, &view, &seen));
+    CLI_TRY(
+        starg_visibility(session->context, solid, v->from.values, v->from.count, &v->view, &seen));
     fractions = cli_area_fractions(starg_solid_mesh(solid));
     if (fractions == NULL) {
         status = cli_fail_memory(session);
@@ -164,7 +154,7 @@ const cli_command cli_command_visible = {
                 "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
-    .defaults = set_defaults,
+    CLI_LIBRARY(starg_visibility_options_fields, view),
     .input = CLI_INPUT_SOLID,
     .prepare = prepare,
     .run = run,

@@ -28,9 +28,12 @@ struct cli_command {
     /* Words that the first operand may be, for completion: NULL behind the last. Else: files. */
     const char *(*operand_word)(size_t index);
     size_t values_size; /* of the struct that the options fill */
+    /* The library's options that the command takes, and where they are in that struct. */
+    const starg_fields *(*library)(void);
+    size_t library_offset;
     cli_input input;
-    /* In this order; all but `run` may be NULL. */
-    void (*defaults)(void *values);                              /* the struct comes zeroed     */
+    /* In this order; all but `run` may be NULL. The struct comes with the defaults of its tables.
+     */
     starg_status (*prepare)(cli_session *session, void *values); /* options, names of outputs   */
     starg_status (*run)(cli_session *session, void *values);     /* the work, with its input    */
     void (*release)(cli_session *session, void *values);         /* what `prepare` has taken    */
@@ -40,6 +43,16 @@ struct cli_command {
 #define CLI_OPERANDS(LEAST, MOST) .least_operands = LEAST, .most_operands = MOST
 #define CLI_OPTIONS(TABLE)                                                                         \
     .options = TABLE, .option_count = sizeof TABLE / sizeof *TABLE, .values_size = sizeof(values)
+#define CLI_LIBRARY(FIELDS, MEMBER) .library = FIELDS, .library_offset = offsetof(values, MEMBER)
+
+/* Option number `index` of those that a command has beside the common ones, or (NULL) of the common
+ * ones; NULL behind the last. */
+const cli_option *cli_command_option(const cli_command *command, size_t index);
+
+/* The options of a command with what they fill: its own, the library's, the common ones. */
+enum { CLI_OWN, CLI_FROM_LIBRARY, CLI_COMMON, CLI_GROUPS };
+void cli_command_groups(const cli_command *command, void *values, void *common,
+                        cli_group groups[CLI_GROUPS]);
 
 extern const cli_command cli_command_sample;
 extern const cli_command cli_command_check;

@@ -12,10 +12,10 @@
 /* ---- what can be offered ---- */
 
 void completion_visit_words(FILE *stream, const cli_option *o, completion_word_fn *visit) {
-    if (o->kind == CLI_CHOICE)
-        for (size_t i = 0; o->choices[i] != NULL; i++)
-            visit(stream, o->choices[i], (int)strlen(o->choices[i]));
-    if (o->kind != CLI_TEXT)
+    if (o->kind == STARG_FIELD_CHOICE)
+        for (size_t i = 0; o->words[i] != NULL; i++)
+            visit(stream, o->words[i], (int)strlen(o->words[i]));
+    if (o->kind != STARG_FIELD_TEXT)
         return;
     for (const char *word = o->value; *word != '\0';) {
         size_t size = strcspn(word, "|");

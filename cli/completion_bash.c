@@ -4,35 +4,37 @@
 static void bash_names(FILE *stream, const cli_option *o, const char *separator) {
     if (o->letter != 0)
         fprintf(stream, "-%c%s", o->letter, separator);
-    fprintf(stream, "--%s", o->name);
+    fprintf(stream, "--%s", o->option);
 }
 
-static void bash_list(FILE *stream, const cli_option *options, size_t count) {
-    for (size_t i = 0; i < count; i++) {
+/* Of a command, or the common ones. */
+static void bash_list(FILE *stream, const cli_command *command) {
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++) {
         fputc(' ', stream);
-        bash_names(stream, &options[i], " ");
+        bash_names(stream, o, " ");
     }
 }
 
 /* What follows an option: words, files, or nothing that could be offered. */
-static void bash_values(FILE *stream, const cli_option *options, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        const cli_option *o = &options[i];
-        if (o->kind == CLI_FLAG)
+static void bash_values(FILE *stream, const cli_command *command) {
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++) {
+        if (o->kind == STARG_FIELD_FLAG)
             continue;
         fputs("            ", stream);
         bash_names(stream, o, "|");
         fputs(") words=\"", stream);
         completion_visit_words(stream, o, completion_put_word);
-        fprintf(stream, "\" files=%s ;;\n", o->kind == CLI_TEXT ? "yes" : "");
+        fprintf(stream, "\" files=%s ;;\n", o->kind == STARG_FIELD_TEXT ? "yes" : "");
     }
 }
 
 static void bash_command(FILE *stream, const cli_command *command) {
     fprintf(stream, "    \"%s\")\n        options=\"$common", command->name);
-    bash_list(stream, command->options, command->option_count);
+    bash_list(stream, command);
     fputs("\"\n        case $before in\n", stream);
-    bash_values(stream, command->options, command->option_count);
+    bash_values(stream, command);
     fputs("            *) options_apply=yes words=\"", stream);
     if (command->members != NULL)
         completion_put_table_words(stream, command->members);
@@ -49,7 +51,7 @@ void completion_bash(FILE *stream) {
           "    local command=${COMP_WORDS[1]} options= words= files= options_apply=\n"
           "    local common=\"",
           stream);
-    bash_list(stream, cli_common_options, cli_common_option_count);
+    bash_list(stream, NULL);
     fputs("\"\n"
           "    COMPREPLY=()\n"
           "    if ((COMP_CWORD == 1)); then\n"
@@ -75,9 +77,10 @@ void completion_bash(FILE *stream) {
           "    esac\n"
           "    case $before in\n",
           stream);
-    for (size_t i = 0; i < cli_common_option_count; i++)
-        if (cli_common_options[i].kind != CLI_FLAG)
-            fprintf(stream, "        --%s) return ;;\n", cli_common_options[i].name);
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_command_option(NULL, i)) != NULL; i++)
+        if (o->kind != STARG_FIELD_FLAG)
+            fprintf(stream, "        --%s) return ;;\n", o->option);
     fputs("    esac\n"
           "    if [[ $options_apply && $word == -* ]]; then\n"
           "        COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n"

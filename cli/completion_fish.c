@@ -6,16 +6,16 @@ static void fish_begin(FILE *stream, const char *words) {
     fprintf(stream, "complete -c starguard -n '__starguard_behind %s'", words);
 }
 
-static void fish_options(FILE *stream, const cli_command *command, const cli_option *options,
-                         size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        const cli_option *o = &options[i];
+/* The options of `of`, or (NULL) the common ones, behind a command. */
+static void fish_options(FILE *stream, const cli_command *command, const cli_command *of) {
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_command_option(of, i)) != NULL; i++) {
         fish_begin(stream, command->name);
         if (o->letter != 0)
             fprintf(stream, " -s %c", o->letter);
-        fprintf(stream, " -l %s", o->name);
-        if (o->kind != CLI_FLAG) {
-            fprintf(stream, " %s -a '", o->kind == CLI_TEXT ? "-rF" : "-x");
+        fprintf(stream, " -l %s", o->option);
+        if (o->kind != STARG_FIELD_FLAG) {
+            fprintf(stream, " %s -a '", o->kind == STARG_FIELD_TEXT ? "-rF" : "-x");
             completion_visit_words(stream, o, completion_put_word);
             fputc('\'', stream);
         }
@@ -44,8 +44,8 @@ static void fish_command(FILE *stream, const cli_command *command) {
         fish_table(stream, command->name, command->members);
         return;
     }
-    fish_options(stream, command, command->options, command->option_count);
-    fish_options(stream, command, cli_common_options, cli_common_option_count);
+    fish_options(stream, command, command);
+    fish_options(stream, command, NULL);
     if (command->operand_word == NULL)
         return;
     fish_begin(stream, command->name);

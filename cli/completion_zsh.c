@@ -4,36 +4,38 @@
 #include "completion_parts.h"
 
 static void zsh_option(FILE *stream, const cli_option *o, const char *name) {
-    bool repeats = o->kind == CLI_POINTS;
+    bool repeats = o->kind == STARG_FIELD_PLACES;
     fprintf(stream, "            '%s%s[", repeats ? "*" : "", name);
     completion_put_brief(stream, o->help, "[]:\\");
     fputc(']', stream);
-    if (o->kind != CLI_FLAG) {
+    if (o->kind != STARG_FIELD_FLAG) {
         fputc(':', stream);
         completion_put_brief(stream, o->value, "[]:\\");
         fputc(':', stream);
     }
-    if (o->kind == CLI_CHOICE) {
+    if (o->kind == STARG_FIELD_CHOICE) {
         fputc('(', stream);
         completion_visit_words(stream, o, completion_put_word);
         fputc(')', stream);
-    } else if (o->kind == CLI_TEXT) {
+    } else if (o->kind == STARG_FIELD_TEXT) {
         fputs("{_files; compadd --", stream);
         completion_visit_words(stream, o, completion_put_word);
         fputc('}', stream);
-    } else if (o->kind != CLI_FLAG) {
+    } else if (o->kind != STARG_FIELD_FLAG) {
         fputc(' ', stream);
     }
     fputs("' \\\n", stream);
 }
 
-static void zsh_options(FILE *stream, const cli_option *options, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        char name[64] = {'-', options[i].letter, '\0'};
-        if (options[i].letter != 0)
-            zsh_option(stream, &options[i], name);
-        snprintf(name, sizeof name, "--%s", options[i].name);
-        zsh_option(stream, &options[i], name);
+/* Of a command, or the common ones. */
+static void zsh_options(FILE *stream, const cli_command *command) {
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++) {
+        char name[64] = {'-', o->letter, '\0'};
+        if (o->letter != 0)
+            zsh_option(stream, o, name);
+        snprintf(name, sizeof name, "--%s", o->option);
+        zsh_option(stream, o, name);
     }
 }
 
@@ -41,8 +43,8 @@ static void zsh_command(FILE *stream, const cli_command *command) {
     if (command->members != NULL)
         return;
     fprintf(stream, "    (\"%s\")\n        _arguments -S \\\n", command->name);
-    zsh_options(stream, command->options, command->option_count);
-    zsh_options(stream, cli_common_options, cli_common_option_count);
+    zsh_options(stream, command);
+    zsh_options(stream, NULL);
     if (command->operand_word != NULL) {
         fputs("            ':name:(", stream);
         completion_put_operand_words(stream, command);

@@ -11,8 +11,9 @@ extern const char *const cli_distance_words[];
 
 #define CLI_DISTANCE_OPTION                                                                        \
     CLI_CHOICE_OPTION(                                                                             \
-        "distance", distance, cli_distance_words, "star|shape-dna|paper|d2",                       \
-        "What models are compared by: star (default), what is seen from the pieces of a star "     \
+        "distance", distance, cli_distance_words, STARG_SIGNATURE_DEFAULT,                         \
+        "star|shape-dna|paper|d2",                                                                 \
+        "What models are compared by: star, what is seen from the pieces of a star "               \
         "decomposition and how they conduct, whatever the pose; shape-dna, the spectrum of the "   \
         "surface; paper, the deformation of one guarding graph into the other; or d2, the "        \
         "distances between points of the surface.")

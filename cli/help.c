@@ -61,18 +61,26 @@ static void wrap(FILE *stream, const char *text, int indent, int column) {
     fputc('\n', stream);
 }
 
-static void print_options(FILE *stream, const cli_option *options, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        const cli_option *o = &options[i];
-        const char letter[] = {'-', o->letter, ',', ' ', '\0'};
-        int column = fprintf(stream, "  %s--%s%s%s", o->letter != 0 ? letter : "", o->name,
-                             o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
-        if (column > OPTION_INDENT - 2) {
-            fputc('\n', stream);
-            column = 0;
-        }
-        wrap(stream, o->help, OPTION_INDENT, column);
+static void print_option(FILE *stream, const cli_option *o) {
+    const char letter[] = {'-', o->letter, ',', ' ', '\0'};
+    char text[CLI_HELP_SIZE];
+    int column = fprintf(stream, "  %s--%s%s%s", o->letter != 0 ? letter : "", o->option,
+                         o->value != NULL ? " " : "", o->value != NULL ? o->value : "");
+    if (column > OPTION_INDENT - 2) {
+        fputc('\n', stream);
+        column = 0;
     }
+    cli_option_help(o, text, sizeof text);
+    wrap(stream, text, OPTION_INDENT, column);
+}
+
+/* Of a command, or the common ones. */
+static void print_options(FILE *stream, const char *title, const cli_command *command) {
+    const cli_option *o;
+    if (cli_command_option(command, 0) != NULL)
+        heading(stream, title);
+    for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++)
+        print_option(stream, o);
 }
 
 static void print_commands(FILE *stream, const cli_command *const *table) {
@@ -108,8 +116,7 @@ void cli_help_program(FILE *stream) {
     heading(stream, "Commands");
     print_commands(stream, cli_commands);
     fprintf(stream, "  %-10s %s\n", "help", "all about a command: starguard help COMMAND");
-    heading(stream, "Options of every command");
-    print_options(stream, cli_common_options, cli_common_option_count);
+    print_options(stream, "Options of every command", NULL);
     heading(stream, "Models and files");
     wrap(stream, cli_about_files, 2, 0);
     heading(stream, "First steps");
@@ -125,10 +132,8 @@ void cli_help_command(FILE *stream, const cli_command *command) {
         heading(stream, "Commands");
         print_commands(stream, command->members);
     }
-    heading(stream, "Options");
-    print_options(stream, command->options, command->option_count);
-    heading(stream, "Options of every command");
-    print_options(stream, cli_common_options, cli_common_option_count);
+    print_options(stream, "Options", command);
+    print_options(stream, "Options of every command", NULL);
     heading(stream, "Examples");
     print_examples(stream, command->examples);
 }

@@ -6,10 +6,11 @@
 #include "starguard/version.h"
 
 /* What an option takes. */
-static const char *kind_name(cli_kind kind) {
+static const char *kind_name(starg_field_kind kind) {
     static const char *const names[] = {
-        [CLI_FLAG] = "flag", [CLI_TEXT] = "text",     [CLI_COUNT] = "count",
-        [CLI_REAL] = "real", [CLI_CHOICE] = "choice", [CLI_POINTS] = "points"};
+        [STARG_FIELD_FLAG] = "flag", [STARG_FIELD_COUNT] = "count",
+        [STARG_FIELD_REAL] = "real", [STARG_FIELD_CHOICE] = "choice",
+        [STARG_FIELD_TEXT] = "text", [STARG_FIELD_PLACES] = "points"};
     return names[kind];
 }
 
@@ -30,28 +31,31 @@ static json_t *words_json(const char *const *words) {
 
 static json_t *option_json(const cli_option *o) {
     const char letter[] = {o->letter, '\0'};
-    json_t *option = json_pack("{s:s, s:s*, s:s, s:s*, s:s}", "name", o->name, "letter",
+    char help[CLI_HELP_SIZE];
+    cli_option_help(o, help, sizeof help);
+    json_t *option = json_pack("{s:s, s:s*, s:s, s:s*, s:s}", "name", o->option, "letter",
                                o->letter != 0 ? letter : NULL, "kind", kind_name(o->kind), "value",
-                               o->value, "help", o->help);
-    if (o->kind != CLI_CHOICE ||
-        json_object_set_new(option, "choices", words_json(o->choices)) == 0)
+                               o->value, "help", help);
+    if (o->kind != STARG_FIELD_CHOICE ||
+        json_object_set_new(option, "choices", words_json(o->words)) == 0)
         return option;
     json_decref(option);
     return NULL;
 }
 
-static json_t *options_json(const cli_option *options, size_t count) {
+/* Of a command, or the common ones. */
+static json_t *options_json(const cli_command *command) {
     json_t *list = json_array();
-    for (size_t i = 0; i < count; i++)
-        append(&list, option_json(&options[i]));
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++)
+        append(&list, option_json(o));
     return list;
 }
 
 static json_t *command_json(const cli_command *c) {
     return json_pack("{s:s, s:s, s:s, s:s, s:s, s:b, s:o}", "name", c->name, "usage", c->usage,
                      "summary", c->summary, "description", c->description, "examples", c->examples,
-                     "group", c->members != NULL, "options",
-                     options_json(c->options, c->option_count));
+                     "group", c->members != NULL, "options", options_json(c));
 }
 
 /* Appends the commands of a table; the members of a group follow it. */
@@ -66,9 +70,9 @@ static void append_commands(json_t **list, const cli_command *const *table) {
 bool cli_help_json(FILE *stream) {
     json_t *commands = json_array();
     append_commands(&commands, cli_commands);
-    json_t *table = json_pack("{s:s, s:i, s:s, s:o, s:o}", "format", "starguard-help", "version", 1,
-                              "program", starg_version(), "commands", commands, "common_options",
-                              options_json(cli_common_options, cli_common_option_count));
+    json_t *table =
+        json_pack("{s:s, s:i, s:s, s:o, s:o}", "format", "starguard-help", "version", 1, "program",
+                  starg_version(), "commands", commands, "common_options", options_json(NULL));
     bool written = table != NULL && json_dumpf(table, stream, JSON_INDENT(1)) == 0;
     if (written)
         fputc('\n', stream);

@@ -48,8 +48,9 @@ static int reject_option(const char *word) {
     cli_suggest_begin(&near, word);
     cli_suggest_try(&near, "--help");
     cli_suggest_try(&near, "--version");
-    for (size_t i = 0; i < cli_common_option_count; i++) {
-        if (strncmp(word, "--", 2) == 0 && strcmp(word + 2, cli_common_options[i].name) == 0) {
+    const cli_option *o;
+    for (size_t i = 0; (o = cli_command_option(NULL, i)) != NULL; i++) {
+        if (strncmp(word, "--", 2) == 0 && strcmp(word + 2, o->option) == 0) {
             fprintf(stderr, "starguard: options follow the command: starguard COMMAND %s\n", word);
             return CLI_EXIT_USAGE;
         }
@@ -128,11 +129,10 @@ static bool wants_json(int argc, char **argv) {
     return false;
 }
 
-static starg_status parse(cli_session *session, cli_group *own, int argc, char **argv) {
-    cli_group groups[] = {*own, {cli_common_options, cli_common_option_count, &session->common}};
+static starg_status parse(cli_session *session, const cli_group *groups, int argc, char **argv) {
     cli_complaint complaint;
     bool json = wants_json(argc, argv);
-    int operands = cli_options_parse(groups, 2, argc, argv, &complaint);
+    int operands = cli_options_parse(groups, CLI_GROUPS, argc, argv, &complaint);
     if (operands < 0) {
         if (json)
             cli_report_begin(session);
@@ -171,27 +171,29 @@ static int run(const cli_command *command, int argc, char **argv) {
     starg_status status = STARG_OK;
     int result = CLI_EXIT_DONE;
     cli_session session;
+    cli_group groups[CLI_GROUPS];
     cli_session_init(&session, command);
-    cli_group own = {command->options, command->option_count, calloc(1, command->values_size + 1)};
-    if (own.values == NULL) {
+    void *values = calloc(1, command->values_size + 1);
+    if (values == NULL) {
         status = cli_fail_memory(&session);
         goto done;
     }
-    if (command->defaults != NULL)
-        command->defaults(own.values);
-    CLI_TRY(parse(&session, &own, argc, argv));
+    cli_command_groups(command, values, &session.common, groups);
+    for (int i = 0; i < CLI_GROUPS; i++)
+        cli_options_default(&groups[i]);
+    CLI_TRY(parse(&session, groups, argc, argv));
     if (session.common.help || session.common.version) {
         result = print_about(&session);
         goto free_values;
     }
     CLI_TRY(cli_session_start(&session));
-    CLI_TRY(perform(&session, own.values));
+    CLI_TRY(perform(&session, values));
 done:
     result = cli_session_finish(&session, status);
 free_values:
-    if (own.values != NULL)
-        cli_options_free(&own);
-    free(own.values);
+    if (values != NULL)
+        cli_options_free(&groups[CLI_OWN]);
+    free(values);
     return result;
 }
 

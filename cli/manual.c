@@ -114,14 +114,16 @@ static void put_head(FILE *stream, const cli_command *command, const char *summa
     put_section(stream, "SYNOPSIS");
 }
 
-static void put_options(FILE *stream, const cli_option *options, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        const cli_option *o = &options[i];
+/* Of a command, or the common ones. */
+static void put_options(FILE *stream, const cli_command *command) {
+    const cli_option *o;
+    char help[CLI_HELP_SIZE];
+    for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++) {
         fputs(".TP\n", stream);
         if (o->letter != 0)
             fprintf(stream, "\\fB\\-%c\\fR, ", o->letter);
         fputs("\\fB\\-\\-", stream);
-        for (const char *c = o->name; *c != '\0'; c++)
+        for (const char *c = o->option; *c != '\0'; c++)
             put_escaped(stream, *c);
         fputs("\\fR", stream);
         if (o->value != NULL) {
@@ -131,7 +133,8 @@ static void put_options(FILE *stream, const cli_option *options, size_t count) {
             fputs("\\fR", stream);
         }
         fputc('\n', stream);
-        put_text(stream, o->help);
+        cli_option_help(o, help, sizeof help);
+        put_text(stream, help);
     }
 }
 
@@ -155,7 +158,7 @@ static void put_exit_status(FILE *stream) {
 
 static void put_common_options(FILE *stream) {
     put_section(stream, "OPTIONS OF EVERY COMMAND");
-    put_options(stream, cli_common_options, cli_common_option_count);
+    put_options(stream, NULL);
 }
 
 /* ---- pages ---- */
@@ -187,9 +190,9 @@ static void put_command(FILE *stream, const cli_command *command) {
         put_section(stream, "COMMANDS");
         put_commands(stream, command->members);
     }
-    if (command->option_count > 0) {
+    if (cli_command_option(command, 0) != NULL) {
         put_section(stream, "OPTIONS");
-        put_options(stream, command->options, command->option_count);
+        put_options(stream, command);
     }
     put_common_options(stream);
     put_section(stream, "EXAMPLES");

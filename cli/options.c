@@ -34,9 +34,10 @@ __attribute__((format(printf, 2, 3))) static bool complain(parser *p, const char
 
 /* ---- values ---- */
 
-static bool set_count(parser *p, const match *m, const char *word, uint64_t *value) {
+static bool set_count(parser *p, const match *m, const char *word) {
     const cli_option *o = m->option;
-    if (cli_number_count(word, value) && *value >= o->least && *value <= o->most)
+    uint64_t value;
+    if (cli_number_count(word, &value) && starg_field_set_count(o, m->group->values, value))
         return true;
     if (o->most == UINT64_MAX)
         return complain(p, "%s takes a whole number of at least %llu, not '%.100s'", m->shown,
@@ -45,28 +46,27 @@ static bool set_count(parser *p, const match *m, const char *word, uint64_t *val
                     (unsigned long long)o->least, (unsigned long long)o->most, word);
 }
 
-static bool set_real(parser *p, const match *m, const char *word, double *value) {
+static bool set_real(parser *p, const match *m, const char *word) {
     const cli_option *o = m->option;
-    if (cli_number_real(word, value) && *value <= o->high &&
-        (o->above ? *value > o->low : *value >= o->low))
+    double value;
+    if (cli_number_real(word, &value) && starg_field_set_real(o, m->group->values, value))
         return true;
     return complain(p, "%s takes a number %s %g and at most %g, not '%.100s'", m->shown,
-                    o->above ? "above" : "of at least", o->low, o->high, word);
+                    (o->flags & STARG_FIELD_ABOVE) ? "above" : "of at least", o->low, o->high,
+                    word);
 }
 
-static bool set_choice(parser *p, const match *m, const char *word, int *value) {
+static bool set_choice(parser *p, const match *m, const char *word) {
     char list[256] = "";
     size_t used = 0;
     cli_suggestion near;
     cli_suggest_begin(&near, word);
-    for (int i = 0; m->option->choices[i] != NULL; i++) {
-        const char *choice = m->option->choices[i];
-        if (strcmp(word, choice) == 0) {
-            *value = i;
-            return true;
-        }
+    for (int i = 0; m->option->words[i] != NULL; i++) {
+        const char *choice = m->option->words[i];
+        if (strcmp(word, choice) == 0)
+            return starg_field_set_count(m->option, m->group->values, (uint64_t)i);
         cli_suggest_try(&near, choice);
-        const char *comma = i == 0 ? "" : m->option->choices[i + 1] == NULL ? " or " : ", ";
+        const char *comma = i == 0 ? "" : m->option->words[i + 1] == NULL ? " or " : ", ";
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", comma, choice);
         if (used >= sizeof list)
             used = sizeof list - 1;
@@ -77,7 +77,7 @@ static bool set_choice(parser *p, const match *m, const char *word, int *value) 
     return complain(p, "%s takes %s, not '%.100s'", m->shown, list, word);
 }
 
-static bool add_point(parser *p, const match *m, const char *word, cli_points *points) {
+static bool add_point(parser *p, const match *m, const char *word, starg_places *points) {
     double point[3];
     if (!cli_number_point(word, point))
         return complain(p, "%s takes a point as X,Y,Z (three numbers, no spaces), not '%.100s'",
@@ -91,25 +91,29 @@ static bool add_point(parser *p, const match *m, const char *word, cli_points *p
     return true;
 }
 
+/* A flag that is called "no-X" clears X. */
+static bool set_flag(const match *m) {
+    return starg_field_set_count(m->option, m->group->values,
+                                 strncmp(m->option->option, "no-", 3) != 0);
+}
+
 static bool set_value(parser *p, const match *m, const char *word) {
     void *variable = (char *)m->group->values + m->option->offset;
     switch (m->option->kind) {
-    case CLI_FLAG:
-        *(bool *)variable = true;
-        return true;
-    case CLI_TEXT:
+    case STARG_FIELD_FLAG:
+        return set_flag(m);
+    case STARG_FIELD_COUNT:
+        return set_count(p, m, word);
+    case STARG_FIELD_REAL:
+        return set_real(p, m, word);
+    case STARG_FIELD_CHOICE:
+        return set_choice(p, m, word);
+    case STARG_FIELD_PLACES:
+        return add_point(p, m, word, variable);
+    default:
         *(const char **)variable = word;
         return *word != '\0' || complain(p, "%s takes a name, not an empty word", m->shown);
-    case CLI_COUNT:
-        return set_count(p, m, word, variable);
-    case CLI_REAL:
-        return set_real(p, m, word, variable);
-    case CLI_CHOICE:
-        return set_choice(p, m, word, variable);
-    case CLI_POINTS:
-        return add_point(p, m, word, variable);
     }
-    return false;
 }
 
 /* ---- names ---- */
@@ -123,12 +127,14 @@ static bool find_long(parser *p, const char *name, size_t size, match *m) {
     for (size_t g = 0; g < p->group_count; g++) {
         for (size_t i = 0; i < p->groups[g].count; i++) {
             const cli_option *o = &p->groups[g].options[i];
-            if (strcmp(word, o->name) == 0) {
+            if (o->option == NULL)
+                continue;
+            if (strcmp(word, o->option) == 0) {
                 *m = (match){.option = o, .group = &p->groups[g]};
-                snprintf(m->shown, sizeof m->shown, "--%s", o->name);
+                snprintf(m->shown, sizeof m->shown, "--%s", o->option);
                 return true;
             }
-            cli_suggest_try(&near, o->name);
+            cli_suggest_try(&near, o->option);
         }
     }
     if (near.best != NULL)
@@ -140,7 +146,7 @@ static bool find_short(parser *p, char letter, match *m) {
     for (size_t g = 0; g < p->group_count; g++) {
         for (size_t i = 0; i < p->groups[g].count; i++) {
             const cli_option *o = &p->groups[g].options[i];
-            if (o->letter != letter)
+            if (o->option == NULL || o->letter != letter)
                 continue;
             *m = (match){.option = o, .group = &p->groups[g]};
             snprintf(m->shown, sizeof m->shown, "-%c", letter);
@@ -165,9 +171,9 @@ static bool parse_long(parser *p, const char *text) {
     size_t size = equals != NULL ? (size_t)(equals - text) : strlen(text);
     if (!find_long(p, text, size, &m))
         return false;
-    if (m.option->kind == CLI_FLAG && equals != NULL)
+    if (m.option->kind == STARG_FIELD_FLAG && equals != NULL)
         return complain(p, "%s takes no value", m.shown);
-    if (m.option->kind != CLI_FLAG) {
+    if (m.option->kind != STARG_FIELD_FLAG) {
         word = equals != NULL ? equals + 1 : NULL;
         if (word == NULL && !next_value(p, &m, &word))
             return false;
@@ -181,9 +187,9 @@ static bool parse_short(parser *p, const char *text) {
     const char *word = NULL;
     if (!find_short(p, *text, &m))
         return false;
-    if (m.option->kind == CLI_FLAG && text[1] != '\0')
+    if (m.option->kind == STARG_FIELD_FLAG && text[1] != '\0')
         return complain(p, "unknown option '-%.100s'", text);
-    if (m.option->kind != CLI_FLAG) {
+    if (m.option->kind != STARG_FIELD_FLAG) {
         word = text + 1;
         if (*word == '\0' && !next_value(p, &m, &word))
             return false;
@@ -212,12 +218,23 @@ int cli_options_parse(const cli_group *groups, size_t group_count, int argc, cha
     return operands;
 }
 
+void cli_options_default(const cli_group *group) {
+    const starg_fields table = {.fields = group->options, .count = group->count};
+    starg_fields_default(&table, group->values);
+}
+
 void cli_options_free(const cli_group *group) {
     for (size_t i = 0; i < group->count; i++) {
-        if (group->options[i].kind != CLI_POINTS)
+        if (group->options[i].kind != STARG_FIELD_PLACES)
             continue;
-        cli_points *points = (cli_points *)((char *)group->values + group->options[i].offset);
-        free(points->values);
-        *points = (cli_points){0};
+        starg_places *places = (starg_places *)((char *)group->values + group->options[i].offset);
+        free(places->values);
+        *places = (starg_places){0};
     }
+}
+
+void cli_option_help(const cli_option *option, char *text, size_t size) {
+    char standard[256];
+    starg_field_default_text(option, standard, sizeof standard);
+    snprintf(text, size, "%s%s%s", option->help, standard[0] != '\0' ? " " : "", standard);
 }

@@ -1,5 +1,6 @@
-/* Options as tables. A table says for each option what it is called, what it takes and where the
- * value goes; the parser, the help and the messages all live on it.
+/* Options as tables: rows of the library's field tables (starguard/fields.h), and rows of the same
+ * kind for what only a command knows. The parser, the help, the manual, completion and the messages
+ * all live on them.
  *
  * Why not argp: it takes abbreviations of option names (so that a new option can break an old
  * script), cannot suggest the name that was meant, and hides its tables from whatever else needs
@@ -7,61 +8,46 @@
 #ifndef STARGUARD_CLI_OPTIONS_H
 #define STARGUARD_CLI_OPTIONS_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "starguard/fields.h"
 
-/* The type of the variable that an option fills. */
-typedef enum cli_kind {
-    CLI_FLAG,   /* bool: set to true                                 */
-    CLI_TEXT,   /* const char *                                      */
-    CLI_COUNT,  /* uint64_t in [least, most]                         */
-    CLI_REAL,   /* double in [low, high], or (low, high]             */
-    CLI_CHOICE, /* int: the index of a word of `choices`             */
-    CLI_POINTS  /* cli_points: every occurrence appends X,Y,Z        */
-} cli_kind;
-
-typedef struct cli_option {
-    const char *name;  /* without the dashes                         */
-    char letter;       /* short form, or 0                           */
-    cli_kind kind;     /* of the value                               */
-    size_t offset;     /* of the variable in the group's struct      */
-    const char *value; /* what help calls the value; NULL for a flag */
-    const char *help;
-    const char *const *choices; /* CLI_CHOICE: ends with NULL        */
-    uint64_t least, most;
-    double low, high;
-    bool above; /* low itself is out                                 */
-} cli_option;
+/* Rows with a NULL `option` are no options. */
+typedef starg_field cli_option;
 
 /* Entries of the table of a command, whose struct is called `values`. */
 #define CLI_OPTION(NAME, KIND, MEMBER, VALUE, HELP)                                                \
-    .name = NAME, .kind = KIND, .offset = offsetof(values, MEMBER), .value = VALUE, .help = HELP
+    .option = NAME, .kind = KIND, .offset = offsetof(values, MEMBER),                              \
+    .size = sizeof(((values *)0)->MEMBER), .value = VALUE, .help = HELP
 #define CLI_FLAG_OPTION(NAME, MEMBER, HELP)                                                        \
-    { CLI_OPTION(NAME, CLI_FLAG, MEMBER, NULL, HELP) }
+    { CLI_OPTION(NAME, STARG_FIELD_FLAG, MEMBER, NULL, HELP) }
 #define CLI_TEXT_OPTION(NAME, MEMBER, VALUE, HELP)                                                 \
-    { CLI_OPTION(NAME, CLI_TEXT, MEMBER, VALUE, HELP) }
+    { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP) }
 #define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
-    { CLI_OPTION(NAME, CLI_POINTS, MEMBER, VALUE, HELP) }
-#define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, VALUE, HELP)                                        \
-    { CLI_OPTION(NAME, CLI_CHOICE, MEMBER, VALUE, HELP), .choices = WORDS }
-#define CLI_COUNT_OPTION(NAME, MEMBER, VALUE, LEAST, MOST, HELP)                                   \
-    { CLI_OPTION(NAME, CLI_COUNT, MEMBER, VALUE, HELP), .least = LEAST, .most = MOST }
-#define CLI_REAL_OPTION(NAME, MEMBER, VALUE, LOW, HIGH, HELP)                                      \
-    { CLI_OPTION(NAME, CLI_REAL, MEMBER, VALUE, HELP), .low = LOW, .high = HIGH }
-#define CLI_POSITIVE_OPTION(NAME, MEMBER, VALUE, HIGH, HELP)                                       \
-    { CLI_OPTION(NAME, CLI_REAL, MEMBER, VALUE, HELP), .high = HIGH, .above = true }
+    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP) }
+#define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, DEFAULT, VALUE, HELP)                               \
+    {                                                                                              \
+        CLI_OPTION(NAME, STARG_FIELD_CHOICE, MEMBER, VALUE, HELP), .words = WORDS,                 \
+                                                                   .initial = DEFAULT              \
+    }
+#define CLI_COUNT_OPTION(NAME, MEMBER, VALUE, LEAST, MOST, DEFAULT, TEXT, HELP)                    \
+    {                                                                                              \
+        CLI_OPTION(NAME, STARG_FIELD_COUNT, MEMBER, VALUE, HELP),                                  \
+            .least = LEAST, .most = MOST, .initial = DEFAULT, .default_text = TEXT                 \
+    }
+#define CLI_REAL_OPTION(NAME, MEMBER, VALUE, LOW, HIGH, DEFAULT, TEXT, HELP)                       \
+    {                                                                                              \
+        CLI_OPTION(NAME, STARG_FIELD_REAL, MEMBER, VALUE, HELP),                                   \
+            .low = LOW, .high = HIGH, .standard = DEFAULT, .default_text = TEXT                    \
+    }
+#define CLI_POSITIVE_OPTION(NAME, MEMBER, VALUE, HIGH, DEFAULT, TEXT, HELP)                        \
+    {                                                                                              \
+        CLI_OPTION(NAME, STARG_FIELD_REAL, MEMBER, VALUE, HELP),                                   \
+            .high = HIGH, .flags = STARG_FIELD_ABOVE, .standard = DEFAULT, .default_text = TEXT    \
+    }
 /* -o, for a member `output`. */
 #define CLI_OUTPUT_OPTION(VALUE, HELP)                                                             \
-    { CLI_OPTION("output", CLI_TEXT, output, VALUE, HELP), .letter = 'o' }
+    { CLI_OPTION("output", STARG_FIELD_TEXT, output, VALUE, HELP), .letter = 'o' }
 
-/* Points from the command line, count x 3. */
-typedef struct cli_points {
-    double *values;
-    size_t count;
-} cli_points;
-
-/* A table and the struct that it fills. */
+/* A table and the struct that it fills; for help `values` is NULL. */
 typedef struct cli_group {
     const cli_option *options;
     size_t count;
@@ -79,7 +65,14 @@ typedef struct cli_complaint {
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
                       cli_complaint *complaint);
 
+/* Sets the defaults of a group. */
+void cli_options_default(const cli_group *group);
+
 /* Frees what parsing has allocated. */
 void cli_options_free(const cli_group *group);
+
+/* The help of an option, its default too; cut off at `size` bytes. */
+void cli_option_help(const cli_option *option, char *text, size_t size);
+enum { CLI_HELP_SIZE = 1024 };
 
 #endif

@@ -99,6 +99,23 @@ void cli_report_head_tetrahedra(cli_session *session, const char *format, const 
         put_model(session, file, vertices, "tetrahedra", tetrahedra);
 }
 
+void cli_report_take(cli_session *session, const char *text, size_t size) {
+    json_t *object = json_loadb(text, size, 0, NULL);
+    if (object == NULL || json_object_update(session->report, object) != 0)
+        session->report_broken = true;
+    json_decref(object);
+}
+
+json_t *cli_json_record(cli_session *session, const starg_fields *fields, const void *record) {
+    char *text;
+    size_t size;
+    if (starg_fields_json(session->context, fields, record, &text, &size) != STARG_OK)
+        return NULL;
+    json_t *object = json_loadb(text, size, 0, NULL);
+    starg_text_free(session->context, text);
+    return object;
+}
+
 void cli_report_log(cli_session *session, starg_log_level level, const char *message) {
     if (session->log == NULL)
         return;

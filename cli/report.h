@@ -3,6 +3,7 @@
 #define STARGUARD_CLI_REPORT_H
 
 #include "session.h"
+#include "starguard/fields.h"
 #include "starguard/mesh.h"
 
 /* Begins the report; every function below does nothing for a NULL report. */
@@ -25,6 +26,12 @@ void cli_report_head(cli_session *session, const char *format, const char *file,
 /* The same for a model of tetrahedra. */
 void cli_report_head_tetrahedra(cli_session *session, const char *format, const char *file,
                                 size_t vertices, size_t tetrahedra);
+
+/* Takes the members of an object that stands in a text. */
+void cli_report_take(cli_session *session, const char *text, size_t size);
+
+/* The members of a record that have keys, as an object; NULL when memory is out. */
+json_t *cli_json_record(cli_session *session, const starg_fields *fields, const void *record);
 
 /* Collects a line of the library for "log". */
 void cli_report_log(cli_session *session, starg_log_level level, const char *message);

@@ -10,44 +10,21 @@
 #include "report.h"
 #include "terminal.h"
 
+typedef cli_common values;
+
 const cli_option cli_common_options[] = {
-    {.name = "threads",
-     .kind = CLI_COUNT,
-     .offset = offsetof(cli_common, threads),
-     .value = "N",
-     .most = 1024,
-     .help = "Threads to use; 0 (default): all that the machine has. Results do not depend on it."},
-    {.name = "seed",
-     .kind = CLI_COUNT,
-     .offset = offsetof(cli_common, seed),
-     .value = "N",
-     .most = UINT64_MAX,
-     .help = "Where random choices come from. Default 1."},
-    {.name = "time-limit",
-     .kind = CLI_REAL,
-     .offset = offsetof(cli_common, time_limit),
-     .value = "S",
-     .high = 1e9,
-     .above = true,
-     .help = "Stop after S seconds: a search gives the best that it has found, what has nothing to "
-             "show by then ends with status 3. Default: none."},
-    {.name = "quiet",
-     .kind = CLI_FLAG,
-     .offset = offsetof(cli_common, quiet),
-     .help = "Only warnings and errors: no text, no notices, no progress bar."},
-    {.name = "json",
-     .kind = CLI_FLAG,
-     .offset = offsetof(cli_common, json),
-     .help = "One JSON object on standard output and nothing else there (docs/formats.md)."},
-    {.name = "help",
-     .letter = 'h',
-     .kind = CLI_FLAG,
-     .offset = offsetof(cli_common, help),
-     .help = "This text."},
-    {.name = "version",
-     .kind = CLI_FLAG,
-     .offset = offsetof(cli_common, version),
-     .help = "The version."},
+    CLI_COUNT_OPTION("threads", threads, "N", 0, 1024, 0, "0, all that the machine has",
+                     "Threads to use. Results do not depend on it."),
+    CLI_COUNT_OPTION("seed", seed, "N", 0, UINT64_MAX, 1, NULL, "Where random choices come from."),
+    CLI_POSITIVE_OPTION("time-limit", time_limit, "S", 1e9, 0, "none",
+                        "Stop after S seconds: a search gives the best that it has found, what has "
+                        "nothing to show by then ends with status 3."),
+    CLI_FLAG_OPTION("quiet", quiet,
+                    "Only warnings and errors: no text, no notices, no progress bar."),
+    CLI_FLAG_OPTION("json", json,
+                    "One JSON object on standard output and nothing else there (docs/formats.md)."),
+    {CLI_OPTION("help", STARG_FIELD_FLAG, help, NULL, "This text."), .letter = 'h'},
+    CLI_FLAG_OPTION("version", version, "The version."),
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
 
@@ -95,7 +72,7 @@ static void on_log(void *user, starg_log_level level, const char *message) {
 }
 
 void cli_session_init(cli_session *session, const cli_command *command) {
-    *session = (cli_session){.command = command, .began = cli_clock(), .common = {.seed = 1}};
+    *session = (cli_session){.command = command, .began = cli_clock()};
 }
 
 starg_status cli_session_start(cli_session *session) {

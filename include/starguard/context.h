@@ -60,6 +60,9 @@ STARG_API starg_status starg_context_create(const starg_context_options *options
 /* Frees the context; NULL is fine. */
 STARG_API void starg_context_free(starg_context *context);
 
+/* Frees a text that a function gave; NULL is fine. */
+STARG_API void starg_text_free(starg_context *context, char *text);
+
 /* Asks the running call to stop, or the next one if none runs. Async-signal-safe. */
 STARG_API void starg_context_cancel(starg_context *context);
 

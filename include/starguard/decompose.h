@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "fields.h"
 #include "mesh.h"
 #include "solid.h"
 #include "tetra.h"
@@ -77,6 +78,9 @@ typedef struct starg_decompose_options {
 
 /* STRICT, tetrahedra as they come, as few pieces as can be found. */
 STARG_API void starg_decompose_options_default(starg_decompose_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_decompose_options_fields(void);
 
 /* Cuts a solid; its tetrahedra are made as the options say. The search stops at the time limit of
  * the context with the best that it has. `options` may be NULL.

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "fields.h"
 #include "mesh.h"
 #include "shape.h"
 
@@ -77,6 +78,9 @@ typedef struct starg_descriptor_options {
 } starg_descriptor_options;
 
 STARG_API void starg_descriptor_options_default(starg_descriptor_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_descriptor_options_fields(void);
 
 /* Direction `index` of `count` that cover the sphere evenly: points of a Fibonacci lattice. */
 STARG_API void starg_descriptor_direction(size_t count, size_t index, double out[3]);

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "fields.h"
 #include "simplify.h"
 #include "solid.h"
 #include "visibility.h"
@@ -68,6 +69,9 @@ typedef struct starg_guard_options {
 /* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (10 million lines), 1,000 skeletal
  * candidates, grid, faces by vertices, all of it once, no clearance, STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_guard_options_fields(void);
 
 /* The guards of one level of detail, which see all of it that some candidate sees (or as much as
  * was asked for). */
@@ -140,6 +144,11 @@ STARG_API void starg_points_free(starg_context *context, double *points);
  * `model_file` is stored as the model's path, NULL leaves it empty. */
 STARG_API starg_status starg_guards_write(starg_context *context, const starg_guards *guards,
                                           const char *model_file, const char *path);
+
+/* The same text in memory: `size` bytes and a zero behind them, to be freed by starg_text_free.
+ * Errors: MEMORY. */
+STARG_API starg_status starg_guards_write_memory(starg_context *context, const starg_guards *guards,
+                                                 const char *model_file, char **text, size_t *size);
 
 /* Reads GUARDS.json. Errors: READ, FORMAT (what and which key), MEMORY. */
 STARG_API starg_status starg_guards_read(starg_context *context, const char *path,

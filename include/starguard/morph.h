@@ -8,6 +8,7 @@
 
 #include "context.h"
 #include "decompose.h"
+#include "fields.h"
 #include "guard.h"
 #include "mesh.h"
 
@@ -99,6 +100,9 @@ typedef struct starg_morph_options {
 
 /* Star; 1,000 candidates. */
 STARG_API void starg_morph_options_default(starg_morph_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_morph_options_fields(void);
 
 /* The way from one shape to another of the same faces, ready for any moment. */
 typedef struct starg_morph starg_morph;

@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "context.h"
+#include "fields.h"
 #include "mesh.h"
 
 #ifdef __cplusplus
@@ -20,6 +21,9 @@ typedef struct starg_repair_options {
 
 /* 0 (exactly equal positions only), no limit, 10 rounds. */
 STARG_API void starg_repair_options_default(starg_repair_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_repair_options_fields(void);
 
 /* What was done. */
 typedef struct starg_repair_report {

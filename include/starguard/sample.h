@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "context.h"
+#include "fields.h"
 #include "mesh.h"
 
 #ifdef __cplusplus
@@ -30,6 +31,9 @@ typedef struct starg_sample_options {
 
 /* Pose 0, 5,000 vertices. */
 STARG_API void starg_sample_options_default(starg_sample_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_sample_options_fields(void);
 
 /* Makes the sample called `name`: a closed, outward, embedded mesh. `options` may be NULL.
  * Errors: ARGUMENT (unknown name, pose or size out of range), MEMORY, CANCELLED. */

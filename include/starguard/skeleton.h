@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "fields.h"
 #include "solid.h"
 
 #ifdef __cplusplus
@@ -23,6 +24,9 @@ typedef struct starg_skeleton_options {
 
 /* 1,000 nodes; branches of 1.5 half widths. */
 STARG_API void starg_skeleton_options_default(starg_skeleton_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_skeleton_options_fields(void);
 
 /* A graph without parallel edges. Every node lies strictly inside the solid. */
 typedef struct starg_skeleton {

@@ -10,6 +10,7 @@
 #include "database.h"
 #include "decompose.h"
 #include "descriptor.h"
+#include "fields.h"
 #include "guard.h"
 #include "kernel.h"
 #include "mesh.h"

@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "fields.h"
 #include "mesh.h"
 #include "solid.h"
 
@@ -75,6 +76,9 @@ typedef struct starg_tetra_options {
 } starg_tetra_options;
 
 STARG_API void starg_tetra_options_default(starg_tetra_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_tetra_options_fields(void);
 
 /* How a mesh was made. */
 typedef struct starg_tetra_report {

@@ -11,6 +11,7 @@
 
 #include "bits.h"
 #include "context.h"
+#include "fields.h"
 #include "solid.h"
 
 #ifdef __cplusplus
@@ -47,6 +48,9 @@ typedef struct starg_visibility_options {
 
 /* The fastest engine, faces, by vertices, any distance, all around. */
 STARG_API void starg_visibility_options_default(starg_visibility_options *options);
+
+/* What each option is called, may hold and means. */
+STARG_API const starg_fields *starg_visibility_options_fields(void);
 
 /* The cosine of half an opening angle in degrees: the number that decides. */
 STARG_API double starg_cone_cosine(double degrees);

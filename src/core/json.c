@@ -1,5 +1,7 @@
 #include "core/json.h"
 
+#include <stdlib.h>
+
 #include "core/file.h"
 #include "core/memory.h"
 
@@ -66,6 +68,29 @@ starg_status starg_json_write(starg_context *context, const char *stage, const c
     }
     STARG_TRY(starg_output_commit(&output));
 done:
+    starg_release(context, shown);
+    return status;
+}
+
+starg_status starg_json_write_memory(starg_context *context, const char *stage,
+                                     starg_json_writer *put, const void *result,
+                                     const char *model_file, char **text, size_t *size) {
+    starg_status status = STARG_OK;
+    char *shown = NULL, *bytes = NULL;
+    FILE *stream = NULL;
+    *text = NULL;
+    *size = 0;
+    STARG_TRY(starg_json_path(context, stage, model_file, &shown));
+    stream = open_memstream(&bytes, size);
+    bool whole = stream != NULL && put(stream, result, shown) && !ferror(stream);
+    if (stream == NULL || fclose(stream) != 0 || !whole) {
+        status = starg_fail_memory(context, stage);
+        goto done;
+    }
+    STARG_NEW(context, stage, *text, *size + 1);
+    memcpy(*text, bytes, *size + 1);
+done:
+    free(bytes);
     starg_release(context, shown);
     return status;
 }

@@ -29,4 +29,9 @@ typedef bool starg_json_writer(FILE *stream, const void *result, const char *mod
 starg_status starg_json_write(starg_context *context, const char *stage, const char *path,
                               starg_json_writer *put, const void *result, const char *model_file);
 
+/* The same into a block of the context, with one zero byte behind the end. Errors: MEMORY. */
+starg_status starg_json_write_memory(starg_context *context, const char *stage,
+                                     starg_json_writer *put, const void *result,
+                                     const char *model_file, char **text, size_t *size);
+
 #endif

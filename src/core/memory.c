@@ -54,3 +54,7 @@ void starg_release(starg_context *context, void *block) {
     atomic_fetch_sub(&context->live_blocks, 1);
     context->allocator.release(context->allocator.user, header);
 }
+
+void starg_text_free(starg_context *context, char *text) {
+    starg_release(context, text);
+}

@@ -12,26 +12,12 @@
 
 #include <math.h>
 
+#include "core/fields.h"
 #include "geometry/vec3.h"
 #include "guard/job.h"
 #include "guard/samples.h"
 
 static const char STAGE[] = "guard";
-
-void starg_guard_options_default(starg_guard_options *options) {
-    *options = (starg_guard_options){.method = STARG_GUARD_PILP,
-                                     .candidates = STARG_CANDIDATES_SKELETON,
-                                     .candidate_count = 1000,
-                                     .coverage = 1,
-                                     .redundancy = 1,
-                                     .max_nodes = STARG_DEFAULT_NODES,
-                                     .coarsest = 5000,
-                                     .step = STARG_DEFAULT_STEP,
-                                     .significance = 0.1,
-                                     .refine = true,
-                                     .refine_lines = 10000000};
-    starg_visibility_options_default(&options->visibility);
-}
 
 static void set_defaults(starg_guard_options *o, size_t vertices) {
     if (o->max_nodes == STARG_DEFAULT_NODES)
@@ -40,38 +26,11 @@ static void set_defaults(starg_guard_options *o, size_t vertices) {
         o->step = samples_step(vertices, o->coarsest);
 }
 
-static starg_status check_enums(starg_context *context, const starg_guard_options *o) {
-    if (o->method > STARG_GUARD_PILP || o->candidates > STARG_CANDIDATES_SKELETON)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "an option holds a number that its enum does not have");
-    return STARG_OK;
-}
-
-static starg_status check_progressive(starg_context *context, const starg_guard_options *o) {
-    if (o->step == 0)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "levels of detail must grow by one vertex at least");
-    if (!(o->significance >= 0 && o->significance <= 1))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the significance is %g; it must be 0 to 1", o->significance);
-    return STARG_OK;
-}
-
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
     starg_status status = STARG_OK;
-    STARG_TRY(check_enums(context, o));
+    STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
-    STARG_TRY(check_progressive(context, o));
-    if (!(o->coverage > 0 && o->coverage <= 1))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the coverage is %g; it must be above 0 and at most 1", o->coverage);
-    if (o->redundancy < 1 || o->redundancy > 1000)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the redundancy is %u; it must be 1 to 1000", o->redundancy);
-    if (!(o->clearance >= 0 && o->clearance < 1e100))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the clearance is %g; it must be zero or more", o->clearance);
 done:
     return status;
 }

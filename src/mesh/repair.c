@@ -9,12 +9,47 @@
  * intersections_after, and the winding number makes one solid of them. */
 #include <math.h>
 
+#include "core/fields.h"
 #include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/repair.h"
 
+static const starg_field OPTIONS[] = {
+    {.key = "merge_distance",
+     .option = "merge-distance",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_repair_options, merge_distance),
+     .high = 1,
+     .value = "D",
+     .help = "Vertices this close become one; a fraction of the model's diagonal.",
+     .default_text = "0, only equal positions"},
+    {.key = "max_hole_edges",
+     .option = "max-hole-edges",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_repair_options, max_hole_edges),
+     .most = UINT32_MAX,
+     .value = "N",
+     .help = "Leave holes of more edges open.",
+     .default_text = "0, fill all"},
+    {.key = "max_rounds",
+     .option = "rounds",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_repair_options, max_rounds),
+     .most = 10000,
+     .initial = 10,
+     .value = "N",
+     .help = "Attempts to resolve self-intersections."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "repair options", .size = sizeof(starg_repair_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_repair_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
 void starg_repair_options_default(starg_repair_options *options) {
-    *options = (starg_repair_options){.max_rounds = 10};
+    *options = (starg_repair_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 static size_t found(const starg_check *check, starg_finding_kind kind) {
@@ -149,14 +184,6 @@ done:
     return status;
 }
 
-static starg_status check_options(starg_context *context, const starg_repair_options *options) {
-    if (options->merge_distance >= 0 && options->merge_distance <= 1)
-        return STARG_OK;
-    return starg_fail(context, STARG_ERROR_ARGUMENT, REPAIR_STAGE,
-                      "a merge distance of %g is not a fraction of the diagonal, 0 to 1",
-                      options->merge_distance);
-}
-
 starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
                                const starg_repair_options *options, starg_mesh **out,
                                starg_repair_report *report) {
@@ -170,7 +197,7 @@ starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
     if (options == NULL)
         options = &defaults;
     starg_deadline_begin(context);
-    STARG_TRY(check_options(context, options));
+    STARG_TRY(fields_check(context, REPAIR_STAGE, &OPTIONS_TABLE, options));
     STARG_TRY(starg_mesh_check(context, mesh, &before));
     STARG_TRY(repair_begin(&state, context, mesh, options));
     state.report.intersections_before = found(before, STARG_FINDING_SELF_INTERSECTION);

@@ -9,6 +9,7 @@
  * volumes: what the whole grows by is no stretch of single faces. The unit goes such that its cube,
  * as a volume does, changes in proportion to t; the middle itself goes straight. */
 #include "morph/morph.h"
+#include "core/fields.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,19 +22,46 @@ static const char STAGE[] = "morph";
 enum { CANDIDATES = 1000, CANDIDATES_MOST = 100000 };
 static const double GROWTH_MOST = 1e6; /* of volumes that are brought to one size */
 
+static const char *const METHODS[] = {"star", "arap", "linear", "spherical", NULL};
+
+static const starg_field OPTIONS[] = {
+    {.key = "method",
+     .option = "method",
+     .kind = STARG_FIELD_CHOICE,
+     FIELD_MEMBER(starg_morph_options, method),
+     .words = METHODS,
+     .initial = STARG_MORPH_STAR,
+     .value = "star|arap|linear|spherical",
+     .help = "star: pieces about guards that correspond; arap: as rigid as possible without "
+             "guards; linear: each vertex on a line; spherical: spherical coordinates about the "
+             "guards."},
+    {.key = "candidates",
+     .option = "candidates",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_morph_options, candidates),
+     .least = 1,
+     .most = CANDIDATES_MOST,
+     .initial = CANDIDATES,
+     .value = "N",
+     .help = "About how many places are tried for guards."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "morph options", .size = sizeof(starg_morph_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_morph_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
 void starg_morph_options_default(starg_morph_options *options) {
-    *options = (starg_morph_options){.method = STARG_MORPH_STAR, .candidates = CANDIDATES};
+    *options = (starg_morph_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 static starg_status check_input(starg_context *context, const starg_mesh *a, const double *images,
                                 const starg_morph_options *options) {
-    if (options->method < STARG_MORPH_STAR || options->method > STARG_MORPH_SPHERICAL)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no method %d",
-                          (int)options->method);
-    if (options->candidates < 1 || options->candidates > CANDIDATES_MOST)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "%zu candidates; there must be 1 to %d", options->candidates,
-                          CANDIDATES_MOST);
+    starg_status status = fields_check(context, STAGE, &OPTIONS_TABLE, options);
+    if (status != STARG_OK)
+        return status;
     if (a->face_count == 0)
         return starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no faces");
     for (size_t i = 0; i < 3 * a->vertex_count; i++) {

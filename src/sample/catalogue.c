@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/fields.h"
 #include "sample/figure.h"
 #include "sample/solids.h"
 #include "starguard/sample.h"
@@ -48,8 +49,34 @@ const starg_sample_info *starg_sample_at(size_t index) {
     return index < COUNT ? &CATALOGUE[index].info : NULL;
 }
 
+static const starg_field OPTIONS[] = {
+    {.key = "pose",
+     .option = "pose",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_sample_options, pose),
+     .most = 1000,
+     .value = "K",
+     .help = "Which pose. All poses of a sample have the same faces."},
+    {.key = "vertex_count",
+     .option = "vertices",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_sample_options, vertex_count),
+     .least = MIN_VERTICES,
+     .most = MAX_VERTICES,
+     .initial = 5000,
+     .value = "N",
+     .help = "About how many vertices."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "sample options", .size = sizeof(starg_sample_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_sample_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
 void starg_sample_options_default(starg_sample_options *options) {
-    *options = (starg_sample_options){.pose = 0, .vertex_count = 5000};
+    *options = (starg_sample_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 static const entry *find_entry(const char *name) {
@@ -74,11 +101,9 @@ starg_status starg_sample_create(starg_context *context, const char *name,
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "'%s' has no pose %d; its poses are 0 to %d", name, o->pose,
                           e->info.poses - 1);
-    if (o->vertex_count < MIN_VERTICES || o->vertex_count > MAX_VERTICES)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "%zu vertices are asked for; a sample has %d to %d of them",
-                          o->vertex_count, MIN_VERTICES, MAX_VERTICES);
-    starg_status status = starg_check_cancel(context, STAGE);
+    starg_status status = fields_check(context, STAGE, &OPTIONS_TABLE, o);
+    if (status == STARG_OK)
+        status = starg_check_cancel(context, STAGE);
     if (status != STARG_OK)
         return status;
     if (e->figure == RIGID)

@@ -19,6 +19,7 @@
 
 #include <math.h>
 
+#include "core/fields.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
@@ -36,10 +37,46 @@ static const char STAGE[] = "descriptor";
 
 enum { LEAST_DIRECTIONS = 12, MOST_DIRECTIONS = 65536, LEAST_DETAIL = 100 };
 
+static const starg_field OPTIONS[] = {
+    {.key = "directions",
+     .option = "directions",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_descriptor_options, direction_count),
+     .least = LEAST_DIRECTIONS,
+     .most = MOST_DIRECTIONS,
+     .initial = STARG_DESCRIPTOR_DIRECTIONS,
+     .value = "N",
+     .help = "In how many directions each guard looks, evenly spread."},
+    {.key = "effort",
+     .option = "effort",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_descriptor_options, effort),
+     .least = 1,
+     .most = INT64_MAX,
+     .initial = STARG_DESCRIPTOR_EFFORT,
+     .value = "N",
+     .help = "Trials of the star decomposition that places the guards: more give fewer guards."},
+    {.key = "detail",
+     .option = "detail",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_descriptor_options, detail),
+     .most = STARG_MESH_LIMIT / 8,
+     .initial = STARG_DESCRIPTOR_DETAIL,
+     .value = "N",
+     .help = "Bring the model down to N vertices first, smooth and free of local "
+             "self-intersections, so that noise and resolution count little; 0 describes it as "
+             "it is."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "descriptor options", .size = sizeof(starg_descriptor_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_descriptor_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
 void starg_descriptor_options_default(starg_descriptor_options *options) {
-    *options = (starg_descriptor_options){.direction_count = STARG_DESCRIPTOR_DIRECTIONS,
-                                          .effort = STARG_DESCRIPTOR_EFFORT,
-                                          .detail = STARG_DESCRIPTOR_DETAIL};
+    *options = (starg_descriptor_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 /* Equal steps in height give equal areas; the golden angle keeps neighbours apart. */
@@ -215,19 +252,12 @@ done:
 /* ---- all of it ---- */
 
 static starg_status check_options(starg_context *context, const starg_descriptor_options *o) {
-    if (o->direction_count < LEAST_DIRECTIONS || o->direction_count > MOST_DIRECTIONS)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "%zu directions were asked for; choose %d to %d", o->direction_count,
-                          LEAST_DIRECTIONS, MOST_DIRECTIONS);
-    if (o->effort == 0 || o->effort > INT64_MAX) /* more has no place in a file */
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the effort must be 1 to 2^63 - 1 trials");
-    if (o->detail != 0 && (o->detail < LEAST_DETAIL || o->detail > STARG_MESH_LIMIT / 8))
+    if (o->detail != 0 && o->detail < LEAST_DETAIL)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a detail of %zu vertices was asked for; choose %d or more, or 0 to "
                           "describe the model as it is",
                           o->detail, LEAST_DETAIL);
-    return STARG_OK;
+    return fields_check(context, STAGE, &OPTIONS_TABLE, o);
 }
 
 static void add_head(const starg_mesh *mesh, const starg_descriptor_options *options,

@@ -10,6 +10,7 @@
  * taken. What it has in excess is cut and counted as mended.
  *
  * Cost: O(n log n) in practice for n samples, for each manner that loses faces. */
+#include "core/fields.h"
 #include "skeleton/complex.h"
 #include "skeleton/conform.h"
 #include "skeleton/curve.h"
@@ -224,17 +225,37 @@ static void tell(starg_context *context, const starg_solid *solid, const starg_s
                   skeleton->cuts);
 }
 
-void starg_skeleton_options_default(starg_skeleton_options *options) {
-    *options = (starg_skeleton_options){.node_count = 1000, .prune = 1.5};
+static const starg_field OPTIONS[] = {
+    {.key = "node_count",
+     .option = "nodes",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_skeleton_options, node_count),
+     .least = 1,
+     .most = MAX_NODES,
+     .initial = 1000,
+     .value = "N",
+     .help = "About how many nodes; joints, ends and what loops need are kept in any case."},
+    {.key = "prune",
+     .option = "prune",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_skeleton_options, prune),
+     .low = 1,
+     .high = 1e6,
+     .standard = 1.5,
+     .value = "X",
+     .help = "A branch must reach X times as far from its joint as the solid is wide there (half "
+             "its width). 1 keeps the most branches."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "skeleton options", .size = sizeof(starg_skeleton_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_skeleton_options_fields(void) {
+    return &OPTIONS_TABLE;
 }
 
-static starg_status check_options(starg_context *context, const starg_skeleton_options *options) {
-    if (options->node_count >= 1 && options->node_count <= MAX_NODES && options->prune >= 1)
-        return STARG_OK;
-    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                      "1 to %d nodes can be asked for, and branches of at least one radius; got "
-                      "%zu and %g",
-                      MAX_NODES, options->node_count, options->prune);
+void starg_skeleton_options_default(starg_skeleton_options *options) {
+    *options = (starg_skeleton_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 starg_status starg_skeleton_create(starg_context *context, const starg_solid *solid,
@@ -249,7 +270,7 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     starg_skeleton_options_default(&defaults);
     options = options != NULL ? options : &defaults;
     starg_deadline_begin(context);
-    STARG_TRY(check_options(context, options));
+    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     STARG_NEW_ZERO(context, STAGE, skeleton, 1);
     STARG_TRY(find_graph(context, solid, &a));
     STARG_TRY(graph_create(context, a.complex->node_count, a.complex->links, a.eroded.link_left,

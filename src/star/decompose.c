@@ -1,6 +1,7 @@
 /* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
 #include <math.h>
 
+#include "core/fields.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
@@ -10,10 +11,55 @@
 
 static const char STAGE[] = "pieces";
 
+static const starg_field OPTIONS[] = {
+    {.key = "mode",
+     .option = "mode",
+     .kind = STARG_FIELD_CHOICE,
+     FIELD_MEMBER(starg_decompose_options, mode),
+     .words = decompose_mode_words,
+     .value = "strict|paper",
+     .help = "strict: every piece is proven to be star-shaped. paper: growth from guards as Yu and "
+             "Li published it; nearly all vertices are seen by their guards, and the report says "
+             "which pieces are star-shaped."},
+    {.key = "density",
+     .option = "density",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_decompose_options, tetra.density),
+     .high = 1e6,
+     .standard = STARG_DECOMPOSE_DENSITY,
+     .value = "T",
+     .help = "Tetrahedra to begin with for each vertex of the surface; 0: as few as can be.",
+     .default_text = "0 for strict, which makes its own in the end, and 17.5 for paper, as in the "
+                     "paper"},
+    {.key = "max_pieces",
+     .option = "max-pieces",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_decompose_options, max_pieces),
+     .most = UINT32_MAX,
+     .value = "N",
+     .help = "strict: stop searching once there are no more than N pieces. paper: no more than N "
+             "pieces, at the cost of what their guards see.",
+     .default_text = "0, as few as can be found"},
+    {.key = "effort",
+     .option = "effort",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_decompose_options, effort),
+     .most = UINT64_MAX,
+     .value = "N",
+     .help = "strict: trials after which the search ends, whatever the time.",
+     .default_text = "0, the library's choice"},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "decompose options", .size = sizeof(starg_decompose_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_decompose_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
 void starg_decompose_options_default(starg_decompose_options *options) {
-    *options = (starg_decompose_options){.mode = STARG_DECOMPOSE_STRICT};
+    *options = (starg_decompose_options){0};
     starg_tetra_options_default(&options->tetra);
-    options->tetra.density = STARG_DECOMPOSE_DENSITY;
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 /* Strict pieces are made of their surfaces: the tetrahedra to start from may be few. */
@@ -26,9 +72,9 @@ static starg_tetra_options tetra_options(const starg_decompose_options *o) {
 }
 
 static starg_status check_options(starg_context *context, const starg_decompose_options *o) {
-    if (o->mode != STARG_DECOMPOSE_STRICT && o->mode != STARG_DECOMPOSE_PAPER)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no mode %d",
-                          (int)o->mode);
+    starg_status status = fields_check(context, STAGE, &OPTIONS_TABLE, o);
+    if (status != STARG_OK)
+        return status;
     for (size_t i = 0; o->guards != NULL && i < 3 * o->guard_count; i++)
         if (!(fabs(o->guards[i]) < STARG_COORDINATE_LIMIT)) {
             uint64_t guard = i / 3;

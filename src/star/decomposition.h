@@ -5,6 +5,9 @@
 #include "core/context.h"
 #include "starguard/decompose.h"
 
+/* Words of starg_decompose_mode, by number; NULL behind the last. */
+extern const char *const decompose_mode_words[];
+
 /* Makes a result of labels: `guards` is count x 3, `labels` (a block of the context) has one of 0
  * to count - 1 for each tetrahedron, each of them at least once. Counts and measures the pieces,
  * proves which are star-shaped, finds their contacts and what guards see. The mesh counts as the

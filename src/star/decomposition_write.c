@@ -7,7 +7,7 @@ static const char STAGE[] = "pieces file";
 static const char FORMAT[] = "starguard-pieces";
 enum { VERSION = 1 };
 
-static const char *const MODES[] = {"strict", "paper"};
+const char *const decompose_mode_words[] = {"strict", "paper", NULL};
 
 starg_status starg_decomposition_write(starg_context *context,
                                        const starg_decomposition *decomposition, const char *path,
@@ -41,7 +41,8 @@ static bool put_head(FILE *stream, const starg_decomposition *d, const char *mod
     return starg_json_put(stream, "{\n\"format\": ", json_string(FORMAT), ",\n") &&
            starg_json_put(stream, "\"version\": ", json_integer(VERSION), ",\n") &&
            starg_json_put(stream, "\"model\": ", model_json(d, model_file), ",\n") &&
-           starg_json_put(stream, "\"mode\": ", json_string(MODES[d->mode]), ",\n") &&
+           starg_json_put(stream, "\"mode\": ", json_string(decompose_mode_words[d->mode]),
+                          ",\n") &&
            starg_json_put(stream, "\"surface\": ", json_string(surface), ",\n") &&
            (d->tetra.surface_kept ||
             (starg_json_put(

@@ -1,5 +1,6 @@
 /* One interface for the generators: which one, how fine, and what is told about it. */
 #include "tetra/generate.h"
+#include "core/fields.h"
 
 #include <math.h>
 
@@ -7,31 +8,59 @@
 
 static const char STAGE[] = TETRA_STAGE;
 
-static const double PAPER_DENSITY = 17.5; /* tetrahedra per surface vertex [YL11]          */
+#define PAPER_DENSITY 17.5                /* tetrahedra per surface vertex [YL11] */
 static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, in mean volumes       */
 static const double LATTICE_DENSITY = 12; /* tetrahedra of the lattice per cube            */
 static const double STEPS_PER_CUBE = 4;   /* of the measurement of distances               */
 
-void starg_tetra_options_default(starg_tetra_options *options) {
-    *options = (starg_tetra_options){.density = PAPER_DENSITY, .tetgen_limit = 30};
+static const char *const GENERATORS[] = {"auto", "tetgen", "stuffing", NULL};
+
+static const starg_field OPTIONS[] = {
+    {.key = "generator",
+     .kind = STARG_FIELD_CHOICE,
+     FIELD_MEMBER(starg_tetra_options, generator),
+     .words = GENERATORS,
+     .value = "auto|tetgen|stuffing",
+     .help = "How tetrahedra are made: by the program tetgen, which keeps the surface, by "
+             "isosurface stuffing, or by the one that can."},
+    {.key = "density",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_tetra_options, density),
+     .high = 1e6,
+     .standard = PAPER_DENSITY,
+     .value = "T",
+     .help = "Tetrahedra for each vertex of the surface; 0: as few as can be."},
+    {.key = "target",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_tetra_options, target),
+     .most = TETMESH_LIMIT,
+     .value = "N",
+     .help = "Tetrahedra that are aimed at; above 0 it stands in for the density."},
+    {.key = "tetgen",
+     .kind = STARG_FIELD_TEXT,
+     FIELD_MEMBER(starg_tetra_options, tetgen),
+     .value = "FILE",
+     .help = "The program tetgen.",
+     .default_text = "that of the search path"},
+    {.key = "tetgen_limit",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_ABOVE,
+     FIELD_MEMBER(starg_tetra_options, tetgen_limit),
+     .high = 1e100,
+     .standard = 30,
+     .value = "S",
+     .help = "Seconds that tetgen may take."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "tetrahedra options", .size = sizeof(starg_tetra_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_tetra_options_fields(void) {
+    return &OPTIONS_TABLE;
 }
 
-static starg_status check_options(starg_context *context, const starg_tetra_options *o) {
-    if (o->generator > STARG_TETRA_STUFFING)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no generator %d",
-                          (int)o->generator);
-    if (!(o->density >= 0 && o->density <= 1e6))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a density of %g tetrahedra per vertex; it must lie in [0, 1e6]",
-                          o->density);
-    if (o->target > TETMESH_LIMIT)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "%zu tetrahedra are more than the %zu that can be numbered", o->target,
-                          TETMESH_LIMIT);
-    if (!(o->tetgen_limit > 0))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "TetGen's time limit must be above 0 seconds");
-    return STARG_OK;
+void starg_tetra_options_default(starg_tetra_options *options) {
+    *options = (starg_tetra_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 /* Tetrahedra to aim at; 0: as few as may be. */
@@ -106,7 +135,7 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
     *out = NULL;
     *report = (starg_tetra_report){.generator = options->generator};
     starg_progress_begin(context, STAGE);
-    STARG_TRY(check_options(context, options));
+    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     if (options->generator != STARG_TETRA_STUFFING) {
         status = try_tetgen(context, solid, options, report, out);
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
@@ -154,7 +183,7 @@ starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_me
         report = &ignored;
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
     starg_progress_begin(context, STAGE);
-    STARG_TRY(check_options(context, options));
+    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     tetra_shape shape = {.mesh = mesh, .field = &field, .volume = guess_volume(mesh)};
     if (mesh->face_count == 0 || shape.volume == 0) {
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,

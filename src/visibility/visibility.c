@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "core/bits.h"
+#include "core/fields.h"
 #include "core/memory.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -21,11 +22,6 @@ typedef struct worker {
     uint8_t *within;    /* by slot: visible, and within the cone; only with one */
     const double *last; /* point that side and visible are for, or NULL */
 } worker;
-
-void starg_visibility_options_default(starg_visibility_options *options) {
-    *options = (starg_visibility_options){
-        .engine = STARG_VISIBILITY_FASTEST, .range = INFINITY, .cone = 360};
-}
 
 double starg_cone_cosine(double degrees) {
     if (degrees == 180)
@@ -145,10 +141,6 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
 static starg_status check_cone(starg_context *context, size_t count,
                                const starg_visibility_options *options) {
     const double *d = options->directions;
-    if (!(options->cone > 0 && options->cone <= 360))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the cone is %g degrees; it must be above 0 and at most 360",
-                          options->cone);
     if (options->cone == 360)
         return STARG_OK;
     if (options->face_rule == STARG_FACES_WHOLE && options->cone > 180)
@@ -173,21 +165,15 @@ static starg_status check_cone(starg_context *context, size_t count,
 
 static starg_status check_arguments(starg_context *context, const double *points, size_t count,
                                     const starg_visibility_options *options) {
-    if (!(options->range >= 0))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the range is %g; it must be zero or more", options->range);
-    if (options->engine > STARG_VISIBILITY_FASTEST || options->target > STARG_TARGET_VERTICES ||
-        options->face_rule > STARG_FACES_WHOLE)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "an option holds a number that its enum does not have");
-    for (size_t i = 0; i < 3 * count; i++) {
+    starg_status status = fields_check(context, STAGE, starg_visibility_options_fields(), options);
+    for (size_t i = 0; i < 3 * count && status == STARG_OK; i++) {
         uint64_t point = i / 3;
         if (!(fabs(points[i]) < 1e100))
             return starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_CANDIDATE,
                                  &point, 1, "coordinate %c of point %zu is %g; it must be finite",
                                  "xyz"[i % 3], i / 3, points[i]);
     }
-    return STARG_OK;
+    return status;
 }
 
 /* Of those that suit every point only contours tell plainly which faces are wholly visible. */

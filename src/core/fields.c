@@ -1,0 +1,201 @@
+#include "core/fields.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- members ---- */
+
+static void *member(const starg_field *f, void *record) {
+    return (char *)record + f->offset;
+}
+
+static const void *member_const(const starg_field *f, const void *record) {
+    return (const char *)record + f->offset;
+}
+
+static void store_count(const starg_field *f, void *record, uint64_t value) {
+    uint32_t narrow = (uint32_t)value;
+    bool flag = value != 0;
+    if (f->size == sizeof flag)
+        memcpy(member(f, record), &flag, sizeof flag);
+    else if (f->size == sizeof narrow)
+        memcpy(member(f, record), &narrow, sizeof narrow);
+    else
+        memcpy(member(f, record), &value, sizeof value);
+}
+
+uint64_t starg_field_count(const starg_field *field, const void *record) {
+    uint64_t value;
+    uint32_t narrow;
+    bool flag;
+    if (field->size == sizeof flag) {
+        memcpy(&flag, member_const(field, record), sizeof flag);
+        return flag;
+    }
+    if (field->size == sizeof narrow) {
+        memcpy(&narrow, member_const(field, record), sizeof narrow);
+        return narrow;
+    }
+    memcpy(&value, member_const(field, record), sizeof value);
+    return value;
+}
+
+static double real_of(const starg_field *f, const void *record) {
+    double value;
+    memcpy(&value, member_const(f, record), sizeof value);
+    return value;
+}
+
+/* ---- ranges ---- */
+
+static size_t word_count(const starg_field *f) {
+    size_t count = 0;
+    while (f->words[count] != NULL)
+        count++;
+    return count;
+}
+
+const char *starg_fields_word(const starg_fields *fields, const char *key, uint64_t number) {
+    for (size_t i = 0; i < fields->count; i++) {
+        const starg_field *f = &fields->fields[i];
+        if (f->kind == STARG_FIELD_CHOICE && f->key != NULL && strcmp(f->key, key) == 0)
+            return number < word_count(f) ? f->words[number] : NULL;
+    }
+    return NULL;
+}
+
+static bool count_fits(const starg_field *f, uint64_t value) {
+    if (f->kind == STARG_FIELD_FLAG)
+        return value <= 1;
+    if (f->kind == STARG_FIELD_CHOICE)
+        return value < word_count(f);
+    return value >= f->least && value <= f->most;
+}
+
+static bool real_fits(const starg_field *f, double value) {
+    return value <= f->high && ((f->flags & STARG_FIELD_ABOVE) ? value > f->low : value >= f->low);
+}
+
+bool starg_field_set_count(const starg_field *field, void *record, uint64_t value) {
+    if (!count_fits(field, value))
+        return false;
+    store_count(field, record, value);
+    return true;
+}
+
+bool starg_field_set_real(const starg_field *field, void *record, double value) {
+    if (!real_fits(field, value))
+        return false;
+    memcpy(member(field, record), &value, sizeof value);
+    return true;
+}
+
+static void list_words(const starg_field *f, char *text, size_t size) {
+    size_t used = (size_t)snprintf(text, size, "one of ");
+    for (size_t i = 0; f->words[i] != NULL && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", f->words[i]);
+}
+
+void field_expectation(const starg_field *field, char *text, size_t size) {
+    const starg_field *f = field;
+    bool unlimited = f->kind == STARG_FIELD_COUNT ? f->most >= UINT32_MAX : f->high >= 1e100;
+    if (f->kind == STARG_FIELD_FLAG)
+        snprintf(text, size, "true or false");
+    else if (f->kind == STARG_FIELD_CHOICE)
+        list_words(f, text, size);
+    else if (f->kind == STARG_FIELD_COUNT && unlimited)
+        snprintf(text, size, f->least == 0 ? "a whole number, zero or more" : "%llu or more",
+                 (unsigned long long)f->least);
+    else if (f->kind == STARG_FIELD_COUNT)
+        snprintf(text, size, "%llu to %llu", (unsigned long long)f->least,
+                 (unsigned long long)f->most);
+    else if (unlimited)
+        snprintf(text, size, (f->flags & STARG_FIELD_ABOVE) ? "above %g" : "zero or more", f->low);
+    else if (f->flags & STARG_FIELD_ABOVE)
+        snprintf(text, size, "above %g and at most %g", f->low, f->high);
+    else
+        snprintf(text, size, "%g to %g", f->low, f->high);
+}
+
+/* What a member is called in sentences: "face_rule" is "face rule". */
+static void spell_name(const starg_field *f, char *text, size_t size) {
+    snprintf(text, size, "%s", f->key != NULL ? f->key : f->option);
+    for (char *c = text; *c != '\0'; c++)
+        if (*c == '_' || *c == '-')
+            *c = ' ';
+}
+
+static bool is_default_count(const starg_field *f, uint64_t value) {
+    return value == f->initial || ((f->flags & STARG_FIELD_NULLABLE) && value == f->none);
+}
+
+static starg_status check_field(starg_context *context, const char *stage, const starg_field *f,
+                                const void *record) {
+    char name[64], expected[256];
+    bool real = f->kind == STARG_FIELD_REAL;
+    double value = real ? real_of(f, record) : (double)starg_field_count(f, record);
+    if (real ? real_fits(f, value) || value == f->standard
+             : count_fits(f, starg_field_count(f, record)) ||
+                   is_default_count(f, starg_field_count(f, record)))
+        return STARG_OK;
+    spell_name(f, name, sizeof name);
+    field_expectation(f, expected, sizeof expected);
+    return starg_fail(context, STARG_ERROR_ARGUMENT, stage, "the %s is %g; it must be %s", name,
+                      value, expected);
+}
+
+starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
+                          const void *record) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < fields->count; i++) {
+        const starg_field *f = &fields->fields[i];
+        if (f->kind <= STARG_FIELD_CHOICE && (f->applies == NULL || f->applies(record)))
+            STARG_TRY(check_field(context, stage, f, record));
+    }
+done:
+    return status;
+}
+
+/* ---- defaults ---- */
+
+void starg_fields_default(const starg_fields *fields, void *record) {
+    for (size_t i = 0; i < fields->count; i++) {
+        const starg_field *f = &fields->fields[i];
+        if (f->kind == STARG_FIELD_REAL)
+            memcpy(member(f, record), &f->standard, sizeof f->standard);
+        else if (f->kind <= STARG_FIELD_CHOICE)
+            store_count(f, record, f->initial);
+        else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES)
+            memset(member(f, record), 0, f->size);
+    }
+}
+
+/* A whole number with commas. */
+static void put_count(char *text, size_t size, uint64_t value) {
+    char digits[32];
+    size_t length = (size_t)snprintf(digits, sizeof digits, "%llu", (unsigned long long)value);
+    size_t used = 0;
+    for (size_t i = 0; i < length && used + 2 < size; i++) {
+        if (i > 0 && (length - i) % 3 == 0)
+            text[used++] = ',';
+        text[used++] = digits[i];
+    }
+    text[used] = '\0';
+}
+
+void starg_field_default_text(const starg_field *field, char *text, size_t size) {
+    char number[64] = "";
+    const char *words = field->default_text;
+    text[0] = '\0';
+    if (words != NULL && words[0] == '\0')
+        return;
+    if (words == NULL && field->kind == STARG_FIELD_COUNT)
+        put_count(number, sizeof number, field->initial);
+    else if (words == NULL && field->kind == STARG_FIELD_REAL)
+        snprintf(number, sizeof number, "%g", field->standard);
+    else if (words == NULL && field->kind == STARG_FIELD_CHOICE)
+        words = field->words[field->initial];
+    if (words != NULL || number[0] != '\0')
+        snprintf(text, size, "Default: %s.", words != NULL ? words : number);
+}

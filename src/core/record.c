@@ -1,0 +1,509 @@
+/* A struct and its field table (starguard/fields.h) as JSON, and back.
+ *
+ * Written values are exact: reals have 17 significant digits. Reading is strict: every key is held
+ * against its type and range, so that reading what was written gives the same struct, and writing
+ * that the same bytes. Members come in the order of the table; whether one applies may depend on
+ * those before it. */
+#include "core/record.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+static const double LIMIT = 1e100; /* of coordinates */
+
+/* ---- where values are ---- */
+
+static size_t load_size(const void *record, size_t offset) {
+    size_t value;
+    memcpy(&value, (const char *)record + offset, sizeof value);
+    return value;
+}
+
+static void *load_pointer(const void *record, size_t offset) {
+    void *value;
+    memcpy(&value, (const char *)record + offset, sizeof value);
+    return value;
+}
+
+static void store_pointer(void *record, size_t offset, void *value) {
+    memcpy((char *)record + offset, &value, sizeof value);
+}
+
+static bool applies(const starg_field *f, const void *record) {
+    return f->applies == NULL || f->applies(record);
+}
+
+/* Item i of a list as a record: a struct, or for columns a copy of nothing but its values. */
+static size_t value_size(const starg_field *f) {
+    return f->kind == STARG_FIELD_POINT ? 3 * sizeof(double) : f->size;
+}
+
+/* A field of item i of columns as a member at the pointer's target. */
+static starg_field in_column(const starg_field *f) {
+    starg_field own = *f;
+    own.offset = 0;
+    return own;
+}
+
+static char *in_column_at(const starg_field *f, const void *record, size_t i) {
+    char *column = load_pointer(record, f->offset);
+    return column + i * value_size(f);
+}
+
+/* ---- writing ---- */
+
+static json_t *fields_json(const starg_fields *fields, const void *record, size_t i);
+
+static json_t *real_json(const starg_field *f, const char *at) {
+    double value;
+    memcpy(&value, at, sizeof value);
+    if ((f->flags & STARG_FIELD_NULLABLE) && value == f->standard)
+        return json_null();
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *count_json(const starg_field *f, const void *record) {
+    uint64_t value = starg_field_count(f, record);
+    if ((f->flags & STARG_FIELD_NULLABLE) && value == f->none)
+        return json_null();
+    return json_integer((json_int_t)value);
+}
+
+static json_t *reals_json(const char *at, size_t count) {
+    json_t *list = json_array();
+    for (size_t k = 0; k < count && list != NULL; k++) {
+        double value;
+        memcpy(&value, at + k * sizeof value, sizeof value);
+        if (json_array_append_new(list, json_real(value)) != 0) {
+            json_decref(list);
+            list = NULL;
+        }
+    }
+    return list;
+}
+
+static json_t *indices_json(const starg_field *f, const void *record) {
+    const uint32_t *items = load_pointer(record, f->offset);
+    size_t count = load_size(record, f->length);
+    json_t *list = json_array();
+    for (size_t i = 0; i < count && list != NULL; i++)
+        if (json_array_append_new(list, json_integer(items[i])) != 0) {
+            json_decref(list);
+            list = NULL;
+        }
+    return list;
+}
+
+/* Item i of a list. */
+static json_t *item_json(const starg_field *f, const void *record, size_t i) {
+    if (f->of->columns)
+        return fields_json(f->of, record, i);
+    const char *items = load_pointer(record, f->offset);
+    return fields_json(f->of, items + i * f->of->size, 0);
+}
+
+static json_t *list_json(const starg_field *f, const void *record) {
+    size_t count = load_size(record, f->length);
+    json_t *list = json_array();
+    for (size_t i = 0; i < count && list != NULL; i++)
+        if (json_array_append_new(list, item_json(f, record, i)) != 0) {
+            json_decref(list);
+            list = NULL;
+        }
+    return list;
+}
+
+static json_t *field_json(const starg_field *f, const void *record) {
+    const char *at = (const char *)record + f->offset;
+    switch (f->kind) {
+    case STARG_FIELD_FLAG:
+        return json_boolean(starg_field_count(f, record));
+    case STARG_FIELD_COUNT:
+        return count_json(f, record);
+    case STARG_FIELD_REAL:
+        return real_json(f, at);
+    case STARG_FIELD_CHOICE:
+        return json_string(f->words[starg_field_count(f, record)]);
+    case STARG_FIELD_TEXT:
+        at = load_pointer(record, f->offset);
+        return at != NULL ? json_string(at) : json_null();
+    case STARG_FIELD_POINT:
+        return reals_json(at, 3);
+    case STARG_FIELD_NUMBERS:
+        return reals_json(at, f->length);
+    case STARG_FIELD_INDICES:
+        return indices_json(f, record);
+    case STARG_FIELD_RECORD:
+        return fields_json(f->of, at, 0);
+    case STARG_FIELD_LIST:
+        return list_json(f, record);
+    case STARG_FIELD_CONSTANT:
+        return f->value != NULL ? json_string(f->value) : json_integer((json_int_t)f->initial);
+    default:
+        return NULL;
+    }
+}
+
+/* A list that was never filled is no part of the record. */
+static bool is_absent(const starg_field *f, const void *record) {
+    if (f->kind != STARG_FIELD_LIST || !(f->flags & STARG_FIELD_OPTIONAL))
+        return false;
+    if (!(f->flags & STARG_FIELD_MATCHING) && load_size(record, f->length) == 0)
+        return true;
+    return load_pointer(record, f->of->columns ? f->of->fields[0].offset : f->offset) == NULL;
+}
+
+static bool is_written(const starg_field *f, const void *record) {
+    return f->key != NULL && applies(f, record) && !is_absent(f, record);
+}
+
+static bool add(json_t *to, const starg_fields *fields, const starg_field *f, json_t *value) {
+    return fields->form == STARG_FORM_TUPLE ? json_array_append_new(to, value) == 0
+                                            : json_object_set_new(to, f->key, value) == 0;
+}
+
+/* A record; of columns row i. NULL when memory is out. */
+static json_t *fields_json(const starg_fields *fields, const void *record, size_t i) {
+    bool columns = fields->columns, done = true;
+    json_t *result = fields->form == STARG_FORM_TUPLE ? json_array() : json_object();
+    for (size_t k = 0; k < fields->count && result != NULL && done; k++) {
+        const starg_field *f = &fields->fields[k], own = columns ? in_column(f) : *f;
+        if (columns && (!applies(f, record) || load_pointer(record, f->offset) == NULL))
+            continue;
+        if (!columns && !is_written(f, record))
+            continue;
+        json_t *value = field_json(&own, columns ? in_column_at(f, record, i) : record);
+        if (fields->form == STARG_FORM_BARE) {
+            json_decref(result);
+            return value;
+        }
+        done = add(result, fields, f, value);
+    }
+    if (done)
+        return result;
+    json_decref(result);
+    return NULL;
+}
+
+static bool put_lines(FILE *stream, const starg_field *f, const void *record, int margin) {
+    size_t count = load_size(record, f->length);
+    bool done = true;
+    fputs("[\n", stream);
+    for (size_t i = 0; i < count && done; i++) {
+        fprintf(stream, "%*s", 2 * margin, "");
+        done = starg_json_put(stream, "", item_json(f, record, i), i + 1 < count ? ",\n" : "\n");
+    }
+    fprintf(stream, "%*s]", margin, "");
+    return done;
+}
+
+bool record_put(FILE *stream, const starg_fields *fields, const void *record, int margin) {
+    bool done = true, first = true;
+    fputs("{\n", stream);
+    for (size_t k = 0; k < fields->count && done; k++) {
+        const starg_field *f = &fields->fields[k];
+        if (!is_written(f, record))
+            continue;
+        fprintf(stream, "%s%*s\"%s\": ", first ? "" : ",\n", margin, "", f->key);
+        first = false;
+        done = (f->flags & STARG_FIELD_LINES)
+                   ? put_lines(stream, f, record, margin)
+                   : starg_json_put(stream, "", field_json(f, record), "");
+    }
+    fputs("\n}\n", stream);
+    return done;
+}
+
+typedef struct whole {
+    const starg_fields *fields;
+    const void *record;
+} whole;
+
+static bool put_whole(FILE *stream, const void *what, const char *unused) {
+    const whole *w = what;
+    (void)unused;
+    return record_put(stream, w->fields, w->record, 0);
+}
+
+starg_status starg_fields_json(starg_context *context, const starg_fields *fields,
+                               const void *record, char **text, size_t *size) {
+    const whole w = {fields, record};
+    return starg_json_write_memory(context, fields->name, put_whole, &w, NULL, text, size);
+}
+
+/* ---- reading ---- */
+
+typedef struct reader {
+    starg_context *context;
+    const char *name;
+    const starg_fields *file; /* of the whole, for messages */
+} reader;
+
+static starg_status read_fields(const reader *r, json_t *object, const starg_fields *fields,
+                                void *record);
+
+starg_status record_reject(starg_context *context, const char *name, const starg_fields *fields,
+                           const char *key, const char *expected) {
+    return starg_fail(context, STARG_ERROR_FORMAT, fields->name,
+                      "'%.200s' is no valid %s: \"%s\" must be %s", name, fields->name, key,
+                      expected);
+}
+
+static starg_status reject(const reader *r, const starg_field *f, const char *expected) {
+    return record_reject(r->context, r->name, r->file, f->key, expected);
+}
+
+static starg_status reject_value(const reader *r, const starg_field *f) {
+    char text[256];
+    field_expectation(f, text, sizeof text);
+    if (f->flags & STARG_FIELD_NULLABLE)
+        strncat(text, ", or null", sizeof text - strlen(text) - 1);
+    return reject(r, f, text);
+}
+
+static void set_default(const starg_field *f, void *record) {
+    const starg_fields one = {.fields = f, .count = 1};
+    starg_fields_default(&one, record);
+}
+
+static void set_none(const starg_field *f, void *record) {
+    if (f->kind == STARG_FIELD_REAL) {
+        set_default(f, record);
+        return;
+    }
+    starg_field own = *f;
+    own.initial = f->none;
+    set_default(&own, record);
+}
+
+static starg_status read_word(const reader *r, json_t *value, const starg_field *f, void *record) {
+    for (size_t i = 0; f->words[i] != NULL && json_is_string(value); i++)
+        if (strcmp(json_string_value(value), f->words[i]) == 0) {
+            starg_field_set_count(f, record, i);
+            return STARG_OK;
+        }
+    return reject_value(r, f);
+}
+
+static starg_status read_number(const reader *r, json_t *value, const starg_field *f,
+                                void *record) {
+    bool good = false;
+    if (f->kind == STARG_FIELD_FLAG && json_is_boolean(value))
+        good = starg_field_set_count(f, record, json_is_true(value));
+    else if (f->kind == STARG_FIELD_COUNT && json_is_integer(value) &&
+             json_integer_value(value) >= 0)
+        good = starg_field_set_count(f, record, (uint64_t)json_integer_value(value));
+    else if (f->kind == STARG_FIELD_REAL && json_is_number(value))
+        good = starg_field_set_real(f, record, json_number_value(value));
+    return good ? STARG_OK : reject_value(r, f);
+}
+
+static starg_status read_text(const reader *r, json_t *value, const starg_field *f, void *record) {
+    starg_status status = STARG_OK;
+    char *copy = NULL;
+    if (json_is_null(value)) {
+        store_pointer(record, f->offset, NULL);
+        return STARG_OK;
+    }
+    if (!json_is_string(value))
+        return reject(r, f, "a text, or null");
+    STARG_NEW(r->context, r->file->name, copy, json_string_length(value) + 1);
+    memcpy(copy, json_string_value(value), json_string_length(value) + 1);
+    store_pointer(record, f->offset, copy);
+done:
+    return status;
+}
+
+static starg_status read_point(const reader *r, json_t *value, const starg_field *f, void *record) {
+    double point[3];
+    bool good = json_array_size(value) == 3;
+    for (size_t k = 0; k < 3 && good; k++) {
+        json_t *x = json_array_get(value, k);
+        point[k] = json_number_value(x);
+        good = json_is_number(x) && fabs(point[k]) < LIMIT;
+    }
+    if (!good)
+        return reject(r, f, "an array of three numbers below 1e100");
+    memcpy((char *)record + f->offset, point, sizeof point);
+    return STARG_OK;
+}
+
+static starg_status read_numbers(const reader *r, json_t *value, const starg_field *f,
+                                 void *record) {
+    bool good = json_array_size(value) == f->length;
+    for (size_t k = 0; k < f->length && good; k++) {
+        json_t *item = json_array_get(value, k);
+        double number = json_number_value(item);
+        good = json_is_number(item) && number >= 0 && isfinite(number);
+        memcpy((char *)record + f->offset + k * sizeof number, &number, sizeof number);
+    }
+    return good ? STARG_OK
+                : reject(r, f,
+                         "an array of finite numbers, zero or more, as many as the format "
+                         "says");
+}
+
+static starg_status read_indices(const reader *r, json_t *value, const starg_field *f,
+                                 void *record) {
+    starg_status status = STARG_OK;
+    size_t count = json_array_size(value), limit = load_size(record, f->limit);
+    uint32_t *items = NULL;
+    if (!json_is_array(value))
+        return reject(r, f, "an array of indices");
+    STARG_NEW(r->context, r->file->name, items, count);
+    store_pointer(record, f->offset, items);
+    memcpy((char *)record + f->length, &count, sizeof count);
+    for (size_t i = 0; i < count; i++) {
+        json_t *item = json_array_get(value, i);
+        json_int_t index = json_is_integer(item) ? json_integer_value(item) : -1;
+        if (index < 0 || (uint64_t)index >= limit || (i > 0 && index <= (json_int_t)items[i - 1]))
+            return reject(r, f, "an array of ascending indices of the model");
+        items[i] = (uint32_t)index;
+    }
+done:
+    return status;
+}
+
+/* Zeroed blocks for `count` items: one of structs, or one for each column that applies. */
+static starg_status make_items(const reader *r, const starg_field *f, void *record, size_t count) {
+    bool columns = f->of->columns;
+    for (size_t k = 0; k < (columns ? f->of->count : 1); k++) {
+        const starg_field *column = columns ? &f->of->fields[k] : f;
+        if (columns && !applies(column, record))
+            continue;
+        void *block =
+            starg_allocate_zero(r->context, count, columns ? value_size(column) : f->of->size);
+        if (block == NULL)
+            return starg_fail_memory(r->context, r->file->name);
+        store_pointer(record, column->offset, block);
+    }
+    return STARG_OK;
+}
+
+static starg_status read_value(const reader *r, json_t *value, const starg_field *f, void *record);
+
+/* Row i of columns. */
+static starg_status read_row(const reader *r, json_t *item, const starg_fields *fields,
+                             void *record, size_t i) {
+    starg_status status = STARG_OK;
+    for (size_t k = 0; k < fields->count; k++) {
+        const starg_field *f = &fields->fields[k], own = in_column(f);
+        json_t *value = fields->form == STARG_FORM_OBJECT  ? json_object_get(item, f->key)
+                        : fields->form == STARG_FORM_TUPLE ? json_array_get(item, k)
+                                                           : item;
+        if (applies(f, record))
+            STARG_TRY(read_value(r, value, &own, in_column_at(f, record, i)));
+    }
+done:
+    return status;
+}
+
+static starg_status read_list(const reader *r, json_t *value, const starg_field *f, void *record) {
+    starg_status status = STARG_OK;
+    size_t count = json_array_size(value);
+    if (!json_is_array(value))
+        return reject(r, f, "an array");
+    if ((f->flags & STARG_FIELD_MATCHING) && count != load_size(record, f->length))
+        return reject(r, f, "an array with an item for each guard");
+    STARG_TRY(make_items(r, f, record, count));
+    memcpy((char *)record + f->length, &count, sizeof count);
+    for (size_t i = 0; i < count; i++) {
+        json_t *item = json_array_get(value, i);
+        if (f->of->form == STARG_FORM_TUPLE && json_array_size(item) != f->of->count)
+            return reject(r, f, "an array of arrays, each with as many numbers as the format says");
+        if (f->of->columns)
+            STARG_TRY(read_row(r, item, f->of, record, i));
+        else
+            STARG_TRY(read_fields(r, item, f->of,
+                                  (char *)load_pointer(record, f->offset) + i * f->of->size));
+    }
+done:
+    return status;
+}
+
+static starg_status read_constant(const reader *r, json_t *value, const starg_field *f) {
+    char text[128];
+    if (f->value != NULL && json_is_string(value) &&
+        strcmp(json_string_value(value), f->value) == 0)
+        return STARG_OK;
+    if (f->value == NULL && json_is_integer(value) &&
+        json_integer_value(value) == (json_int_t)f->initial)
+        return STARG_OK;
+    if (f->value != NULL)
+        snprintf(text, sizeof text, "\"%s\"", f->value);
+    else
+        snprintf(text, sizeof text, "%llu, the only one that is known",
+                 (unsigned long long)f->initial);
+    return reject(r, f, text);
+}
+
+static starg_status read_value(const reader *r, json_t *value, const starg_field *f, void *record) {
+    switch (f->kind) {
+    case STARG_FIELD_CHOICE:
+        return read_word(r, value, f, record);
+    case STARG_FIELD_TEXT:
+        return read_text(r, value, f, record);
+    case STARG_FIELD_POINT:
+        return read_point(r, value, f, record);
+    case STARG_FIELD_NUMBERS:
+        return read_numbers(r, value, f, record);
+    case STARG_FIELD_INDICES:
+        return read_indices(r, value, f, record);
+    case STARG_FIELD_RECORD:
+        return read_fields(r, value, f->of, (char *)record + f->offset);
+    case STARG_FIELD_LIST:
+        return read_list(r, value, f, record);
+    case STARG_FIELD_CONSTANT:
+        return read_constant(r, value, f);
+    default:
+        return read_number(r, value, f, record);
+    }
+}
+
+static starg_status read_field(const reader *r, json_t *value, const starg_field *f, void *record) {
+    if (value == NULL && (f->flags & STARG_FIELD_OPTIONAL)) {
+        set_default(f, record);
+        return STARG_OK;
+    }
+    if (value == NULL)
+        return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
+                          "'%.200s' is no valid %s: key \"%s\" is missing", r->name, r->file->name,
+                          f->key);
+    if (json_is_null(value) && (f->flags & STARG_FIELD_NULLABLE)) {
+        set_none(f, record);
+        return STARG_OK;
+    }
+    return read_value(r, value, f, record);
+}
+
+static starg_status read_fields(const reader *r, json_t *object, const starg_fields *fields,
+                                void *record) {
+    starg_status status = STARG_OK;
+    if (fields->form == STARG_FORM_OBJECT && !json_is_object(object))
+        return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
+                          "'%.200s' is no valid %s: the %s must be an object", r->name,
+                          r->file->name, fields->name);
+    for (size_t k = 0; k < fields->count; k++) {
+        const starg_field *f = &fields->fields[k];
+        json_t *value = fields->form == STARG_FORM_TUPLE  ? json_array_get(object, k)
+                        : fields->form == STARG_FORM_BARE ? object
+                        : f->key != NULL                  ? json_object_get(object, f->key)
+                                                          : NULL;
+        if (f->key == NULL && fields->form == STARG_FORM_OBJECT)
+            set_default(f, record);
+        else if (applies(f, record))
+            STARG_TRY(read_field(r, value, f, record));
+        else
+            set_default(f, record);
+    }
+done:
+    return status;
+}
+
+starg_status record_read(starg_context *context, const char *name, json_t *object,
+                         const starg_fields *fields, void *record) {
+    const reader r = {.context = context, .name = name, .file = fields};
+    return read_fields(&r, object, fields, record);
+}

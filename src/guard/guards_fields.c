@@ -1,0 +1,356 @@
+/* Guard options and GUARDS.json as tables (starguard/fields.h): the one place that says what each
+ * of them is called, may hold and means. Rows are in the order of the file. */
+#include "guard/guards_fields.h"
+
+#include "starguard/guard.h"
+#include "visibility/fields.h"
+
+/* ---- options ---- */
+
+#define OPTION(NAME) FIELD_MEMBER(starg_guard_options, NAME)
+
+static const char *const METHODS[] = {"ilp", "greedy", "pilp", NULL};
+static const char *const CANDIDATES[] = {"medial", "interior", "given", "skeleton", NULL};
+
+static bool has_levels(const void *record) {
+    return ((const starg_guard_options *)record)->method == STARG_GUARD_PILP;
+}
+
+static const starg_field OPTIONS[] = {
+    {.key = "method",
+     .option = "method",
+     .kind = STARG_FIELD_CHOICE,
+     OPTION(method),
+     .words = METHODS,
+     .initial = STARG_GUARD_PILP,
+     .value = "pilp|ilp|greedy",
+     .help = "pilp goes from coarse to fine levels of detail and then refines; ilp finds the "
+             "fewest of the candidates and proves it, or gives its best and a bound; greedy is "
+             "fastest, with more guards and a weaker bound."},
+    {.key = "candidates",
+     .kind = STARG_FIELD_CHOICE,
+     OPTION(candidates),
+     .words = CANDIDATES,
+     .initial = STARG_CANDIDATES_SKELETON,
+     .value = "skeleton|medial|interior|given",
+     .help = "Where guards may stand: on the curve skeleton, on the medial axis, on a lattice "
+             "inside, or at given points."},
+    {.key = "count",
+     .option = "count",
+     .kind = STARG_FIELD_COUNT,
+     OPTION(candidate_count),
+     .least = 1,
+     .most = 10000000,
+     .initial = 1000,
+     .value = "N",
+     .help = "About how many candidates to make; more are added for faces that none of them sees."},
+    VISIBILITY_ENGINE_FIELD(starg_guard_options, visibility.engine, NULL, "visibility"),
+    VISIBILITY_TARGET_FIELD(starg_guard_options, visibility.target),
+    VISIBILITY_FACE_RULE_FIELD(starg_guard_options, visibility.face_rule),
+    {.key = "coverage",
+     .option = "coverage",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_ABOVE,
+     OPTION(coverage),
+     .high = 1,
+     .standard = 1,
+     .value = "F",
+     .help = "Fraction of the coverable area that must be seen (of the vertices with --target "
+             "vertices), above 0 and at most 1."},
+    {.key = "max_guards",
+     .option = "max-guards",
+     .kind = STARG_FIELD_COUNT,
+     OPTION(max_guards),
+     .most = UINT32_MAX,
+     .value = "K",
+     .help = "No more than K guards, which see as much area as possible.",
+     .default_text = "as many as it takes"},
+    VISIBILITY_RANGE_FIELD(starg_guard_options, visibility.range),
+    VISIBILITY_CONE_FIELD(starg_guard_options, visibility.cone, "cone"),
+    {.key = "redundancy",
+     .option = "redundancy",
+     .kind = STARG_FIELD_COUNT,
+     OPTION(redundancy),
+     .least = 1,
+     .most = 1000,
+     .initial = 1,
+     .value = "K",
+     .help = "Every face is to be seen by K guards, as far as there are so many candidates that "
+             "see it."},
+    {.key = "clearance",
+     .option = "clearance",
+     .kind = STARG_FIELD_REAL,
+     OPTION(clearance),
+     .high = 1e100,
+     .value = "D",
+     .help = "Guards stand at least D from the walls, in units of the model."},
+    {.option = "max-nodes",
+     .kind = STARG_FIELD_COUNT,
+     OPTION(max_nodes),
+     .most = UINT32_MAX,
+     .initial = STARG_DEFAULT_NODES,
+     .value = "N",
+     .help = "Branch-and-bound nodes for each independent part before the best so far is taken.",
+     .default_text = "100,000 for ilp, 30 for each level of pilp"},
+    {.key = "coarsest",
+     .option = "coarsest",
+     .kind = STARG_FIELD_COUNT,
+     .flags = STARG_FIELD_OPTIONAL,
+     OPTION(coarsest),
+     .applies = has_levels,
+     .least = 4,
+     .most = UINT32_MAX,
+     .initial = 5000,
+     .value = "N",
+     .help = "pilp: vertices of the coarsest level."},
+    {.key = "step",
+     .option = "step",
+     .kind = STARG_FIELD_COUNT,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_NULLABLE,
+     OPTION(step),
+     .applies = has_levels,
+     .least = 1,
+     .most = UINT32_MAX,
+     .initial = STARG_DEFAULT_STEP,
+     .none = STARG_QUARTERS,
+     .value = "N",
+     .help = "pilp: vertices that each finer level has more.",
+     .default_text = "10,000; of models that have more than 40,000 above the coarsest level, each "
+                     "level has a quarter of the next finer one"},
+    {.key = "significance",
+     .option = "significance",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_OPTIONAL,
+     OPTION(significance),
+     .applies = has_levels,
+     .high = 1,
+     .standard = 0.1,
+     .value = "F",
+     .help = "pilp: guards that see less than this fraction of a level's area are chosen anew "
+             "there."},
+    {.key = "refine",
+     .option = "no-refine",
+     .kind = STARG_FIELD_FLAG,
+     .flags = STARG_FIELD_OPTIONAL,
+     OPTION(refine),
+     .applies = has_levels,
+     .initial = true,
+     .help = "pilp: leave the guards as the levels give them; do not look for better places."},
+    {.option = "refine-lines",
+     .kind = STARG_FIELD_COUNT,
+     OPTION(refine_lines),
+     .most = UINT32_MAX,
+     .initial = 10000000,
+     .value = "N",
+     .help = "pilp: sight lines that refinement may test."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "options", .size = sizeof(starg_guard_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_guard_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
+void starg_guard_options_default(starg_guard_options *options) {
+    *options = (starg_guard_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
+}
+
+/* ---- parts of the file ---- */
+
+#define RESULT(NAME)    FIELD_MEMBER(starg_guards, NAME)
+#define LENGTH(T, NAME) .length = offsetof(T, NAME)
+
+static const starg_guards *of(const void *record) {
+    return record;
+}
+
+static bool has_directions(const void *record) {
+    return of(record)->options.visibility.cone < 360;
+}
+
+static bool targets_vertices(const void *record) {
+    return of(record)->options.visibility.target == STARG_TARGET_VERTICES;
+}
+
+static bool has_area_bound(const void *record) {
+    return of(record)->options.max_guards > 0;
+}
+
+static const starg_field MODEL[] = {
+    {.key = "file",
+     .kind = STARG_FIELD_TEXT,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(file),
+     .help = "The model's path as given."},
+    {.key = "vertices", .kind = STARG_FIELD_COUNT, RESULT(vertex_count), .most = UINT32_MAX},
+    {.key = "faces", .kind = STARG_FIELD_COUNT, RESULT(face_count), .most = UINT32_MAX},
+};
+static const starg_fields MODEL_TABLE = {.name = "model", FIELD_ROWS(MODEL)};
+
+static const starg_field GUARDS[] = {
+    {.key = "position", .kind = STARG_FIELD_POINT, RESULT(positions)},
+    {.key = "faces",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, seen_faces),
+     .size = sizeof(size_t),
+     .most = UINT32_MAX,
+     .help = "Faces that it sees."},
+    {.key = "level",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, levels),
+     .size = sizeof(int),
+     .most = INT32_MAX,
+     .help = "Level of detail that asked for it; 0: the coarsest."},
+    {.key = "direction",
+     .kind = STARG_FIELD_POINT,
+     RESULT(directions),
+     .applies = has_directions,
+     .help = "Where it looks, with a cone of view."},
+};
+static const starg_fields GUARDS_TABLE = {.columns = true, .name = "guards", FIELD_ROWS(GUARDS)};
+
+static const starg_field LEVEL_POINTS[] = {
+    {.key = "guards", .kind = STARG_FIELD_POINT, FIELD_MEMBER(starg_guard_level, positions)}};
+static const starg_fields LEVEL_POINTS_TABLE = {
+    .columns = true, .name = "positions", .form = STARG_FORM_BARE, FIELD_ROWS(LEVEL_POINTS)};
+
+static const starg_field LEVELS[] = {
+    {.key = "vertices",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_guard_level, vertex_count),
+     .most = UINT32_MAX},
+    {.key = "faces",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_guard_level, face_count),
+     .most = UINT32_MAX},
+    {.key = "kept",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_guard_level, kept),
+     .most = UINT32_MAX,
+     .help = "How many of the guards come from the coarser level."},
+    {.key = "guards",
+     .kind = STARG_FIELD_LIST,
+     .of = &LEVEL_POINTS_TABLE,
+     LENGTH(starg_guard_level, count),
+     .help = "Those kept first."},
+};
+static const starg_fields LEVELS_TABLE = {
+    .name = "levels", .size = sizeof(starg_guard_level), FIELD_ROWS(LEVELS)};
+
+static const starg_field CURVE[] = {
+    {.key = "faces",
+     .kind = STARG_FIELD_REAL,
+     .offset = offsetof(starg_guards, curve_faces),
+     .size = sizeof(double),
+     .high = 1},
+    {.key = "area",
+     .kind = STARG_FIELD_REAL,
+     .offset = offsetof(starg_guards, curve_area),
+     .size = sizeof(double),
+     .high = 1},
+};
+static const starg_fields CURVE_TABLE = {
+    .columns = true, .name = "curve", .form = STARG_FORM_TUPLE, FIELD_ROWS(CURVE)};
+
+static const starg_field COVERAGE[] = {
+    {.key = "faces",
+     .kind = STARG_FIELD_REAL,
+     RESULT(coverage_faces),
+     .high = 1,
+     .help = "Seen fraction of all faces."},
+    {.key = "area",
+     .kind = STARG_FIELD_REAL,
+     RESULT(coverage_area),
+     .high = 1,
+     .help = "Seen fraction of the area of all faces."},
+    {.key = "coverable_faces",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(coverable_faces),
+     .most = UINT32_MAX,
+     .help = "Faces that some candidate sees."},
+    {.key = "uncovered_faces",
+     .kind = STARG_FIELD_INDICES,
+     RESULT(uncovered),
+     LENGTH(starg_guards, uncovered_count),
+     .limit = offsetof(starg_guards, face_count),
+     .help = "Faces that no guard sees, ascending."},
+    {.key = "curve",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_MATCHING,
+     .of = &CURVE_TABLE,
+     LENGTH(starg_guards, count),
+     .help = "Seen fractions of faces and of area by the first 1, 2, ... guards."},
+    {.key = "vertices",
+     .kind = STARG_FIELD_REAL,
+     RESULT(coverage_vertices),
+     .high = 1,
+     .applies = targets_vertices,
+     .help = "Seen fraction of the vertices that faces use."},
+    {.key = "coverable_vertices",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(coverable_vertices),
+     .most = UINT32_MAX,
+     .applies = targets_vertices},
+    {.key = "uncovered_vertices",
+     .kind = STARG_FIELD_INDICES,
+     RESULT(uncovered_vertices),
+     LENGTH(starg_guards, uncovered_vertex_count),
+     .limit = offsetof(starg_guards, vertex_count),
+     .applies = targets_vertices},
+    {.key = "area_bound",
+     .kind = STARG_FIELD_REAL,
+     RESULT(area_bound),
+     .high = 1,
+     .standard = 1,
+     .applies = has_area_bound,
+     .help = "No choice of max_guards sees a larger fraction of all area."},
+};
+static const starg_fields COVERAGE_TABLE = {.name = "coverage", FIELD_ROWS(COVERAGE)};
+
+/* ---- the file ---- */
+
+static const starg_field FILE_ROWS[] = {
+    {.key = "format", .kind = STARG_FIELD_CONSTANT, .value = "starguard-guards"},
+    {.key = "version", .kind = STARG_FIELD_CONSTANT, .initial = 1},
+    {.key = "model", .kind = STARG_FIELD_RECORD, .of = &MODEL_TABLE},
+    {.key = "options",
+     .kind = STARG_FIELD_RECORD,
+     .offset = offsetof(starg_guards, options),
+     .of = &OPTIONS_TABLE,
+     .help = "Those in force."},
+    {.key = "guards",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_LINES,
+     .of = &GUARDS_TABLE,
+     LENGTH(starg_guards, count)},
+    {.key = "levels",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(level_list),
+     .of = &LEVELS_TABLE,
+     LENGTH(starg_guards, level_count),
+     .help = "The guards of each level of detail before refinement, the coarsest first."},
+    {.key = "coverage", .kind = STARG_FIELD_RECORD, .of = &COVERAGE_TABLE},
+    {.key = "candidates",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(candidate_count),
+     .most = UINT32_MAX,
+     .help = "In the end, with those added."},
+    {.key = "lower_bound",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(lower_bound),
+     .most = UINT32_MAX,
+     .help = "No fewer of the candidates see as much."},
+    {.key = "optimal",
+     .kind = STARG_FIELD_FLAG,
+     RESULT(optimal),
+     .help = "There are as many guards as the bound."},
+    {.key = "time_limited",
+     .kind = STARG_FIELD_FLAG,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(time_limited),
+     .help = "The time limit cut the search short."},
+};
+const starg_fields guards_file_fields = {
+    .name = "guards file", .size = sizeof(starg_guards), FIELD_ROWS(FILE_ROWS)};
