@@ -2,6 +2,7 @@
 #ifndef STARG_MESH_SOLID_H
 #define STARG_MESH_SOLID_H
 
+#include "core/private.h"
 #include "geometry/bvh.h"
 #include "mesh/mesh.h"
 #include "starguard/solid.h"
@@ -14,7 +15,8 @@ struct starg_solid {
 };
 
 /* starg_solid_create for steps of a longer work: the time limit does not end it. */
-starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out);
+starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out)
+    STARG_PRIVATE(solid_make);
 
 /* The solid that another process has examined: its mesh as it was after that, and as much of the
  * check as is needed. Copies all. Errors: those of starg_mesh_create. */

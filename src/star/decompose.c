@@ -1,12 +1,12 @@
 /* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
 #include <math.h>
 
-#include "core/fields.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
+#include "tetra/fields.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces";
@@ -48,6 +48,7 @@ static const starg_field OPTIONS[] = {
      .value = "N",
      .help = "strict: trials after which the search ends, whatever the time.",
      .default_text = "0, the library's choice"},
+    TETRA_FIELDS(starg_decompose_options, tetra.),
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "decompose options", .size = sizeof(starg_decompose_options), FIELD_ROWS(OPTIONS)};
@@ -58,7 +59,6 @@ const starg_fields *starg_decompose_options_fields(void) {
 
 void starg_decompose_options_default(starg_decompose_options *options) {
     *options = (starg_decompose_options){0};
-    starg_tetra_options_default(&options->tetra);
     starg_fields_default(&OPTIONS_TABLE, options);
 }
 

@@ -1,6 +1,6 @@
 /* One interface for the generators: which one, how fine, and what is told about it. */
 #include "tetra/generate.h"
-#include "core/fields.h"
+#include "tetra/fields.h"
 
 #include <math.h>
 
@@ -13,43 +13,17 @@ static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, in mean vol
 static const double LATTICE_DENSITY = 12; /* tetrahedra of the lattice per cube            */
 static const double STEPS_PER_CUBE = 4;   /* of the measurement of distances               */
 
-static const char *const GENERATORS[] = {"auto", "tetgen", "stuffing", NULL};
+const char *const tetra_generator_words[] = {"auto", "tetgen", "stuffing", NULL};
 
 static const starg_field OPTIONS[] = {
-    {.key = "generator",
-     .kind = STARG_FIELD_CHOICE,
-     FIELD_MEMBER(starg_tetra_options, generator),
-     .words = GENERATORS,
-     .value = "auto|tetgen|stuffing",
-     .help = "How tetrahedra are made: by the program tetgen, which keeps the surface, by "
-             "isosurface stuffing, or by the one that can."},
     {.key = "density",
      .kind = STARG_FIELD_REAL,
      FIELD_MEMBER(starg_tetra_options, density),
      .high = 1e6,
-     .standard = PAPER_DENSITY,
+     .standard = TETRA_PAPER_DENSITY,
      .value = "T",
      .help = "Tetrahedra for each vertex of the surface; 0: as few as can be."},
-    {.key = "target",
-     .kind = STARG_FIELD_COUNT,
-     FIELD_MEMBER(starg_tetra_options, target),
-     .most = TETMESH_LIMIT,
-     .value = "N",
-     .help = "Tetrahedra that are aimed at; above 0 it stands in for the density."},
-    {.key = "tetgen",
-     .kind = STARG_FIELD_TEXT,
-     FIELD_MEMBER(starg_tetra_options, tetgen),
-     .value = "FILE",
-     .help = "The program tetgen.",
-     .default_text = "that of the search path"},
-    {.key = "tetgen_limit",
-     .kind = STARG_FIELD_REAL,
-     .flags = STARG_FIELD_ABOVE,
-     FIELD_MEMBER(starg_tetra_options, tetgen_limit),
-     .high = 1e100,
-     .standard = 30,
-     .value = "S",
-     .help = "Seconds that tetgen may take."},
+    TETRA_FIELDS(starg_tetra_options, ),
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "tetrahedra options", .size = sizeof(starg_tetra_options), FIELD_ROWS(OPTIONS)};
@@ -83,7 +57,7 @@ static starg_status by_stuffing(starg_context *context, const tetra_shape *shape
     starg_status status = STARG_OK;
     double count = wanted(shape->mesh, o);
     if (count == 0)
-        count = PAPER_DENSITY * (double)shape->mesh->vertex_count;
+        count = TETRA_PAPER_DENSITY * (double)shape->mesh->vertex_count;
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
     report->spacing = cbrt(LATTICE_DENSITY * fabs(shape->volume) / count);
     STARG_TRY(tetra_by_stuffing(context, shape, &report->spacing, out));
