@@ -48,12 +48,14 @@ static const cli_option options[] = {
              "which pieces are star-shaped is told."},
     {.name = "guards",
      .kind = CLI_TEXT,
+     .input = true,
      .offset = offsetof(values, guards),
      .value = "GUARDS.json",
      .help = "Guards to begin with: a result of 'starguard guard', or text of three numbers a "
              "line. Default for --mode paper: those that 'starguard guard' places."},
     {.name = "tets",
      .kind = CLI_TEXT,
+     .input = true,
      .offset = offsetof(values, tets),
      .value = "FILE",
      .help = "Read the solid as tetrahedra from this file, in place of MODEL: MEDIT .mesh, .vtk, "

@@ -44,7 +44,7 @@ static const cli_option options[] = {
         "pilp (default) goes from coarse to fine levels of detail and then refines; ilp finds "
         "the fewest of the candidates and proves it, or gives its best and a bound; greedy "
         "is fastest, with more guards and a weaker bound."),
-    CLI_TEXT_OPTION(
+    CLI_INPUT_OPTION(
         "candidates", candidates, "skeleton|medial|interior|FILE",
         "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
         "lattice inside, or at the points of a file: three numbers a line, or another "

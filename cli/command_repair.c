@@ -118,6 +118,7 @@ const cli_command cli_command_repair = {
     CLI_OPERANDS(1, 1),
     .defaults = set_defaults,
     .input = CLI_INPUT_MESH,
+    .in_place = true,
     .prepare = prepare,
     .run = run,
 };

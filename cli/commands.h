@@ -29,6 +29,7 @@ struct cli_command {
     const char *(*operand_word)(size_t index);
     size_t values_size; /* of the struct that the options fill */
     cli_input input;
+    bool in_place; /* an output may be the input */
     /* In this order; all but `run` may be NULL. */
     void (*defaults)(void *values);                              /* the struct comes zeroed     */
     starg_status (*prepare)(cli_session *session, void *values); /* options, names of outputs   */

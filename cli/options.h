@@ -32,6 +32,7 @@ typedef struct cli_option {
     uint64_t least, most;
     double low, high;
     bool above; /* low itself is out                                 */
+    bool input; /* CLI_TEXT: a file that is read, or a lower-case word of `value` */
 } cli_option;
 
 /* Entries of the table of a command, whose struct is called `values`. */
@@ -41,6 +42,8 @@ typedef struct cli_option {
     { CLI_OPTION(NAME, CLI_FLAG, MEMBER, NULL, HELP) }
 #define CLI_TEXT_OPTION(NAME, MEMBER, VALUE, HELP)                                                 \
     { CLI_OPTION(NAME, CLI_TEXT, MEMBER, VALUE, HELP) }
+#define CLI_INPUT_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
+    { CLI_OPTION(NAME, CLI_TEXT, MEMBER, VALUE, HELP), .input = true }
 #define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
     { CLI_OPTION(NAME, CLI_POINTS, MEMBER, VALUE, HELP) }
 #define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, VALUE, HELP)                                        \
@@ -78,6 +81,10 @@ typedef struct cli_complaint {
  * complaint on the first error. Later occurrences of an option replace earlier ones. */
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
                       cli_complaint *complaint);
+
+/* The next of the lower-case words in what help calls the value of a CLI_TEXT option, from *at on,
+ * which begins as `value`; NULL behind the last. */
+const char *cli_option_next_word(const char **at, size_t *size);
 
 /* Frees what parsing has allocated. */
 void cli_options_free(const cli_group *group);

@@ -81,6 +81,10 @@ starg_status cli_fail(cli_session *session, starg_status status, const char *for
     __attribute__((format(printf, 3, 4)));
 starg_status cli_fail_memory(cli_session *session);
 
+/* Names a file that the run reads, which no output may be then; NULL is fine. Operands and options
+ * that name inputs are named by the frame of every command; this is for what these files name. */
+starg_status cli_name_input(cli_session *session, const char *name);
+
 /* Announces an output file; NULL is fine. "-" takes standard output. */
 starg_status cli_announce(cli_session *session, const char *name);
 

@@ -30,6 +30,8 @@ static starg_status draw_shape(cli_session *session, const char *file, size_t in
     struct stat info;
     if (stat(file, &info) != 0 || !S_ISREG(info.st_mode))
         return STARG_OK;
+    if ((status = cli_name_input(session, file)) != STARG_OK)
+        return status;
     starg_picture_options_default(&options);
     options.width = PICTURE_WIDTH;
     options.height = PICTURE_HEIGHT;
