@@ -51,8 +51,8 @@ static const cli_option options[] = {
      .input = true,
      .offset = offsetof(values, guards),
      .value = "GUARDS.json",
-     .help = "Guards to begin with: a result of 'starguard guard', or text of three numbers a "
-             "line. Default for --mode paper: those that 'starguard guard' places."},
+     .help = "Guards to begin with: a result of 'starguard guard', a skeleton, or text of three "
+             "numbers a line. Default for --mode paper: those that 'starguard guard' places."},
     {.name = "tets",
      .kind = CLI_TEXT,
      .input = true,

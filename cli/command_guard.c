@@ -47,8 +47,8 @@ static const cli_option options[] = {
     CLI_INPUT_OPTION(
         "candidates", candidates, "skeleton|medial|interior|FILE",
         "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
-        "lattice inside, or at the points of a file: three numbers a line, or another "
-        "GUARDS.json."),
+        "lattice inside, or at the points of a file: three numbers a line, a skeleton of "
+        "'starguard skeleton', or another GUARDS.json."),
     CLI_COUNT_OPTION(
         "count", count, "N", 1, 10000000,
         "About how many candidates to make; more are added for faces that none of them sees. "
