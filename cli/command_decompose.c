@@ -139,10 +139,10 @@ static starg_status cut(cli_session *session, const subject *s,
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
     starg_status status = starg_solid_create(session->context, s->surface, &solid);
     if (status == STARG_ERROR_MESH) { /* a surface with holes is filled with what it winds around */
-        cli_notice(session,
-                   "%s; isosurface stuffing fills what the surface winds around, and closes holes "
-                   "of its own accord",
-                   starg_context_error(session->context)->message);
+        cli_log(session, STARG_LOG_WARNING,
+                "%s; isosurface stuffing fills what the surface winds around, and closes holes "
+                "of its own accord",
+                starg_context_error(session->context)->message);
         return starg_decompose_open_mesh(session->context, s->surface, wanted, out);
     }
     if (status == STARG_OK)
@@ -467,7 +467,7 @@ const cli_command cli_command_decompose = {
         "tetrahedra of your own; the content tells which.\n"
         "The surface is kept, face by face, where the program tetgen can be had. Surfaces that "
         "pass through themselves or have holes are filled by isosurface stuffing instead, with a "
-        "notice, and how far its surface is from the model's is told.\n"
+        "warning, and how far its surface is from the model's is told.\n"
         "The search ends when it finds nothing better, at the latest after 60 seconds unless "
         "--time-limit says otherwise, with the best that it has.",
     .examples = "# pieces with their proofs, and what they look like\n"

@@ -203,7 +203,7 @@ void cli_outputs_translate(const cli_outputs *outputs, char *message, size_t siz
 
 /* Copies the staged file into a device or a pipe. */
 static bool copy_to_device(const cli_output *output) {
-    char block[1 << 16];
+    char block[1 << 13];
     FILE *from = fopen(output->staged, "rb");
     if (from == NULL)
         return false;

@@ -182,13 +182,13 @@ starg_status cli_announce_folder(cli_session *session, const char *name) {
 
 /* ---- text ---- */
 
-void cli_notice(cli_session *session, const char *format, ...) {
+void cli_log(cli_session *session, starg_log_level level, const char *format, ...) {
     char text[sizeof session->message];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    on_log(session, STARG_LOG_NOTICE, text);
+    on_log(session, level, text);
 }
 
 void cli_say(cli_session *session, const char *format, ...) {

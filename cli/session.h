@@ -94,9 +94,9 @@ starg_status cli_announce_needed(cli_session *session, const char *name, const c
 /* Announces a folder for outputs, which are then announced as files in it; NULL is fine. */
 starg_status cli_announce_folder(cli_session *session, const char *name);
 
-/* A notice of the command line's own, told and logged like those of the library. */
-void cli_notice(cli_session *session, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+/* A notice or warning of the command line's own, told and logged like those of the library. */
+void cli_log(cli_session *session, starg_log_level level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* Text for people: standard output, or standard error when a result goes there; nothing with
  * --quiet or --json. */

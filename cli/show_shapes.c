@@ -50,8 +50,9 @@ static void tell_missing(cli_session *session, const cli_show *show) {
     for (size_t i = 0; i < show->shape_count; i++)
         missing += show->shapes[i].png == NULL;
     if (missing > 0)
-        cli_notice(session, "%zu of %zu models are not where the table says: shown without picture",
-                   missing, show->shape_count);
+        cli_log(session, STARG_LOG_NOTICE,
+                "%zu of %zu models are not where the table says: shown without picture", missing,
+                show->shape_count);
 }
 
 /* ---- databases ---- */

@@ -2,9 +2,10 @@
 nothing behind."""
 import json
 import os
+import stat
 
 import support
-from support import TETRAHEDRON
+from support import OPEN, TETRAHEDRON
 
 MEDIT = """MeshVersionFormatted 2
 Dimension 3
@@ -154,6 +155,25 @@ class Decompose(support.Case):
                                    "--mode", mode, "--density", "40", "--time-limit", "3")
             self.assertEqual(self.agree("p.vtk", "p.json")["surface"], "approximated")
             self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
+
+    def test_quiet_warns_of_another_surface(self):
+        """Pieces that are not of the given surface are told of whatever the options are."""
+        tool = self.write("tetgen", "#!/bin/sh\nkill -SEGV $$\n")
+        os.chmod(self.path(tool), stat.S_IRWXU)
+        path = {"PATH": f"{self.folder}:{os.environ['PATH']}"}
+        self.write("closed.off", TETRAHEDRON)
+        self.write("open.off", OPEN)
+        for model, reason in [("closed.off", "crashed"), ("open.off", "open")]:
+            with self.subTest(model=model):
+                words = ["decompose", model, "-o", "p.vtk", "--effort", "1"]
+                out, err = self.run_text(*words, "--quiet", environment=path)
+                self.assertEqual(out, "")
+                self.assertEqual(err.count("warning:"), 1, err)
+                self.assertIn(reason, err)
+                self.assertIn("stuffing", err)
+                log = self.run_json(*words, environment=path)["log"]
+                self.assertEqual([line["level"] for line in log if "stuffing" in line["message"]],
+                                 ["warning"])
 
     def test_surfaces_and_picture(self):
         room = self.sample("l-room")

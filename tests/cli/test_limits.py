@@ -102,6 +102,18 @@ class Memory(Writing):
             self.assertEqual(self.names(), self.made)
 
 
+@unittest.skipIf(support.SANITIZE, "sanitizers need larger stacks")
+class Stack(Writing):
+    def test_commands(self):
+        """A stack of 64 KiB is enough, for the threads that are started as well, whose stacks are as large."""
+        for name, words, outputs in self.commands():
+            with self.subTest(command=name):
+                self.run_text(*words, "--threads", "2", "--quiet",
+                              launcher=["env", "-i", f"PATH={os.environ['PATH']}"],
+                              preexec_fn=limit(resource.RLIMIT_STACK, 64 << 10))
+                self.clear(outputs)
+
+
 class TimeLimits(support.Case):
     """A limit of S seconds ends a run within 1.05 S + 2. Processor time on one thread is measured, so
     that a busy machine does not matter."""
