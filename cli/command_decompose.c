@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "endings.h"
 #include "model.h"
+#include "numbers.h"
 #include "report.h"
 #include "starguard/decompose.h"
 #include "starguard/guard.h"
@@ -163,9 +164,8 @@ static size_t count_single(const starg_decomposition *d) {
 static void say_pieces(cli_session *session, const starg_decomposition *d) {
     cli_say(session, "pieces        %zu\n", d->piece_count);
     cli_say(session, "star-shaped   %zu (proven)\n", d->strictly_star);
-    /* rounded down, so that only what is whole is called 100 % */
     cli_say(session, "visible       %g %% of the vertices, from their guards\n",
-            floor(1e4 * d->visible_vertices) / 100);
+            cli_percent(d->visible_vertices));
     cli_say(session, "tetrahedra    %zu\n", starg_tetmesh_count(d->mesh));
     if (d->tetra.surface_kept)
         cli_say(session, "surface       kept\n");

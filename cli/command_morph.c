@@ -464,10 +464,13 @@ static void say_morph(cli_session *session, const values *v, const starg_morph *
     const separate *alone = &found->alone;
     cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
     if (starg_morph_guard_count(morph) > 0)
-        cli_say(session, "guards        %zu in each shape\n", starg_morph_guard_count(morph));
+        cli_say(session, "guards        %zu in each shape; %s seen in both by none\n",
+                starg_morph_guard_count(morph),
+                cli_count_of(starg_morph_unguarded(morph), "face", "faces").text);
     if (v->guards)
         cli_say(session,
-                "alone         %zu guards for A (at least %zu), %zu for B (at least %zu)\n",
+                "alone         %zu guards for A (at least %zu), %zu for B (at least %zu): for all "
+                "that is seen there\n",
                 alone->count[0], alone->bound[0], alone->count[1], alone->bound[1]);
     if (v->pieces)
         cli_say(session, "pieces        %zu, star-shaped in both solids (proven)\n",

@@ -125,7 +125,8 @@ void cli_help_command(FILE *stream, const cli_command *command) {
         heading(stream, "Commands");
         print_commands(stream, command->members);
     }
-    heading(stream, "Options");
+    if (command->option_count > 0)
+        heading(stream, "Options");
     print_options(stream, command->options, command->option_count);
     heading(stream, "Options of every command");
     print_options(stream, cli_common_options, cli_common_option_count);

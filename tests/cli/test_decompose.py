@@ -171,6 +171,9 @@ class Decompose(support.Case):
                 self.assertEqual(err.count("warning:"), 1, err)
                 self.assertIn(reason, err)
                 self.assertIn("stuffing", err)
+                if model == "open.off":
+                    _, told = self.run_text("describe", model, "-o", "d.json", "--quiet")
+                    self.assertIn("warning: the surface bounds no solid", told)
                 log = self.run_json(*words, environment=path)["log"]
                 self.assertEqual([line["level"] for line in log if "stuffing" in line["message"]],
                                  ["warning"])
