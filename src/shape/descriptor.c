@@ -102,8 +102,8 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
         out->surface = NULL;
     if (!closed && status == STARG_OK)
         starg_log(context, STARG_LOG_WARNING,
-                  "the surface bounds no solid; what it winds around is described, its holes closed "
-                  "by isosurface stuffing");
+                  "the surface bounds no solid; what it winds around is described, its holes "
+                  "closed by isosurface stuffing");
 done:
     return status;
 }
