@@ -80,7 +80,7 @@ class Decompose(support.Case):
     def test_strict(self):
         room = self.sample("l-room")
         report = self.run_json("decompose", room, "-o", "p.vtk", "--report", "p.json",
-                               "--density", "3", "--time-limit", "3")
+                               "--density", "3", "--effort", "100")
         result = self.agree("p.vtk", "p.json")
         self.assertEqual(report["format"], "starguard-decompose")
         self.assertEqual(result["mode"], "strict")
@@ -152,7 +152,7 @@ class Decompose(support.Case):
         self.write("two.off", "\n".join(["OFF", "8 8 12"] + lines[2:6] + moved + faces) + "\n")
         for mode in "strict", "paper":
             report = self.run_json("decompose", "two.off", "-o", "p.vtk", "--report", "p.json",
-                                   "--mode", mode, "--density", "40", "--time-limit", "3")
+                                   "--mode", mode, "--density", "40", "--effort", "100")
             self.assertEqual(self.agree("p.vtk", "p.json")["surface"], "approximated")
             self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
 
