@@ -50,7 +50,7 @@ check-slow: tests sanitize-build
 
 # A million cases for each exact decision.
 check-exact: tests
-	@STARGUARD_LONG=100 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
+	@STARGUARD_LONG=100 $(CTEST) --test-dir $(BUILD) -L exact
 
 # Memory that is read before it is written: valgrind.
 check-memory: tests
@@ -61,7 +61,7 @@ check-memory: tests
 check-threads: deps-check
 	@CC=clang $(STRICT) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
-	@$(CTEST) --timeout 3000 --test-dir $(BUILD)-thread -LE slow
+	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
 
 check-mpi: mpi
 	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi

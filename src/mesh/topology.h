@@ -37,6 +37,11 @@ void topology_free(mesh_topology *topology) STARG_PRIVATE(topology_free);
 /* Number of halfedges on the edge of `halfedge`. */
 size_t topology_edge_faces(const mesh_topology *topology, uint32_t halfedge);
 
+/* Number of faces that can be reached from their own other side over edges of two faces: they have
+ * one side only, like a Moebius strip. Errors: MEMORY. */
+starg_status topology_count_one_sided(const mesh_topology *topology, const starg_mesh *mesh,
+                                      size_t *count);
+
 /* Disjoint sets over 0 .. count - 1 in a caller's array of parents. */
 void sets_make(uint32_t *parent, size_t count) STARG_PRIVATE(sets_make);
 uint32_t sets_find(uint32_t *parent, uint32_t item) STARG_PRIVATE(sets_find);

@@ -114,7 +114,7 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
         status = try_tetgen(context, solid, options, report, out);
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
             goto done;
-        starg_log(context, STARG_LOG_NOTICE,
+        starg_log(context, STARG_LOG_WARNING,
                   "%s; isosurface stuffing makes the tetrahedra instead, and their surface is only "
                   "near the model's",
                   starg_context_error(context)->message);

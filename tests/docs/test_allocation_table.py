@@ -64,7 +64,7 @@ class Table(unittest.TestCase):
         headers = re.sub(r"/\*.*?\*/", "", text_of("include/starguard/*.h"), flags=re.S)
         found = re.findall(r"^STARG_API ([^;]*?\b(starg_\w+)\([^;]*);", headers, flags=re.M)
         self.declared = {name: declaration for declaration, name in found}
-        self.tested = set(re.findall(r'\{"(starg_\w+)", "',
+        self.tested = set(re.findall(r'\((starg_\w+),\s*"',
                                      text_of("tests/property/test_allocation_*.c")))
 
     def test_all_are_told_of(self):
