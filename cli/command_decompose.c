@@ -13,8 +13,7 @@
 
 static const char *const mode_words[] = {"strict", "paper", NULL};
 
-static const double TIME_LIMIT = 60; /* seconds, unless another one is asked for */
-static const double APART = 0.18;    /* pictures: how far pieces are moved from the middle of all */
+static const double APART = 0.18; /* pictures: how far pieces are moved from the middle of all */
 
 typedef struct values {
     const char *output, *report, *guards, *tets, *surfaces, *picture;
@@ -78,8 +77,8 @@ static const cli_option options[] = {
      .offset = offsetof(values, effort),
      .value = "N",
      .most = UINT64_MAX,
-     .help = "strict: trials after which the search ends, whatever the time. Default 0: the "
-             "library's choice."},
+     .help = "strict: trials after which the search ends. Default 0: a fixed amount of work, the "
+             "same on every machine, of some 15 seconds; no bound with --time-limit."},
     {.name = "surfaces",
      .kind = CLI_TEXT,
      .offset = offsetof(values, surfaces),
@@ -440,8 +439,6 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(announce_files(session, v));
     CLI_TRY(make_options(session, v, &points, &wanted));
     CLI_TRY(read_subject(session, v, &what));
-    if (session->common.time_limit == 0)
-        starg_context_set_time_limit(session->context, TIME_LIMIT);
     CLI_TRY(cut(session, &what, &wanted, &pieces));
     CLI_TRY(write_files(session, v, what.file, pieces));
     say_pieces(session, pieces);
@@ -466,8 +463,9 @@ const cli_command cli_command_decompose = {
         "The surface is kept, face by face, where the program tetgen can be had. Surfaces that "
         "pass through themselves or have holes are filled by isosurface stuffing instead, with a "
         "notice, and how far its surface is from the model's is told.\n"
-        "The search ends when it finds nothing better, at the latest after 60 seconds unless "
-        "--time-limit says otherwise, with the best that it has.",
+        "The search ends when it finds nothing better, at the latest after a fixed amount of work "
+        "(some 15 seconds), so that the same input gives the same bytes. --effort counts trials "
+        "instead; with --time-limit the search goes on until then and gives the best it has.",
     .examples = "# pieces with their proofs, and what they look like\n"
                 "starguard decompose model.off -o pieces.vtk --report pieces.json \\\n"
                 "    --picture pieces.png\n"

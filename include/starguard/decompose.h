@@ -72,7 +72,9 @@ typedef struct starg_decompose_options {
     const double *guards; /* guard_count x 3, or NULL. PAPER: to grow from; NULL: those of
                              starg_guard. STRICT: points that are tried as guards first */
     size_t guard_count;
-    uint64_t effort; /* STRICT: trials after which the search ends; 0: the default */
+    /* STRICT: trials after which the search ends. 0: a fixed amount of work, the same on every
+     * machine and at any number of threads; no bound where the context has a time limit */
+    uint64_t effort;
 } starg_decompose_options;
 
 /* STRICT, tetrahedra as they come, as few pieces as can be found. */

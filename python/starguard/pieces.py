@@ -119,15 +119,16 @@ def decompose(model: Any, *, mode: str | None = None, guards: ArrayLike | None =
               generator: str | None = None, density: float | None = None,
               target: int | None = None, tetgen: PathLike | None = None,
               tetgen_limit: float | None = None, threads: int | None = None,
-              seed: int | None = None, time_limit: float | None = 60,
+              seed: int | None = None, time_limit: float | None = None,
               progress: Progress | None = None) -> Decomposition:
     """Cuts a solid into few pieces that each one guard sees as a whole.
 
     With `mode` "strict" (default) every piece is proven to be star-shaped; "paper" grows pieces
     from guards, as the paper does. The model is what `as_mesh` takes, or a TetMesh; a surface with
     holes is filled with what it winds around, with a notice. `guards` (n, 3) are points to grow from
-    or to try first. The search stops after `time_limit` seconds (None: when it finds no more) with
-    the best that it has. The options of `tetrahedralize` tell how the solid is filled.
+    or to try first. The search stops after `effort` trials, or by default after a fixed amount of
+    work (some 15 seconds), which gives the same result everywhere. With `time_limit` and no
+    `effort` it goes on until then, with the best that it has. The options of `tetrahedralize` tell how the solid is filled.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
