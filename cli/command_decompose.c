@@ -135,7 +135,8 @@ static starg_status cut(cli_session *session, const subject *s,
     if (s->tets != NULL)
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
     starg_status status = starg_solid_create(session->context, s->surface, &solid);
-    if (status == STARG_ERROR_MESH) { /* a surface with holes is filled with what it winds around */
+    /* a surface with holes is filled with what it winds around; faults without a place have none */
+    if (status == STARG_ERROR_MESH && starg_context_error(session->context)->index_count > 0) {
         cli_notice(session,
                    "%s; isosurface stuffing fills what the surface winds around, and closes holes "
                    "of its own accord",

@@ -74,6 +74,7 @@ starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_so
     solid->context = context;
     STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
                                 mesh->face_count, &solid->mesh));
+    STARG_TRY(mesh_check_extent(context, mesh, "solid"));
     STARG_TRY(mesh_examine(context, solid->mesh, &all));
     if (!all.check->usable) {
         status = fail_unusable(context, all.check);

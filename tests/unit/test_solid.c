@@ -197,8 +197,34 @@ static void test_distance(void **state) {
     test_context_free(context);
 }
 
+/* Solids whose areas and volumes would vanish are refused; scaled up they are taken. */
+static void test_narrow(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    static const double scales[] = {1e-320, 1e-200, 1e-110, 9e-91, 1e-90, 1e-60};
+    for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+        shape s = shape_cube(1);
+        starg_mesh *mesh = NULL;
+        starg_solid *solid = NULL;
+        for (size_t k = 0; k < 3 * s.vertex_count; k++)
+            s.vertices[k] = s.vertices[k] > 0 ? scales[i] : 0;
+        test_ok(context, starg_mesh_create(context, s.vertices, s.vertex_count, s.faces,
+                                           s.face_count, &mesh));
+        bool narrow = scales[i] < 1e-90;
+        assert_int_equal(starg_solid_create(context, mesh, &solid),
+                         narrow ? STARG_ERROR_RANGE : STARG_OK);
+        if (narrow)
+            assert_non_null(strstr(starg_context_error(context)->message, "power of two"));
+        starg_solid_free(solid);
+        starg_mesh_free(mesh);
+        shape_free(&s);
+    }
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_narrow),
         cmocka_unit_test(test_refuses_open),
         cmocka_unit_test(test_refuses_inconsistent),
         cmocka_unit_test(test_refuses_nonmanifold),
