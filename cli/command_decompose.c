@@ -20,7 +20,7 @@ typedef struct values {
     int mode;
     double density;
     uint64_t max_pieces, effort;
-    bool binary;
+    bool fill, binary;
 } values;
 
 static const cli_option options[] = {
@@ -79,6 +79,11 @@ static const cli_option options[] = {
      .most = UINT64_MAX,
      .help = "strict: trials after which the search ends. Default 0: a fixed amount of work, the "
              "same on every machine, of some 15 seconds; no bound with --time-limit."},
+    {.name = "fill",
+     .kind = CLI_FLAG,
+     .offset = offsetof(values, fill),
+     .help = "Fill a surface with holes even where what it winds around is farther from it than a "
+             "fifth of its diagonal, which is refused otherwise."},
     {.name = "surfaces",
      .kind = CLI_TEXT,
      .offset = offsetof(values, surfaces),
@@ -420,6 +425,7 @@ static starg_status make_options(cli_session *session, const values *v, double *
     wanted->mode = (starg_decompose_mode)v->mode;
     wanted->max_pieces = v->max_pieces;
     wanted->effort = v->effort;
+    wanted->fill = v->fill;
     wanted->tetra.density = v->density;
     /* half of the time is left for the pieces */
     wanted->tetra.tetgen_limit = fmax(wanted->tetra.tetgen_limit, session->common.time_limit / 2);

@@ -151,7 +151,8 @@ static starg_status decompose_tetmesh(starg_context *context) {
 }
 
 static starg_status decompose_open_mesh(starg_context *context) {
-    const starg_decompose_options options = little_effort(STARG_DECOMPOSE_STRICT);
+    starg_decompose_options options = little_effort(STARG_DECOMPOSE_STRICT);
+    options.fill = true;
     starg_decomposition *d = NULL;
     starg_status status = starg_decompose_open_mesh(context, in.open, &options, &d);
     return decomposition_result(context, status, d);
