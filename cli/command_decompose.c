@@ -12,8 +12,7 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 
-static const double TIME_LIMIT = 60; /* seconds, unless another one is asked for */
-static const double APART = 0.18;    /* pictures: how far pieces are moved from the middle of all */
+static const double APART = 0.18; /* pictures: how far pieces are moved from the middle of all */
 
 typedef struct values {
     const char *output, *report, *guards, *tets, *surfaces, *picture;
@@ -79,7 +78,8 @@ static starg_status cut(cli_session *session, const subject *s,
     if (s->tets != NULL)
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
     starg_status status = starg_solid_create(session->context, s->surface, &solid);
-    if (status == STARG_ERROR_MESH) { /* a surface with holes is filled with what it winds around */
+    /* a surface with holes is filled with what it winds around; faults without a place have none */
+    if (status == STARG_ERROR_MESH && starg_context_error(session->context)->index_count > 0) {
         cli_log(session, STARG_LOG_WARNING,
                 "%s; isosurface stuffing fills what the surface winds around, and closes holes "
                 "of its own accord",
@@ -379,8 +379,6 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(announce_files(session, v));
     CLI_TRY(make_options(session, v, &points, &wanted));
     CLI_TRY(read_subject(session, v, &what));
-    if (session->common.time_limit == 0)
-        starg_context_set_time_limit(session->context, TIME_LIMIT);
     CLI_TRY(cut(session, &what, &wanted, &pieces));
     CLI_TRY(write_files(session, v, what.file, pieces));
     say_pieces(session, pieces);
@@ -405,8 +403,9 @@ const cli_command cli_command_decompose = {
         "The surface is kept, face by face, where the program tetgen can be had. Surfaces that "
         "pass through themselves or have holes are filled by isosurface stuffing instead, with a "
         "warning, and how far its surface is from the model's is told.\n"
-        "The search ends when it finds nothing better, at the latest after 60 seconds unless "
-        "--time-limit says otherwise, with the best that it has.",
+        "The search ends when it finds nothing better, at the latest after a fixed amount of work "
+        "(some 15 seconds), so that the same input gives the same bytes. --effort counts trials "
+        "instead; with --time-limit the search goes on until then and gives the best it has.",
     .examples = "# pieces with their proofs, and what they look like\n"
                 "starguard decompose model.off -o pieces.vtk --report pieces.json \\\n"
                 "    --picture pieces.png\n"

@@ -73,7 +73,11 @@ typedef struct starg_decompose_options {
     const double *guards; /* guard_count x 3, or NULL. PAPER: to grow from; NULL: those of
                              starg_guard. STRICT: points that are tried as guards first */
     size_t guard_count;
-    uint64_t effort; /* STRICT: trials after which the search ends; 0: the default */
+    /* STRICT: trials after which the search ends. 0: a fixed amount of work, the same on every
+     * machine and at any number of threads; no bound where the context has a time limit */
+    uint64_t effort;
+    /* starg_decompose_open_mesh: fill the surface even where what it winds around is far from it */
+    bool fill;
 } starg_decompose_options;
 
 /* STRICT, tetrahedra as they come, as few pieces as can be found. */
@@ -97,8 +101,12 @@ STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const sta
                                                const starg_decompose_options *options,
                                                starg_decomposition **out);
 
+/* How far the surface of what a mesh with holes winds around may be from the mesh, either way, as a
+ * fraction of the diagonal of its box, unless `fill` is said. */
+#define STARG_DECOMPOSE_FILL_MOST 0.2
+
 /* Cuts what a mesh with holes winds around (starg_tetmesh_from_open_mesh). Errors: as of
- * starg_decompose, and MESH. */
+ * starg_decompose, and MESH, also when that is farther from the mesh than it may be. */
 STARG_API starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                                  const starg_decompose_options *options,
                                                  starg_decomposition **out);

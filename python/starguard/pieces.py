@@ -116,18 +116,21 @@ class Decomposition:
 
 def decompose(model: Any, *, mode: str | None = None, guards: ArrayLike | None = None,
               max_pieces: int | None = None, effort: int | None = None,
+              fill: bool | None = None,
               generator: str | None = None, density: float | None = None,
               target: int | None = None, tetgen: PathLike | None = None,
               tetgen_limit: float | None = None, threads: int | None = None,
-              seed: int | None = None, time_limit: float | None = 60,
+              seed: int | None = None, time_limit: float | None = None,
               progress: Progress | None = None) -> Decomposition:
     """Cuts a solid into few pieces that each one guard sees as a whole.
 
     With `mode` "strict" (default) every piece is proven to be star-shaped; "paper" grows pieces
     from guards, as the paper does. The model is what `as_mesh` takes, or a TetMesh; a surface with
-    holes is filled with what it winds around, with a notice. `guards` (n, 3) are points to grow from
-    or to try first. The search stops after `time_limit` seconds (None: when it finds no more) with
-    the best that it has. The options of `tetrahedralize` tell how the solid is filled.
+    holes is filled with what it winds around, with a notice, if that is near the surface or `fill`
+    is true. `guards` (n, 3) are points to grow from or to try first. The search stops after `effort`
+    trials, or by default after a fixed amount of work (some 15 seconds), which gives the same result
+    everywhere. With `time_limit` and no `effort` it goes on until then, with the best that it has.
+    The options of `tetrahedralize` tell how the solid is filled.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
@@ -143,7 +146,7 @@ def decompose(model: Any, *, mode: str | None = None, guards: ArrayLike | None =
                      fallback if density is None else density, target, tetgen, tetgen_limit)
     if mode is not None:
         options.mode = choose("mode", mode, MODES)
-    give(options, max_pieces=max_pieces, effort=effort)
+    give(options, max_pieces=max_pieces, effort=effort, fill=fill)
     if guards is not None:
         places = _arrays.points(guards, "guards")
         pointer = _arrays.pointer("double[]", places)
@@ -164,6 +167,8 @@ def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
     try:
         return lib.starg_decompose, shape.solid._handle
     except MeshError as error:
+        if len(error.indices) == 0:  # nothing is inside
+            raise
         logger.info("%s; isosurface stuffing fills what the surface winds around, and closes holes "
                     "of its own accord", error)
         return lib.starg_decompose_open_mesh, shape._handle

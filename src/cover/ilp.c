@@ -16,8 +16,8 @@
  *   - Its heuristics find nothing that our local search has not found: off. Its preprocessing can
  *     crash on infeasible models and gains nothing after our reductions: off. Limits are by elapsed
  *     time. All printing is off.
- *   - When memory is out it throws, wherever it is. Its search then ends as one that has found
- *     nothing; its model is lost, and it is not called again (solver.h).
+ *   - When memory is out it cannot go on: it lives on a reserve until the next node, where it is
+ *     stopped (exceptions.h). After an exception its model is lost, and it is not called again.
  *
  * Trust: coefficients and costs are 1, demands at most 1,000, so the model is exact in doubles. A
  * cover from CBC is checked on the bits. Gaps are closed by our exact dual bound first (dual.h);
@@ -119,7 +119,7 @@ static void stop_if_asked(void *solver, void *cuts, void *user) {
     request->calls++;
     starg_progress_step(request->run->context, request->calls, 2 * request->calls);
     if (starg_check_cancel(request->run->context, "ilp") != STARG_OK ||
-        cover_time_is_over(request->run))
+        cover_time_is_over(request->run) || cover_memory_is_low())
         request->stopped = true;
     if (request->stopped) {
         int variable = 0;

@@ -99,6 +99,7 @@ static starg_status decompose_mesh(starg_context *context, const starg_mesh *mes
     starg_solid *solid = NULL;
     starg_decompose_options_default(&wanted);
     wanted.effort = options->effort;
+    wanted.fill = true;
     starg_status status = solid_make(context, mesh, &solid);
     *closed = status == STARG_OK;
     if (status == STARG_ERROR_MESH)

@@ -84,6 +84,7 @@ static starg_status decompositions(starg_context *context) {
     strict.tetra.generator = STARG_TETRA_STUFFING;
     strict.tetra.target = 20;
     strict.effort = 3;
+    strict.fill = true;
     paper = strict;
     paper.mode = STARG_DECOMPOSE_PAPER;
     starg_decompose_options given = paper;

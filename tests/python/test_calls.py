@@ -1,4 +1,5 @@
 """Calls: progress, cancelling, Ctrl-C, time limits, threads, and the interpreter lock."""
+import inspect
 import logging
 import os
 import signal
@@ -247,6 +248,10 @@ class Log(Case):
 
 
 class Time(Case):
+    def test_no_clock_unless_asked_for(self):
+        for call in (starguard.decompose, starguard.guard, starguard.tetrahedralize):
+            self.assertIsNone(inspect.signature(call).parameters["time_limit"].default)
+
     def test_a_limit_that_strikes_is_told(self):
         model = starguard.sample("dog", vertex_count=2000)
         limit, pieces = 1, None
