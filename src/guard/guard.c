@@ -253,8 +253,8 @@ static bool bounds_area(const starg_guard_options *o) {
 static starg_status report(guard_job *job, starg_guards **out) {
     starg_status status = STARG_OK;
     starg_guards *result = NULL;
-    double deadline = job->context->deadline;
-    job->context->deadline = 0; /* what was found is measured in full */
+    /* what was found is measured in full */
+    starg_time_rule former = starg_time_begin(job->context, STARG_TIME_IGNORED);
     STARG_NEW_ZERO(job->context, STAGE, result, 1);
     result->vertex_count = job->solid->mesh->vertex_count;
     result->face_count = job->solid->mesh->face_count;
@@ -273,7 +273,7 @@ static starg_status report(guard_job *job, starg_guards **out) {
     STARG_TRY(measure_guards(job, result));
     *out = result;
 done:
-    job->context->deadline = deadline;
+    starg_time_end(job->context, former);
     if (status != STARG_OK)
         starg_guards_free(job->context, result);
     return status;
@@ -345,8 +345,8 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     used.candidate_count = used.point_count = count;
     used.points = points;
     guard_job job = {.context = context, .solid = solid, .options = &used};
-    double deadline = context->deadline;
-    context->deadline = 0; /* what stands already is measured in full */
+    /* what stands already is measured in full */
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
     STARG_TRY(pool_create(context, solid, job.options, &job.pool));
@@ -355,7 +355,7 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     STARG_TRY(choose_all(&job));
     STARG_TRY(report(&job, out));
 done:
-    context->deadline = deadline;
+    starg_time_end(context, former);
     job_free(&job);
     return status;
 }

@@ -124,12 +124,14 @@ starg_status refine_guards(guard_job *job) {
         .pool = &job->pool, .places = &places, .lines_left = job->options->refine_lines};
     const choice last = {.method = STARG_COVER_ILP, .max_nodes = job->options->max_nodes};
     bool enough = false;
+    starg_progress_begin(job->context, STAGE);
     STARG_TRY(find_places(job, &places));
     STARG_TRY(add_rounds(job, &prices));
     job->lines_tested = job->options->refine_lines - prices.lines_left;
     STARG_TRY(check_chosen(job, &enough));
     STARG_TRY(choose_again(job, &last, enough ? job->chosen.count : SIZE_MAX, &cover));
 done:
+    starg_progress_end(job->context);
     candidates_free(job->context, &places);
     starg_cover_free(cover);
     return status;
