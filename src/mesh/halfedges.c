@@ -162,14 +162,21 @@ static edge_pair pair_at(const mesh_halfedges *m, uint32_t h) {
 void halfedges_flip(mesh_halfedges *m, uint32_t h) {
     edge_pair e = pair_at(m, h);
     uint32_t f = 3 * e.f, g = 3 * e.g;
+    set_face(m, e.f, e.w, e.u, e.x);
     set_face(m, e.g, e.x, e.v, e.w);
-    set_face(m, e.f, e.u, e.x, e.w);
-    m->leaving.data[e.x] = g;
-    join_twins(m, f, e.ux);
-    join_twins(m, f + 1, g + 2);
-    join_twins(m, f + 2, e.wu);
+    join_twins(m, f, e.wu);
+    join_twins(m, f + 1, e.ux);
+    join_twins(m, f + 2, g + 2);
     join_twins(m, g, e.xv);
     join_twins(m, g + 1, e.vw);
+}
+
+void halfedges_begin_face(mesh_halfedges *m, uint32_t h) {
+    uint32_t next = corner_next(h), last = corner_previous(h), first = h - h % 3;
+    const uint32_t twins[3] = {m->twins.data[h], m->twins.data[next], m->twins.data[last]};
+    set_face(m, h / 3, halfedges_start(m, h), halfedges_start(m, next), halfedges_start(m, last));
+    for (uint32_t k = 0; k < 3; k++)
+        join_twins(m, first + k, twins[k]);
 }
 
 /* The faces become u p w, p v w, v p x and p u x. */

@@ -66,8 +66,12 @@ uint32_t halfedges_find(const mesh_halfedges *m, uint32_t v, uint32_t w);
  * component is no tetrahedron [Dey, Edelsbrunner, Guha, Nekhayev 1999]. */
 void halfedges_collapse(mesh_halfedges *m, uint32_t h);
 
-/* Faces u v w and v u x, with h from u to v, become u x w and x v w; w x is no edge before. */
+/* Faces u v w and v u x, with h from u to v, become w u x and x v w; w x is no edge before. */
 void halfedges_flip(mesh_halfedges *m, uint32_t h);
+
+/* Renumbers the halfedges of a face so that it begins with h; they leave its corners from now on.
+ */
+void halfedges_begin_face(mesh_halfedges *m, uint32_t h);
 
 /* Puts a new vertex on the edge of h, or into a face. Errors: MEMORY; then nothing has changed but
  * that there may be a vertex without faces, or faces that do not live. */

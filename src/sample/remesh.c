@@ -244,16 +244,25 @@ static bool is_flip_wanted(const surface *s, uint32_t h) {
     return flip_keeps_side(pa, pb, pc, pd);
 }
 
-/* Does h stand for an edge? One of its two half-edges does. */
+/* Of the two half-edges of an edge, the lower one stands for it. */
 static bool is_edge(const surface *s, uint32_t h) {
     uint32_t twin = halfedges_twin(&s->mesh, h);
     return twin != TOPOLOGY_NONE && h < twin;
 }
 
+/* Where faces and rings begin decides about the bytes of a sample: the first face begins at the
+ * start of h, and the other corner across from it keeps its ring's begin in the second. */
+static void flip_edge(surface *s, uint32_t h) {
+    uint32_t twin = halfedges_twin(&s->mesh, h), x = halfedges_apex(&s->mesh, twin);
+    halfedges_flip(&s->mesh, h);
+    halfedges_begin_face(&s->mesh, h - h % 3 + 1);
+    s->mesh.leaving.data[x] = twin - twin % 3;
+}
+
 static void flip_edges(surface *s) {
     for (uint32_t h = 0; h < s->halfedge_count; h++)
         if (is_edge(s, h) && is_flip_wanted(s, h))
-            halfedges_flip(&s->mesh, h);
+            flip_edge(s, h);
 }
 
 /* ---- coarsening -------------------------------------------------------------------------- */
