@@ -56,11 +56,8 @@ bool collapse_gather(const mesh_surface *s, uint32_t halfedge, collapse_star *st
         return false;
     /* The kept faces of an end come in turn: the first begins at one opposite corner, the last ends
      * at the other, and all corners between them must be of this end alone. */
-    for (size_t i = 1; i < about_a; i++)
-        for (size_t j = about_a + 1; j < star->count; j++)
-            if (halfedges_end(&s->mesh, star->kept[i]) == halfedges_end(&s->mesh, star->kept[j]))
-                return false;
-    return true;
+    return halfedges_common(&s->mesh, star->kept + 1, about_a - 1, star->kept + about_a + 1,
+                            star->count - about_a - 1) == 0;
 }
 
 /* ---- shape ---------------------------------------------------------------------------------- */

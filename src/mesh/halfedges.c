@@ -78,6 +78,15 @@ uint32_t halfedges_find(const mesh_halfedges *m, uint32_t v, uint32_t w) {
     return TOPOLOGY_NONE;
 }
 
+size_t halfedges_common(const mesh_halfedges *m, const uint32_t *a, size_t a_count,
+                        const uint32_t *b, size_t b_count) {
+    size_t common = 0;
+    for (size_t i = 0; i < a_count; i++)
+        for (size_t j = 0; j < b_count; j++)
+            common += halfedges_end(m, a[i]) == halfedges_end(m, b[j]);
+    return common;
+}
+
 static void join_twins(mesh_halfedges *m, uint32_t g, uint32_t h) {
     m->twins.data[g] = h;
     m->twins.data[h] = g;

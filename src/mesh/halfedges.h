@@ -61,6 +61,10 @@ size_t halfedges_ring(const mesh_halfedges *m, uint32_t v, uint32_t *ring, size_
 /* The halfedge from v to w, or TOPOLOGY_NONE. */
 uint32_t halfedges_find(const mesh_halfedges *m, uint32_t v, uint32_t w);
 
+/* How many of the halfedges `a` end where one of `b` does: common neighbours, of two rings. */
+size_t halfedges_common(const mesh_halfedges *m, const uint32_t *a, size_t a_count,
+                        const uint32_t *b, size_t b_count);
+
 /* Merges the end of h, which is then without faces, into its start. The edge satisfies the link
  * condition: its ends have no common neighbours but the two corners across from it, and the
  * component is no tetrahedron [Dey, Edelsbrunner, Guha, Nekhayev 1999]. */

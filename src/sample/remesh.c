@@ -118,16 +118,6 @@ static double edge_cost(const surface *s, uint32_t h) {
            (s->thickness[a] + s->thickness[b]);
 }
 
-static size_t common_neighbours(const surface *s, const uint32_t *ring_a, size_t count_a,
-                                const uint32_t *ring_b, size_t count_b) {
-    size_t common = 0;
-    for (size_t i = 0; i < count_a; i++)
-        for (size_t j = 0; j < count_b; j++)
-            if (edge_end(s, ring_a[i]) == edge_end(s, ring_b[j]))
-                common++;
-    return common;
-}
-
 /* How well-shaped the face is as seen along the unit `normal`: the sine of the angle between its
  * longest and its shortest edge, below 0 when it looks the other way. Needles do well here, because
  * a collapse of their short edge is all that they need. */
@@ -184,7 +174,7 @@ static bool collapse_edge(surface *s, uint32_t h) {
         return false;
     if (ring_of(s, c, ring_c) <= 3 || ring_of(s, d, ring_d) <= 3)
         return false;
-    if (common_neighbours(s, ring_a, count_a, ring_b, count_b) != 2)
+    if (halfedges_common(&s->mesh, ring_a, count_a, ring_b, count_b) != 2)
         return false;
     double p[3];
     if (!find_place(s, h, ring_a, count_a, ring_b, count_b, p))
@@ -234,14 +224,10 @@ static bool is_flip_wanted(const surface *s, uint32_t h) {
     size_t count_a = ring_of(s, a, ring), count_b = ring_of(s, b, ring);
     if (count_a == 0 || count_b == 0 || count_a <= 3 || count_b <= 3)
         return false;
-    size_t count_d = ring_of(s, d, ring);
-    size_t count_c = ring_of(s, c, ring);
+    size_t count_c = ring_of(s, c, ring), count_d = ring_of(s, d, ring);
     if (count_c == 0 || count_d == 0 || count_c > MAX_VALENCE || count_d > MAX_VALENCE)
         return false;
-    for (size_t i = 0; i < count_c; i++)
-        if (edge_end(s, ring[i]) == d)
-            return false;
-    return flip_keeps_side(pa, pb, pc, pd);
+    return halfedges_find(&s->mesh, c, d) == TOPOLOGY_NONE && flip_keeps_side(pa, pb, pc, pd);
 }
 
 /* Of the two half-edges of an edge, the lower one stands for it. */

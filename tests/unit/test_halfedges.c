@@ -122,7 +122,12 @@ static void expect_same(const mesh_halfedges *m, const triangle_list *list) {
 
 static bool try_collapse(mesh_halfedges *m, triangle_list *list, uint32_t h) {
     uint32_t a = halfedges_start(m, h), b = halfedges_end(m, h);
-    if (!may_collapse(list, a, b, m->leaving.count))
+    uint32_t at_a[64], at_b[64];
+    size_t count_a = halfedges_ring(m, a, at_a, 64), count_b = halfedges_ring(m, b, at_b, 64);
+    bool may = may_collapse(list, a, b, m->leaving.count);
+    if (count_a > 0 && count_b > 0 && count_a + count_b > 6)
+        assert_int_equal(halfedges_common(m, at_a, count_a, at_b, count_b) == 2, may);
+    if (!may)
         return false;
     halfedges_collapse(m, h);
     list_merge(list, b, a);
