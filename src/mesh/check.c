@@ -239,7 +239,7 @@ static bool check_pair(void *user, uint32_t a, uint32_t b) {
             c->shells[first].crossed = c->shells[second].crossed = true;
     }
     bool look_up = ++c->pairs % PAIRS_PER_CLOCK == 0;
-    return !(look_up && starg_deadline_struck(c->context)) &&
+    return !(look_up && starg_time_has_failed(c->context)) &&
            !atomic_load_explicit(&c->context->cancelled, memory_order_relaxed);
 }
 
@@ -336,9 +336,9 @@ void mesh_examination_free(starg_context *context, mesh_examination *examination
 starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, starg_check **out) {
     mesh_examination all;
     *out = NULL;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = mesh_examine(context, mesh, &all);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     if (status == STARG_OK) {
         *out = all.check;
         all.check = NULL;

@@ -149,9 +149,9 @@ done:
 }
 
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = solid_make(context, mesh, out);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     return status;
 }
 

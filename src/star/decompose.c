@@ -129,11 +129,11 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
                          const starg_mesh *surface, const starg_decompose_options *options,
                          starg_tetra_report *report, starg_tetmesh **out) {
     const starg_tetra_options tetra = tetra_options(options);
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = solid != NULL
                               ? starg_tetmesh_from_solid(context, solid, &tetra, report, out)
                               : starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     return status;
 }
 

@@ -111,6 +111,7 @@ done:
 static starg_status join_all(improver *m) {
     starg_status status = STARG_OK;
     bool any = true;
+    starg_progress_begin(m->p->context, "join");
     while (any && !starg_time_is_over(m->p->context)) {
         any = false;
         for (uint32_t a = 0; a < m->p->pieces.count; a++) {
@@ -124,6 +125,7 @@ static starg_status join_all(improver *m) {
         }
     }
 done:
+    starg_progress_end(m->p->context);
     return status;
 }
 
@@ -343,14 +345,12 @@ done:
 
 /* How far the search is, by whatever will end it. */
 static void tell_progress(const improver *m, const improve_options *options, uint64_t patience) {
-    const starg_context *context = m->p->context;
-    double part = (double)m->stalled / (double)patience, now = starg_clock();
+    double part = (double)m->stalled / (double)patience, passed = starg_clock() - m->began;
     if (options->trials != UINT64_MAX)
         part = fmax(part, (double)m->report->trials / (double)options->trials);
     if (options->work != UINT64_MAX)
         part = fmax(part, (double)m->report->work / (double)options->work);
-    if (context->deadline > 0 && context->deadline > m->began)
-        part = fmax(part, (now - m->began) / (context->deadline - m->began));
+    part = fmax(part, passed / (passed + fmax(0, starg_seconds_left(m->p->context))));
     starg_progress_step(m->p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
 }
 
@@ -384,11 +384,9 @@ starg_status improve_join(partition *p) {
     starg_status status = STARG_OK;
     improve_report report = {.trials = 0};
     improver m = {.p = p, .report = &report, .scratch = {.context = p->context}};
-    starg_progress_begin(p->context, "join");
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
 done:
-    starg_progress_end(p->context);
     improver_free(&m);
     return status;
 }
