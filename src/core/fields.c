@@ -110,6 +110,8 @@ void field_expectation(const starg_field *field, char *text, size_t size) {
     else if (f->kind == STARG_FIELD_COUNT)
         snprintf(text, size, "%llu to %llu", (unsigned long long)f->least,
                  (unsigned long long)f->most);
+    else if (unlimited && f->low <= -1e100)
+        snprintf(text, size, "a number");
     else if (unlimited)
         snprintf(text, size, (f->flags & STARG_FIELD_ABOVE) ? "above %g" : "zero or more", f->low);
     else if (f->flags & STARG_FIELD_ABOVE)
@@ -168,6 +170,8 @@ void starg_fields_default(const starg_fields *fields, void *record) {
             store_count(f, record, f->initial);
         else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES)
             memset(member(f, record), 0, f->size);
+        else if (f->kind == STARG_FIELD_RECORD)
+            starg_fields_default(f->of, member(f, record));
     }
 }
 
