@@ -325,9 +325,11 @@ done:
 static starg_status make_options(cli_session *session, const values *v, double **points,
                                  starg_decompose_options *wanted) {
     starg_status status = STARG_OK;
+    starg_tetra_options usual;
+    starg_tetra_options_default(&usual);
     *wanted = v->wanted;
     /* half of the time is left for the pieces */
-    wanted->tetra.tetgen_limit = fmax(wanted->tetra.tetgen_limit, session->common.time_limit / 2);
+    wanted->tetra.tetgen_limit = fmax(usual.tetgen_limit, session->common.time_limit / 2);
     if (v->guards != NULL)
         CLI_TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));
     wanted->guards = *points;

@@ -128,8 +128,15 @@ static void spell_name(const starg_field *f, char *text, size_t size) {
             *c = ' ';
 }
 
-static bool is_default_count(const starg_field *f, uint64_t value) {
-    return value == f->initial || ((f->flags & STARG_FIELD_NULLABLE) && value == f->none);
+bool field_fits(const starg_field *field, const void *record) {
+    const starg_field *f = field;
+    bool nullable = f->flags & STARG_FIELD_NULLABLE;
+    if (f->kind == STARG_FIELD_REAL) {
+        double value = real_of(f, record);
+        return real_fits(f, value) || (nullable && value == f->standard);
+    }
+    uint64_t value = starg_field_count(f, record);
+    return count_fits(f, value) || (nullable && value == f->none);
 }
 
 static starg_status check_field(starg_context *context, const char *stage, const starg_field *f,
@@ -137,9 +144,8 @@ static starg_status check_field(starg_context *context, const char *stage, const
     char name[64], expected[256];
     bool real = f->kind == STARG_FIELD_REAL;
     double value = real ? real_of(f, record) : (double)starg_field_count(f, record);
-    if (real ? real_fits(f, value) || value == f->standard
-             : count_fits(f, starg_field_count(f, record)) ||
-                   is_default_count(f, starg_field_count(f, record)))
+    if (field_fits(f, record) ||
+        (real ? value == f->standard : starg_field_count(f, record) == f->initial))
         return STARG_OK;
     spell_name(f, name, sizeof name);
     field_expectation(f, expected, sizeof expected);

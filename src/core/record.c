@@ -148,9 +148,13 @@ static json_t *field_json(const starg_field *f, const void *record) {
     }
 }
 
-/* A list that was never filled is no part of the record. */
+/* A list that was never filled is no part of the record, nor is a default that no file can hold. */
 static bool is_absent(const starg_field *f, const void *record) {
-    if (f->kind != STARG_FIELD_LIST || !(f->flags & STARG_FIELD_OPTIONAL))
+    if (!(f->flags & STARG_FIELD_OPTIONAL))
+        return false;
+    if (f->kind <= STARG_FIELD_CHOICE)
+        return !field_fits(f, record);
+    if (f->kind != STARG_FIELD_LIST)
         return false;
     if (!(f->flags & STARG_FIELD_MATCHING) && load_size(record, f->length) == 0)
         return true;
@@ -352,7 +356,7 @@ static starg_status read_numbers(const reader *r, json_t *value, const starg_fie
                                  void *record) {
     starg_field number = *f;
     number.size = sizeof(double);
-    bool good = json_array_size(value) == f->length;
+    bool good = json_is_array(value) && json_array_size(value) == f->length;
     for (size_t k = 0; k < f->length && good; k++, number.offset += number.size) {
         json_t *item = json_array_get(value, k);
         good =

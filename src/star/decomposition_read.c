@@ -28,9 +28,13 @@ static starg_status check_contacts(starg_context *context, const char *name,
 
 static starg_status check_report(starg_context *context, const char *name,
                                  const starg_decomposition *d) {
-    size_t star = 0;
-    for (size_t p = 0; p < d->piece_count; p++)
+    size_t star = 0, tetrahedra = 0;
+    for (size_t p = 0; p < d->piece_count; p++) {
         star += d->pieces[p].star;
+        tetrahedra += d->pieces[p].tetrahedra;
+    }
+    if (tetrahedra != d->tetrahedra)
+        return reject(context, name, "tetrahedra", "the sum of those of the pieces");
     if (star != d->strictly_star)
         return reject(context, name, "strictly_star", "the number of pieces with \"star\": true");
     return check_contacts(context, name, d);
