@@ -181,6 +181,35 @@ static starg_status write_report(starg_context *context) {
                                             failing_output("p.json"));
 }
 
+static starg_status write_report_memory(starg_context *context) {
+    char *text;
+    size_t size;
+    starg_status status = starg_decomposition_write_report_memory(context, in.decomposition,
+                                                                  "room.off", &text, &size);
+    failing_result(status, text);
+    starg_text_free(context, text);
+    return status;
+}
+
+static starg_status decomposition_read(starg_context *context) {
+    starg_decomposition *d = NULL;
+    starg_status status = starg_decomposition_read(context, failing_input("pieces.vtk"),
+                                                   failing_input("pieces.json"), &d);
+    failing_result(status, d);
+    starg_decomposition_free(context, d);
+    return status;
+}
+
+static starg_status decomposition_read_memory(starg_context *context) {
+    starg_decomposition *d = NULL;
+    const starg_file_bytes pieces = {pieces_text.data, pieces_text.size, "pieces"},
+                           report = {report_text.data, report_text.size, "report"};
+    starg_status status = starg_decomposition_read_memory(context, &pieces, &report, &d);
+    failing_result(status, d);
+    starg_decomposition_free(context, d);
+    return status;
+}
+
 /* ---- verification ---- */
 
 static starg_status verdict_result(starg_context *context, starg_status status,
@@ -270,6 +299,9 @@ static const failing_call decompositions[] = {
     {"starg_decomposition_write_groups", "", write_groups, NULL},
     {"starg_decomposition_write", "", write_pieces, NULL},
     {"starg_decomposition_write_report", "", write_report, NULL},
+    {"starg_decomposition_write_report_memory", "", write_report_memory, NULL},
+    {"starg_decomposition_read", "", decomposition_read, NULL},
+    {"starg_decomposition_read_memory", "", decomposition_read_memory, NULL},
 };
 
 static const failing_call verification[] = {

@@ -112,6 +112,16 @@ static starg_status descriptor_write(starg_context *context) {
     return starg_descriptor_write(context, in.descriptor, "r.off", failing_output("d.json"));
 }
 
+static starg_status descriptor_write_memory(starg_context *context) {
+    char *text;
+    size_t size;
+    starg_status status =
+        starg_descriptor_write_memory(context, in.descriptor, "r.off", &text, &size);
+    failing_result(status, text);
+    starg_text_free(context, text);
+    return status;
+}
+
 static starg_status descriptor_read(starg_context *context) {
     starg_descriptor *d = NULL;
     starg_status status = starg_descriptor_read(context, failing_input("descriptor.json"), &d);
@@ -312,6 +322,15 @@ static starg_status map_write(starg_context *context) {
     return starg_map_write(context, in.map, failing_output("m.json"));
 }
 
+static starg_status map_write_memory(starg_context *context) {
+    char *text;
+    size_t size;
+    starg_status status = starg_map_write_memory(context, in.map, &text, &size);
+    failing_result(status, text);
+    starg_text_free(context, text);
+    return status;
+}
+
 static starg_status map_read(starg_context *context) {
     starg_map *map = NULL;
     starg_status status =
@@ -446,6 +465,7 @@ static const failing_call descriptors[] = {
     {"starg_descriptor_create", "as it is", descriptor_create, NULL},
     {"starg_descriptor_create", "brought down", descriptor_simplified, NULL},
     {"starg_descriptor_write", "", descriptor_write, NULL},
+    {"starg_descriptor_write_memory", "", descriptor_write_memory, NULL},
     {"starg_descriptor_read", "", descriptor_read, NULL},
     {"starg_descriptor_read_memory", "", descriptor_read_memory, NULL},
     {"starg_descriptor_points", "", descriptor_points, NULL},
@@ -471,6 +491,7 @@ static const failing_call maps[] = {
     {"starg_map_create", "sphere", map_sphere, NULL},
     {"starg_map_create", "sphere, landmarks", map_landmarks, NULL},
     {"starg_map_write", "", map_write, NULL},
+    {"starg_map_write_memory", "", map_write_memory, NULL},
     {"starg_map_read", "", map_read, NULL},
     {"starg_landmarks_read", "", landmarks_read, NULL},
 };
