@@ -111,59 +111,26 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
         cli_say(session, "surface       kept\n");
     else
         cli_say(session, "surface       within %.3g of the model's, which is within %.3g of it\n",
-                d->tetra.to_surface + d->tetra.step, d->tetra.from_surface + d->tetra.step);
+                d->tetra.distance, d->tetra.distance_back);
     if (d->time_limited)
         cli_say(session, "time limit    reached; this is the best that was found\n");
 }
 
-static json_t *pieces_json(cli_session *session, const starg_decomposition *d) {
-    json_t *list = json_array();
-    for (size_t p = 0; p < d->piece_count; p++) {
-        const starg_piece *piece = &d->pieces[p];
-        json_t *item = json_object();
-        cli_put(session, item, "guard", cli_json_point(piece->guard));
-        cli_put(session, item, "tetrahedra", json_integer((json_int_t)piece->tetrahedra));
-        cli_put(session, item, "volume", cli_json_real(piece->volume));
-        cli_put(session, item, "star", json_boolean(piece->star));
-        cli_put(session, item, "radius", cli_json_real(piece->radius));
-        cli_append(session, list, item);
-    }
-    return list;
-}
-
-static void report_pieces(cli_session *session, const starg_decomposition *d, const values *v) {
+/* What the file holds, and what is of the run. */
+static starg_status report_pieces(cli_session *session, const starg_decomposition *d,
+                                  const char *file, const values *v) {
+    starg_status status = STARG_OK;
     json_t *report = session->report;
+    char *text;
+    size_t size;
+    CLI_TRY(starg_decomposition_write_report_memory(session->context, d, file, &text, &size));
+    cli_report_take(session, text, size);
     cli_put(session, report, "output", cli_json_text(v->output));
-    cli_put(session, report, "mode",
-            json_string(starg_fields_word(starg_decompose_options_fields(), "mode", d->mode)));
-    cli_put(session, report, "surface",
-            json_string(d->tetra.surface_kept ? "kept" : "approximated"));
-    if (!d->tetra.surface_kept) {
-        cli_put(session, report, "distance", cli_json_real(d->tetra.to_surface + d->tetra.step));
-        cli_put(session, report, "distance_back",
-                cli_json_real(d->tetra.from_surface + d->tetra.step));
-    }
-    cli_put(session, report, "tetrahedra", json_integer((json_int_t)starg_tetmesh_count(d->mesh)));
     cli_put(session, report, "volume", cli_json_real(starg_tetmesh_volume(d->mesh)));
-    cli_put(session, report, "pieces", pieces_json(session, d));
-    cli_put(session, report, "strictly_star", json_integer((json_int_t)d->strictly_star));
     cli_put(session, report, "single_tetrahedra", json_integer((json_int_t)count_single(d)));
-    cli_put(session, report, "visible_vertices", cli_json_real(d->visible_vertices));
-    cli_put(session, report, "flattest", cli_json_real(d->flattest));
-    cli_put(session, report, "flattest_given", cli_json_real(d->flattest_given));
     cli_put(session, report, "contacts", json_integer((json_int_t)d->contact_count));
-    cli_put(session, report, "time_limited", json_boolean(d->time_limited));
-}
-
-static void report(cli_session *session, const subject *s, const starg_decomposition *d,
-                   const values *v) {
-    static const char format[] = "starguard-decompose";
-    if (s->surface != NULL)
-        cli_report_head(session, format, s->file, s->surface);
-    else
-        cli_report_head_tetrahedra(session, format, s->file, d->model_vertices,
-                                   d->model_tetrahedra);
-    report_pieces(session, d, v);
+done:
+    return status;
 }
 
 /* ---- surfaces ---- */
@@ -359,9 +326,11 @@ done:
 static starg_status make_options(cli_session *session, const values *v, double **points,
                                  starg_decompose_options *wanted) {
     starg_status status = STARG_OK;
+    starg_tetra_options usual;
+    starg_tetra_options_default(&usual);
     *wanted = v->wanted;
     /* half of the time is left for the pieces */
-    wanted->tetra.tetgen_limit = fmax(wanted->tetra.tetgen_limit, session->common.time_limit / 2);
+    wanted->tetra.tetgen_limit = fmax(usual.tetgen_limit, session->common.time_limit / 2);
     if (v->guards != NULL)
         CLI_TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));
     wanted->guards = *points;
@@ -383,7 +352,7 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(write_files(session, v, what.file, pieces));
     say_pieces(session, pieces);
     if (session->report != NULL)
-        report(session, &what, pieces, v);
+        CLI_TRY(report_pieces(session, pieces, what.file, v));
 done:
     starg_decomposition_free(session->context, pieces);
     starg_points_free(session->context, points);

@@ -98,6 +98,12 @@ STARG_API void starg_descriptor_free(starg_context *context, starg_descriptor *d
 STARG_API starg_status starg_descriptor_write(starg_context *context,
                                               const starg_descriptor *descriptor,
                                               const char *model_file, const char *path);
+/* The same in memory, with one zero byte behind the end. Free with starg_text_free. Errors: MEMORY.
+ */
+STARG_API starg_status starg_descriptor_write_memory(starg_context *context,
+                                                     const starg_descriptor *descriptor,
+                                                     const char *model_file, char **text,
+                                                     size_t *size);
 
 /* Reads it back. Errors: READ, FORMAT, MEMORY. */
 STARG_API starg_status starg_descriptor_read(starg_context *context, const char *path,

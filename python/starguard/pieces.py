@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from . import _arrays
 from ._choice import choose, give, word_of
 from ._fields import fill
-from ._library import ffi, lib
+from ._library import ffi, lib, text
 from ._session import Session, logger
 from ._types import Array, PathLike, Progress
 from .errors import MeshError
@@ -86,6 +86,34 @@ class Decomposition:
             low, high = faces.min(), faces.max()
             meshes.append(Mesh(whole.vertices[low:high + 1], faces - low))
         return meshes
+
+    @classmethod
+    def read(cls, pieces: PathLike, report: PathLike) -> Decomposition:
+        """Reads PIECES.vtk and PIECES.json (docs/formats.md) back.
+
+        >>> import starguard
+        >>> room = starguard.sample("l-room", vertex_count=500)
+        >>> made = starguard.decompose(room, time_limit=5)
+        >>> made.write("pieces.vtk"), made.write_report("pieces.json")
+        (None, None)
+        >>> starguard.Decomposition.read("pieces.vtk", "pieces.json")
+        Decomposition(1 pieces, 1 proven star-shaped)
+        """
+        session = Session()
+        return _of(session.make(
+            "starg_decomposition", lib.starg_decomposition_free, lib.starg_decomposition_read,
+            session.context, _arrays.path(pieces), _arrays.path(report), shared=True))
+
+    @classmethod
+    def from_bytes(cls, pieces: bytes, report: bytes) -> Decomposition:
+        """Reads the bytes of both files."""
+        session = Session()
+        keep = [(ffi.from_buffer(data) if data else ffi.NULL, len(data), ffi.new("char[]", name))
+                for data, name in ((pieces, b"pieces"), (report, b"report"))]
+        files = [ffi.new("starg_file_bytes *", file) for file in keep]
+        return _of(session.make(
+            "starg_decomposition", lib.starg_decomposition_free,
+            lib.starg_decomposition_read_memory, session.context, *files, shared=True))
 
     def write(self, path: PathLike, *, binary: bool = False) -> None:
         """Writes PIECES.vtk (docs/formats.md).
@@ -174,9 +202,9 @@ def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
         return lib.starg_decompose_open_mesh, shape._handle
 
 
-def _of(d: Any, file: PathLike | None) -> Decomposition:
+def _of(d: Any, file: PathLike | None = None) -> Decomposition:
     mesh = TetMesh._of(d.mesh, owner=d)
-    return fill(Decomposition, d, _handle=d, file=name_of(file), mode=word_of(d.mode, MODES),
+    return fill(Decomposition, d, _handle=d, file=text(d.file) if d.file else name_of(file), mode=word_of(d.mode, MODES),
                 tetra=TetraReport._of(d.tetra), mesh=mesh,
                 labels=_arrays.view(d, d.labels, (len(mesh.tetrahedra),), np.int32),
                 pieces=_arrays.records(d, d.pieces, d.piece_count),

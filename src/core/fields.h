@@ -12,6 +12,9 @@
 /* The rows of a table and their number. */
 #define FIELD_ROWS(ROWS) .fields = (ROWS), .count = sizeof(ROWS) / sizeof *(ROWS)
 
+/* Is a COUNT, CHOICE, FLAG or REAL within its range, or what null stands for? */
+bool field_fits(const starg_field *field, const void *record);
+
 /* What a member must be, for messages: "above 0 and at most 1". */
 void field_expectation(const starg_field *field, char *text, size_t size);
 

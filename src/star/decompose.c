@@ -25,6 +25,7 @@ static const starg_field OPTIONS[] = {
     {.key = "density",
      .option = "density",
      .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_NULLABLE,
      FIELD_MEMBER(starg_decompose_options, tetra.density),
      .high = 1e6,
      .standard = STARG_DECOMPOSE_DENSITY,
@@ -45,7 +46,7 @@ static const starg_field OPTIONS[] = {
      .option = "effort",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, effort),
-     .most = UINT64_MAX,
+     .most = INT64_MAX,
      .value = "N",
      .help = "strict: trials after which the search ends.",
      .default_text = "0, a fixed amount of work, the same on every machine, of some 15 seconds; no "

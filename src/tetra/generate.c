@@ -66,6 +66,8 @@ static starg_status by_stuffing(starg_context *context, const tetra_shape *shape
     report->step = report->spacing / STEPS_PER_CUBE;
     STARG_TRY(tetra_measure(context, shape, *out, report->step, &report->to_surface,
                             &report->from_surface));
+    report->distance = report->to_surface + report->step;
+    report->distance_back = report->from_surface + report->step;
 done:
     return status;
 }

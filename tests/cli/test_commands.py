@@ -254,9 +254,7 @@ class Guard(support.Case):
                                "g.png")
         result = json.loads(self.read("g.json"))
         self.assertEqual(result["format"], "starguard-guards")
-        self.assertEqual(report["format"], "starguard-guards")
-        for key in ["guards", "coverage", "candidates", "lower_bound", "optimal", "model"]:
-            self.assertEqual(report[key], result[key], key)
+        self.assertEqual({key: report[key] for key in result}, result)
         for absent in ["seconds", "memory", "log", "threads"]:
             self.assertNotIn(absent, result)
         self.assertGreater(report["memory"]["peak_resident_bytes"], 0)

@@ -102,12 +102,10 @@ class Decompose(support.Case):
         report = self.run_json("decompose", room, "-o", "p.vtk", "--report", "p.json",
                                "--density", "3", "--effort", "100")
         result = self.agree("p.vtk", "p.json")
-        self.assertEqual(report["format"], "starguard-decompose")
         self.assertEqual(result["mode"], "strict")
-        self.assertEqual(result["model"], report["model"])
+        self.assertEqual({key: report[key] for key in result}, result)
         self.assertTrue(all(piece["star"] for piece in result["pieces"]))
         self.assertEqual(result["visible_vertices"], 1)
-        self.assertEqual(report["pieces"], result["pieces"])
         self.assertEqual(report["contacts"], len(result["adjacency"]))
 
     def test_paper(self):

@@ -160,6 +160,8 @@ static starg_status guards(starg_context *context) {
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
     GUARDS(starg_guards_given, "", in.solid, in.guards->positions, in.guards->count);
     FAILING(starg_guards_write, "", in.guards, "room.off", failing_output("g.json"));
+    FAILING_TEXT(starg_guards_write_memory, "", in.guards, "room.off");
+    FAILING_TEXT(starg_fields_json, "", starg_guard_options_fields(), &in.guards->options);
     GUARDS(starg_guards_read, "", failing_input("guards.json"));
     GUARDS(starg_guards_read_memory, "", guards_text.data, guards_text.size, "g");
     FAILING_BY(starg_points_read, "", points_read(context));
