@@ -50,7 +50,7 @@ enum {
     STARG_FIELD_LINES = 4,    /* a list with a line for each item                                */
     STARG_FIELD_MATCHING = 8, /* a list as long as the member at `length`, which was read before */
     STARG_FIELD_ABOVE = 16,   /* a real above `low`, not `low` itself                            */
-    STARG_FIELD_INPUT = 32    /* a text that names a file to be read, or is a word of `value`    */
+    STARG_FIELD_INPUT = 32,   /* a text that names a file to be read, or is a word of `value`    */
     STARG_FIELD_COUNTED = 64  /* numbers of a column: as many as the member at `length` says     */
 };
 

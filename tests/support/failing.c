@@ -185,7 +185,7 @@ static bool attempt(const manner *how, size_t n, tally *sum) {
     bool reached = atomic_load(&memory.failed) > 0;
     size_t left = starg_context_live_blocks(context);
     if (context->progress.depth != 0)
-        complain(call, how, n, "a stage has not ended");
+        complain(how, n, "a stage has not ended");
     sum->allocations = atomic_load(&memory.asked);
     sum->attempts++;
     sum->failed += status != STARG_OK;

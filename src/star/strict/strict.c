@@ -180,7 +180,7 @@ starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
     searches s = {.mesh = mesh,
                   .trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
                   .work_left =
-                      options->effort > 0 || context->deadline > 0 ? UINT64_MAX : WORK_MOST,
+                      options->effort > 0 || context->deadline.at > 0 ? UINT64_MAX : WORK_MOST,
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
     STARG_TRY(begin(mesh, options, &p, &other, &s.looks));
