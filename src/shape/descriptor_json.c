@@ -12,7 +12,8 @@
 static const char STAGE[] = "descriptor file";
 static const char FORMAT[] = "starguard-descriptor";
 enum {
-    VERSION = 3,
+    VERSION = 4,
+    OLDEST = 3, /* with a spectrum more, which nothing uses */
     VIEWS = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
     WAVES = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
     EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES
@@ -66,7 +67,6 @@ static bool put_head(FILE *stream, const starg_descriptor *d, const char *file) 
                           ",\n") &&
            put_numbers(stream, "views", &d->views[0][0], VIEWS) &&
            put_numbers(stream, "surface_spectrum", d->surface_spectrum, EIGENVALUES) &&
-           put_numbers(stream, "solid_spectrum", d->solid_spectrum, EIGENVALUES) &&
            put_numbers(stream, "waves", &d->waves[0][0], WAVES);
 }
 
@@ -255,9 +255,10 @@ static starg_status read_document(const json_reader *r, json_t *root) {
     if (format == NULL || strcmp(format, FORMAT) != 0)
         return reject(r, "format", "\"starguard-descriptor\"");
     STARG_TRY(read_count(r, root, "version", SIZE_MAX, &version));
-    if (version != VERSION)
+    if (version < OLDEST || version > VERSION)
         return reject(r, "version",
-                      "3, the only one that is known; describe the model anew with this program");
+                      "3 or 4, which are all that are known; describe the model anew with this "
+                      "program");
     STARG_TRY(read_model(r, root));
     STARG_TRY(read_count(r, root, "detail", STARG_MESH_LIMIT, &d->detail));
     STARG_TRY(read_count(r, root, "effort", SIZE_MAX, &effort));
@@ -266,7 +267,6 @@ static starg_status read_document(const json_reader *r, json_t *root) {
     STARG_TRY(read_count(r, root, "directions", UINT32_MAX, &d->direction_count));
     STARG_TRY(read_numbers(r, root, "views", VIEWS, &d->views[0][0]));
     STARG_TRY(read_numbers(r, root, "surface_spectrum", EIGENVALUES, d->surface_spectrum));
-    STARG_TRY(read_numbers(r, root, "solid_spectrum", EIGENVALUES, d->solid_spectrum));
     STARG_TRY(read_numbers(r, root, "waves", WAVES, &d->waves[0][0]));
     STARG_TRY(read_guards(r, root));
     STARG_TRY(read_edges(r, root));
