@@ -54,9 +54,8 @@ typedef struct starg_descriptor {
      */
     double views[STARG_DESCRIPTOR_VIEW][STARG_DESCRIPTOR_SPREAD];
     /* The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area,
-     * ascending: as a surface, and as a shell as thick as the solid is wide there. */
+     * ascending. */
     double surface_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
-    double solid_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
     /* Where the boundary vibrates: row k holds quantiles, over the surface, of how strong
      * vibrations of about the k-th energy are at a point, 1 on average. Rows ascend. */
     double waves[STARG_DESCRIPTOR_ENERGIES][STARG_DESCRIPTOR_SPREAD];

@@ -33,7 +33,8 @@ typedef enum starg_field_kind {
     STARG_FIELD_RECORD = 9, /* a struct within the struct, or (at offset 0) more members of the same
                                struct, as `of` says: an object of their own                   */
     STARG_FIELD_LIST = 10, /* an array, as many as the member at `length` says, of what `of` says */
-    STARG_FIELD_CONSTANT = 11 /* no member: the word `value`, or the number `initial`           */
+    STARG_FIELD_CONSTANT = 11 /* no member: the word `value`, or the number `initial`; files with
+                                  one from `least` on are read, if that is not 0 */
 } starg_field_kind;
 
 /* Rows of numbers from a command line. */

@@ -195,7 +195,7 @@ def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
     try:
         return lib.starg_decompose, shape.solid._handle
     except MeshError as error:
-        if len(error.indices) == 0:  # nothing is inside
+        if len(error.elements) == 0:  # nothing is inside
             raise
         logger.info("%s; isosurface stuffing fills what the surface winds around, and closes holes "
                     "of its own accord", error)

@@ -510,13 +510,18 @@ static starg_status read_constant(const reader *r, json_t *value, const starg_fi
     if (f->value != NULL && json_is_string(value) &&
         strcmp(json_string_value(value), f->value) == 0)
         return STARG_OK;
+    uint64_t oldest = f->least > 0 ? f->least : f->initial;
     if (f->value == NULL && json_is_integer(value) &&
-        json_integer_value(value) == (json_int_t)f->initial)
+        json_integer_value(value) >= (json_int_t)oldest &&
+        json_integer_value(value) <= (json_int_t)f->initial)
         return STARG_OK;
     if (f->value != NULL)
         snprintf(text, sizeof text, "\"%s\"", f->value);
-    else
+    else if (oldest == f->initial)
         snprintf(text, sizeof text, "%llu, the only one that is known",
+                 (unsigned long long)f->initial);
+    else
+        snprintf(text, sizeof text, "%llu to %llu", (unsigned long long)oldest,
                  (unsigned long long)f->initial);
     return reject(r, f, text);
 }

@@ -243,7 +243,7 @@ class Log(Case):
             self.assertGreater(starguard.Solid(inward).mesh.volume, 0)
         self.assertEqual(caught.records[0].levelno, logging.INFO)
         with self.assertLogs("starguard", logging.INFO) as caught:
-            starguard.decompose((VERTICES, FACES[:3]), effort=30)
+            starguard.decompose((VERTICES, FACES[:3]), effort=30, fill=True)
         self.assertIn("stuffing", caught.output[0])
 
 
