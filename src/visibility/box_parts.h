@@ -1,0 +1,69 @@
+/* Inside of visibility from a box: the tables of a scene, what a worker keeps, and the three proofs
+ * that a vertex is hidden. */
+#ifndef STARG_VISIBILITY_BOX_PARTS_H
+#define STARG_VISIBILITY_BOX_PARTS_H
+
+#include "visibility/box.h"
+#include "visibility/box_shaft.h"
+
+/* A blocker, by its rank in the order of the tree; one line of cache. */
+typedef struct box_triangle {
+    uint32_t corner[3];
+    uint32_t twin[3]; /* 3 x rank + edge of the neighbour; edge k runs from corner k to the next */
+    double normal[3], offset; /* offset - normal . (p - centre) is positive on the inner side,  */
+    double bound;             /* beyond this times max(1, |p - centre| / extent)                */
+} box_triangle;
+
+struct box_scene {
+    starg_context *context;
+    const starg_solid *solid;
+    const bvh *tree;
+    const double *points; /* of the mesh */
+    size_t vertex_count, face_count;
+    box_triangle *triangles; /* by rank                                                      */
+    uint32_t *rank_of;       /* by face of the mesh                                          */
+    uint32_t *outgoing;      /* by vertex: 3 x rank + corner of one triangle, or BOX_NONE    */
+    double centre[3], extent;
+    bool embedded; /* no two blockers meet but where they share corners */
+};
+
+struct box_worker {
+    const box_scene *scene;
+    bvh_box box;      /* of the question                                              */
+    double centre[3]; /* of the box that is looked at, which may be a clipped one     */
+    const bvh_box *current;
+    uint32_t *crossing; /* ranks of the triangles that may meet the box of the question */
+    size_t crossing_count;
+    uint32_t *crossing_mark; /* by rank: the number of the question, if among them     */
+    uint32_t question;
+    uint32_t *visit;       /* by rank: number of the last flood that came here */
+    uint32_t flood;        /* number of the last flood                         */
+    uint32_t *stack;       /* 2 numbers an entry               */
+    uint32_t *seed;        /* by vertex: rank of the seed that was last good   */
+    uint32_t *answer_mark; /* by vertex: the number of the question, if known */
+    uint8_t *answer;       /* by vertex: a box_reason_kind                    */
+    uint64_t tests;
+};
+
+static inline const double *box_corner(const box_scene *scene, const box_triangle *t, int k) {
+    return scene->points + 3 * (size_t)t->corner[k];
+}
+
+/* Side of the triangle's plane on which p lies: 1 inner, -1 outer, 0 in it. */
+int box_side(const box_scene *scene, const box_triangle *t, const double p[3]);
+
+/* May the triangle meet the box? False only if it surely does not. */
+bool box_may_cross(const box_scene *scene, const box_triangle *t, const bvh_box *box);
+
+/* Each of these is true only if no point of the shaft's box in the free space sees v. */
+
+/* By a patch with a triangle that the segment from v to the centre meets, whose rank *seed becomes
+ * (else BOX_NONE). If `recorded`, it is the first of them in the order of the tree. */
+bool box_patch_hides(box_worker *worker, const box_shaft *shaft, uint32_t vertex, bool recorded,
+                     uint32_t *seed);
+/* By the patches on which all triangles lie that meet the box. */
+bool box_entry_hides(box_worker *worker, const box_shaft *shaft);
+/* By where segments begin. */
+bool box_start_hides(box_worker *worker, const box_shaft *shaft, uint32_t vertex);
+
+#endif
