@@ -76,6 +76,7 @@ starg_status box_scene_create(starg_context *context, const starg_solid *solid, 
     STARG_NEW(context, STAGE, scene->rank_of, scene->face_count);
     STARG_NEW(context, STAGE, scene->outgoing, scene->vertex_count);
     make_triangles(scene, topology);
+    STARG_TRY(box_tree_create(context, scene->tree, scene->centre, scene->extent, &scene->boxes));
     *out = scene;
 done:
     topology_free(topology);
@@ -87,25 +88,11 @@ done:
 void box_scene_free(box_scene *scene) {
     if (scene == NULL)
         return;
+    box_tree_free(scene->boxes);
     starg_release(scene->context, scene->triangles);
     starg_release(scene->context, scene->rank_of);
     starg_release(scene->context, scene->outgoing);
     starg_release(scene->context, scene);
-}
-
-int box_side(const box_scene *scene, const box_triangle *t, const double p[3]) {
-    double far = scene->extent, sum = t->offset;
-    for (int k = 0; k < 3; k++) {
-        double d = p[k] - scene->centre[k];
-        far = fmax(far, fabs(d));
-        sum -= t->normal[k] * d;
-    }
-    double bound = far > scene->extent ? t->bound * (far / scene->extent) : t->bound;
-    if (sum > bound)
-        return 1;
-    if (sum < -bound)
-        return -1;
-    return orient3d(box_corner(scene, t, 0), box_corner(scene, t, 1), box_corner(scene, t, 2), p);
 }
 
 /* ---- a triangle against a box ---- */
@@ -298,13 +285,27 @@ static void set_current(box_worker *w, const bvh_box *box) {
             fmin(fmax(0.5 * box->lower[k] + 0.5 * box->upper[k], box->lower[k]), box->upper[k]);
 }
 
-static void begin(box_worker *w, const bvh_box *box) {
+/* What is outside of the bounding box of all is outside of the solid. False: all of it. */
+static bool crop(const bvh_box *all, const bvh_box *box, bvh_box *out) {
+    bool any = true;
+    for (int k = 0; k < 3; k++) {
+        out->lower[k] = fmax(box->lower[k], all->lower[k]);
+        out->upper[k] = fmin(box->upper[k], all->upper[k]);
+        any = any && out->lower[k] <= out->upper[k];
+    }
+    return any;
+}
+
+/* False: the box is outside of the solid. */
+static bool begin(box_worker *w, const bvh_box *box) {
+    if (!crop(&w->scene->tree->nodes[0].box, box, &w->box))
+        return false;
     renew_marks(w);
     w->question++;
-    w->box = *box;
     w->crossing_count = 0;
     set_current(w, &w->box);
     bvh_query_box(w->scene->tree, &w->box, add_crossing, w);
+    return w->crossing_count > 0 || starg_solid_contains(w->scene->solid, w->centre);
 }
 
 static bool is_beyond(const bvh_box *box, const double v[3], double range) {
@@ -328,6 +329,8 @@ static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t
     box_shaft shaft;
     *seed = BOX_NONE;
     w->tests++;
+    if (w->scene->outgoing[vertex] == BOX_NONE)
+        return BOX_OUTSIDE;
     if (is_beyond(w->current, v, q->range))
         return BOX_FAR;
     if (holds(w->current, v))
@@ -393,8 +396,7 @@ static box_reason ask(box_worker *w, const box_question *q, uint32_t target, boo
 
 void box_look(box_worker *w, const box_question *q, uint64_t *open, box_reason *reasons) {
     memset(open, 0, starg_bit_words(q->count) * sizeof *open);
-    begin(w, &q->box);
-    bool outside = w->crossing_count == 0 && !starg_solid_contains(w->scene->solid, w->centre);
+    bool outside = !begin(w, &q->box);
     for (size_t i = 0; i < q->count; i++) {
         if (q->among != NULL && !starg_bit_test(q->among, i))
             continue;

@@ -9,7 +9,7 @@
  * *targets*. Today a solid's boundary gives all of them.
  *
  * Reasons for which a target is hidden (proofs stand in the files):
- * - outside  no blocker meets c, and c lies outside the free space;
+ * - outside  no blocker meets c, and c lies outside the free space; or no face has the vertex;
  * - far      all of c is farther from a vertex than the range;
  * - plane    no point of c is on the inner side of the face;
  * - start    from a vertex of the face, all segments to c begin outside the free space
@@ -17,8 +17,9 @@
  * - patch    all segments from a vertex of the face to c pass a patch of triangles (box_flood.c);
  * - entry    all blockers that meet c turn their outer sides to the vertex, and the patches that
  *            they lie on close (box_flood.c).
- * For a face, c is first clipped to the face's inner half-space. A face is hidden as soon as one of
- * its vertices is: what sees a face, by either rule, sees its three vertices.
+ * First c is cropped to the bounding box of the blockers. For a face, it is clipped to the face's
+ * inner half-space. A face is hidden as soon as one of its vertices is: what sees a face, by either
+ * rule, sees its three vertices.
  *
  * The result for a box depends on that box alone, not on what the worker was asked before. */
 #ifndef STARG_VISIBILITY_BOX_H

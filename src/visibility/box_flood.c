@@ -150,7 +150,7 @@ bool box_patch_hides(box_worker *w, const box_shaft *shaft, uint32_t vertex, boo
                      uint32_t *seed) {
     seed_search search = {w, shaft, w->flood, BOX_NONE};
     if (recorded || w->seed[vertex] == BOX_NONE || try_seed(&search, w->seed[vertex]))
-        bvh_query_segment(w->scene->tree, shaft->v, w->centre, try_seed, &search);
+        box_tree_query(w->scene->boxes, shaft->v, w->centre, try_seed, &search);
     *seed = search.found;
     if (search.found != BOX_NONE)
         w->seed[vertex] = search.found;

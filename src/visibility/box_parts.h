@@ -3,21 +3,24 @@
 #ifndef STARG_VISIBILITY_BOX_PARTS_H
 #define STARG_VISIBILITY_BOX_PARTS_H
 
+#include "geometry/predicates.h"
 #include "visibility/box.h"
 #include "visibility/box_shaft.h"
+#include "visibility/box_tree.h"
 
 /* A blocker, by its rank in the order of the tree; one line of cache. */
 typedef struct box_triangle {
     uint32_t corner[3];
     uint32_t twin[3]; /* 3 x rank + edge of the neighbour; edge k runs from corner k to the next */
     double normal[3], offset; /* offset - normal . (p - centre) is positive on the inner side,  */
-    double bound;             /* beyond this times max(1, |p - centre| / extent)                */
+    double bound;             /* beyond this                                                    */
 } box_triangle;
 
 struct box_scene {
     starg_context *context;
     const starg_solid *solid;
     const bvh *tree;
+    box_tree *boxes;      /* for segments */
     const double *points; /* of the mesh */
     size_t vertex_count, face_count;
     box_triangle *triangles; /* by rank                                                      */
@@ -49,8 +52,17 @@ static inline const double *box_corner(const box_scene *scene, const box_triangl
     return scene->points + 3 * (size_t)t->corner[k];
 }
 
-/* Side of the triangle's plane on which p lies: 1 inner, -1 outer, 0 in it. */
-int box_side(const box_scene *scene, const box_triangle *t, const double p[3]);
+/* Side of the triangle's plane on which p, in the bounding box, lies: 1 inner, -1 outer, 0 in it. */
+static inline int box_side(const box_scene *scene, const box_triangle *t, const double p[3]) {
+    double sum = t->offset;
+    for (int k = 0; k < 3; k++)
+        sum -= t->normal[k] * (p[k] - scene->centre[k]);
+    if (sum > t->bound)
+        return 1;
+    if (sum < -t->bound)
+        return -1;
+    return orient3d(box_corner(scene, t, 0), box_corner(scene, t, 1), box_corner(scene, t, 2), p);
+}
 
 /* May the triangle meet the box? False only if it surely does not. */
 bool box_may_cross(const box_scene *scene, const box_triangle *t, const bvh_box *box);
