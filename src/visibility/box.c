@@ -346,6 +346,7 @@ static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t
 /* The same for the whole box, asked once. */
 static box_reason_kind ask_vertex_once(box_worker *w, const box_question *q, uint32_t vertex,
                                        bool recorded, uint32_t *seed) {
+    *seed = BOX_NONE;
     if (!recorded && w->answer_mark[vertex] == w->question)
         return w->answer[vertex];
     box_reason_kind kind = ask_vertex(w, q, vertex, recorded, seed);
