@@ -4,7 +4,7 @@
 #include "completion_parts.h"
 
 static void zsh_option(FILE *stream, const cli_option *o, const char *name) {
-    bool repeats = o->kind == CLI_POINTS;
+    bool repeats = o->kind == CLI_POINTS || o->kind == CLI_BOXES;
     fprintf(stream, "            '%s%s[", repeats ? "*" : "", name);
     completion_put_brief(stream, o->help, "[]:\\");
     fputc(']', stream);

@@ -8,8 +8,9 @@
 /* What an option takes. */
 static const char *kind_name(cli_kind kind) {
     static const char *const names[] = {
-        [CLI_FLAG] = "flag", [CLI_TEXT] = "text",     [CLI_COUNT] = "count",
-        [CLI_REAL] = "real", [CLI_CHOICE] = "choice", [CLI_POINTS] = "points"};
+        [CLI_FLAG] = "flag",  [CLI_TEXT] = "text",     [CLI_COUNT] = "count",
+        [CLI_REAL] = "real",  [CLI_CHOICE] = "choice", [CLI_POINTS] = "points",
+        [CLI_BOXES] = "boxes"};
     return names[kind];
 }
 

@@ -77,15 +77,17 @@ static bool set_choice(parser *p, const match *m, const char *word, int *value) 
     return complain(p, "%s takes %s, not '%.100s'", m->shown, list, word);
 }
 
-static bool add_point(parser *p, const match *m, const char *word, cli_points *points) {
-    double point[3];
-    if (!cli_number_point(word, point))
-        return complain(p, "%s takes a point as X,Y,Z (three numbers, no spaces), not '%.100s'",
-                        m->shown, word);
-    double *grown = realloc(points->values, (points->count + 1) * sizeof point);
+static bool add_place(parser *p, const match *m, const char *word, cli_points *points) {
+    size_t width = m->option->kind == CLI_BOXES ? 6 : 3;
+    double place[6];
+    if (!cli_number_list(word, place, (int)width))
+        return complain(p, "%s takes a %s (%s numbers, no spaces), not '%.100s'", m->shown,
+                        width == 3 ? "point as X,Y,Z" : "box as X0,Y0,Z0,X1,Y1,Z1",
+                        width == 3 ? "three" : "six", word);
+    double *grown = realloc(points->values, (points->count + 1) * width * sizeof *place);
     if (grown == NULL)
         return complain(p, "%s: out of memory", m->shown);
-    memcpy(grown + 3 * points->count, point, sizeof point);
+    memcpy(grown + width * points->count, place, width * sizeof *place);
     points->values = grown;
     points->count++;
     return true;
@@ -107,7 +109,8 @@ static bool set_value(parser *p, const match *m, const char *word) {
     case CLI_CHOICE:
         return set_choice(p, m, word, variable);
     case CLI_POINTS:
-        return add_point(p, m, word, variable);
+    case CLI_BOXES:
+        return add_place(p, m, word, variable);
     }
     return false;
 }
@@ -214,7 +217,7 @@ int cli_options_parse(const cli_group *groups, size_t group_count, int argc, cha
 
 void cli_options_free(const cli_group *group) {
     for (size_t i = 0; i < group->count; i++) {
-        if (group->options[i].kind != CLI_POINTS)
+        if (group->options[i].kind != CLI_POINTS && group->options[i].kind != CLI_BOXES)
             continue;
         cli_points *points = (cli_points *)((char *)group->values + group->options[i].offset);
         free(points->values);

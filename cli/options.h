@@ -18,7 +18,8 @@ typedef enum cli_kind {
     CLI_COUNT,  /* uint64_t in [least, most]                         */
     CLI_REAL,   /* double in [low, high], or (low, high]             */
     CLI_CHOICE, /* int: the index of a word of `choices`             */
-    CLI_POINTS  /* cli_points: every occurrence appends X,Y,Z        */
+    CLI_POINTS, /* cli_points: every occurrence appends X,Y,Z        */
+    CLI_BOXES   /* cli_points: every occurrence appends two corners  */
 } cli_kind;
 
 typedef struct cli_option {
@@ -43,6 +44,8 @@ typedef struct cli_option {
     { CLI_OPTION(NAME, CLI_TEXT, MEMBER, VALUE, HELP) }
 #define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
     { CLI_OPTION(NAME, CLI_POINTS, MEMBER, VALUE, HELP) }
+#define CLI_BOXES_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
+    { CLI_OPTION(NAME, CLI_BOXES, MEMBER, VALUE, HELP) }
 #define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, VALUE, HELP)                                        \
     { CLI_OPTION(NAME, CLI_CHOICE, MEMBER, VALUE, HELP), .choices = WORDS }
 #define CLI_COUNT_OPTION(NAME, MEMBER, VALUE, LEAST, MOST, HELP)                                   \
@@ -55,7 +58,7 @@ typedef struct cli_option {
 #define CLI_OUTPUT_OPTION(VALUE, HELP)                                                             \
     { CLI_OPTION("output", CLI_TEXT, output, VALUE, HELP), .letter = 'o' }
 
-/* Points from the command line, count x 3. */
+/* Points or boxes from the command line, count x 3 or x 6. */
 typedef struct cli_points {
     double *values;
     size_t count;

@@ -52,7 +52,8 @@ static inline const double *box_corner(const box_scene *scene, const box_triangl
     return scene->points + 3 * (size_t)t->corner[k];
 }
 
-/* Side of the triangle's plane on which p, in the bounding box, lies: 1 inner, -1 outer, 0 in it. */
+/* Side of the triangle's plane on which p, in the bounding box, lies: 1 inner, -1 outer, 0 in it.
+ */
 static inline int box_side(const box_scene *scene, const box_triangle *t, const double p[3]) {
     double sum = t->offset;
     for (int k = 0; k < 3; k++)
