@@ -329,6 +329,7 @@ static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t
     box_shaft shaft;
     *seed = BOX_NONE;
     w->tests++;
+    w->vertex = vertex;
     if (w->scene->outgoing[vertex] == BOX_NONE)
         return BOX_OUTSIDE;
     if (is_beyond(w->current, v, q->range))
@@ -336,9 +337,9 @@ static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t
     if (holds(w->current, v))
         return BOX_OPEN;
     shaft_make(&shaft, v, w->current);
-    if (box_start_hides(w, &shaft, vertex))
+    if (box_start_hides(w, &shaft))
         return BOX_START;
-    if (box_patch_hides(w, &shaft, vertex, recorded, seed))
+    if (box_patch_hides(w, &shaft, recorded, seed))
         return BOX_PATCH;
     return box_entry_hides(w, &shaft) ? BOX_ENTRY : BOX_OPEN;
 }

@@ -55,9 +55,16 @@ typedef struct flood {
     size_t depth;
 } flood;
 
+/* Such a triangle has v in its plane: this saves the exact computation. */
+static bool has_corner(const box_triangle *t, uint32_t vertex) {
+    return t->corner[0] == vertex || t->corner[1] == vertex || t->corner[2] == vertex;
+}
+
 /* May the triangle be in the patch? */
 static bool admits(const flood *f, uint32_t rank, const box_triangle *t) {
     const box_worker *w = f->worker;
+    if (has_corner(t, w->vertex))
+        return false;
     if (!f->entering && w->crossing_mark[rank] == w->question &&
         box_may_cross(w->scene, t, w->current))
         return false;
@@ -133,8 +140,8 @@ static bool try_seed(void *user, size_t rank) {
     const box_scene *scene = w->scene;
     const box_triangle *t = &scene->triangles[rank];
     const double *v = search->shaft->v;
-    if (w->visit[rank] > search->first)
-        return true; /* a failed flood came here */
+    if (w->visit[rank] > search->first || has_corner(t, w->vertex))
+        return true; /* a failed flood came here, or it would fail at once */
     int side = box_side(scene, t, v);
     if (side == 0 || side == box_side(scene, t, w->centre) ||
         !segment_meets_triangle(w->centre, v, box_corner(scene, t, 0), box_corner(scene, t, 1),
@@ -146,14 +153,13 @@ static bool try_seed(void *user, size_t rank) {
     return false;
 }
 
-bool box_patch_hides(box_worker *w, const box_shaft *shaft, uint32_t vertex, bool recorded,
-                     uint32_t *seed) {
+bool box_patch_hides(box_worker *w, const box_shaft *shaft, bool recorded, uint32_t *seed) {
     seed_search search = {w, shaft, w->flood, BOX_NONE};
-    if (recorded || w->seed[vertex] == BOX_NONE || try_seed(&search, w->seed[vertex]))
+    if (recorded || w->seed[w->vertex] == BOX_NONE || try_seed(&search, w->seed[w->vertex]))
         box_tree_query(w->scene->boxes, shaft->v, w->centre, try_seed, &search);
     *seed = search.found;
     if (search.found != BOX_NONE)
-        w->seed[vertex] = search.found;
+        w->seed[w->vertex] = search.found;
     return search.found != BOX_NONE;
 }
 

@@ -35,6 +35,7 @@ struct box_worker {
     bvh_box box;      /* of the question                                              */
     double centre[3]; /* of the box that is looked at, which may be a clipped one     */
     const bvh_box *current;
+    uint32_t vertex;    /* that is asked about */
     uint32_t *crossing; /* ranks of the triangles that may meet the box of the question */
     size_t crossing_count;
     uint32_t *crossing_mark; /* by rank: the number of the question, if among them     */
@@ -72,11 +73,10 @@ bool box_may_cross(const box_scene *scene, const box_triangle *t, const bvh_box 
 
 /* By a patch with a triangle that the segment from v to the centre meets, whose rank *seed becomes
  * (else BOX_NONE). If `recorded`, it is the first of them in the order of the tree. */
-bool box_patch_hides(box_worker *worker, const box_shaft *shaft, uint32_t vertex, bool recorded,
-                     uint32_t *seed);
+bool box_patch_hides(box_worker *worker, const box_shaft *shaft, bool recorded, uint32_t *seed);
 /* By the patches on which all triangles lie that meet the box. */
 bool box_entry_hides(box_worker *worker, const box_shaft *shaft);
 /* By where segments begin. */
-bool box_start_hides(box_worker *worker, const box_shaft *shaft, uint32_t vertex);
+bool box_start_hides(box_worker *worker, const box_shaft *shaft);
 
 #endif

@@ -104,9 +104,9 @@ static bool is_outside(const box_scene *scene, uint32_t first, const double v[3]
     return false;
 }
 
-bool box_start_hides(box_worker *w, const box_shaft *shaft, uint32_t vertex) {
+bool box_start_hides(box_worker *w, const box_shaft *shaft) {
     const box_scene *scene = w->scene;
-    uint32_t first = scene->outgoing[vertex], corner = first;
+    uint32_t first = scene->outgoing[w->vertex], corner = first;
     if (!scene->embedded || first == BOX_NONE)
         return false;
     do {
