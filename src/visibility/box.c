@@ -339,8 +339,10 @@ static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t
     shaft_make(&shaft, v, w->current);
     if (box_start_hides(w, &shaft))
         return BOX_START;
-    if (box_patch_hides(w, &shaft, recorded, seed))
+    if (box_patch_hides(w, &shaft, FLOOD_PATCH, recorded, seed))
         return BOX_PATCH;
+    if (box_fold_hides(w, &shaft, recorded, seed))
+        return BOX_FOLD;
     return box_entry_hides(w, &shaft) ? BOX_ENTRY : BOX_OPEN;
 }
 

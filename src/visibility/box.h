@@ -15,6 +15,7 @@
  * - start    from a vertex of the face, all segments to c begin outside the free space
  *            (box_start.c);
  * - patch    all segments from a vertex of the face to c pass a patch of triangles (box_flood.c);
+ * - fold     start and patch together (box_fold.c);
  * - entry    all blockers that meet c turn their outer sides to the vertex, and the patches that
  *            they lie on close (box_flood.c).
  * First c is cropped to the bounding box of the blockers. For a face, it is clipped to the face's
@@ -50,6 +51,7 @@ typedef enum box_reason_kind {
     BOX_PLANE,
     BOX_START,
     BOX_PATCH,
+    BOX_FOLD,
     BOX_ENTRY,
     BOX_KINDS
 } box_reason_kind;
@@ -57,10 +59,11 @@ typedef enum box_reason_kind {
 /* Why a target is hidden: enough for a checker to find the proof again. */
 typedef struct box_reason {
     box_reason_kind kind;
-    uint32_t vertex; /* from which: FAR, START, PATCH, ENTRY; else BOX_NONE                  */
-    uint32_t seed;   /* PATCH: a face that meets the segment from the vertex to the centre of
-                        the box (or what is left of it), and whose flood closes; else BOX_NONE */
-    bool clipped;    /* c was clipped to the inner half-space of the face                    */
+    uint32_t vertex; /* from which: FAR, START, PATCH, FOLD, ENTRY; or BOX_NONE                  */
+    uint32_t
+        seed; /* PATCH, perhaps FOLD: a face that meets the segment from the vertex to the centre of
+                 the box (or what is left of it), and whose flood closes; else BOX_NONE */
+    bool clipped; /* c was clipped to the inner half-space of the face                    */
 } box_reason;
 
 typedef struct box_question {

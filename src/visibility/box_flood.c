@@ -51,7 +51,7 @@ typedef struct flood {
     box_worker *worker;
     const box_shaft *shaft;
     int side;
-    bool entering;
+    box_flood_kind kind;
     size_t depth;
 } flood;
 
@@ -65,7 +65,7 @@ static bool admits(const flood *f, uint32_t rank, const box_triangle *t) {
     const box_worker *w = f->worker;
     if (has_corner(t, w->vertex))
         return false;
-    if (!f->entering && w->crossing_mark[rank] == w->question &&
+    if (f->kind != FLOOD_ENTRY && w->crossing_mark[rank] == w->question &&
         box_may_cross(w->scene, t, w->current))
         return false;
     return box_side(w->scene, t, f->shaft->v) == f->side;
@@ -90,7 +90,9 @@ static bool cross(flood *f, const box_triangle *t, int k, unsigned code, unsigne
                         box_corner(scene, t, k == 2 ? 0 : k + 1), code_next))
         return true;
     if (w->visit[rank] > first)
-        return f->entering; /* an earlier flood came here */
+        return false; /* an earlier flood came here, and failed: one that closes has it all */
+    if (f->kind == FLOOD_FOLD && has_corner(&scene->triangles[rank], w->vertex))
+        return true;
     w->visit[rank] = w->flood;
     if (!admits(f, rank, &scene->triangles[rank]))
         return false;
@@ -98,12 +100,10 @@ static bool cross(flood *f, const box_triangle *t, int k, unsigned code, unsigne
     return true;
 }
 
-/* Does the flood of this seed close, with v on `side` of every triangle? Floods after number
- * `first` were made for the same v and box; when `entering` they have closed, else failed. */
-static bool flood_closes(box_worker *w, const box_shaft *shaft, uint32_t seed, int side,
-                         bool entering, uint32_t first) {
+bool box_flood_closes(box_worker *w, const box_shaft *shaft, uint32_t seed, int side,
+                      box_flood_kind kind, uint32_t first) {
     const box_scene *scene = w->scene;
-    flood f = {.worker = w, .shaft = shaft, .side = side, .entering = entering};
+    flood f = {.worker = w, .shaft = shaft, .side = side, .kind = kind};
     const box_triangle *t = &scene->triangles[seed];
     w->flood++;
     w->visit[seed] = w->flood;
@@ -131,6 +131,7 @@ typedef struct seed_search {
     box_worker *worker;
     const box_shaft *shaft;
     uint32_t first, found;
+    box_flood_kind kind;
 } seed_search;
 
 /* Goes on searching unless the triangle is a seed whose flood closes. */
@@ -147,14 +148,15 @@ static bool try_seed(void *user, size_t rank) {
         !segment_meets_triangle(w->centre, v, box_corner(scene, t, 0), box_corner(scene, t, 1),
                                 box_corner(scene, t, 2)))
         return true;
-    if (!flood_closes(w, search->shaft, (uint32_t)rank, side, false, search->first))
+    if (!box_flood_closes(w, search->shaft, (uint32_t)rank, side, search->kind, search->first))
         return true;
     search->found = (uint32_t)rank;
     return false;
 }
 
-bool box_patch_hides(box_worker *w, const box_shaft *shaft, bool recorded, uint32_t *seed) {
-    seed_search search = {w, shaft, w->flood, BOX_NONE};
+bool box_patch_hides(box_worker *w, const box_shaft *shaft, box_flood_kind kind, bool recorded,
+                     uint32_t *seed) {
+    seed_search search = {w, shaft, w->flood, BOX_NONE, kind};
     if (recorded || w->seed[w->vertex] == BOX_NONE || try_seed(&search, w->seed[w->vertex]))
         box_tree_query(w->scene->boxes, shaft->v, w->centre, try_seed, &search);
     *seed = search.found;
@@ -176,7 +178,7 @@ bool box_entry_hides(box_worker *w, const box_shaft *shaft) {
             continue;
         if (w->current != &w->box && !box_may_cross(scene, t, w->current))
             continue;
-        if (!flood_closes(w, shaft, rank, -1, true, first))
+        if (!box_flood_closes(w, shaft, rank, -1, FLOOD_ENTRY, first))
             return false;
         any = true;
     }

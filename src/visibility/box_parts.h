@@ -69,14 +69,42 @@ static inline int box_side(const box_scene *scene, const box_triangle *t, const 
 /* May the triangle meet the box? False only if it surely does not. */
 bool box_may_cross(const box_scene *scene, const box_triangle *t, const bvh_box *box);
 
+/* What becomes of a flood at triangles that meet the box, or hold v. */
+typedef enum box_flood_kind {
+    FLOOD_PATCH, /* it fails at both                */
+    FLOOD_ENTRY, /* it fails at those that hold v   */
+    FLOOD_FOLD   /* it stops before those that do; it fails at those that meet the box */
+} box_flood_kind;
+
+/* Does the flood of this seed close, with v on `side` of every triangle? Floods after number
+ * `first` were made for the same v, box and kind. */
+bool box_flood_closes(box_worker *worker, const box_shaft *shaft, uint32_t seed, int side,
+                      box_flood_kind kind, uint32_t first);
+
+/* The next triangle around its vertex: corner numbers are 3 x rank + corner. */
+static inline uint32_t box_turn(const box_scene *scene, uint32_t corner) {
+    uint32_t k = corner % 3;
+    return scene->triangles[corner / 3].twin[k == 0 ? 2 : k - 1];
+}
+
+/* May the directions of the triangle of this corner, v, meet those of the box? */
+bool box_arc_may_meet(const box_scene *scene, const box_shaft *shaft, uint32_t corner);
+
+/* Does the direction from v to the centre, which is not on the link, surely lead out of the solid?
+ */
+bool box_starts_outside(const box_worker *worker, const box_shaft *shaft);
+
 /* Each of these is true only if no point of the shaft's box in the free space sees v. */
 
 /* By a patch with a triangle that the segment from v to the centre meets, whose rank *seed becomes
  * (else BOX_NONE). If `recorded`, it is the first of them in the order of the tree. */
-bool box_patch_hides(box_worker *worker, const box_shaft *shaft, bool recorded, uint32_t *seed);
+bool box_patch_hides(box_worker *worker, const box_shaft *shaft, box_flood_kind kind, bool recorded,
+                     uint32_t *seed);
 /* By the patches on which all triangles lie that meet the box. */
 bool box_entry_hides(box_worker *worker, const box_shaft *shaft);
 /* By where segments begin. */
 bool box_start_hides(box_worker *worker, const box_shaft *shaft);
+/* By where segments begin, and patches that begin next to the triangles around v. */
+bool box_fold_hides(box_worker *worker, const box_shaft *shaft, bool recorded, uint32_t *seed);
 
 #endif

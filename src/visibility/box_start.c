@@ -23,23 +23,18 @@
 #include "geometry/vec3.h"
 #include "visibility/box_parts.h"
 
-/* The next triangle around its vertex: corner numbers are 3 x rank + corner. */
-static uint32_t turn(const box_scene *scene, uint32_t corner) {
-    uint32_t k = corner % 3;
-    return scene->triangles[corner / 3].twin[k == 0 ? 2 : k - 1];
-}
-
 static const double *around(const box_scene *scene, uint32_t corner, uint32_t steps) {
     const box_triangle *t = &scene->triangles[corner / 3];
     return box_corner(scene, t, (int)((corner % 3 + steps) % 3));
 }
 
-static bool arc_misses(const box_shaft *s, const double a[3], const double b[3]) {
+bool box_arc_may_meet(const box_scene *scene, const box_shaft *s, uint32_t corner) {
+    const double *a = around(scene, corner, 1), *b = around(scene, corner, 2);
     for (int k = 0; k < 3; k++)
         if ((s->box.lower[k] > s->v[k] && a[k] <= s->v[k] && b[k] <= s->v[k]) ||
             (s->box.upper[k] < s->v[k] && a[k] >= s->v[k] && b[k] >= s->v[k]))
-            return true;
-    return (shaft_code(s, a) & shaft_code(s, b) & SHAFT_SIDES) != 0 || shaft_is_beside(s, a, b);
+            return false;
+    return (shaft_code(s, a) & shaft_code(s, b) & SHAFT_SIDES) == 0 && !shaft_is_beside(s, a, b);
 }
 
 /* Does the arc from d to e cross that of a and b? 1 or 0; -1 if it is not certain: a or b lies on
@@ -63,7 +58,7 @@ static bool leads_in(const box_scene *scene, uint32_t first, const double v[3], 
         if (crossing < 0 || (crossing > 0 && box_side(scene, &scene->triangles[corner / 3], d) > 0))
             return false;
         any = any || crossing > 0;
-        corner = turn(scene, corner);
+        corner = box_turn(scene, corner);
     } while (corner != first);
     return any;
 }
@@ -80,13 +75,15 @@ static void beyond(const double v[3], const double d[3], const double a[3], cons
         e[k] = v[k] + 0.5 * (to_middle[k] - ratio * to_d[k]);
 }
 
-static bool is_outside(const box_scene *scene, uint32_t first, const double v[3],
-                       const double d[3]) {
+bool box_starts_outside(const box_worker *w, const box_shaft *shaft) {
+    const box_scene *scene = w->scene;
+    const double *v = shaft->v, *d = w->centre;
+    uint32_t first = scene->outgoing[w->vertex];
     bool inner = false;
     uint32_t corner = first;
     do {
         inner = inner || box_side(scene, &scene->triangles[corner / 3], d) > 0;
-        corner = turn(scene, corner);
+        corner = box_turn(scene, corner);
     } while (corner != first && !inner);
     if (!inner)
         return true;
@@ -99,7 +96,7 @@ static bool is_outside(const box_scene *scene, uint32_t first, const double v[3]
                 leads_in(scene, first, v, d, e))
                 return true;
         }
-        corner = turn(scene, corner);
+        corner = box_turn(scene, corner);
     } while (corner != first);
     return false;
 }
@@ -110,9 +107,9 @@ bool box_start_hides(box_worker *w, const box_shaft *shaft) {
     if (!scene->embedded || first == BOX_NONE)
         return false;
     do {
-        if (!arc_misses(shaft, around(scene, corner, 1), around(scene, corner, 2)))
+        if (box_arc_may_meet(scene, shaft, corner))
             return false;
-        corner = turn(scene, corner);
+        corner = box_turn(scene, corner);
     } while (corner != first);
-    return is_outside(scene, first, shaft->v, w->centre);
+    return box_starts_outside(w, shaft);
 }
