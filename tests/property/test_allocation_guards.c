@@ -108,6 +108,15 @@ static starg_status visibility_sweep(starg_context *context) {
     return visibility_of(context, STARG_VISIBILITY_SWEEP, STARG_TARGET_FACES, STARG_FACES_VERTICES);
 }
 
+static starg_status visibility_region(starg_context *context) {
+    const double boxes[12] = {0, 0, 0, 1, 1, 1, -9, -9, -9, 9, 9, 9};
+    starg_bits *bits = NULL;
+    starg_status status = starg_visibility_region(context, in.solid, boxes, 2, NULL, &bits);
+    failing_result(status, bits);
+    starg_bits_free(bits);
+    return status;
+}
+
 static starg_status visibility_contours(starg_context *context) {
     return visibility_of(context, STARG_VISIBILITY_CONTOURS, STARG_TARGET_FACES,
                          STARG_FACES_VERTICES);
@@ -335,6 +344,7 @@ static const failing_call visibility[] = {
     {"starg_visibility", "fastest", visibility_fastest, NULL},
     {"starg_visibility", "grid, whole", visibility_whole, NULL},
     {"starg_visibility", "contours, whole", visibility_whole_contours, NULL},
+    {"starg_visibility_region", "boxes", visibility_region, NULL},
 };
 
 static const failing_call skeletons[] = {
