@@ -202,7 +202,7 @@ done:
 
 const cli_command cli_command_visible = {
     .name = "visible",
-    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1 [...] [-o FILE.ply] [options]",
+    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1 [-o FILE.ply] [...]",
     .summary = "which faces do points inside a solid see, or boxes in it",
     .description =
         "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is seen "

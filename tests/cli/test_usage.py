@@ -39,7 +39,7 @@ class Help(support.Case):
             "sample": ["-o", "--pose", "--vertices", "--list"],
             "check": ["--marks"],
             "repair": ["-o"],
-            "visible": ["--from", "-o"],
+            "visible": ["--from", "--box", "-o"],
             "guard": ["-o", "--method", "--candidates", "--count", "--visibility", "--target",
                       "--faces", "--coverage", "--max-guards", "--range", "--redundancy",
                       "--clearance"],
