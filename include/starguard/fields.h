@@ -71,8 +71,8 @@ typedef struct starg_field {
     double low, high, standard;          /* REAL, NUMBERS: range, default                       */
     const char *const *words;            /* CHOICE: by number, NULL behind the last             */
 
-    size_t length,
-        limit; /* LIST, INDICES: offsets of size_t members. NUMBERS: `length` is how many */
+    size_t length, limit; /* LIST, INDICES: offsets of size_t members. NUMBERS: `length` is how many
+                             PLACES: numbers in a row */
     size_t stride, within; /* of a column that is a member of structs: their size, and where in them
                               it is; stride 0: the values follow one another                    */
     const starg_fields *of;

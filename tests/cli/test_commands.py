@@ -186,6 +186,19 @@ class Visible(support.Case):
         report = self.run_json("visible", "m.off", "--from", ".1,.1,.1", "--range", "0.5")
         self.assertEqual(report["points"][0]["faces"], [])
 
+    def test_boxes(self):
+        room = self.sample("l-room")
+        corners = [".4,.4,.4,.6,.6,.6", ".6,.6,.6,.4,.4,.4", "90,90,90,91,91,91"]
+        options = [word for box in corners for word in ["--box", box]]
+        some, same, none = self.run_json("visible", room, *options, "-o", "v.ply")["boxes"]
+        self.assertEqual(some, same)
+        self.assertEqual(some["lower"], [.4, .4, .4])
+        self.assertEqual(none["faces"], [])
+        self.assertIn("sees at most", self.run_text("visible", room, "--box", corners[0])[0])
+        seen = self.run_json("visible", room, "--from", ".5,.5,.5")["points"][0]
+        self.assertTrue(seen["inside"])
+        self.assertLessEqual(set(seen["faces"]), set(some["faces"]))
+
     def test_engines_agree(self):
         room = self.sample("l-room")
         lower = self.run_json("check", room)

@@ -70,6 +70,9 @@ static starg_status visibility(starg_context *context) {
     VISIBILITY(starg_visibility, "fastest", FASTEST, FACES, VERTICES);
     VISIBILITY(starg_visibility, "grid, whole", GRID, FACES, WHOLE);
     VISIBILITY(starg_visibility, "contours, whole", CONTOURS, FACES, WHOLE);
+    static const double boxes[12] = {0, 0, 0, 1, 1, 1, -9, -9, -9, 9, 9, 9};
+    FAILING_MAKES(starg_visibility_region, "boxes", starg_bits, starg_bits_free(out), in.solid,
+                  boxes, 2, NULL);
     return STARG_OK;
 }
 
