@@ -44,6 +44,7 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
     STARG_PRIVATE(starg_parallel_for);
 
 /* The same, and gives up with STARG_ERROR_TIME when the time limit passes. */
-starg_status starg_parallel_in_time(starg_context *context, const starg_parallel_loop *loop);
+starg_status starg_parallel_in_time(starg_context *context, const starg_parallel_loop *loop)
+    STARG_PRIVATE(starg_parallel_in_time);
 
 #endif
