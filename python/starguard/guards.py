@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of
+from ._choice import choose, give, word_of, words
 from ._fields import fill
 from ._library import ffi, lib, text
 from ._session import Session
@@ -17,11 +17,10 @@ from ._types import Array, PathLike, Progress
 from .solid import as_solid
 from .visibility import ENGINES, FACE_RULES, TARGETS, set_view
 
-_METHODS = {"pilp": lib.STARG_GUARD_PILP, "ilp": lib.STARG_GUARD_ILP,
-            "greedy": lib.STARG_GUARD_GREEDY}
-_CANDIDATES = {"skeleton": lib.STARG_CANDIDATES_SKELETON, "medial": lib.STARG_CANDIDATES_MEDIAL,
-               "interior": lib.STARG_CANDIDATES_INTERIOR}
-_ALL_CANDIDATES = {**_CANDIDATES, "given": lib.STARG_CANDIDATES_GIVEN}
+_METHODS = words(lib.starg_guard_options_fields(), "method")
+_ALL_CANDIDATES = words(lib.starg_guard_options_fields(), "candidates")
+_CANDIDATES = {word: value for word, value in _ALL_CANDIDATES.items()
+               if value != lib.STARG_CANDIDATES_GIVEN}
 
 
 @dataclass(frozen=True, eq=False)

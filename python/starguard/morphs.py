@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of
+from ._choice import choose, give, word_of, words
 from ._fields import fill
 from ._library import ffi, lib
 from ._session import Session
@@ -18,8 +18,7 @@ from .errors import ArgumentError
 from .mesh import Mesh, as_mesh
 
 _MAP_KINDS = {"same": lib.STARG_MAP_SAME, "sphere": lib.STARG_MAP_SPHERE, "given": lib.STARG_MAP_GIVEN}
-_METHODS = {"star": lib.STARG_MORPH_STAR, "arap": lib.STARG_MORPH_ARAP,
-            "linear": lib.STARG_MORPH_LINEAR, "spherical": lib.STARG_MORPH_SPHERICAL}
+_METHODS = words(lib.starg_morph_options_fields(), "method")
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of
+from ._choice import choose, give, word_of, words
 from ._fields import fill
 from ._library import ffi, lib, text
 from ._session import Session, logger
@@ -18,7 +18,7 @@ from .guards import name_of
 from .mesh import Mesh
 from .tetra import TetMesh, TetraReport, as_shape, set_tetra
 
-MODES = {"strict": lib.STARG_DECOMPOSE_STRICT, "paper": lib.STARG_DECOMPOSE_PAPER}
+MODES = words(lib.starg_decompose_options_fields(), "mode")
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,8 +204,8 @@ def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
 
 def _of(d: Any, file: PathLike | None = None) -> Decomposition:
     mesh = TetMesh._of(d.mesh, owner=d)
-    return fill(Decomposition, d, _handle=d, file=text(d.file) if d.file else name_of(file), mode=word_of(d.mode, MODES),
-                tetra=TetraReport._of(d.tetra), mesh=mesh,
+    return fill(Decomposition, d, _handle=d, file=text(d.file) if d.file else name_of(file),
+                mode=word_of(d.mode, MODES), tetra=TetraReport._of(d.tetra), mesh=mesh,
                 labels=_arrays.view(d, d.labels, (len(mesh.tetrahedra),), np.int32),
                 pieces=_arrays.records(d, d.pieces, d.piece_count),
                 contacts=_arrays.records(d, d.contacts, d.contact_count))

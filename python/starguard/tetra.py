@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of
+from ._choice import choose, give, word_of, words
 from ._fields import fill
 from ._library import ffi, lib
 from ._session import Session
@@ -20,8 +20,7 @@ from .mesh import Mesh, as_mesh
 #: What stands for a neighbour beyond the boundary.
 NO_NEIGHBOUR = 2**32 - 1
 
-GENERATORS = {"auto": lib.STARG_TETRA_AUTO, "tetgen": lib.STARG_TETRA_TETGEN,
-              "stuffing": lib.STARG_TETRA_STUFFING}
+GENERATORS = words(lib.starg_tetra_options_fields(), "generator")
 _HEAD = 1 << 16  # bytes of a file that tell what it holds
 
 

@@ -7,18 +7,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give
+from ._choice import choose, give, words
 from ._library import ffi, lib
 from ._session import Session
 from ._types import Array, Progress
 from .errors import ArgumentError
 from .solid import as_solid
 
-ENGINES = {"grid": lib.STARG_VISIBILITY_GRID, "bvh": lib.STARG_VISIBILITY_BVH,
-           "sweep": lib.STARG_VISIBILITY_SWEEP, "contours": lib.STARG_VISIBILITY_CONTOURS,
-           "fastest": lib.STARG_VISIBILITY_FASTEST}
-TARGETS = {"faces": lib.STARG_TARGET_FACES, "vertices": lib.STARG_TARGET_VERTICES}
-FACE_RULES = {"vertices": lib.STARG_FACES_VERTICES, "whole": lib.STARG_FACES_WHOLE}
+_FIELDS = lib.starg_visibility_options_fields()
+ENGINES = words(_FIELDS, "engine")
+TARGETS = words(_FIELDS, "target")
+FACE_RULES = words(_FIELDS, "faces")
 
 
 class Bits:

@@ -53,7 +53,7 @@ class Errors(Case):
 
     def test_argument(self):
         mesh = starguard.Mesh(VERTICES, FACES)
-        error = self.fails(starguard.ArgumentError, "it must be one of pilp, ilp, greedy",
+        error = self.fails(starguard.ArgumentError, "it must be one of ilp, greedy, pilp",
                            starguard.guard, mesh, method="best")
         self.assertIsInstance(error, ValueError)
         self.assertEqual((error.element, len(error.elements)), ("none", 0))
