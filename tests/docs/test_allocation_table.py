@@ -34,8 +34,6 @@ WITHOUT = {
     "starg_context_shared_seconds": NUMBER, "starg_context_helped_items": NUMBER,
     "starg_ranks_serve": ELSEWHERE, "starg_database_ranks_serve": ELSEWHERE,
     "starg_ranks_release": ELSEWHERE,
-    "starg_fields_default": ARITHMETIC, "starg_field_default_text": TEXT, "starg_fields_word": TEXT,
-    "starg_field_count": NUMBER, "starg_field_set_count": ARITHMETIC, "starg_field_set_real": ARITHMETIC,
     "starg_cone_cosine": ARITHMETIC, "starg_descriptor_direction": ARITHMETIC,
     "starg_distinct_color": ARITHMETIC, "starg_map_positions": ARITHMETIC,
     "starg_descriptor_recognized": ARITHMETIC, "starg_tetmesh_recognized": ARITHMETIC,
