@@ -97,7 +97,7 @@ static void list_words(const starg_field *f, char *text, size_t size) {
         used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", f->words[i]);
 }
 
-void field_expectation(const starg_field *field, char *text, size_t size) {
+void starg_field_expectation(const starg_field *field, char *text, size_t size) {
     const starg_field *f = field;
     bool unlimited = f->kind == STARG_FIELD_COUNT ? f->most >= UINT32_MAX : f->high >= 1e100;
     if (f->kind == STARG_FIELD_FLAG)
@@ -140,7 +140,7 @@ static starg_status check_field(starg_context *context, const char *stage, const
                    is_default_count(f, starg_field_count(f, record)))
         return STARG_OK;
     spell_name(f, name, sizeof name);
-    field_expectation(f, expected, sizeof expected);
+    starg_field_expectation(f, expected, sizeof expected);
     return starg_fail(context, STARG_ERROR_ARGUMENT, stage, "the %s is %g; it must be %s", name,
                       value, expected);
 }
@@ -168,6 +168,8 @@ void starg_fields_default(const starg_fields *fields, void *record) {
             store_count(f, record, f->initial);
         else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES)
             memset(member(f, record), 0, f->size);
+        else if (f->kind == STARG_FIELD_RECORD)
+            starg_fields_default(f->of, member(f, record));
     }
 }
 

@@ -11,9 +11,6 @@
 /* The rows of a table and their number. */
 #define FIELD_ROWS(ROWS) .fields = (ROWS), .count = sizeof(ROWS) / sizeof *(ROWS)
 
-/* What a member must be, for messages: "above 0 and at most 1". */
-void field_expectation(const starg_field *field, char *text, size_t size);
-
 /* Are all members that the record has within their ranges? Errors: ARGUMENT. */
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
                           const void *record);

@@ -7,11 +7,15 @@
 #include "star/decomposition.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
+#include "tetra/generate.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces";
 
 static const starg_field OPTIONS[] = {
+    {.kind = STARG_FIELD_RECORD,
+     .offset = offsetof(starg_decompose_options, tetra),
+     .of = &tetra_option_fields},
     {.key = "mode",
      .option = "mode",
      .kind = STARG_FIELD_CHOICE,
@@ -58,7 +62,6 @@ const starg_fields *starg_decompose_options_fields(void) {
 
 void starg_decompose_options_default(starg_decompose_options *options) {
     *options = (starg_decompose_options){0};
-    starg_tetra_options_default(&options->tetra);
     starg_fields_default(&OPTIONS_TABLE, options);
 }
 

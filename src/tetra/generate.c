@@ -51,16 +51,16 @@ static const starg_field OPTIONS[] = {
      .value = "S",
      .help = "Seconds that tetgen may take."},
 };
-static const starg_fields OPTIONS_TABLE = {
+const starg_fields tetra_option_fields = {
     .name = "tetrahedra options", .size = sizeof(starg_tetra_options), FIELD_ROWS(OPTIONS)};
 
 const starg_fields *starg_tetra_options_fields(void) {
-    return &OPTIONS_TABLE;
+    return &tetra_option_fields;
 }
 
 void starg_tetra_options_default(starg_tetra_options *options) {
     *options = (starg_tetra_options){0};
-    starg_fields_default(&OPTIONS_TABLE, options);
+    starg_fields_default(&tetra_option_fields, options);
 }
 
 /* Tetrahedra to aim at; 0: as few as may be. */
@@ -135,7 +135,7 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
     *out = NULL;
     *report = (starg_tetra_report){.generator = options->generator};
     starg_progress_begin(context, STAGE);
-    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
+    STARG_TRY(fields_check(context, STAGE, &tetra_option_fields, options));
     if (options->generator != STARG_TETRA_STUFFING) {
         status = try_tetgen(context, solid, options, report, out);
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
@@ -183,7 +183,7 @@ starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_me
         report = &ignored;
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
     starg_progress_begin(context, STAGE);
-    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
+    STARG_TRY(fields_check(context, STAGE, &tetra_option_fields, options));
     tetra_shape shape = {.mesh = mesh, .field = &field, .volume = guess_volume(mesh)};
     if (mesh->face_count == 0 || shape.volume == 0) {
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,

@@ -13,7 +13,7 @@ import starguard
 from support import FACES, SLOWNESS, VERTICES, Case, main
 
 
-DOG = starguard.sample("dog", vertex_count=2000)
+DOG = starguard.sample("dog", vertices=2000)
 
 
 def long_work(**options):
@@ -29,7 +29,7 @@ class Progress(Case):
             seen.append((stage, fraction))
             threads.add(threading.get_ident())
 
-        starguard.guard(starguard.sample("dog", vertex_count=1000), progress=note)
+        starguard.guard(starguard.sample("dog", vertices=1000), progress=note)
         self.assertGreater(len({stage for stage, _ in seen}), 3)
         self.assertTrue(all(stage and 0 <= fraction <= 1 for stage, fraction in seen))
         self.assertEqual(threads, {threading.get_ident()})
@@ -41,7 +41,7 @@ class Progress(Case):
 
     def test_none_and_others_go_on(self):
         for answer in (None, True, 0, ""):
-            room = starguard.guard(starguard.sample("l-room", vertex_count=500),
+            room = starguard.guard(starguard.sample("l-room", vertices=500),
                                    progress=lambda *_, answer=answer: answer)
             self.assertEqual(len(room), 1)
 
@@ -66,7 +66,7 @@ class Progress(Case):
 
     def test_it_may_call_the_library(self):
         inner = []
-        starguard.guard(starguard.sample("l-room", vertex_count=500),
+        starguard.guard(starguard.sample("l-room", vertices=500),
                         progress=lambda *_: inner.append(starguard.Mesh(VERTICES, FACES).volume))
         self.assertTrue(inner and all(abs(volume - 1 / 6) < 1e-12 for volume in inner))
 
@@ -112,7 +112,7 @@ class Interruption(Case):
         self.assertLess(self.interrupt(shielded), 5 * SLOWNESS)
 
     def test_objects_with_a_context_of_their_own_go_on(self):
-        mesh = starguard.sample("dog", vertex_count=1000)
+        mesh = starguard.sample("dog", vertices=1000)
         for i in range(12):
             mesh.__class__(mesh.vertices + i, mesh.faces).write(f"{i}.off")
         with starguard.Database.create("shapes.db") as shapes:
@@ -129,7 +129,7 @@ class Interruption(Case):
         try:
             timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
             timer.start()
-            starguard.decompose(starguard.sample("dog", vertex_count=1000), time_limit=2)
+            starguard.decompose(starguard.sample("dog", vertices=1000), time_limit=2)
             ended = time.monotonic()
         finally:
             timer.join()
@@ -139,7 +139,7 @@ class Interruption(Case):
 
     def test_a_script_ends_as_scripts_do(self):
         script = ("import starguard, sys\nprint('go', flush=True)\n"
-                  "starguard.decompose(starguard.sample('dog', vertex_count=2000), time_limit=100)\n")
+                  "starguard.decompose(starguard.sample('dog', vertices=2000), time_limit=100)\n")
         with subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE) as process:
             process.stdout.readline()
@@ -152,7 +152,7 @@ class Interruption(Case):
 
 class Threads(Case):
     def test_two_calls_at_once_give_the_same(self):
-        models = [starguard.sample("gallery", vertex_count=n) for n in (500, 600)]
+        models = [starguard.sample("gallery", vertices=n) for n in (500, 600)]
         alone = [starguard.guard(model, threads=1).positions.tolist() for model in models]
         together = [None, None]
 
@@ -168,7 +168,7 @@ class Threads(Case):
         self.assertEqual(together, alone)
 
     def test_one_model_for_many_threads(self):
-        solid = starguard.Solid(starguard.sample("gallery", vertex_count=1000))
+        solid = starguard.Solid(starguard.sample("gallery", vertices=1000))
         points = starguard.candidate_points(solid, "interior", 40)
         wanted = np.asarray(starguard.visible(solid, points))
         morph = starguard.Morph((VERTICES, FACES), [[2 * x for x in row] for row in VERTICES],
@@ -196,7 +196,7 @@ class Threads(Case):
                 time.sleep(0.001)
 
         def off_the_main_thread():
-            starguard.decompose(starguard.sample("dog", vertex_count=1000), time_limit=1, threads=1)
+            starguard.decompose(starguard.sample("dog", vertices=1000), time_limit=1, threads=1)
 
         counter, worker = threading.Thread(target=count), threading.Thread(target=off_the_main_thread)
         counter.start()
@@ -207,7 +207,7 @@ class Threads(Case):
         self.assertGreater(counts[0], 50)
 
     def test_seed_and_thread_count(self):
-        model = starguard.sample("gallery", vertex_count=500)
+        model = starguard.sample("gallery", vertices=500)
         files = []
         for threads in (1, 2, 3):
             starguard.guard(model, threads=threads, seed=5).write("g.json")
@@ -235,7 +235,7 @@ class Log(Case):
 
 class Time(Case):
     def test_a_limit_that_strikes_is_told(self):
-        model = starguard.sample("dog", vertex_count=2000)
+        model = starguard.sample("dog", vertices=2000)
         begun = time.monotonic()
         pieces = starguard.decompose(model, time_limit=1)
         self.assertTrue(pieces.time_limited)
