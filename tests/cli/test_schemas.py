@@ -19,7 +19,7 @@ except ImportError:
 
 FOLDERS = [os.path.join(folder, "docs", "schema") for folder in (
     os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."),
-    os.environ.get("STARGUARD_BUILD", os.path.dirname(support.PROGRAM)))]
+    support.BUILD)]
 MIXIN = "mixin"  # the $comment of a schema that others add keys to
 
 

@@ -7,8 +7,8 @@ import unittest
 
 SOURCE = os.environ.get("STARGUARD_SOURCE", os.path.join(os.path.dirname(__file__), "..", ".."))
 
-# What gives memory back, and what fills a struct of the caller.
-HARMLESS = re.compile(r"_(free|close|default)$")
+# What gives memory back, what fills a struct of the caller, and constant tables.
+HARMLESS = re.compile(r"_(free|close|default|options_fields)$")
 
 NUMBER = "returns a number, a pointer or a bit of a finished object"
 TEXT = "returns static text or a static table"
@@ -22,6 +22,9 @@ WITHOUT = {
     "starg_sample_count": TEXT, "starg_sample_at": TEXT, "starg_signature_name": TEXT,
     "starg_signature_version": TEXT, "starg_signature_needs_descriptor": TEXT,
     "starg_page_available": TEXT,
+    "starg_fields_word": TEXT, "starg_field_expectation": ARITHMETIC,
+    "starg_field_default_text": ARITHMETIC, "starg_field_count": ARITHMETIC,
+    "starg_field_set_count": ARITHMETIC, "starg_field_set_real": ARITHMETIC,
     "starg_context_cancel": "sets a flag; a signal handler may call it",
     "starg_context_reset": "clears a flag",
     "starg_context_set_time_limit": "stores a time",

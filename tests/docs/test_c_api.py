@@ -25,16 +25,6 @@ class Reference(unittest.TestCase):
         self.assertEqual(names - set(re.findall(r"\b(starg_\w+)\(", text)), set())
         self.assertTrue(text.startswith("# C reference\n"))
 
-    def test_explained(self):
-        """Every function has a comment, or stands below one that has, in the same block."""
-        with tempfile.NamedTemporaryFile() as page:
-            subprocess.run([os.path.join(SOURCE, "scripts", "c-api.py"), page.name], check=True)
-            text = page.read().decode()
-        for code, after in re.findall(r"```c\n(.*?)\n```\n(.*?)(?=```c|\Z)", text, re.S):
-            names = re.findall(r"\b(starg_\w+)\(", code)
-            if names:
-                self.assertTrue(after.strip() and not after.strip().startswith("#"), names)
-
     def test_readme(self):
         """The program of the README compiles."""
         with open(f"{SOURCE}/README.md", encoding="utf-8") as file:

@@ -275,6 +275,23 @@ static starg_status candidates_skeleton(starg_context *context) {
     return candidates_of(context, STARG_CANDIDATES_SKELETON);
 }
 
+static starg_status guards_write_memory(starg_context *context) {
+    char *text = NULL;
+    size_t size;
+    starg_status status = starg_guards_write_memory(context, in.guards, "room.off", &text, &size);
+    starg_text_free(context, text);
+    return status;
+}
+
+static starg_status fields_json(starg_context *context) {
+    char *text = NULL;
+    size_t size;
+    starg_status status =
+        starg_fields_json(context, starg_guard_options_fields(), &in.guards->options, &text, &size);
+    starg_text_free(context, text);
+    return status;
+}
+
 static starg_status guards_write(starg_context *context) {
     return starg_guards_write(context, in.guards, "room.off", failing_output("g.json"));
 }
@@ -358,6 +375,8 @@ static const failing_call guards[] = {
     {"starg_guard", "cone, at most 2", guard_cone, NULL},
     {"starg_guards_given", "", guards_given, NULL},
     {"starg_guards_write", "", guards_write, NULL},
+    {"starg_guards_write_memory", "", guards_write_memory, NULL},
+    {"starg_fields_json", "", fields_json, NULL},
     {"starg_guards_read", "", guards_read, NULL},
     {"starg_guards_read_memory", "", guards_read_memory, NULL},
     {"starg_points_read", "", points_read, NULL},
