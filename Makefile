@@ -3,6 +3,7 @@ BUILD   ?= build
 JOBS    ?= $(shell nproc)
 SECONDS ?= 60
 CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
+STRICT  := $(CMAKE) -DSTARGUARD_WERROR=ON
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
 LONG_PARTS := analysis slow exact memory threads mpi matrix
@@ -19,7 +20,7 @@ demo: build
 	@scripts/demo.sh $(BUILD)
 
 tests: deps-check
-	@$(CMAKE) -S . -B $(BUILD) -DSTARGUARD_TESTS=ON > /dev/null
+	@$(STRICT) -S . -B $(BUILD) -DSTARGUARD_TESTS=ON > /dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 
 check: lint tests
@@ -27,7 +28,7 @@ check: lint tests
 	@$(MAKE) --no-print-directory sanitize
 
 sanitize-build: deps-check
-	@$(CMAKE) -S . -B $(BUILD)-sanitize -DSTARGUARD_SANITIZE=address,undefined > /dev/null
+	@$(STRICT) -S . -B $(BUILD)-sanitize -DSTARGUARD_SANITIZE=address,undefined > /dev/null
 	@cmake --build $(BUILD)-sanitize -j $(JOBS)
 
 # The test suite once more, under the address and undefined-behaviour sanitizers.
@@ -49,7 +50,7 @@ check-slow: tests sanitize-build
 
 # A million cases for each exact decision.
 check-exact: tests
-	@STARGUARD_LONG=100 $(CTEST) --timeout 20000 --test-dir $(BUILD) -L exact
+	@STARGUARD_LONG=100 $(CTEST) --test-dir $(BUILD) -L exact
 
 # Memory that is read before it is written: valgrind.
 check-memory: tests
@@ -58,9 +59,9 @@ check-memory: tests
 
 # Races: the thread sanitizer, built by clang.
 check-threads: deps-check
-	@CC=clang $(CMAKE) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
+	@CC=clang $(STRICT) -S . -B $(BUILD)-thread -DSTARGUARD_SANITIZE=thread > /dev/null
 	@cmake --build $(BUILD)-thread -j $(JOBS)
-	@$(CTEST) --timeout 3000 --test-dir $(BUILD)-thread -LE slow
+	@$(CTEST) --test-dir $(BUILD)-thread -LE slow
 
 check-mpi: mpi
 	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
@@ -73,7 +74,7 @@ check-matrix: deps-check
 # and symbols and files that are installed.
 coverage: deps-check
 	@scripts/install-deps.sh coverage
-	@CC=gcc $(CMAKE) -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O1 -DSTARGUARD_COVERAGE=ON -S . -B $(BUILD)-coverage > /dev/null
+	@CC=gcc $(STRICT) -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG=-O1 -DSTARGUARD_COVERAGE=ON -S . -B $(BUILD)-coverage > /dev/null
 	@cmake --build $(BUILD)-coverage -j $(JOBS)
 	@find $(BUILD)-coverage -name '*.gcda' -delete
 	@$(CTEST) --test-dir $(BUILD)-coverage -LE slow -E '^install/|cli/test_(interrupt|limits)'
@@ -90,7 +91,7 @@ lint: deps-check
 
 # Coverage-guided fuzzing of every reader and of small structured problems, SECONDS in all.
 fuzz: deps-check
-	@CC=clang $(CMAKE) -S . -B $(BUILD)-fuzz -DSTARGUARD_FUZZ=ON -DSTARGUARD_SANITIZE=address,undefined > /dev/null
+	@CC=clang $(STRICT) -S . -B $(BUILD)-fuzz -DSTARGUARD_FUZZ=ON -DSTARGUARD_SANITIZE=address,undefined > /dev/null
 	@cmake --build $(BUILD)-fuzz -j $(JOBS)
 	@scripts/fuzz.sh $(BUILD)-fuzz $(SECONDS)
 

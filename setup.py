@@ -44,7 +44,7 @@ class BuildPackage(build_py):
     def run(self):
         target = os.path.join(self.build_lib, "starguard")
         shutil.copytree(built_package(), target, dirs_exist_ok=True,
-                        ignore=shutil.ignore_patterns("__pycache__"))
+                        ignore=shutil.ignore_patterns("__pycache__", "*.stamp"))
 
 
 class Wheel(bdist_wheel):

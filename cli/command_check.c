@@ -186,8 +186,11 @@ static void judge(cli_session *session, const starg_check *check) {
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s (%zu)",
                                      used == 0 ? "" : ", ", starg_finding_name(serious[i]), count);
     }
-    cli_warn(session, "'%s' is not a usable solid: %s; 'starguard repair' may mend it", name,
-             used > 0 ? list : "it bounds no volume");
+    cli_warn(session, "'%s' is not a usable solid: %s; %s", name,
+             used > 0 ? list : "it bounds no volume",
+             check->one_sided_faces > 0 && check->one_sided_faces == check->faces
+                 ? "nothing can mend it, as its surfaces have one side only"
+                 : "'starguard repair' may mend it");
     session->outcome = CLI_EXIT_INPUT;
 }
 

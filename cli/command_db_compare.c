@@ -106,7 +106,7 @@ const cli_command cli_command_db_matrix = {
 /* ---- evaluate ---- */
 
 static const cli_option evaluate_options[] = {
-    CLI_TEXT_OPTION(
+    CLI_INPUT_OPTION(
         "classes", classes, "by-prefix|FILE",
         "Which models belong together: by-prefix (default) takes the file name up to the "
         "last '_'; a FILE has lines 'MODEL CLASS', and models it does not name are left "

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "endings.h"
 #include "model.h"
+#include "numbers.h"
 #include "report.h"
 #include "starguard/decompose.h"
 #include "starguard/guard.h"
@@ -29,12 +30,13 @@ static const cli_option options[] = {
         "report", report, "PIECES.json",
         "Where to write the guard, size and proof of each piece, and which pieces touch "
         "over what area (docs/formats.md)."),
-    CLI_TEXT_OPTION("guards", guards, "GUARDS.json",
-                    "Guards to begin with: a result of 'starguard guard', or text of three numbers "
-                    "a line. Default for --mode paper: those that 'starguard guard' places."),
-    CLI_TEXT_OPTION("tets", tets, "FILE",
-                    "Read the solid as tetrahedra from this file, in place of MODEL: MEDIT .mesh, "
-                    ".vtk, Gmsh .msh, or TetGen .node with its .ele beside it."),
+    CLI_INPUT_OPTION(
+        "guards", guards, "GUARDS.json",
+        "Guards to begin with: a result of 'starguard guard', a skeleton, or text of three numbers "
+        "a line. Default for --mode paper: those that 'starguard guard' places."),
+    CLI_INPUT_OPTION("tets", tets, "FILE",
+                     "Read the solid as tetrahedra from this file, in place of MODEL: MEDIT .mesh, "
+                     ".vtk, Gmsh .msh, or TetGen .node with its .ele beside it."),
     CLI_TEXT_OPTION(
         "surfaces", surfaces, "DIR",
         "Write the closed surface of each piece into this folder, which is made if need "
@@ -78,10 +80,10 @@ static starg_status cut(cli_session *session, const subject *s,
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
     starg_status status = starg_solid_create(session->context, s->surface, &solid);
     if (status == STARG_ERROR_MESH) { /* a surface with holes is filled with what it winds around */
-        cli_notice(session,
-                   "%s; isosurface stuffing fills what the surface winds around, and closes holes "
-                   "of its own accord",
-                   starg_context_error(session->context)->message);
+        cli_log(session, STARG_LOG_WARNING,
+                "%s; isosurface stuffing fills what the surface winds around, and closes holes "
+                "of its own accord",
+                starg_context_error(session->context)->message);
         return starg_decompose_open_mesh(session->context, s->surface, wanted, out);
     }
     if (status == STARG_OK)
@@ -102,9 +104,8 @@ static size_t count_single(const starg_decomposition *d) {
 static void say_pieces(cli_session *session, const starg_decomposition *d) {
     cli_say(session, "pieces        %zu\n", d->piece_count);
     cli_say(session, "star-shaped   %zu (proven)\n", d->strictly_star);
-    /* rounded down, so that only what is whole is called 100 % */
     cli_say(session, "visible       %g %% of the vertices, from their guards\n",
-            floor(1e4 * d->visible_vertices) / 100);
+            cli_percent(d->visible_vertices));
     cli_say(session, "tetrahedra    %zu\n", starg_tetmesh_count(d->mesh));
     if (d->tetra.surface_kept)
         cli_say(session, "surface       kept\n");
@@ -403,7 +404,7 @@ const cli_command cli_command_decompose = {
         "tetrahedra of your own; the content tells which.\n"
         "The surface is kept, face by face, where the program tetgen can be had. Surfaces that "
         "pass through themselves or have holes are filled by isosurface stuffing instead, with a "
-        "notice, and how far its surface is from the model's is told.\n"
+        "warning, and how far its surface is from the model's is told.\n"
         "The search ends when it finds nothing better, at the latest after 60 seconds unless "
         "--time-limit says otherwise, with the best that it has.",
     .examples = "# pieces with their proofs, and what they look like\n"

@@ -15,9 +15,9 @@ static const cli_option options[] = {
     CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj",
                       "Where to write, by the name's ending (docs/formats.md); '-' writes .glb to "
                       "standard output."),
-    CLI_TEXT_OPTION("model", model, "FILE",
-                    "The model that results are about. By default the one that they name, from "
-                    "where you stand or beside the result."),
+    CLI_INPUT_OPTION("model", model, "FILE",
+                     "The model that results are about. By default the one that they name, from "
+                     "where you stand or beside the result."),
 };
 
 static starg_status choose_format(cli_session *session, const char *name,

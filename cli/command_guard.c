@@ -1,5 +1,4 @@
 /* starguard guard: places guards, the main job. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -7,6 +6,7 @@
 #include "commands.h"
 #include "endings.h"
 #include "model.h"
+#include "numbers.h"
 #include "report.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
@@ -31,11 +31,11 @@ static const cli_option options[] = {
     CLI_OUTPUT_OPTION(
         "GUARDS.json",
         "Where to write the guards (docs/formats.md); '-' writes to standard output."),
-    CLI_TEXT_OPTION(
+    CLI_INPUT_OPTION(
         "candidates", candidates, "skeleton|medial|interior|FILE",
         "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
-        "lattice inside, or at the points of a file: three numbers a line, or another "
-        "GUARDS.json."),
+        "lattice inside, or at the points of a file: three numbers a line, a skeleton of "
+        "'starguard skeleton', or another GUARDS.json."),
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
         "Draw the model half transparent with its guards; uncovered faces are dark red."),
@@ -86,20 +86,16 @@ static void say_bound(cli_session *session, const starg_guards *g) {
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
-/* Rounded down, so that only what is whole is called 100 %. */
-static double percent(double fraction) {
-    return floor(1e4 * fraction) / 100;
-}
-
 static void say_guards(cli_session *session, const starg_guards *g) {
     cli_say(session, "guards        %zu\n", g->count);
     say_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
-            percent(g->coverage_faces), percent(g->coverage_area));
+            cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
-        cli_say(session, "              %g %% of the vertices\n", percent(g->coverage_vertices));
+        cli_say(session, "              %g %% of the vertices\n",
+                cli_percent(g->coverage_vertices));
     if (g->options.max_guards > 0)
-        cli_say(session, "area bound    %g %% with %s\n", percent(g->area_bound),
+        cli_say(session, "area bound    %g %% with %s\n", cli_percent(g->area_bound),
                 cli_count_of(g->options.max_guards, "guard", "guards").text);
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
     size_t hidden = g->face_count - g->coverable_faces;

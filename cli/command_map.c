@@ -11,10 +11,11 @@ typedef struct values {
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("MAP.json", "Where to write the map (docs/formats.md); '-' writes to "
                                   "standard output."),
-    CLI_TEXT_OPTION("landmarks", landmarks, "FILE",
-                    "Vertices that shall meet: a pair a line, as two vertex numbers (from 0), a of "
-                    "A and one of B, or as six coordinates, of which the nearest vertices are "
-                    "taken."),
+    CLI_INPUT_OPTION(
+        "landmarks", landmarks, "FILE",
+        "Vertices that shall meet: a pair a line, as two vertex numbers (from 0), a of "
+        "A and one of B, or as six coordinates, of which the nearest vertices are "
+        "taken."),
 };
 
 static starg_status prepare(cli_session *session, void *data) {

@@ -28,9 +28,9 @@ static const cli_option options[] = {
     CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off and so on; it is made if it is not there."),
     CLI_COUNT_OPTION("frames", frames, "N", 2, 10000, 21, NULL,
                      "Number of frames with both ends, evenly in time."),
-    CLI_TEXT_OPTION("map", map, "FILE",
-                    "A map of 'starguard map'; by default one is made, as that command does."),
-    CLI_TEXT_OPTION("landmarks", landmarks, "FILE", "Landmarks for a map that is made."),
+    CLI_INPUT_OPTION("map", map, "FILE",
+                     "A map of 'starguard map'; by default one is made, as that command does."),
+    CLI_INPUT_OPTION("landmarks", landmarks, "FILE", "Landmarks for a map that is made."),
     CLI_TEXT_OPTION("glb", glb, "FILE.glb",
                     "The frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
@@ -51,6 +51,48 @@ static const cli_option options[] = {
 static const char *method_word(const values *v) {
     return starg_fields_word(starg_morph_options_fields(), "method", v->wanted.method);
 }
+
+/* ---- files in the folder ---- */
+
+/* A file in the folder of the frames; NULL when memory is out. */
+static char *in_folder(const values *v, const char *name) {
+    size_t size = strlen(v->output) + strlen(name) + 2;
+    char *path = malloc(size);
+    if (path != NULL)
+        snprintf(path, size, "%s/%s", v->output, name);
+    return path;
+}
+
+static char *frame_in_folder(const values *v, uint64_t index) {
+    char name[32];
+    snprintf(name, sizeof name, "frame_%04llu.off", (unsigned long long)index);
+    return in_folder(v, name);
+}
+
+/* Announces `path` and frees it. */
+static starg_status announce_path(cli_session *session, char *path) {
+    starg_status status = path != NULL ? cli_announce(session, path) : cli_fail_memory(session);
+    free(path);
+    return status;
+}
+
+static starg_status announce_folder(cli_session *session, const values *v) {
+    static const char *const guards[] = {"guards_a.json", "guards_b.json"};
+    static const char *const pieces[] = {"pieces_a.vtk", "pieces_a.json", "pieces_b.vtk",
+                                         "pieces_b.json"};
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_announce_folder(session, v->output));
+    for (uint64_t i = 0; i < v->frames; i++)
+        CLI_TRY(announce_path(session, frame_in_folder(v, i)));
+    for (int i = 0; v->guards && i < 2; i++)
+        CLI_TRY(announce_path(session, in_folder(v, guards[i])));
+    for (int i = 0; v->pieces && i < 4; i++)
+        CLI_TRY(announce_path(session, in_folder(v, pieces[i])));
+done:
+    return status;
+}
+
+/* ---- what was asked for ---- */
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
@@ -74,7 +116,7 @@ static starg_status prepare(cli_session *session, void *data) {
     if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
         return cli_fail(session, STARG_ERROR_ARGUMENT, "--glb takes at most %d frames",
                         STARG_ANIMATION_FRAMES);
-    CLI_TRY(cli_announce_folder(session, v->output));
+    CLI_TRY(announce_folder(session, v));
 done:
     return status;
 }
@@ -144,37 +186,35 @@ static json_t *frame_json(cli_session *session, double t, const starg_frame_meas
     return item;
 }
 
-static starg_status write_frame(cli_session *session, const double *positions, const char *name) {
+/* Frees `name`. */
+static starg_status write_frame(cli_session *session, const double *positions, char *name) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
+    if (name == NULL)
+        return cli_fail_memory(session);
     CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(session->mesh),
                               starg_mesh_faces(session->mesh), starg_mesh_face_count(session->mesh),
                               &mesh));
-    CLI_TRY(cli_announce(session, name));
     CLI_TRY(cli_mesh_write(session, mesh, STARG_MESH_OFF, NULL, name));
 done:
     starg_mesh_free(mesh);
+    free(name);
     return status;
 }
 
 static starg_status write_frames(cli_session *session, const values *v, const starg_morph *morph,
                                  json_t *list, totals *sum) {
     starg_status status = STARG_OK;
-    size_t size = strlen(v->output) + 64;
-    char *name = malloc(size);
     double *positions =
         malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *positions);
-    if (name == NULL || positions == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    if (positions == NULL)
+        return cli_fail_memory(session);
     for (uint64_t i = 0; i < v->frames; i++) {
         double t = (double)i / (double)(v->frames - 1);
         starg_frame_measures measures;
         CLI_TRY(starg_morph_frame(morph, t, positions));
         CLI_TRY(starg_morph_measure(morph, t, positions, &measures));
-        snprintf(name, size, "%s/frame_%04llu.off", v->output, (unsigned long long)i);
-        CLI_TRY(write_frame(session, positions, name));
+        CLI_TRY(write_frame(session, positions, frame_in_folder(v, i)));
         cli_append(session, list, frame_json(session, t, &measures));
         sum->intersections += measures.intersections;
         sum->inverted += measures.inverted;
@@ -185,7 +225,6 @@ static starg_status write_frames(cli_session *session, const values *v, const st
             sum->drift = drift;
     }
 done:
-    free(name);
     free(positions);
     return status;
 }
@@ -217,15 +256,6 @@ done:
 
 /* ---- results of both ends ---- */
 
-/* A file in the folder of the frames; NULL when memory is out. */
-static char *in_folder(const values *v, const char *name) {
-    size_t size = strlen(v->output) + strlen(name) + 2;
-    char *path = malloc(size);
-    if (path != NULL)
-        snprintf(path, size, "%s/%s", v->output, name);
-    return path;
-}
-
 /* A map that keeps vertices may still be one of surfaces whose faces differ here and there. */
 static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
     size_t count = starg_mesh_face_count(a);
@@ -236,10 +266,8 @@ static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
 
 /* B is the model itself where it is the last frame, else that frame. NULL when memory is out. */
 static char *model_of(const cli_session *session, const values *v, const subject *s, int end) {
-    char frame[32];
-    snprintf(frame, sizeof frame, "frame_%04llu.off", (unsigned long long)(v->frames - 1));
     bool given = s->map->kind == STARG_MAP_SAME && has_same_faces(session->mesh, s->target);
-    return end == 1 && !given ? in_folder(v, frame) : strdup(session->operands[end]);
+    return end == 1 && !given ? frame_in_folder(v, v->frames - 1) : strdup(session->operands[end]);
 }
 
 /* ---- guards ---- */
@@ -266,7 +294,6 @@ static starg_status write_end(cli_session *session, const values *v, const subje
         goto done;
     }
     CLI_TRY(starg_morph_guards_result(morph, end, &guards));
-    CLI_TRY(cli_announce(session, name));
     CLI_TRY(starg_guards_write(session->context, guards, model,
                                cli_outputs_place(&session->outputs, name)));
 done:
@@ -312,8 +339,6 @@ static starg_status write_pieces_of(cli_session *session, const values *v, const
         status = cli_fail_memory(session);
         goto done;
     }
-    CLI_TRY(cli_announce(session, grid));
-    CLI_TRY(cli_announce(session, told));
     CLI_TRY(starg_decomposition_write(session->context, pieces,
                                       cli_outputs_place(&session->outputs, grid), false));
     CLI_TRY(starg_decomposition_write_report(session->context, pieces, model,
@@ -424,10 +449,13 @@ static void say_morph(cli_session *session, const values *v, const starg_morph *
     const separate *alone = &found->alone;
     cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
     if (starg_morph_guard_count(morph) > 0)
-        cli_say(session, "guards        %zu in each shape\n", starg_morph_guard_count(morph));
+        cli_say(session, "guards        %zu in each shape; %s seen in both by none\n",
+                starg_morph_guard_count(morph),
+                cli_count_of(starg_morph_unguarded(morph), "face", "faces").text);
     if (v->guards)
         cli_say(session,
-                "alone         %zu guards for A (at least %zu), %zu for B (at least %zu)\n",
+                "alone         %zu guards for A (at least %zu), %zu for B (at least %zu): for all "
+                "that is seen there\n",
                 alone->count[0], alone->bound[0], alone->count[1], alone->bound[1]);
     if (v->pieces)
         cli_say(session, "pieces        %zu, star-shaped in both solids (proven)\n",

@@ -97,6 +97,7 @@ const cli_command cli_command_repair = {
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_repair_options_fields, wanted),
     .input = CLI_INPUT_MESH,
+    .in_place = true,
     .prepare = prepare,
     .run = run,
 };

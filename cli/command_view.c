@@ -12,9 +12,9 @@ typedef struct values {
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("PAGE.html", "Where to write the page; '-' writes to standard output."),
-    CLI_TEXT_OPTION("model", model, "FILE",
-                    "The model that results are about. By default the one that they name, from "
-                    "where you stand or beside the result."),
+    CLI_INPUT_OPTION("model", model, "FILE",
+                     "The model that results are about. By default the one that they name, from "
+                     "where you stand or beside the result."),
     CLI_DISTANCE_OPTION,
 };
 

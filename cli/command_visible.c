@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "endings.h"
 #include "model.h"
+#include "numbers.h"
 #include "report.h"
 #include "starguard/picture.h"
 #include "starguard/visibility.h"
@@ -52,7 +53,8 @@ static void tell_point(cli_session *session, const look *l, size_t row) {
     if (!inside)
         cli_say(session, "not inside the solid: sees nothing\n");
     else if (faces)
-        cli_say(session, "sees %zu of %zu faces, %.2f %% of the area\n", count, all, 100 * area);
+        cli_say(session, "sees %zu of %zu faces, %.2f %% of the area\n", count, all,
+                cli_percent(area));
     else
         cli_say(session, "sees %zu of %zu vertices\n", count, all);
     if (session->report == NULL)

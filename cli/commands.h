@@ -32,6 +32,7 @@ struct cli_command {
     const starg_fields *(*library)(void);
     size_t library_offset;
     cli_input input;
+    bool in_place; /* an output may be the input */
     /* In this order; all but `run` may be NULL. The struct comes with the defaults of its tables.
      */
     starg_status (*prepare)(cli_session *session, void *values); /* options, names of outputs   */

@@ -4,7 +4,6 @@
  * for a number nothing can be offered. */
 #include "completion.h"
 
-#include <ctype.h>
 #include <string.h>
 
 #include "completion_parts.h"
@@ -17,13 +16,9 @@ void completion_visit_words(FILE *stream, const cli_option *o, completion_word_f
             visit(stream, o->words[i], (int)strlen(o->words[i]));
     if (o->kind != STARG_FIELD_TEXT)
         return;
-    for (const char *word = o->value; *word != '\0';) {
-        size_t size = strcspn(word, "|");
-        if (islower((unsigned char)*word))
-            visit(stream, word, (int)size);
-        word += size;
-        word += *word == '|';
-    }
+    size_t size;
+    for (const char *at = o->value, *word; (word = cli_option_next_word(&at, &size)) != NULL;)
+        visit(stream, word, (int)size);
 }
 
 void completion_put_word(FILE *stream, const char *word, int size) {

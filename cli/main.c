@@ -152,11 +152,37 @@ static int print_about(const cli_session *session) {
     return finish_text();
 }
 
+static bool is_word(const cli_option *o, const char *value) {
+    size_t size;
+    for (const char *at = o->value, *word; (word = cli_option_next_word(&at, &size)) != NULL;)
+        if (strlen(value) == size && strncmp(value, word, size) == 0)
+            return true;
+    return false;
+}
+
+/* All files that the command line names for reading. */
+static starg_status name_inputs(cli_session *session, const char *values) {
+    const cli_command *command = session->command;
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < session->operand_count && command->operand_word == NULL; i++)
+        CLI_TRY(cli_name_input(session, session->operands[i]));
+    for (size_t i = 0; i < command->option_count; i++) {
+        const cli_option *o = &command->options[i];
+        const char *value =
+            (o->flags & STARG_FIELD_INPUT) ? *(const char *const *)(values + o->offset) : NULL;
+        if (value != NULL && !is_word(o, value))
+            CLI_TRY(cli_name_input(session, value));
+    }
+done:
+    return status;
+}
+
 /* The frame of every command: slips show before the model is read, and that before the work. */
 static starg_status perform(cli_session *session, void *values) {
     const cli_command *command = session->command;
     starg_status status = STARG_OK;
     CLI_TRY(check_operands(session));
+    CLI_TRY(name_inputs(session, values));
     if (command->prepare != NULL)
         CLI_TRY(command->prepare(session, values));
     CLI_TRY(cli_input_read(session));

@@ -42,3 +42,12 @@ bool cli_number_point(const char *word, double point[3]) {
     }
     return true;
 }
+
+double cli_percent(double fraction) {
+    double hundredths = floor(1e4 * fraction); /* the product is rounded: one too few or too many */
+    if ((hundredths + 1) / 1e4 <= fraction)
+        hundredths++;
+    else if (hundredths / 1e4 > fraction)
+        hundredths--;
+    return hundredths / 100;
+}

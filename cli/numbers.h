@@ -14,4 +14,8 @@ bool cli_number_real(const char *word, double *value);
 /* Three reals with commas between them. */
 bool cli_number_point(const char *word, double point[3]);
 
+/* A fraction in percent with two digits, rounded down, so that only what is whole is called 100;
+ * what is a hundredth of a percent as exactly as a double can be stays it. */
+double cli_percent(double fraction);
+
 #endif

@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -221,6 +222,17 @@ int cli_options_parse(const cli_group *groups, size_t group_count, int argc, cha
 void cli_options_default(const cli_group *group) {
     const starg_fields table = {.fields = group->options, .count = group->count};
     starg_fields_default(&table, group->values);
+}
+
+const char *cli_option_next_word(const char **at, size_t *size) {
+    while (**at != '\0') {
+        const char *word = *at;
+        *size = strcspn(word, "|");
+        *at = word + *size + (word[*size] == '|');
+        if (islower((unsigned char)*word))
+            return word;
+    }
+    return NULL;
 }
 
 void cli_options_free(const cli_group *group) {

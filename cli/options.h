@@ -21,6 +21,9 @@ typedef starg_field cli_option;
     { CLI_OPTION(NAME, STARG_FIELD_FLAG, MEMBER, NULL, HELP) }
 #define CLI_TEXT_OPTION(NAME, MEMBER, VALUE, HELP)                                                 \
     { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP) }
+/* The same for a file that is read. */
+#define CLI_INPUT_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
+    { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP), .flags = STARG_FIELD_INPUT }
 #define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
     { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP) }
 #define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, DEFAULT, VALUE, HELP)                               \
@@ -67,6 +70,10 @@ int cli_options_parse(const cli_group *groups, size_t group_count, int argc, cha
 
 /* Sets the defaults of a group. */
 void cli_options_default(const cli_group *group);
+
+/* The next of the lower-case words in what help calls the value of a TEXT option, from *at on,
+ * which begins as `value`; NULL behind the last. */
+const char *cli_option_next_word(const char **at, size_t *size);
 
 /* Frees what parsing has allocated. */
 void cli_options_free(const cli_group *group);

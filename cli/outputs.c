@@ -31,6 +31,34 @@ static char *staged_name(const char *folder, size_t size, size_t index) {
     return name;
 }
 
+/* Any two of the known files that are one. */
+static bool is_same(cli_file_id a, cli_file_id b) {
+    return a.known && b.known && a.device == b.device && a.inode == b.inode;
+}
+
+static cli_file_id id_of(const struct stat *info) {
+    return (cli_file_id){info->st_dev, info->st_ino, S_ISREG(info->st_mode)};
+}
+
+static bool fail_clash(cli_outputs *outputs, const char *name) {
+    outputs->clash = true;
+    return fail(outputs, name, "it is an input of this run as well; name another file");
+}
+
+/* What a new file would be called with the links in its folder's name followed. */
+static char *new_target(const char *name) {
+    size_t size = folder_size(name);
+    char *folder = size > 0 ? strndup(name, size) : strdup(".");
+    char *real = folder != NULL ? realpath(folder, NULL) : NULL;
+    size_t room = real != NULL ? strlen(real) + strlen(name + size) + 2 : 0;
+    char *target = real != NULL ? malloc(room) : NULL;
+    if (target != NULL)
+        snprintf(target, room, "%s/%s", real, name + size);
+    free(real);
+    free(folder);
+    return target;
+}
+
 static bool is_writable(const char *path, size_t size) {
     char *folder = strndup(path, size);
     bool writable = folder != NULL && access(size > 0 ? folder : ".", W_OK | X_OK) == 0;
@@ -51,7 +79,9 @@ static bool inspect(cli_outputs *outputs, cli_output *output) {
     if (exists && access(output->name, W_OK) != 0)
         return fail(outputs, output->name, strerror(errno));
     output->device = exists && !S_ISREG(info.st_mode);
-    output->target = exists && !output->device ? realpath(output->name, NULL) : NULL;
+    output->id = exists ? id_of(&info) : (cli_file_id){0};
+    if (!output->device)
+        output->target = exists ? realpath(output->name, NULL) : new_target(output->name);
     if (output->target == NULL)
         output->target = strdup(output->name);
     if (output->target == NULL)
@@ -61,7 +91,15 @@ static bool inspect(cli_outputs *outputs, cli_output *output) {
 
 static bool is_taken(const cli_outputs *outputs, const cli_output *output) {
     for (size_t i = 0; i < outputs->count; i++)
-        if (!output->device && strcmp(outputs->items[i].target, output->target) == 0)
+        if (!output->device && (strcmp(outputs->items[i].target, output->target) == 0 ||
+                                is_same(outputs->items[i].id, output->id)))
+            return true;
+    return false;
+}
+
+static bool is_input(const cli_outputs *outputs, const cli_output *output) {
+    for (size_t i = 0; i < outputs->input_count; i++)
+        if (is_same(outputs->inputs[i], output->id))
             return true;
     return false;
 }
@@ -99,13 +137,33 @@ bool cli_outputs_add(cli_outputs *outputs, const char *name) {
     output->staged = staged_name(base, size, outputs->count);
     outputs->count++;
     if (taken)
-        return fail(outputs, name, "two outputs have this name");
+        return fail(outputs, name, "two outputs are this file");
     if (output->staged == NULL)
         return fail(outputs, name, "out of memory");
     if (name[folder_size(name)] == '\0')
         return fail(outputs, name, "it is a directory; name a file in it");
     if (!is_writable(base, size))
         return fail(outputs, name, strerror(errno));
+    return !is_input(outputs, output) || fail_clash(outputs, name);
+}
+
+bool cli_outputs_add_input(cli_outputs *outputs, const char *name) {
+    struct stat info;
+    bool exists = (strcmp(name, "-") == 0 ? fstat(STDIN_FILENO, &info) : stat(name, &info)) == 0;
+    cli_file_id id = exists ? id_of(&info) : (cli_file_id){0};
+    if (!id.known)
+        return true;
+    for (size_t i = 0; i < outputs->count; i++)
+        if (is_same(outputs->items[i].id, id))
+            return fail_clash(outputs, outputs->items[i].name);
+    cli_file_id *inputs =
+        realloc(outputs->inputs, (outputs->input_count + 1) * sizeof *outputs->inputs);
+    if (inputs == NULL) {
+        snprintf(outputs->message, sizeof outputs->message, "out of memory");
+        return false;
+    }
+    outputs->inputs = inputs;
+    inputs[outputs->input_count++] = id;
     return true;
 }
 
@@ -145,7 +203,7 @@ void cli_outputs_translate(const cli_outputs *outputs, char *message, size_t siz
 
 /* Copies the staged file into a device or a pipe. */
 static bool copy_to_device(const cli_output *output) {
-    char block[1 << 16];
+    char block[1 << 13];
     FILE *from = fopen(output->staged, "rb");
     if (from == NULL)
         return false;
@@ -204,5 +262,6 @@ void cli_outputs_discard(cli_outputs *outputs) {
         rmdir(outputs->folder);
     free(outputs->folder);
     free(outputs->items);
+    free(outputs->inputs);
     *outputs = (cli_outputs){0};
 }

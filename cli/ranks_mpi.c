@@ -123,7 +123,7 @@ int cli_ranks_serve(void) {
     options.threads = cli_ranks_threads();
     starg_status status = starg_context_create(&options, &context);
     if (status == STARG_OK)
-        status = starg_ranks_serve(context, &ranks);
+        status = starg_database_ranks_serve(context, &ranks);
     if (status != STARG_OK) {
         fprintf(stderr, "starguard: rank %d gives up: %s\n", ranks.rank,
                 starg_status_string(status));

@@ -1,11 +1,13 @@
 #include "session.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <string.h>
 
 #include "commands.h"
+#include "endings.h"
 #include "ranks.h"
 #include "report.h"
 #include "terminal.h"
@@ -100,6 +102,32 @@ starg_status cli_session_start(cli_session *session) {
     return STARG_OK;
 }
 
+/* Why the outputs do not take a name. */
+static starg_status fail_output(cli_session *session) {
+    return cli_fail(session, session->outputs.clash ? STARG_ERROR_ARGUMENT : STARG_ERROR_WRITE,
+                    "%s", session->outputs.message);
+}
+
+/* TetGen's tetrahedra are read from two files, of which either may be named. */
+static bool add_pair(cli_session *session, const char *name) {
+    const char *other = cli_has_ending(name, ".node")  ? ".ele"
+                        : cli_has_ending(name, ".ele") ? ".node"
+                                                       : NULL;
+    char path[PATH_MAX];
+    if (other == NULL || strlen(name) + strlen(other) >= sizeof path)
+        return true;
+    snprintf(path, sizeof path, "%.*s%s", (int)(strrchr(name, '.') - name), name, other);
+    return cli_outputs_add_input(&session->outputs, path);
+}
+
+starg_status cli_name_input(cli_session *session, const char *name) {
+    if (name == NULL || session->command->in_place)
+        return STARG_OK;
+    if (!cli_outputs_add_input(&session->outputs, name) || !add_pair(session, name))
+        return fail_output(session);
+    return STARG_OK;
+}
+
 starg_status cli_announce(cli_session *session, const char *name) {
     if (name == NULL)
         return STARG_OK;
@@ -114,9 +142,7 @@ starg_status cli_announce(cli_session *session, const char *name) {
         session->stdout_taken = true;
         return STARG_OK;
     }
-    if (!cli_outputs_add(&session->outputs, name))
-        return cli_fail(session, STARG_ERROR_WRITE, "%s", session->outputs.message);
-    return STARG_OK;
+    return cli_outputs_add(&session->outputs, name) ? STARG_OK : fail_output(session);
 }
 
 starg_status cli_announce_needed(cli_session *session, const char *name, const char *form) {
@@ -128,18 +154,18 @@ starg_status cli_announce_needed(cli_session *session, const char *name, const c
 starg_status cli_announce_folder(cli_session *session, const char *name) {
     if (name == NULL || cli_outputs_add_folder(&session->outputs, name))
         return STARG_OK;
-    return cli_fail(session, STARG_ERROR_WRITE, "%s", session->outputs.message);
+    return fail_output(session);
 }
 
 /* ---- text ---- */
 
-void cli_notice(cli_session *session, const char *format, ...) {
+void cli_log(cli_session *session, starg_log_level level, const char *format, ...) {
     char text[sizeof session->message];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    on_log(session, STARG_LOG_NOTICE, text);
+    on_log(session, level, text);
 }
 
 void cli_say(cli_session *session, const char *format, ...) {

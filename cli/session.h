@@ -81,6 +81,10 @@ starg_status cli_fail(cli_session *session, starg_status status, const char *for
     __attribute__((format(printf, 3, 4)));
 starg_status cli_fail_memory(cli_session *session);
 
+/* Names a file that the run reads, which no output may be then; NULL is fine. Operands and options
+ * that name inputs are named by the frame of every command; this is for what these files name. */
+starg_status cli_name_input(cli_session *session, const char *name);
+
 /* Announces an output file; NULL is fine. "-" takes standard output. */
 starg_status cli_announce(cli_session *session, const char *name);
 
@@ -90,9 +94,9 @@ starg_status cli_announce_needed(cli_session *session, const char *name, const c
 /* Announces a folder for outputs, which are then announced as files in it; NULL is fine. */
 starg_status cli_announce_folder(cli_session *session, const char *name);
 
-/* A notice of the command line's own, told and logged like those of the library. */
-void cli_notice(cli_session *session, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+/* A notice or warning of the command line's own, told and logged like those of the library. */
+void cli_log(cli_session *session, starg_log_level level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* Text for people: standard output, or standard error when a result goes there; nothing with
  * --quiet or --json. */

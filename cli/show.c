@@ -210,9 +210,9 @@ static starg_status take_model(cli_session *session, const char *model, cli_show
     if (show->page.guards == NULL && show->skeleton == NULL)
         return STARG_OK;
     char *found = find_model(named, result);
-    if (found != NULL)
+    if (found != NULL && (status = cli_name_input(session, found)) == STARG_OK)
         status = read_model(session, found, show);
-    else if (show->page.guards != NULL)
+    else if (found == NULL && show->page.guards != NULL)
         status = cli_fail(session, STARG_ERROR_READ,
                           "the model '%.200s' of '%.200s' is not found; name it with --model FILE",
                           named != NULL ? named : "-", result);

@@ -76,6 +76,7 @@ starg_status cli_show_frames(cli_session *session, const char *folder, cli_show 
         goto done;
     }
     for (size_t i = 0; i < list.count; i++) {
+        CLI_TRY(cli_name_input(session, list.items[i]));
         CLI_TRY(starg_mesh_read(session->context, list.items[i], &show->frames[i]));
         show->frame_count++;
     }

@@ -30,6 +30,8 @@ static starg_status draw_shape(cli_session *session, const char *file, size_t in
     struct stat info;
     if (stat(file, &info) != 0 || !S_ISREG(info.st_mode))
         return STARG_OK;
+    if ((status = cli_name_input(session, file)) != STARG_OK)
+        return status;
     starg_picture_options_default(&options);
     options.width = PICTURE_WIDTH;
     options.height = PICTURE_HEIGHT;
@@ -48,8 +50,9 @@ static void tell_missing(cli_session *session, const cli_show *show) {
     for (size_t i = 0; i < show->shape_count; i++)
         missing += show->shapes[i].png == NULL;
     if (missing > 0)
-        cli_notice(session, "%zu of %zu models are not where the table says: shown without picture",
-                   missing, show->shape_count);
+        cli_log(session, STARG_LOG_NOTICE,
+                "%zu of %zu models are not where the table says: shown without picture", missing,
+                show->shape_count);
 }
 
 /* ---- databases ---- */

@@ -3,6 +3,7 @@
  * one letter) differs, or when the word is its beginning. */
 #include "suggest.h"
 
+#include <stdint.h>
 #include <string.h>
 
 enum { LONGEST = 48 };
@@ -12,18 +13,18 @@ static size_t least(size_t a, size_t b) {
 }
 
 static size_t distance(const char *a, size_t a_size, const char *b, size_t b_size) {
-    size_t table[LONGEST + 1][LONGEST + 1];
+    uint8_t table[LONGEST + 1][LONGEST + 1];
     for (size_t i = 0; i <= a_size; i++)
-        table[i][0] = i;
+        table[i][0] = (uint8_t)i;
     for (size_t j = 0; j <= b_size; j++)
-        table[0][j] = j;
+        table[0][j] = (uint8_t)j;
     for (size_t i = 1; i <= a_size; i++) {
         for (size_t j = 1; j <= b_size; j++) {
             size_t best = table[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
             best = least(best, least(table[i - 1][j], table[i][j - 1]) + 1);
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
                 best = least(best, table[i - 2][j - 2] + 1);
-            table[i][j] = best;
+            table[i][j] = (uint8_t)best;
         }
     }
     return table[a_size][b_size];

@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-layers="core geometry mesh skeleton visibility cover guard tetra star shape morph verify sample export serve"
+layers="core geometry mesh skeleton visibility cover guard tetra star verify sample export shape morph"
 above=""
 failed=0
 
@@ -35,7 +35,7 @@ for folder in src/*/; do
     esac
 done
 
-if grep -rnE '^#include "(core|geometry|mesh|skeleton|visibility|cover|guard|tetra|star|shape|morph|verify|sample|export|serve)/' cli >&2; then
+if grep -rnE '^#include "(core|geometry|mesh|skeleton|visibility|cover|guard|tetra|star|shape|morph|verify|sample|export)/' cli >&2; then
     report "cli may include public headers only"
 fi
 exit $failed

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds the Debian package, installs it on a clean root and uses it there: the program, and a C
+# Builds the Debian packages, installs them on a clean root and uses them there: the program, and a C
 # program compiled with pkg-config. Usage: package-test.sh BUILD
 #
 # With root and debootstrap the clean root is a minimal Debian of the suite that runs here, in which
@@ -26,11 +26,14 @@ make_package() {
     quietly cmake --build "$build"
     rm -f "$build"/*.deb
     (cd "$build" && quietly cpack -G DEB)
-    package=$(echo "$build"/*.deb)
-    dpkg-deb --field "$package" Package Version Architecture Installed-Size Depends
-    dpkg-deb --contents "$package" >"$scratch/contents"
-    for part in bin/starguard /libstarguard.so /libstarguard.a include/starguard/starguard.h \
-        pkgconfig/starguard.pc starguardConfig.cmake man1/starguard-guard.1 \
+    : >"$scratch/contents"
+    for package in "$build"/*.deb; do
+        dpkg-deb --field "$package" Package Version Architecture Installed-Size Depends
+        dpkg-deb --contents "$package" >>"$scratch/contents"
+    done
+    for part in bin/starguard /libstarguard.so /libstarguard-shapes.so /libstarguard.a \
+        /libstarguard-shapes.a include/starguard/starguard.h \
+        pkgconfig/starguard.pc pkgconfig/starguard-shapes.pc starguardConfig.cmake man1/starguard-guard.1 \
         bash-completion/completions/starguard doc/starguard/copyright doc/starguard/docs/README.md \
         docs/fields.md docs/c-api.md docs/python-api.md schema/guards.schema.json; do
         grep -q "$part" "$scratch/contents" || { echo "not in the package: $part" >&2; exit 1; }
@@ -48,6 +51,8 @@ starguard decompose gallery.off -o pieces.vtk --report pieces.json --time-limit 
 starguard verify gallery.off pieces.vtk pieces.json
 gcc guards.c -o guards $(pkg-config --cflags --libs starguard)
 ./guards gallery.off
+gcc match.c -o match $(pkg-config --cflags --libs starguard-shapes)
+./match gallery.off gallery.off
 USE
 
 # The mirror that apt uses for what is not security.
@@ -60,19 +65,21 @@ try_clean_root() {
     suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
     echo "Installing on a minimal Debian $suite"
     quietly debootstrap --variant=minbase --include=gcc,libc6-dev,pkg-config "$suite" "$root" "$(mirror)"
-    cp "$package" "$scratch/use.sh" examples/guards.c "$root/tmp"
-    quietly chroot "$root" apt-get install -y --no-install-recommends "/tmp/${package##*/}"
+    cp "$build"/*.deb "$scratch/use.sh" examples/guards.c examples/match.c "$root/tmp"
+    quietly chroot "$root" sh -c 'apt-get install -y --no-install-recommends /tmp/*.deb'
     chroot "$root" sh -c 'cd /tmp && sh use.sh'
-    quietly chroot "$root" apt-get purge -y starguard
+    quietly chroot "$root" sh -c 'apt-get purge -y starguard libstarguard libstarguard-shapes libstarguard-dev'
     left=$(find "$root/usr" -name '*starguard*')
     [ -z "$left" ] || { echo "left behind: $left" >&2; exit 1; }
 }
 
 try_empty_folder() {
     echo "Unpacking into an empty folder (no root or no debootstrap for a clean system)"
-    dpkg-deb --extract "$package" "$scratch/root"
+    for package in "$build"/*.deb; do
+        dpkg-deb --extract "$package" "$scratch/root"
+    done
     library=$(dirname "$scratch"/root/usr/lib/*/libstarguard.so)
-    cp "$scratch/use.sh" examples/guards.c "$scratch/root"
+    cp "$scratch/use.sh" examples/guards.c examples/match.c "$scratch/root"
     (cd "$scratch/root" && PATH=$scratch/root/usr/bin:$PATH LD_LIBRARY_PATH=$library \
         PKG_CONFIG_PATH=$library/pkgconfig sh use.sh)
 }

@@ -57,38 +57,6 @@ void keyword_name(const starg_field *field, char name[NAME_SIZE]) {
             *c = '_';
 }
 
-static bool has_name(const starg_fields *fields, const char *name) {
-    char other[NAME_SIZE];
-    for (size_t i = 0; i < fields->count; i++)
-        if (fields->fields[i].kind != STARG_FIELD_RECORD) {
-            keyword_name(&fields->fields[i], other);
-            if (strcmp(other, name) == 0)
-                return true;
-        }
-    return false;
-}
-
-static void each_of(const starg_fields *fields, const starg_fields *before, FILE *stream,
-                    void (*put)(FILE *stream, const starg_field *field)) {
-    for (size_t i = 0; i < fields->count; i++) {
-        const starg_field *f = &fields->fields[i];
-        char name[NAME_SIZE];
-        if (f->kind == STARG_FIELD_RECORD)
-            continue;
-        keyword_name(f, name);
-        if (before == NULL || !has_name(before, name))
-            put(stream, f);
-    }
-}
-
-void each_option(const call *c, FILE *stream, void (*put)(FILE *stream, const starg_field *field)) {
-    const starg_fields *fields = c->fields();
-    each_of(fields, NULL, stream, put);
-    for (size_t i = 0; i < fields->count; i++)
-        if (fields->fields[i].kind == STARG_FIELD_RECORD)
-            each_of(fields->fields[i].of, fields, stream, put);
-}
-
 int main(int argc, char **argv) {
     static const struct {
         const char *word;

@@ -29,10 +29,6 @@ extern const size_t call_count;
 
 enum { NAME_SIZE = 64 };
 
-/* Calls `put` for each option of a table and of the records in it, the table's own first; those
- * come no more that have the name of an earlier one. */
-void each_option(const call *c, FILE *stream, void (*put)(FILE *stream, const starg_field *field));
-
 /* The name of an option in Python: "max_guards". */
 void keyword_name(const starg_field *field, char name[NAME_SIZE]);
 

@@ -4,8 +4,6 @@
 
 #include "fields.h"
 
-static const char *skipped; /* by the call at hand */
-
 static void put_type(FILE *stub, const starg_field *f) {
     static const char *const names[] = {"bool", "SupportsIndex", "SupportsFloat", NULL, "PathLike"};
     if (f->kind != STARG_FIELD_CHOICE) {
@@ -18,10 +16,10 @@ static void put_type(FILE *stub, const starg_field *f) {
     fputs("] | None\n", stub);
 }
 
-static void put_argument(FILE *stub, const starg_field *f) {
+static void put_argument(FILE *stub, const call *c, const starg_field *f) {
     char name[NAME_SIZE];
     keyword_name(f, name);
-    if (f->kind > STARG_FIELD_TEXT || (skipped != NULL && strcmp(name, skipped) == 0))
+    if (f->kind > STARG_FIELD_TEXT || (c->without != NULL && strcmp(name, c->without) == 0))
         return;
     fprintf(stub, "    %s: ", name);
     put_type(stub, f);
@@ -37,8 +35,8 @@ bool write_keywords(const char *path) {
     for (size_t i = 0; i < call_count; i++) {
         const call *c = &calls[i];
         fprintf(stub, "\nclass %s(TypedDict, total=False):\n", c->keywords);
-        skipped = c->without;
-        each_option(c, stub, put_argument);
+        for (size_t k = 0; k < c->fields()->count; k++)
+            put_argument(stub, c, &c->fields()->fields[k]);
     }
     bool written = !ferror(stub);
     return fclose(stub) == 0 && written;

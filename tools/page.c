@@ -113,7 +113,8 @@ static void put_options(FILE *page, const call *c) {
     fputs("| option | in Python | type | range | default | meaning |\n"
           "|---|---|---|---|---|---|\n",
           page);
-    each_option(c, page, put_option);
+    for (size_t i = 0; i < c->fields()->count; i++)
+        put_option(page, &c->fields()->fields[i]);
 }
 
 bool write_page(const char *path) {

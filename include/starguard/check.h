@@ -40,16 +40,17 @@ typedef struct starg_finding {
 /* The result of a check. */
 typedef struct starg_check {
     size_t vertices, faces, edges;
-    size_t components;   /* connected by edges                                           */
-    size_t cavities;     /* shells that bound a hole inside the solid                    */
-    bool closed;         /* every edge has two faces                                     */
-    bool manifold;       /* every edge at most two faces, every vertex one fan           */
-    bool oriented;       /* neighbours agree; turned shells do not matter                */
-    bool embedded;       /* no degenerate face, intersection or contact                  */
-    bool usable;         /* closed, manifold, oriented, with faces and positive volume   */
-    int64_t genus;       /* sum over components; -1 unless closed and manifold           */
-    double area, volume; /* volume after turning inward shells; 0 unless usable          */
-    double diagonal;     /* of the bounding box                                          */
+    size_t components;      /* connected by edges                                           */
+    size_t cavities;        /* shells that bound a hole inside the solid                    */
+    bool closed;            /* every edge has two faces                                     */
+    bool manifold;          /* every edge at most two faces, every vertex one fan           */
+    bool oriented;          /* neighbours agree; turned shells do not matter                */
+    bool embedded;          /* no degenerate face, intersection or contact                  */
+    bool usable;            /* closed, manifold, oriented, with faces and positive volume   */
+    int64_t genus;          /* sum over components; -1 unless closed and manifold           */
+    double area, volume;    /* volume after turning inward shells; 0 unless usable          */
+    double diagonal;        /* of the bounding box                                          */
+    size_t one_sided_faces; /* of parts with one side, like a Moebius strip: they bound nothing */
     starg_finding findings[STARG_FINDING_KINDS];
     uint8_t *face_marks; /* per face: 0, or 1 + the first kind (in enum order) that marks it */
 } starg_check;

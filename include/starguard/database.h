@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "context.h"
+#include "ranks.h"
 #include "shape.h"
 
 #ifdef __cplusplus
@@ -113,6 +114,9 @@ STARG_API starg_status starg_classes_by_prefix(starg_context *context,
 STARG_API starg_status starg_classes_read(starg_context *context, const char *path,
                                           const starg_database_models *models, starg_classes **out);
 STARG_API void starg_classes_free(starg_context *context, starg_classes *classes);
+
+/* As starg_ranks_serve, and describes the files of a starg_database_add. */
+STARG_API starg_status starg_database_ranks_serve(starg_context *context, const starg_ranks *ranks);
 
 #ifdef __cplusplus
 }

@@ -49,7 +49,8 @@ enum {
                                  real                                                            */
     STARG_FIELD_LINES = 4,    /* a list with a line for each item                                */
     STARG_FIELD_MATCHING = 8, /* a list as long as the member at `length`, which was read before */
-    STARG_FIELD_ABOVE = 16    /* a real above `low`, not `low` itself                            */
+    STARG_FIELD_ABOVE = 16,   /* a real above `low`, not `low` itself                            */
+    STARG_FIELD_INPUT = 32    /* a text that names a file to be read, or is a word of `value`    */
 };
 
 typedef struct starg_fields starg_fields;

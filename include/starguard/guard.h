@@ -159,7 +159,8 @@ STARG_API starg_status starg_guards_read_memory(starg_context *context, const vo
                                                 size_t size, const char *name, starg_guards **out);
 
 /* Reads candidate points: text of three numbers a line (an optional leading "v", comments by #),
- * or the positions in a GUARDS.json. Free with starg_points_free. */
+ * the nodes of a skeleton (OBJ, CG, VTK), or the positions in a GUARDS.json; the content tells
+ * which. Free with starg_points_free. */
 STARG_API starg_status starg_points_read(starg_context *context, const char *path, double **points,
                                          size_t *count);
 STARG_API starg_status starg_points_read_memory(starg_context *context, const void *bytes,

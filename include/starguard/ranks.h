@@ -41,9 +41,9 @@ STARG_API void starg_context_set_ranks(starg_context *context, const starg_ranks
 STARG_API double starg_context_shared_seconds(const starg_context *context);
 STARG_API uint64_t starg_context_helped_items(const starg_context *context);
 
-/* Does what rank 0 hands out until it is released, on a helper. The context gives memory and
- * threads. Errors: RANK (the way is broken), MEMORY (for a message), CANCELLED. What fails in the
- * work itself is told to rank 0, whose call fails with it. */
+/* Computes the visibility rows that rank 0 hands out until it is released, on a helper. The context
+ * gives memory and threads. Errors: RANK (the way is broken), MEMORY (for a message), CANCELLED.
+ * What fails in the work itself is told to rank 0, whose call fails with it. */
 STARG_API starg_status starg_ranks_serve(starg_context *context, const starg_ranks *ranks);
 
 /* Sends all helpers home and waits until they go, on rank 0; the context gives memory. Not after a

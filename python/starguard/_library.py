@@ -1,6 +1,7 @@
-"""The shared library, which lies beside this module, and its declarations."""
+"""The shared libraries, which lie beside this module, and its declarations."""
 from __future__ import annotations
 
+import glob
 import importlib
 import os
 from typing import Any
@@ -8,7 +9,15 @@ from typing import Any
 
 _ffi: Any = importlib.import_module("._ffi", __package__)  # made by make_ffi.py
 ffi: Any = _ffi.ffi
-lib: Any = ffi.dlopen(os.path.join(os.path.dirname(os.path.abspath(__file__)), "libstarguard.so"))
+
+
+def _open(name: str) -> Any:
+    path, = glob.glob(os.path.join(os.path.dirname(os.path.abspath(__file__)), f"{name}.so.*"))
+    return ffi.dlopen(path)
+
+
+_base: Any = _open("libstarguard")  # first: the loader takes it for what the other one needs
+lib: Any = _open("libstarguard-shapes")  # whose functions are found here as well
 
 
 def text(pointer: Any) -> str:

@@ -21,10 +21,10 @@ _TEXT_SIZE = 512
 
 
 class Field:
-    """A row of a table, `offset` bytes behind the start of the struct."""
+    """A row of a table."""
 
-    def __init__(self, row: Any, offset: int) -> None:
-        self._row, self._offset, self.kind = row, offset, row.kind
+    def __init__(self, row: Any) -> None:
+        self._row, self.kind = row, row.kind
         #: That of the command line, with _ for -; a flag without "no".
         name = text(row.option) or text(row.key)
         self._cleared = self.kind == lib.STARG_FIELD_FLAG and name.startswith("no-")
@@ -35,8 +35,8 @@ class Field:
         while self.kind == lib.STARG_FIELD_CHOICE and row.words[len(self.words)]:
             self.words.append(text(row.words[len(self.words)]))
 
-    def _at(self, struct: Any) -> Any:
-        return ffi.cast("char *", struct) + self._offset
+    def _at(self, struct: Any, kind: str) -> Any:
+        return ffi.cast(kind, ffi.cast("char *", struct) + self._row.offset)
 
     def _text(self, function: Any) -> str:
         buffer = ffi.new("char[]", _TEXT_SIZE)
@@ -50,12 +50,11 @@ class Field:
 
     def get(self, struct: Any) -> Any:
         """The value as a caller would give it; None for what no number stands for."""
-        at = self._at(struct)
         if self.kind == lib.STARG_FIELD_REAL:
-            return ffi.cast("double *", at + self._row.offset)[0]
+            return self._at(struct, "double *")[0]
         if self.kind == lib.STARG_FIELD_TEXT:
-            return text(ffi.cast("char **", at + self._row.offset)[0]) or None
-        value = lib.starg_field_count(self._row, at)
+            return text(self._at(struct, "char **")[0]) or None
+        value = lib.starg_field_count(self._row, struct)
         if self.kind == lib.STARG_FIELD_FLAG:
             return bool(value)
         if self.kind == lib.STARG_FIELD_CHOICE:
@@ -64,23 +63,23 @@ class Field:
 
     def set(self, struct: Any, value: Any) -> Any:
         """Sets it; what comes back must live as long as the struct."""
-        at, fits, keep = self._at(struct), False, None
+        fits, keep = False, None
         try:
             if self.kind == lib.STARG_FIELD_REAL:
                 number = math.nan if isinstance(value, (str, bytes)) else float(value)
-                fits = (lib.starg_field_set_real(self._row, at, number)
+                fits = (lib.starg_field_set_real(self._row, struct, number)
                         or number == self._row.standard)  # beyond the range, and there already
             elif self.kind == lib.STARG_FIELD_TEXT:
                 keep = ffi.new("char[]", _arrays.path(value))
-                ffi.cast("char **", at + self._row.offset)[0] = keep
+                self._at(struct, "char **")[0] = keep
                 fits = True
             elif self.kind == lib.STARG_FIELD_CHOICE:
-                fits = lib.starg_field_set_count(self._row, at, self.words.index(value))
+                fits = lib.starg_field_set_count(self._row, struct, self.words.index(value))
             elif self.kind == lib.STARG_FIELD_FLAG:
                 fits = (value in (True, False)
-                        and lib.starg_field_set_count(self._row, at, bool(value)))
+                        and lib.starg_field_set_count(self._row, struct, bool(value)))
             else:
-                fits = lib.starg_field_set_count(self._row, at, operator.index(value))
+                fits = lib.starg_field_set_count(self._row, struct, operator.index(value))
         except (TypeError, ValueError, OverflowError) as error:
             raise self._wrong(value) from error
         if not fits:
@@ -111,23 +110,14 @@ class Struct:
 
 
 class Options:
-    """The options of a call: those of a struct, and of the structs within it. `old` has names of the
-    last version with those that they have now."""
+    """The options of a call, those of a struct. `old` has names of the last version with those that
+    they have now."""
 
     def __init__(self, kind: str, old: Mapping[str, str] = {}) -> None:
         self._kind, self._old = kind, dict(old)
-        self.fields: dict[str, Field] = {}
-        self._add(getattr(lib, f"{kind}_fields")(), 0)
-
-    def _add(self, table: Any, offset: int) -> None:
-        rows = [table.fields + i for i in range(table.count)]
-        for row in rows:
-            if row.kind in _TYPES:
-                field = Field(row, offset)
-                self.fields.setdefault(field.name, field)
-        for row in rows:
-            if row.kind == lib.STARG_FIELD_RECORD:
-                self._add(row.of, offset + row.offset)
+        table = getattr(lib, f"{kind}_fields")()
+        fields = [Field(table.fields + i) for i in range(table.count)]
+        self.fields = {field.name: field for field in fields if field.kind in _TYPES}
 
     def __iter__(self) -> Iterator[Field]:
         return iter(self.fields.values())

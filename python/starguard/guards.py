@@ -206,7 +206,8 @@ def candidate_points(model: Any, source: str = "skeleton", count: int = 1000, *,
 
 
 def read_points(path: PathLike) -> Array:
-    """Reads points: text of three numbers a line, or the positions of a GUARDS.json.
+    """Reads points: text of three numbers a line, the nodes of a skeleton (OBJ, CG, VTK), or the positions
+    of a GUARDS.json.
 
     >>> import pathlib, starguard
     >>> _ = pathlib.Path("places.txt").write_text("1.5 1.7 2 # hall\\n4 1.7 2\\n")

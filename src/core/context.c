@@ -176,7 +176,7 @@ starg_status starg_fail_memory(starg_context *context, const char *stage) {
 
 starg_status starg_fail_time(starg_context *context, const char *stage) {
     return starg_fail(context, STARG_ERROR_TIME, stage,
-                      "the time limit struck before %s was finished", stage);
+                      "the time limit struck in the stage '%s', before there was a result", stage);
 }
 
 void starg_deadline_begin(starg_context *context) {

@@ -8,6 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/private.h"
 #include "starguard/context.h"
 #include "starguard/ranks.h"
 
@@ -47,47 +48,53 @@ struct starg_context {
     } while (0)
 
 /* Seconds of a monotonic clock. */
-double starg_clock(void);
+double starg_clock(void) STARG_PRIVATE(starg_clock);
 
 /* True when the time limit has passed. */
-bool starg_time_is_over(const starg_context *context);
+bool starg_time_is_over(const starg_context *context) STARG_PRIVATE(starg_time_is_over);
 
 /* Between these two, which may be nested, there is nothing to show before all is done: the time
  * limit ends the call as a cancellation would, with STARG_ERROR_TIME. */
-void starg_deadline_begin(starg_context *context);
-void starg_deadline_end(starg_context *context);
+void starg_deadline_begin(starg_context *context) STARG_PRIVATE(starg_deadline_begin);
+void starg_deadline_end(starg_context *context) STARG_PRIVATE(starg_deadline_end);
 
 /* Has the time limit passed in such a call? */
 bool starg_deadline_struck(const starg_context *context);
 
 /* STARG_ERROR_CANCELLED (with its message set) once a cancellation was asked for; STARG_ERROR_TIME
  * where the deadline has struck. Cheap. */
-starg_status starg_check_cancel(starg_context *context, const char *stage);
+starg_status starg_check_cancel(starg_context *context, const char *stage)
+    STARG_PRIVATE(starg_check_cancel);
 
 /* Records the detail of a failure and returns `status`, so that callers can return the call. */
 starg_status starg_fail(starg_context *context, starg_status status, const char *stage,
-                        const char *format, ...) __attribute__((format(printf, 4, 5)));
+                        const char *format, ...) STARG_PRIVATE(starg_fail)
+    __attribute__((format(printf, 4, 5)));
 
 /* The same with up to STARG_ERROR_INDICES element indices (more are cut off). */
 starg_status starg_fail_at(starg_context *context, starg_status status, const char *stage,
                            starg_element element, const uint64_t *indices, size_t count,
-                           const char *format, ...) __attribute__((format(printf, 7, 8)));
+                           const char *format, ...) STARG_PRIVATE(starg_fail_at)
+    __attribute__((format(printf, 7, 8)));
 
 /* Out of memory in `stage`. */
-starg_status starg_fail_memory(starg_context *context, const char *stage);
+starg_status starg_fail_memory(starg_context *context, const char *stage)
+    STARG_PRIVATE(starg_fail_memory);
 
 /* Out of time in `stage`. */
 starg_status starg_fail_time(starg_context *context, const char *stage);
 
 /* Sends a line to the log callback. */
 void starg_log(starg_context *context, starg_log_level level, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    STARG_PRIVATE(starg_log) __attribute__((format(printf, 3, 4)));
 
 /* Progress of a stage in steps: begin, then step with 0 <= done <= total on the calling thread.
  * step is cheap: it asks the callback at most about 20 times a second. A callback that returns
  * false marks the context cancelled; starg_check_cancel then says so. */
-void starg_progress_begin(starg_context *context, const char *stage);
-void starg_progress_step(starg_context *context, size_t done, size_t total);
-void starg_progress_end(starg_context *context);
+void starg_progress_begin(starg_context *context, const char *stage)
+    STARG_PRIVATE(starg_progress_begin);
+void starg_progress_step(starg_context *context, size_t done, size_t total)
+    STARG_PRIVATE(starg_progress_step);
+void starg_progress_end(starg_context *context) STARG_PRIVATE(starg_progress_end);
 
 #endif

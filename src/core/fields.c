@@ -134,15 +134,18 @@ static starg_status check_field(starg_context *context, const char *stage, const
                                 const void *record) {
     char name[64], expected[256];
     bool real = f->kind == STARG_FIELD_REAL;
-    double value = real ? real_of(f, record) : (double)starg_field_count(f, record);
+    double value = real ? real_of(f, record) : 0;
+    uint64_t number = real ? 0 : starg_field_count(f, record);
     if (real ? real_fits(f, value) || value == f->standard
-             : count_fits(f, starg_field_count(f, record)) ||
-                   is_default_count(f, starg_field_count(f, record)))
+             : count_fits(f, number) || is_default_count(f, number))
         return STARG_OK;
     spell_name(f, name, sizeof name);
     starg_field_expectation(f, expected, sizeof expected);
-    return starg_fail(context, STARG_ERROR_ARGUMENT, stage, "the %s is %g; it must be %s", name,
-                      value, expected);
+    if (real)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage, "the %s is %g; it must be %s", name,
+                          value, expected);
+    return starg_fail(context, STARG_ERROR_ARGUMENT, stage, "the %s is %llu; it must be %s", name,
+                      (unsigned long long)number, expected);
 }
 
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
@@ -168,8 +171,6 @@ void starg_fields_default(const starg_fields *fields, void *record) {
             store_count(f, record, f->initial);
         else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES)
             memset(member(f, record), 0, f->size);
-        else if (f->kind == STARG_FIELD_RECORD)
-            starg_fields_default(f->of, member(f, record));
     }
 }
 

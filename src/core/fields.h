@@ -3,6 +3,7 @@
 #define STARG_CORE_FIELDS_H
 
 #include "core/context.h"
+#include "core/private.h"
 #include "starguard/fields.h"
 
 /* Where a member of struct T is. */
@@ -13,6 +14,6 @@
 
 /* Are all members that the record has within their ranges? Errors: ARGUMENT. */
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
-                          const void *record);
+                          const void *record) STARG_PRIVATE(fields_check);
 
 #endif

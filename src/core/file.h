@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "core/context.h"
+#include "core/private.h"
 
 /* Largest file that is read, in bytes. */
 #define STARG_FILE_LIMIT ((size_t)2 << 30)
@@ -13,13 +14,13 @@
 /* Reads all of `path` ("-": standard input) into a block of the context, with one zero byte
  * behind the end. Errors: READ, MEMORY. */
 starg_status starg_file_read(starg_context *context, const char *stage, const char *path,
-                             char **bytes, size_t *size);
+                             char **bytes, size_t *size) STARG_PRIVATE(starg_file_read);
 
 /* Opens a new, empty file beside `path` for reading and writing; `name`, which has room for
  * STARG_FILE_SUFFIX bytes more than `path`, receives its name. One that a killed process left
  * behind is passed by. The descriptor, or -1 with errno set. */
 enum { STARG_FILE_SUFFIX = 64 };
-int starg_file_temporary(const char *path, char *name);
+int starg_file_temporary(const char *path, char *name) STARG_PRIVATE(starg_file_temporary);
 
 /* An output that appears under its name only when it is committed. */
 typedef struct starg_output {
@@ -31,12 +32,12 @@ typedef struct starg_output {
 
 /* Opens an output for `path` ("-": standard output). Errors: WRITE, MEMORY. */
 starg_status starg_output_open(starg_context *context, const char *stage, const char *path,
-                               starg_output *output);
+                               starg_output *output) STARG_PRIVATE(starg_output_open);
 
 /* Flushes, closes and renames; removes the temporary file when anything failed. */
-starg_status starg_output_commit(starg_output *output);
+starg_status starg_output_commit(starg_output *output) STARG_PRIVATE(starg_output_commit);
 
 /* Closes and removes what was written so far; harmless after commit. */
-void starg_output_discard(starg_output *output);
+void starg_output_discard(starg_output *output) STARG_PRIVATE(starg_output_discard);
 
 #endif

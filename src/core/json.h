@@ -7,15 +7,18 @@
 #include <stdio.h>
 
 #include "core/context.h"
+#include "core/private.h"
 
 /* Parses a text, `name` in messages; *root is given back with json_decref. Names that stand twice
  * in an object are an error. Errors: FORMAT (with the line), MEMORY. */
 starg_status starg_json_parse(starg_context *context, const char *stage, const char *name,
-                              const void *bytes, size_t size, json_t **root);
+                              const void *bytes, size_t size, json_t **root)
+    STARG_PRIVATE(starg_json_parse);
 
 /* Writes `before`, a value, which is consumed, and `after`; false when the value could not be made
  * (memory is out). */
-bool starg_json_put(FILE *stream, const char *before, json_t *value, const char *after);
+bool starg_json_put(FILE *stream, const char *before, json_t *value, const char *after)
+    STARG_PRIVATE(starg_json_put);
 
 /* A copy of a path that can stand in JSON: where it is no UTF-8, bytes outside ASCII are replaced.
  * NULL stays NULL. Errors: MEMORY. */
@@ -27,11 +30,13 @@ starg_status starg_json_path(starg_context *context, const char *stage, const ch
  * MEMORY. */
 typedef bool starg_json_writer(FILE *stream, const void *result, const char *model_file);
 starg_status starg_json_write(starg_context *context, const char *stage, const char *path,
-                              starg_json_writer *put, const void *result, const char *model_file);
+                              starg_json_writer *put, const void *result, const char *model_file)
+    STARG_PRIVATE(starg_json_write);
 
 /* The same into a block of the context, with one zero byte behind the end. Errors: MEMORY. */
 starg_status starg_json_write_memory(starg_context *context, const char *stage,
                                      starg_json_writer *put, const void *result,
-                                     const char *model_file, char **text, size_t *size);
+                                     const char *model_file, char **text, size_t *size)
+    STARG_PRIVATE(starg_json_write_memory);
 
 #endif

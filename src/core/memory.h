@@ -7,19 +7,22 @@
 #include <string.h>
 
 #include "core/context.h"
+#include "core/private.h"
 
 /* count x size bytes, or NULL when memory is out or the product does not fit. A count of 0 gives
  * a valid block. The contents are undefined (allocate) or zero (allocate_zero). */
-void *starg_allocate(starg_context *context, size_t count, size_t size);
-void *starg_allocate_zero(starg_context *context, size_t count, size_t size);
+void *starg_allocate(starg_context *context, size_t count, size_t size)
+    STARG_PRIVATE(starg_allocate);
+void *starg_allocate_zero(starg_context *context, size_t count, size_t size)
+    STARG_PRIVATE(starg_allocate_zero);
 
 /* A block of `capacity` x size bytes that starts with the `count` elements of `block`, which is
  * freed; NULL (and `block` untouched) when memory is out. `block` may be NULL. */
 void *starg_reallocate(starg_context *context, void *block, size_t count, size_t capacity,
-                       size_t size);
+                       size_t size) STARG_PRIVATE(starg_reallocate);
 
 /* Frees a block; NULL is fine. */
-void starg_release(starg_context *context, void *block);
+void starg_release(starg_context *context, void *block) STARG_PRIVATE(starg_release);
 
 /* POINTER = count elements of its own type, or leave by `done` with STARG_ERROR_MEMORY. */
 #define STARG_NEW(CONTEXT, STAGE, POINTER, COUNT)                                                  \

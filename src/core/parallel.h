@@ -3,6 +3,7 @@
 #ifndef STARG_CORE_PARALLEL_H
 #define STARG_CORE_PARALLEL_H
 
+#include "core/private.h"
 #include "core/ranks.h"
 
 /* Works on one item. `scratch` belongs to the running thread. Allocation is allowed; logging,
@@ -42,6 +43,7 @@ typedef struct starg_parallel_loop {
 /* Runs the items 0 to count - 1 on up to the context's threads, the calling one among them.
  * Fails with the status of the lowest item that failed, or when cancelled; then some items have
  * not been run. */
-starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop);
+starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop)
+    STARG_PRIVATE(starg_parallel_for);
 
 #endif

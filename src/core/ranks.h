@@ -8,6 +8,7 @@
 #define STARG_CORE_RANKS_H
 
 #include "core/bytes.h"
+#include "core/private.h"
 
 typedef enum ranks_message_kind {
     RANKS_JOB = 1,
@@ -52,5 +53,10 @@ starg_status ranks_send(starg_context *context, const starg_ranks *ranks, int to
  * came; *rest is what follows its head. Errors: MEMORY, RANK. */
 starg_status ranks_receive(starg_context *context, const starg_ranks *ranks, double seconds,
                            int *from, ranks_message *head, starg_bytes_reader *rest, void **bytes);
+
+/* Does what rank 0 hands out until it is released; `works` has the kinds that this process can do,
+ * by ranks_work_kind, NULL for others. Errors: as of starg_ranks_serve. */
+starg_status ranks_serve(starg_context *context, const starg_ranks *ranks,
+                         const ranks_work *const works[RANKS_WORKS]) STARG_PRIVATE(ranks_serve);
 
 #endif

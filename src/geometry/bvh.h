@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "core/context.h"
+#include "core/private.h"
 
 typedef struct bvh_box {
     double lower[3], upper[3];
@@ -31,8 +32,8 @@ typedef struct bvh {
 
 /* Builds the tree. Errors: MEMORY. */
 starg_status bvh_create(starg_context *context, const double *vertices, const uint32_t *faces,
-                        size_t face_count, bvh **out);
-void bvh_free(bvh *tree);
+                        size_t face_count, bvh **out) STARG_PRIVATE(bvh_create);
+void bvh_free(bvh *tree) STARG_PRIVATE(bvh_free);
 
 /* Calls visit with the position in `order` of every triangle in the leaves that may_meet lets
  * through, until it returns false; returns false exactly if visit did. may_meet may say no only
@@ -63,9 +64,9 @@ int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
  * may meet (none that it meets is left out), until it returns false. Returns false exactly if
  * visit did. */
 bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
-                       void *user);
+                       void *user) STARG_PRIVATE(bvh_query_segment);
 
 /* Distance from p to the nearest triangle, rounded (not a decision); infinity without triangles. */
-double bvh_distance(const bvh *tree, const double p[3]);
+double bvh_distance(const bvh *tree, const double p[3]) STARG_PRIVATE(bvh_distance);
 
 #endif

@@ -2,13 +2,16 @@
 #ifndef STARG_GEOMETRY_INTERSECT_H
 #define STARG_GEOMETRY_INTERSECT_H
 
+#include "core/private.h"
+
 #include <stdbool.h>
 
 /* Is there a point of the closed triangle a b c on the half-open segment [p, q)? This is what
  * blocks the view from p to q: contact in q alone does not [YL11, section 3]. Triangles without
  * area count as the segments or points that they are. False when p equals q. */
 bool segment_meets_triangle(const double p[3], const double q[3], const double a[3],
-                            const double b[3], const double c[3]);
+                            const double b[3], const double c[3])
+    STARG_PRIVATE(segment_meets_triangle);
 
 /* Does point p lie on the closed triangle a b c? */
 bool point_on_triangle(const double p[3], const double a[3], const double b[3], const double c[3]);

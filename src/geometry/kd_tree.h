@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "core/context.h"
+#include "core/private.h"
 
 enum { KD_TREE_MOST_DIMENSIONS = 4 };
 
@@ -18,11 +19,12 @@ typedef struct kd_tree {
 
 /* Errors: MEMORY. */
 starg_status kd_tree_create(starg_context *context, const double *points, size_t count,
-                            int dimension, kd_tree *out);
-void kd_tree_free(starg_context *context, kd_tree *tree);
+                            int dimension, kd_tree *out) STARG_PRIVATE(kd_tree_create);
+void kd_tree_free(starg_context *context, kd_tree *tree) STARG_PRIVATE(kd_tree_free);
 
 /* The point nearest to p, of equal ones that of the lowest index; `squared` receives the square of
  * its rounded distance. The tree must not be empty. */
-size_t kd_tree_nearest(const kd_tree *tree, const double *p, double *squared);
+size_t kd_tree_nearest(const kd_tree *tree, const double *p, double *squared)
+    STARG_PRIVATE(kd_tree_nearest);
 
 #endif

@@ -2,6 +2,8 @@
 #ifndef STARG_GEOMETRY_LINEAR_PROGRAM_H
 #define STARG_GEOMETRY_LINEAR_PROGRAM_H
 
+#include "core/private.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -36,6 +38,7 @@ typedef struct linear_solution {
  * passed over). Rounded: rows hold up to about 2^-44 of the radius, and a program may be called
  * infeasible that is feasible by less than that. */
 void linear_program_solve(const linear_program *program, uint32_t *order,
-                          const linear_solution *start, linear_solution *solution);
+                          const linear_solution *start, linear_solution *solution)
+    STARG_PRIVATE(linear_program_solve);
 
 #endif

@@ -7,12 +7,15 @@
 #ifndef STARG_GEOMETRY_PREDICATES_H
 #define STARG_GEOMETRY_PREDICATES_H
 
+#include "core/private.h"
+
 #include <stdbool.h>
 
 /* Sign of det(a - d, b - d, c - d): 1 when d lies below the plane of a, b, c, seen so that a, b, c
  * turn counter-clockwise. For a face (a, b, c) that is counter-clockwise from outside, 1 means that
  * d is strictly on its inner side, -1 strictly outside, 0 in its plane. */
-int orient3d(const double a[3], const double b[3], const double c[3], const double d[3]);
+int orient3d(const double a[3], const double b[3], const double c[3], const double d[3])
+    STARG_PRIVATE(orient3d);
 
 /* Sign of the turn a, b, c in the plane of coordinates `u` and `v`: 1 for counter-clockwise. */
 int orient2d(const double a[3], const double b[3], const double c[3], int u, int v);

@@ -1,10 +1,13 @@
-/* Candidate points from a file: text of three numbers a line, with an optional leading "v" as in
- * OBJ and comments by #, or the positions in a GUARDS.json. */
+/* Candidate points from a file: text of three numbers a line, with an optional leading "v" and
+ * lines of edges as in OBJ, and comments by #; the nodes of a skeleton (CG, VTK); or the positions
+ * in a GUARDS.json. */
 #include <math.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "guard/candidates.h"
 #include "mesh/scan.h"
+#include "starguard/skeleton.h"
 
 static const char STAGE[] = "points file";
 
@@ -18,29 +21,54 @@ static starg_status take_positions(const starg_source *source, candidate_points 
     return status;
 }
 
+static starg_status take_nodes(const starg_source *source, candidate_points *points) {
+    starg_skeleton *skeleton = NULL;
+    starg_status status = starg_skeleton_read_memory(source->context, source->bytes, source->size,
+                                                     source->name, &skeleton);
+    for (size_t i = 0; status == STARG_OK && i < skeleton->node_count; i++)
+        status = candidates_push(source->context, points, skeleton->positions + 3 * i, NULL);
+    starg_skeleton_free(source->context, skeleton);
+    return status;
+}
+
+static starg_status reject_count(const starg_scan *scan, size_t line, size_t count) {
+    if (count == 6)
+        return starg_source_fail(scan->source, starg_at_line(line),
+                                 "six numbers, a position and a direction: directions of "
+                                 "candidates are not supported yet; write three numbers a line");
+    return starg_source_fail(scan->source, starg_at_line(line),
+                             "a point has three coordinates, not %zu; write three numbers a line",
+                             count);
+}
+
+static bool is_passed_over(starg_word word) {
+    return starg_word_is(word, "l") || starg_word_is(word, "p") || starg_word_is(word, "o") ||
+           starg_word_is(word, "g");
+}
+
 /* One line: nothing, a keyword of OBJ that stands for no vertex, or a point. */
 static starg_status scan_line(starg_scan *scan, candidate_points *points) {
     starg_status status = STARG_OK;
     starg_word word;
-    double p[3];
-    if (!starg_scan_word_here(scan, &word))
+    double p[3], x;
+    size_t count = 0, line = scan->line;
+    bool more = starg_scan_word_here(scan, &word);
+    if (!more || is_passed_over(word))
         return STARG_OK;
-    if (starg_word_is(word, "v")) {
-        STARG_TRY(starg_scan_expect(scan, "a coordinate", &word));
-    } else if (starg_word_is(word, "l") || starg_word_is(word, "p") || starg_word_is(word, "o") ||
-               starg_word_is(word, "g")) {
-        return STARG_OK;
+    if (starg_word_is(word, "v"))
+        more = starg_scan_word_here(scan, &word);
+    for (; more; more = starg_scan_word_here(scan, &word)) {
+        STARG_TRY(starg_word_real(scan, word, "a coordinate", &x));
+        if (!(fabs(x) < 1e100))
+            return starg_source_fail(scan->source, starg_at_line(line),
+                                     "coordinate %c is %g; it must be finite and below 1e100",
+                                     "xyz"[count % 3], x);
+        if (count < 3)
+            p[count] = x;
+        count++;
     }
-    STARG_TRY(starg_word_real(scan, word, "a coordinate", &p[0]));
-    STARG_TRY(starg_scan_real(scan, "a coordinate", &p[1]));
-    STARG_TRY(starg_scan_real(scan, "a coordinate", &p[2]));
-    for (int k = 0; k < 3; k++)
-        if (!(fabs(p[k]) < 1e100)) {
-            status = starg_source_fail(scan->source, starg_at_line(word.line),
-                                       "coordinate %c is %g; it must be finite and below 1e100",
-                                       "xyz"[k], p[k]);
-            goto done;
-        }
+    if (count != 3)
+        return reject_count(scan, line, count);
     STARG_TRY(candidates_push(scan->source->context, points, p, NULL));
 done:
     return status;
@@ -69,6 +97,17 @@ static bool is_json(const starg_source *source) {
     return i < source->size && source->bytes[i] == '{';
 }
 
+/* OBJ reads like a list of points. */
+static bool is_skeleton(const starg_source *source) {
+    static const char *const heads[] = {"# vtk", "# D:3 NV:"};
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+        size_t size = strlen(heads[i]);
+        if (source->size >= size && memcmp(source->bytes, heads[i], size) == 0)
+            return true;
+    }
+    return false;
+}
+
 starg_status starg_points_read_memory(starg_context *context, const void *bytes, size_t size,
                                       const char *name, double **points, size_t *count) {
     starg_status status = STARG_OK;
@@ -78,6 +117,8 @@ starg_status starg_points_read_memory(starg_context *context, const void *bytes,
     *count = 0;
     if (is_json(&source))
         STARG_TRY(take_positions(&source, &found));
+    else if (is_skeleton(&source))
+        STARG_TRY(take_nodes(&source, &found));
     else
         STARG_TRY(scan_text(&source, &found));
     if (found.data.count == 0) {

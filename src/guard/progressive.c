@@ -156,7 +156,7 @@ done:
 static starg_status guard_coarse_level(guard_job *job, int level, const starg_mesh *mesh) {
     starg_solid *solid = NULL;
     guard_pool pool = {0};
-    starg_status status = starg_solid_create(job->context, mesh, &solid);
+    starg_status status = solid_make_in_time(job->context, mesh, &solid);
     job->time_limited = job->time_limited || status == STARG_ERROR_TIME;
     if (status == STARG_ERROR_TIME)
         return STARG_OK;

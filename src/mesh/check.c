@@ -314,6 +314,8 @@ starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_e
     summarise(&c);
     if (c.check->closed && c.check->manifold && c.check->oriented)
         STARG_TRY(check_shells(&c));
+    if (!c.check->oriented)
+        STARG_TRY(topology_count_one_sided(c.topology, mesh, &c.check->one_sided_faces));
 done:
     starg_progress_end(context);
     *out = (mesh_examination){c.check, c.topology, c.tree, c.shells};

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "core/context.h"
+#include "core/private.h"
 
 typedef struct heap_entry {
     double key;
@@ -23,15 +24,16 @@ typedef struct mesh_heap {
 #define HEAP_NONE UINT32_MAX
 
 /* An empty queue for items below `items` (below 2^32 - 1). Errors: MEMORY. */
-starg_status heap_create(starg_context *context, size_t items, mesh_heap **out);
-void heap_free(mesh_heap *heap);
+starg_status heap_create(starg_context *context, size_t items, mesh_heap **out)
+    STARG_PRIVATE(heap_create);
+void heap_free(mesh_heap *heap) STARG_PRIVATE(heap_free);
 
 /* Enters an item, or changes its key; keys are not NaN. O(log n). */
-void heap_set(mesh_heap *heap, uint32_t item, double key);
+void heap_set(mesh_heap *heap, uint32_t item, double key) STARG_PRIVATE(heap_set);
 /* Takes an item out, if it is there. O(log n). */
-void heap_remove(mesh_heap *heap, uint32_t item);
+void heap_remove(mesh_heap *heap, uint32_t item) STARG_PRIVATE(heap_remove);
 /* Takes out the item of the lowest key; false when there is none. */
-bool heap_pop(mesh_heap *heap, uint32_t *item);
+bool heap_pop(mesh_heap *heap, uint32_t *item) STARG_PRIVATE(heap_pop);
 
 static inline bool heap_contains(const mesh_heap *heap, uint32_t item) {
     return heap->slot[item] != HEAP_NONE;

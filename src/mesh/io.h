@@ -9,6 +9,7 @@
 
 #include "core/context.h"
 #include "core/memory.h"
+#include "core/private.h"
 #include "mesh/mesh.h"
 
 #define STARG_MESH_FILE "mesh file" /* stage in messages */
@@ -116,8 +117,9 @@ typedef struct starg_c_locale {
     locale_t own, before;
 } starg_c_locale;
 
-starg_status starg_c_locale_enter(starg_context *context, starg_c_locale *locale);
+starg_status starg_c_locale_enter(starg_context *context, starg_c_locale *locale)
+    STARG_PRIVATE(starg_c_locale_enter);
 /* Harmless for an all-zero `locale`. */
-void starg_c_locale_leave(starg_c_locale *locale);
+void starg_c_locale_leave(starg_c_locale *locale) STARG_PRIVATE(starg_c_locale_leave);
 
 #endif

@@ -27,8 +27,11 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
         return starg_fail_at(context, STARG_ERROR_MESH, "solid", first->element, first->first,
                              first->shown,
                              "the mesh does not bound a solid (%s); 'starguard check' shows where, "
-                             "'starguard repair' may mend it",
-                             list);
+                             "%s",
+                             list,
+                             check->one_sided_faces == check->faces
+                                 ? "and nothing can mend it: its surfaces have one side only"
+                                 : "'starguard repair' may mend it");
     if (check->faces == 0)
         return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh has no faces");
     return starg_fail(context, STARG_ERROR_MESH, "solid",
@@ -45,24 +48,27 @@ static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const m
     }
 }
 
-static void tell(starg_context *context, const starg_check *check) {
+void solid_tell(starg_context *context, const char *whose, const starg_check *check) {
     size_t turned = check->findings[STARG_FINDING_INWARD_COMPONENT].count;
     size_t crossing = check->findings[STARG_FINDING_SELF_INTERSECTION].count;
     size_t flat = check->findings[STARG_FINDING_DEGENERATE_FACE].count;
     if (turned > 0)
-        starg_log(context, STARG_LOG_NOTICE, "%zu of %zu shells faced the wrong way and %s turned",
-                  turned, check->components, turned == 1 ? "was" : "were");
+        starg_log(context, STARG_LOG_NOTICE,
+                  "%s%zu of %zu shells faced the wrong way and %s turned", whose, turned,
+                  check->components, turned == 1 ? "was" : "were");
     if (crossing > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "%zu pairs of faces intersect (first: %llu and %llu); every one of them still "
-                  "blocks the view",
-                  crossing,
+                  "%s%zu %s of faces %s (first: %llu and %llu); every one of them still blocks the "
+                  "view",
+                  whose, crossing, crossing == 1 ? "pair" : "pairs",
+                  crossing == 1 ? "intersects" : "intersect",
                   (unsigned long long)check->findings[STARG_FINDING_SELF_INTERSECTION].first[0],
                   (unsigned long long)check->findings[STARG_FINDING_SELF_INTERSECTION].first[1]);
     if (flat > 0)
-        starg_log(context, STARG_LOG_WARNING,
-                  "%zu faces have no area (first: %llu); nothing can see them", flat,
-                  (unsigned long long)check->findings[STARG_FINDING_DEGENERATE_FACE].first[0]);
+        starg_log(context, STARG_LOG_WARNING, "%s%zu %s no area (first: %llu); nothing can see %s",
+                  whose, flat, flat == 1 ? "face has" : "faces have",
+                  (unsigned long long)check->findings[STARG_FINDING_DEGENERATE_FACE].first[0],
+                  flat == 1 ? "it" : "them");
 }
 
 starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
@@ -80,7 +86,6 @@ starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_so
         goto done;
     }
     turn_shells(solid->mesh, all.topology, all.shells);
-    tell(context, all.check);
     solid->check = all.check;
     solid->tree = all.tree;
     all.check = NULL;
@@ -93,10 +98,17 @@ done:
     return status;
 }
 
-starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
+starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
     starg_deadline_begin(context);
     starg_status status = solid_make(context, mesh, out);
     starg_deadline_end(context);
+    return status;
+}
+
+starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
+    starg_status status = solid_make_in_time(context, mesh, out);
+    if (status == STARG_OK)
+        solid_tell(context, "", (*out)->check);
     return status;
 }
 

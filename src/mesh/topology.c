@@ -127,6 +127,33 @@ done:
     return status;
 }
 
+/* Each face has two sides, 2 f and 2 f + 1; over an edge one goes from side to side. */
+static void join_sides(const mesh_topology *topology, const starg_mesh *mesh, uint32_t *parent) {
+    for (uint32_t h = 0; h < 3 * (uint32_t)topology->face_count; h++) {
+        uint32_t twin = topology->twin[h];
+        if (twin == TOPOLOGY_NONE || twin < h)
+            continue;
+        uint32_t turned = mesh->faces[h] == mesh->faces[twin];
+        sets_join(parent, 2 * (h / 3), 2 * (twin / 3) + turned);
+        sets_join(parent, 2 * (h / 3) + 1, 2 * (twin / 3) + !turned);
+    }
+}
+
+starg_status topology_count_one_sided(const mesh_topology *topology, const starg_mesh *mesh,
+                                      size_t *count) {
+    starg_status status = STARG_OK;
+    uint32_t *parent = NULL;
+    *count = 0;
+    STARG_NEW(topology->context, "topology", parent, 2 * topology->face_count);
+    sets_make(parent, 2 * topology->face_count);
+    join_sides(topology, mesh, parent);
+    for (uint32_t f = 0; f < topology->face_count; f++)
+        *count += sets_find(parent, 2 * f) == sets_find(parent, 2 * f + 1);
+done:
+    starg_release(topology->context, parent);
+    return status;
+}
+
 void topology_free(mesh_topology *topology) {
     if (topology == NULL)
         return;

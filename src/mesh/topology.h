@@ -2,6 +2,7 @@
 #ifndef STARG_MESH_TOPOLOGY_H
 #define STARG_MESH_TOPOLOGY_H
 
+#include "core/private.h"
 #include "mesh/mesh.h"
 
 #define TOPOLOGY_NONE UINT32_MAX
@@ -29,16 +30,22 @@ typedef struct mesh_topology {
 } mesh_topology;
 
 /* Builds the tables in O(n log d) for vertices of degree d. Errors: MEMORY. */
-starg_status topology_create(starg_context *context, const starg_mesh *mesh, mesh_topology **out);
-void topology_free(mesh_topology *topology);
+starg_status topology_create(starg_context *context, const starg_mesh *mesh, mesh_topology **out)
+    STARG_PRIVATE(topology_create);
+void topology_free(mesh_topology *topology) STARG_PRIVATE(topology_free);
 
 /* Number of halfedges on the edge of `halfedge`. */
 size_t topology_edge_faces(const mesh_topology *topology, uint32_t halfedge);
 
+/* Number of faces that can be reached from their own other side over edges of two faces: they have
+ * one side only, like a Moebius strip. Errors: MEMORY. */
+starg_status topology_count_one_sided(const mesh_topology *topology, const starg_mesh *mesh,
+                                      size_t *count);
+
 /* Disjoint sets over 0 .. count - 1 in a caller's array of parents. */
-void sets_make(uint32_t *parent, size_t count);
-uint32_t sets_find(uint32_t *parent, uint32_t item);
+void sets_make(uint32_t *parent, size_t count) STARG_PRIVATE(sets_make);
+uint32_t sets_find(uint32_t *parent, uint32_t item) STARG_PRIVATE(sets_find);
 /* The smaller root becomes the root. */
-void sets_join(uint32_t *parent, uint32_t a, uint32_t b);
+void sets_join(uint32_t *parent, uint32_t a, uint32_t b) STARG_PRIVATE(sets_join);
 
 #endif

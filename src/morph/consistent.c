@@ -308,8 +308,10 @@ done:
 starg_status morph_guard(starg_morph *m, size_t candidates) {
     starg_status status = STARG_OK;
     guarding g = {.morph = m};
-    for (int end = 0; end < 2; end++)
+    for (int end = 0; end < 2; end++) {
         STARG_TRY(morph_solid(m, end, &g.solids[end]));
+        solid_tell(m->context, end == 0 ? "A: " : "B in A's connectivity: ", g.solids[end]->check);
+    }
     STARG_TRY(find_candidates(&g, candidates));
     STARG_TRY(see(&g));
     STARG_TRY(choose(&g));

@@ -2,7 +2,7 @@
 #ifndef STARG_MORPH_ENTRIES_H
 #define STARG_MORPH_ENTRIES_H
 
-#include "core/sparse.h"
+#include "shape/sparse.h"
 
 /* An entry of the matrix; entries of one place are summed, both triangles are given. */
 typedef struct matrix_entry {

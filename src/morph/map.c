@@ -12,9 +12,9 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
+#include "mesh/solid.h"
 #include "morph/compose.h"
 #include "morph/landmarks.h"
-#include "starguard/solid.h"
 
 static const char STAGE[] = "map";
 enum { SAME_SHARE = 20 }; /* one face in so many may differ between poses */
@@ -197,7 +197,8 @@ static starg_status spread_surface(starg_context *context, const starg_mesh *mes
                                    spread *out) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
-    STARG_TRY(starg_solid_create(context, mesh, &solid));
+    /* it may meet itself: only what its faces share counts */
+    STARG_TRY(solid_make_in_time(context, mesh, &solid));
     STARG_TRY(check_surface(context, starg_solid_check(solid), name));
     STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
     STARG_TRY(sphere_create(context, out->unit, &out->sphere));

@@ -41,7 +41,7 @@ static void normalize(double v[3]) {
 }
 
 /* Arc length from 0 to i steps, by the midpoint rule. */
-static void measure(curve *c, double lengths[LENGTH_STEPS + 1]) {
+static void measure(curve *c, double *lengths) {
     lengths[0] = 0;
     for (int i = 0; i < LENGTH_STEPS; i++) {
         double p[3], d[3], e[3];
@@ -93,7 +93,8 @@ static starg_status make_tube(starg_context *context, curve *c, double radius, s
                               starg_mesh **out) {
     starg_status status = STARG_OK;
     mesh_builder builder = {.context = context};
-    double lengths[LENGTH_STEPS + 1];
+    double *lengths = NULL; /* too many for a small stack */
+    STARG_NEW(context, "sample", lengths, LENGTH_STEPS + 1);
     measure(c, lengths);
     double length = lengths[LENGTH_STEPS], girth = TURN * radius;
     /* rows of equilateral triangles are 0.87 of their side apart */
@@ -115,6 +116,7 @@ static starg_status make_tube(starg_context *context, curve *c, double radius, s
     STARG_TRY(builder_finish(&builder, out));
 done:
     builder_free(&builder);
+    starg_release(context, lengths);
     return status;
 }
 

@@ -3,7 +3,7 @@
 #define STARG_SHAPE_DATABASE_FILES_H
 
 #include "core/parallel.h"
-#include "core/sha256.h"
+#include "shape/sha256.h"
 #include "starguard/shape.h"
 
 typedef struct database_digest {
@@ -48,8 +48,5 @@ starg_status database_files_pack(starg_context *context, const database_files *a
 /* A starg_parallel_remote's take, with a database_files for `shared`. */
 starg_status database_files_take(starg_context *context, void *shared, size_t first, size_t count,
                                  starg_bytes_reader *reply);
-
-/* Describes files for another process. */
-extern const ranks_work database_ranks_work;
 
 #endif

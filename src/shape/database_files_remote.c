@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "shape/database.h"
 #include "shape/database_files.h"
+#include "visibility/rows.h"
 
 /* The fixed parts of a job, and of a file in a reply. */
 typedef struct job_head {
@@ -153,4 +154,10 @@ done:
     return status;
 }
 
-const ranks_work database_ranks_work = {begin, run, end};
+static const ranks_work DESCRIBE = {begin, run, end};
+
+starg_status starg_database_ranks_serve(starg_context *context, const starg_ranks *ranks) {
+    const ranks_work *const works[RANKS_WORKS] = {
+        [RANKS_VISIBILITY] = &visibility_ranks_work, [RANKS_DESCRIBE] = &DESCRIBE};
+    return ranks_serve(context, ranks, works);
+}

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "core/sha256.h"
 #include "shape/database.h"
+#include "shape/sha256.h"
 
 typedef STARG_ARRAY(starg_database_model) model_array;
 

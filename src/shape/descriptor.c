@@ -137,6 +137,10 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
     }
     if (!closed)
         out->surface = NULL;
+    if (!closed && status == STARG_OK)
+        starg_log(context, STARG_LOG_WARNING,
+                  "the surface bounds no solid; what it winds around is described, its holes "
+                  "closed by isosurface stuffing");
 done:
     return status;
 }

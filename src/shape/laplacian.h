@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "core/sparse.h"
+#include "shape/sparse.h"
 #include "starguard/mesh.h"
 
 /* A symmetric, positive semidefinite matrix with zero row sums, stored by columns (all of it), and

@@ -213,16 +213,15 @@ static void tell(starg_context *context, const starg_solid *solid, const starg_s
                   skeleton->components, skeleton->loops, check->components - check->cavities,
                   (long long)check->genus);
     else if (check->cavities > 0)
-        starg_log(
-            context, STARG_LOG_WARNING,
-            "the solid has %zu cavities, which no curve can surround; the skeleton is that of "
-            "the solid with walls cut open",
-            check->cavities);
+        starg_log(context, STARG_LOG_WARNING,
+                  "the solid has %zu %s, which no curve can surround; the skeleton is that of "
+                  "the solid with walls cut open",
+                  check->cavities, check->cavities == 1 ? "cavity" : "cavities");
     else if (skeleton->cuts > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "%zu walls were cut open that do not shrink to a curve: tiny voids, or tunnels "
+                  "%zu %s cut open that do not shrink to a curve: tiny voids, or tunnels "
                   "with a knot",
-                  skeleton->cuts);
+                  skeleton->cuts, skeleton->cuts == 1 ? "wall was" : "walls were");
 }
 
 static const starg_field OPTIONS[] = {

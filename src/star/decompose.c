@@ -1,21 +1,17 @@
 /* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
 #include <math.h>
 
-#include "core/fields.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
-#include "tetra/generate.h"
+#include "tetra/fields.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "pieces";
 
 static const starg_field OPTIONS[] = {
-    {.kind = STARG_FIELD_RECORD,
-     .offset = offsetof(starg_decompose_options, tetra),
-     .of = &tetra_option_fields},
     {.key = "mode",
      .option = "mode",
      .kind = STARG_FIELD_CHOICE,
@@ -52,6 +48,7 @@ static const starg_field OPTIONS[] = {
      .value = "N",
      .help = "strict: trials after which the search ends, whatever the time.",
      .default_text = "0, the library's choice"},
+    TETRA_FIELDS(starg_decompose_options, tetra.),
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "decompose options", .size = sizeof(starg_decompose_options), FIELD_ROWS(OPTIONS)};

@@ -1,6 +1,6 @@
 /* One interface for the generators: which one, how fine, and what is told about it. */
 #include "tetra/generate.h"
-#include "core/fields.h"
+#include "tetra/fields.h"
 
 #include <math.h>
 
@@ -13,54 +13,28 @@ static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, in mean vol
 static const double LATTICE_DENSITY = 12; /* tetrahedra of the lattice per cube            */
 static const double STEPS_PER_CUBE = 4;   /* of the measurement of distances               */
 
-static const char *const GENERATORS[] = {"auto", "tetgen", "stuffing", NULL};
+const char *const tetra_generator_words[] = {"auto", "tetgen", "stuffing", NULL};
 
 static const starg_field OPTIONS[] = {
-    {.key = "generator",
-     .kind = STARG_FIELD_CHOICE,
-     FIELD_MEMBER(starg_tetra_options, generator),
-     .words = GENERATORS,
-     .value = "auto|tetgen|stuffing",
-     .help = "How tetrahedra are made: by the program tetgen, which keeps the surface, by "
-             "isosurface stuffing, or by the one that can."},
     {.key = "density",
      .kind = STARG_FIELD_REAL,
      FIELD_MEMBER(starg_tetra_options, density),
      .high = 1e6,
-     .standard = PAPER_DENSITY,
+     .standard = TETRA_PAPER_DENSITY,
      .value = "T",
      .help = "Tetrahedra for each vertex of the surface; 0: as few as can be."},
-    {.key = "target",
-     .kind = STARG_FIELD_COUNT,
-     FIELD_MEMBER(starg_tetra_options, target),
-     .most = TETMESH_LIMIT,
-     .value = "N",
-     .help = "Tetrahedra that are aimed at; above 0 it stands in for the density."},
-    {.key = "tetgen",
-     .kind = STARG_FIELD_TEXT,
-     FIELD_MEMBER(starg_tetra_options, tetgen),
-     .value = "FILE",
-     .help = "The program tetgen.",
-     .default_text = "that of the search path"},
-    {.key = "tetgen_limit",
-     .kind = STARG_FIELD_REAL,
-     .flags = STARG_FIELD_ABOVE,
-     FIELD_MEMBER(starg_tetra_options, tetgen_limit),
-     .high = 1e100,
-     .standard = 30,
-     .value = "S",
-     .help = "Seconds that tetgen may take."},
+    TETRA_FIELDS(starg_tetra_options, ),
 };
-const starg_fields tetra_option_fields = {
+static const starg_fields OPTIONS_TABLE = {
     .name = "tetrahedra options", .size = sizeof(starg_tetra_options), FIELD_ROWS(OPTIONS)};
 
 const starg_fields *starg_tetra_options_fields(void) {
-    return &tetra_option_fields;
+    return &OPTIONS_TABLE;
 }
 
 void starg_tetra_options_default(starg_tetra_options *options) {
     *options = (starg_tetra_options){0};
-    starg_fields_default(&tetra_option_fields, options);
+    starg_fields_default(&OPTIONS_TABLE, options);
 }
 
 /* Tetrahedra to aim at; 0: as few as may be. */
@@ -83,7 +57,7 @@ static starg_status by_stuffing(starg_context *context, const tetra_shape *shape
     starg_status status = STARG_OK;
     double count = wanted(shape->mesh, o);
     if (count == 0)
-        count = PAPER_DENSITY * (double)shape->mesh->vertex_count;
+        count = TETRA_PAPER_DENSITY * (double)shape->mesh->vertex_count;
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
     report->spacing = cbrt(LATTICE_DENSITY * fabs(shape->volume) / count);
     STARG_TRY(tetra_by_stuffing(context, shape, &report->spacing, out));
@@ -135,12 +109,12 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
     *out = NULL;
     *report = (starg_tetra_report){.generator = options->generator};
     starg_progress_begin(context, STAGE);
-    STARG_TRY(fields_check(context, STAGE, &tetra_option_fields, options));
+    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     if (options->generator != STARG_TETRA_STUFFING) {
         status = try_tetgen(context, solid, options, report, out);
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
             goto done;
-        starg_log(context, STARG_LOG_NOTICE,
+        starg_log(context, STARG_LOG_WARNING,
                   "%s; isosurface stuffing makes the tetrahedra instead, and their surface is only "
                   "near the model's",
                   starg_context_error(context)->message);
@@ -183,7 +157,7 @@ starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_me
         report = &ignored;
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
     starg_progress_begin(context, STAGE);
-    STARG_TRY(fields_check(context, STAGE, &tetra_option_fields, options));
+    STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     tetra_shape shape = {.mesh = mesh, .field = &field, .volume = guess_volume(mesh)};
     if (mesh->face_count == 0 || shape.volume == 0) {
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,

@@ -2,13 +2,9 @@
 #ifndef STARG_TETRA_GENERATE_H
 #define STARG_TETRA_GENERATE_H
 
-#include "core/fields.h"
 #include "geometry/winding.h"
 #include "mesh/solid.h"
 #include "tetra/tetmesh.h"
-
-/* The rows of starg_tetra_options, for structs that have them. */
-extern const starg_fields tetra_option_fields;
 
 #define TETRA_STAGE "tetrahedra"
 

@@ -3,6 +3,7 @@
 #define STARG_TETRA_TETMESH_H
 
 #include "core/context.h"
+#include "core/private.h"
 #include "starguard/tetra.h"
 
 struct starg_tetmesh {
@@ -19,7 +20,7 @@ struct starg_tetmesh {
 
 /* Vertices of the face opposite vertex k of a positive tetrahedron, counter-clockwise seen from
  * outside it. */
-extern const int TETMESH_FACE[4][3];
+extern const int TETMESH_FACE[4][3] STARG_PRIVATE(TETMESH_FACE);
 
 static inline const double *tetmesh_corner(const starg_tetmesh *mesh, size_t tetrahedron, int k) {
     return mesh->vertices + 3 * (size_t)mesh->tetrahedra[4 * tetrahedron + (size_t)k];
@@ -30,14 +31,14 @@ static inline const double *tetmesh_corner(const starg_tetmesh *mesh, size_t tet
  * overlap, which is the one check that takes more than linear time. */
 starg_status tetmesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
                            uint32_t *tetrahedra, size_t count, int32_t *regions, bool trusted,
-                           starg_tetmesh **out);
+                           starg_tetmesh **out) STARG_PRIVATE(tetmesh_adopt);
 
 /* A copy with vertices, tetrahedra and neighbours of its own, without regions. Errors: MEMORY. */
 starg_status tetmesh_copy(starg_context *context, const starg_tetmesh *mesh, starg_tetmesh **out);
 
 /* The power of two of the mesh's extent: differences of coordinates times 2^-exponent are at most 1
  * in magnitude, so that their products neither over- nor underflow as a whole. */
-int tetmesh_exponent(const starg_tetmesh *mesh);
+int tetmesh_exponent(const starg_tetmesh *mesh) STARG_PRIVATE(tetmesh_exponent);
 
 /* Six times the volume of a tetrahedron, in units of 2^exponent cubed. */
 double tetmesh_scaled_volume(const starg_tetmesh *mesh, size_t tetrahedron, int exponent);

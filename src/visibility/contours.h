@@ -53,6 +53,35 @@ typedef struct piece_table {
     uint32_t *a, *b, *label; /* a, b: the slots of its ends */
 } piece_table;
 
+/* Links are followed in blocks. From so many rows on a segment is followed from row to row. */
+enum { LINK_BLOCK = 256, CONTOUR_TALL = 8 };
+
+/* What the links of a block cover; by place in the block. */
+typedef struct link_boxes {
+    float u_low[LINK_BLOCK], u_high[LINK_BLOCK], v_low[LINK_BLOCK], v_high[LINK_BLOCK];
+    uint32_t row[LINK_BLOCK], last_row[LINK_BLOCK];
+    uint32_t plain[LINK_BLOCK]; /* a link on one cube face; else the rest means nothing */
+} link_boxes;
+
+typedef struct row_visit {
+    uint32_t link, row, begin, end; /* place in the block; pieces from begin to end */
+    uint32_t others; /* all ones in the first row, where every piece counts; else 0 */
+} row_visit;
+
+typedef struct encounter {
+    uint32_t to, piece, among;
+} encounter;
+
+typedef struct link_block {
+    const uint32_t *to; /* the slots where the links end */
+    uint32_t count;
+    uint32_t visit_count, encounter_count, end_count;
+    link_boxes boxes;
+    row_visit visits[CONTOUR_TALL * LINK_BLOCK + 1];
+    encounter encounters[LINK_BLOCK];
+    uint32_t ends[2 * LINK_BLOCK][2]; /* a mixed vertex, and the other of the link */
+} link_block;
+
 struct contours_scratch;
 
 /* All stages for one point. False, and nothing said, where the point lies in a special position
@@ -94,6 +123,7 @@ typedef struct contours_scratch {
     size_t piece_count, piece_limit;
     piece_table sorted; /* by cell */
     int32_t *layers;    /* by slot: kept layers before it, first relative to its parent */
+    link_block block;   /* the links that are being followed; too much for a small stack */
 } contours_scratch;
 
 /* The stages for several instruction sets. */

@@ -257,35 +257,8 @@ static void cross_contours(link *l) {
     }
 }
 
-/* Plain links take these steps, a block of them at a time and one step after the other, so that
- * the processor need not wait for one link before it turns to the next. */
-enum { BLOCK = 256 };
-
-/* What the links of a block cover; by place in the block. */
-typedef struct link_boxes {
-    float u_low[BLOCK], u_high[BLOCK], v_low[BLOCK], v_high[BLOCK];
-    uint32_t row[BLOCK], last_row[BLOCK];
-    uint32_t plain[BLOCK]; /* a link on one cube face; else the rest means nothing */
-} link_boxes;
-
-typedef struct row_visit {
-    uint32_t link, row, begin, end; /* place in the block; pieces from begin to end */
-    uint32_t others; /* all ones in the first row, where every piece counts; else 0 */
-} row_visit;
-
-typedef struct encounter {
-    uint32_t to, piece, among;
-} encounter;
-
-typedef struct link_block {
-    const uint32_t *to; /* the slots where the links end */
-    uint32_t count;
-    uint32_t visit_count, encounter_count, end_count;
-    link_boxes boxes;
-    row_visit visits[TALL * BLOCK + 1];
-    encounter encounters[BLOCK];
-    uint32_t ends[2 * BLOCK][2]; /* a mixed vertex, and the other of the link */
-} link_block;
+/* Plain links take the following steps, a block of them at a time and one step after the other, so
+ * that the processor need not wait for one link before it turns to the next. */
 
 static link make_link(const visibility_scene *scene, contours_scratch *s, const double p[3],
                       const int8_t *side, uint32_t to) {
@@ -369,7 +342,8 @@ static bool meet_pieces(const visibility_scene *scene, contours_scratch *s, cons
             among &= v->others | wide_marked(s->sorted.label + i, PIECE_COUNTS);
             block->encounters[block->encounter_count] = (encounter){block->to[v->link], i, among};
             block->encounter_count += among != 0;
-            if (block->encounter_count == BLOCK && !settle_encounters(scene, s, p, side, block))
+            if (block->encounter_count == LINK_BLOCK &&
+                !settle_encounters(scene, s, p, side, block))
                 return false;
         }
     }
@@ -412,29 +386,30 @@ static void list_ends(const contours_scratch *s, uint32_t from, uint32_t to, lin
 
 static bool follow_block(const visibility_scene *scene, const double p[3], const int8_t *side,
                          contours_scratch *s, const uint32_t *to, size_t count) {
-    link_block block;
-    block.to = to;
-    block.count = (uint32_t)count;
-    block.visit_count = block.encounter_count = block.end_count = 0;
-    measure_links(s, &block);
-    for (uint32_t k = 0; k < block.count; k++) {
-        if (block.boxes.plain[k] && block.boxes.last_row[k] - block.boxes.row[k] < TALL)
-            visit_rows(&block, k);
+    link_block *block = &s->block;
+    block->to = to;
+    block->count = (uint32_t)count;
+    block->visit_count = block->encounter_count = block->end_count = 0;
+    measure_links(s, block);
+    for (uint32_t k = 0; k < block->count; k++) {
+        if (block->boxes.plain[k] && block->boxes.last_row[k] - block->boxes.row[k] < CONTOUR_TALL)
+            visit_rows(block, k);
         else if (!follow_other(scene, p, side, s, to[k]))
             return false;
-        list_ends(s, s->parent[to[k]], to[k], &block);
+        list_ends(s, s->parent[to[k]], to[k], block);
     }
-    look_up_cells(s, &block);
-    return meet_pieces(scene, s, p, side, &block) && settle_ends(scene, s, p, side, &block);
+    look_up_cells(s, block);
+    return meet_pieces(scene, s, p, side, block) && settle_ends(scene, s, p, side, block);
 }
 
 /* Stage 4: how the number of layers changes along each link of the trees. */
 static bool follow_links(const visibility_scene *scene, const double p[3], const int8_t *side,
                          contours_scratch *s) {
     memset(s->layers, 0, scene->vertex_count * sizeof *s->layers);
-    for (size_t begin = 0; begin < s->link_count; begin += BLOCK) {
+    for (size_t begin = 0; begin < s->link_count; begin += LINK_BLOCK) {
         size_t left = s->link_count - begin;
-        if (!follow_block(scene, p, side, s, s->links + begin, left < BLOCK ? left : BLOCK))
+        if (!follow_block(scene, p, side, s, s->links + begin,
+                          left < LINK_BLOCK ? left : LINK_BLOCK))
             return false;
     }
     return true;

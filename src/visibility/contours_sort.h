@@ -1,9 +1,6 @@
 /* Stage 3 of the engine by contours (visibility/contours.c): what contours cover on the faces of
  * the cube, in rows of cells. Included by the stages. */
 
-/* From so many rows on a segment is followed from row to row. */
-enum { TALL = 8 };
-
 /* What a segment of the boundary covers on one cube face. */
 typedef struct cube_piece {
     uint32_t cube_face;
@@ -103,7 +100,7 @@ static inline row_walk walk_begin(const contours_scratch *s, const cube_piece *p
         high[j] = greater(piece->from[j], piece->to[j]) + CELL_MARGIN;
     }
     row_walk w = {rows[bin_of(low[1])], rows[bin_of(high[1])], low[0], high[0], false};
-    w.tall = w.last - w.row >= TALL;
+    w.tall = w.last - w.row >= CONTOUR_TALL;
     return w;
 }
 

@@ -39,7 +39,7 @@ extern const char *const visibility_face_rule_words[];
 #define VISIBILITY_RANGE_FIELD(T, MEMBER)                                                          \
     {                                                                                              \
         .key = "range", .option = "range", .kind = STARG_FIELD_REAL,                               \
-        .flags = STARG_FIELD_NULLABLE, FIELD_MEMBER(T, MEMBER), .high = 1e100,                     \
+        .flags = STARG_FIELD_NULLABLE | STARG_FIELD_ABOVE, FIELD_MEMBER(T, MEMBER), .high = 1e100, \
         .standard = INFINITY, .value = "R",                                                        \
         .help = "See no farther than R, in units of the model.", .default_text = "any distance"    \
     }

@@ -3,6 +3,7 @@
 #define STARG_VISIBILITY_ROWS_H
 
 #include "core/parallel.h"
+#include "core/private.h"
 #include "visibility/scene.h"
 
 /* One matrix under way: row i is what point i sees. */
@@ -39,6 +40,6 @@ starg_status visibility_take(starg_context *context, void *shared, size_t first,
                              starg_bytes_reader *reply);
 
 /* Makes rows for another process. */
-extern const ranks_work visibility_ranks_work;
+extern const ranks_work visibility_ranks_work STARG_PRIVATE(visibility_ranks_work);
 
 #endif

@@ -181,3 +181,8 @@ done:
 }
 
 const ranks_work visibility_ranks_work = {begin, run, end};
+
+starg_status starg_ranks_serve(starg_context *context, const starg_ranks *ranks) {
+    const ranks_work *const works[RANKS_WORKS] = {[RANKS_VISIBILITY] = &visibility_ranks_work};
+    return ranks_serve(context, ranks, works);
+}

@@ -254,6 +254,7 @@ class Guard(support.Case):
                                "g.png")
         result = json.loads(self.read("g.json"))
         self.assertEqual(result["format"], "starguard-guards")
+        self.assertEqual(report["format"], "starguard-guards")
         for key in result:
             self.assertEqual(report[key], result[key], key)
         for absent in ["seconds", "memory", "log", "threads"]:

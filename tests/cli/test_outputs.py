@@ -155,6 +155,84 @@ class Outputs(support.Case):
         self.refuse("guard", "m.off", "-o", "target.ply", "--marks", "a.ply", says="two outputs")
         self.refuse("guard", "m.off", "-o", "x.ply", "--marks", "x.ply", says="two outputs")
 
+    def test_same_file_twice(self):
+        """By a hard link, or in one folder by two names."""
+        self.write("old.ply", "old")
+        os.link(self.path("old.ply"), self.path("hard.ply"))
+        os.mkdir(self.path("folder"))
+        os.symlink("folder", self.path("link"))
+        self.refuse("guard", "m.off", "-o", "old.ply", "--marks", "hard.ply", says="two outputs")
+        self.refuse("guard", "m.off", "-o", "folder/x.ply", "--marks", "link/x.ply", says="two outputs")
+
+    def test_output_is_input(self):
+        """Every command that reads and writes files, each output against each input."""
+        self.write("p.txt", "0.2 0.2 0.2\n")
+        self.run_text("guard", "m.off", "-o", "g.json", "--count", "5")
+        self.run_text("sample", "sphere", "--vertices", "520", "-o", "s.ply")
+        self.run_text("decompose", "m.off", "-o", "t.vtk", "--report", "t.json", "--effort", "1")
+        self.run_text("db", "create", "shapes.db")
+        self.run_text("db", "add", "shapes.db", "s.ply")
+        self.run_text("morph", "m.off", "m.off", "--method", "linear", "--frames", "2", "-o", "frames")
+        self.write("t.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n")
+        self.write("t.ele", "1 4 0\n0 0 1 2 3\n")
+        for words, input in [
+                ("check s.ply --marks OUT.ply", "s.ply"),
+                ("skeleton m.off -o OUT.obj", "m.off"),
+                ("visible s.ply --from 0,0,0 -o OUT.ply", "s.ply"),
+                ("guard m.off -o OUT", "m.off"),
+                ("guard s.ply -o x.json --marks OUT.ply", "s.ply"),
+                ("guard m.off -o x.json --candidates g.json --picture OUT.png", "g.json"),
+                ("guard m.off --candidates p.txt -o OUT", "p.txt"),
+                ("guard - -o OUT", "m.off"),
+                ("decompose m.off -o OUT", "m.off"),
+                ("decompose m.off -o x.vtk --report OUT", "m.off"),
+                ("decompose m.off --guards g.json -o OUT", "g.json"),
+                ("decompose --tets t.vtk -o OUT", "t.vtk"),
+                ("decompose --tets t.node -o OUT", "t.ele"),
+                ("describe m.off -o OUT", "m.off"),
+                ("map m.off s.ply -o OUT", "s.ply"),
+                ("map m.off m.off --landmarks p.txt -o OUT", "p.txt"),
+                ("morph m.off s.ply -o x --map g.json --glb OUT.glb", "g.json"),
+                ("morph m.off frames/frame_0001.off --frames 2 -o frames", "frames/frame_0001.off"),
+                ("view g.json -o OUT", "g.json"),
+                ("view t.vtk t.json -o OUT", "t.json"),
+                ("view m.off g.json --model m.off -o OUT", "m.off"),
+                ("view g.json -o OUT", "m.off"),
+                ("view frames -o OUT", "frames/frame_0000.off"),
+                ("view shapes.db -o OUT", "s.ply"),
+                ("export s.ply -o OUT.ply", "s.ply"),
+                ("export g.json -o OUT.ply", "m.off"),
+                ("db matrix shapes.db -o OUT.csv", "shapes.db"),
+                ("db evaluate shapes.db --classes p.txt -o OUT.csv", "p.txt")]:
+            for link in [os.link, os.symlink, None]:
+                output = next((word for word in words.split() if "OUT" in word), None)
+                if link is not None and output is not None:
+                    link(self.path(input), self.path(output))
+                elif output is not None and "." not in output:
+                    output = input
+                elif output is not None:
+                    continue
+                with self.subTest(words=words, output=output), open(self.path("m.off"), "rb") as model:
+                    self.refuse(*[output if "OUT" in word else word for word in words.split()],
+                                status=1, says="it is an input", stdin=model)
+                if output != input and output is not None:
+                    os.remove(self.path(output))
+
+    def test_repair_in_place(self):
+        self.run_text("repair", "open.off", "-o", "open.off")
+        self.run_text("check", "open.off")
+
+    def test_words_are_no_inputs(self):
+        """A file that is called like a word of an option is not what the word means."""
+        for _ in range(2):
+            self.run_text("guard", "m.off", "-o", "skeleton", "--count", "5")
+        for _ in range(2):
+            self.run_text("sample", "sphere", "--vertices", "500", "-o", "sphere.off")
+            os.replace(self.path("sphere.off"), self.path("sphere"))
+            os.symlink("sphere", self.path("sphere.off"))
+            self.run_text("sample", "sphere", "--vertices", "500", "-o", "sphere.off")
+            os.remove(self.path("sphere.off"))
+
     def test_json_needs_standard_output(self):
         out, err = self.run_text("guard", "m.off", "-o", "-", "--json", status=1)
         self.assertEqual(json.loads(out)["error"]["status"], "argument")

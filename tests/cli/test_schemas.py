@@ -173,7 +173,7 @@ class Schemas(support.Case):
         self.report("verify", "verify", room, "p.vtk", "p.json")
         self.write("open.off", support.OPEN)
         self.report("decompose", "decompose", "open.off", "-o", "o.vtk", "--report", "o.json",
-                    "--time-limit", "2")
+                    "--effort", "10")
         self.file("pieces", "o.json")
         self.report("decompose", "decompose", "--tets", "p.vtk", "-o", "t.vtk", "--report", "t.json",
                     "--mode", "paper")
@@ -185,7 +185,7 @@ class Schemas(support.Case):
         self.run_text("skeleton", room, "-o", "s.vtk")
         self.report("export", "export", "g.json", "s.vtk", "-o", "room.glb")
         with self.start("view", "g.json", "-o", "probe.html") as process:
-            process.communicate(timeout=60 * support.SLOWNESS)
+            process.communicate()
         if process.returncode != 3: # or else this build has no viewer
             self.report("view", "view", "g.json", "s.vtk", "-o", "room.html")
         else:

@@ -127,8 +127,8 @@ class Pieces(support.Case):
     def test_what_decompose_makes(self):
         room = self.sample("l-room")
         for options in [(), ("--binary",)]:
-            self.run_text("decompose", room, "-o", "d.vtk", "--report", "d.json", "--time-limit",
-                          "1", "--quiet", *options)
+            self.run_text("decompose", room, "-o", "d.vtk", "--report", "d.json", "--effort", "30",
+                          "--quiet", *options)
             found = self.run_json("verify", room, "d.vtk", "d.json")
             self.assertIs(found["passed"], True)
             self.assertGreater(found["results"][0]["strictly_star"], 0)

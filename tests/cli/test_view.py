@@ -26,7 +26,7 @@ class View(Case):
         super().setUp()
         self.write("t.off", TETRAHEDRON)
         with self.start("view", "t.off", "-o", "probe.html") as process:
-            _, err = process.communicate(timeout=60 * support.SLOWNESS)
+            _, err = process.communicate()
         if process.returncode == 3:
             self.assertIn(b"has no viewer", err)
             self.assertEqual(self.names(), ["t.off"])
@@ -154,7 +154,7 @@ class View(Case):
                           f"{name}.off")
         self.run_text("sample", "sphere", "--vertices", "500", "-o", "b, \"c\".off")
         self.run_text("db", "create", "s.db")
-        self.run_text("db", "add", "s.db", "a_0.off", "a_1.off", "b, \"c\".off", timeout=200)
+        self.run_text("db", "add", "s.db", "a_0.off", "a_1.off", "b, \"c\".off")
         self.run_text("db", "matrix", "s.db", "-o", "m.csv")
         self.run_text("view", "s.db", "-o", "db.html")
         self.run_text("view", "m.csv", "-o", "csv.html")

@@ -107,6 +107,16 @@ class Installed(unittest.TestCase):
         self.run_command("make", "-C", examples, f"CC={CC}")
         self.try_examples(examples, env=self.with_library())
 
+    def test_guards_alone(self):
+        """A program that only guards loads neither a database nor an eigenvalue solver."""
+        program = os.path.join(self.folder, "guards alone")
+        flags = self.run_command("pkg-config", "--cflags", "--libs", "starguard").split()
+        self.run_command(CC, f"{SOURCE}/examples/guards.c", "-o", program,
+                         f"-I{self.prefix}/include", f"-L{self.library}", flags[-1])
+        loaded = self.run_command("ldd", program, env=self.with_library())
+        self.assertIn("libstarguard", loaded)
+        self.assertNotRegex(loaded, "sqlite|arpack|libldl|libamd|starguard-shapes")
+
     def test_pkg_config_static(self):
         """--static names all that the static library needs, and without it nothing of that."""
         shared = self.run_command("pkg-config", "--libs", "starguard").split()
@@ -114,11 +124,13 @@ class Installed(unittest.TestCase):
         folder = os.path.join(self.folder, "by hand")
         os.mkdir(folder)
         archive = os.path.join(self.library, "libstarguard.a")
-        flags = self.run_command("pkg-config", "--static", "--libs-only-l", "starguard").split()
-        flags.remove("-lstarguard")
         for name in EXAMPLES:
-            self.run_command(CC, "-std=c11", f"-I{self.prefix}/include",
-                             f"{SOURCE}/examples/{name}.c", "-o", f"{folder}/{name}", archive, *flags)
+            package = "starguard-shapes" if name == "match" else "starguard"
+            flags = self.run_command("pkg-config", "--static", "--libs-only-l", package).split()
+            flags = [flag for flag in flags if not flag.startswith("-lstarguard")]
+            archives = [os.path.join(self.library, "libstarguard-shapes.a")] * (name == "match")
+            self.run_command(CC, "-std=c11", f"-I{self.prefix}/include", f"{SOURCE}/examples/{name}.c",
+                             "-o", f"{folder}/{name}", *archives, archive, *flags)
         self.try_examples(folder)
 
     def test_manual_and_completion(self):

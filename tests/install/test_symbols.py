@@ -41,16 +41,19 @@ class Symbols(unittest.TestCase):
         self.declared = declared()
         self.assertGreater(len(self.declared), 100)
 
-    def check(self, names):
-        names = {name for name in names if not linker_made(name)}
+    def check(self, *listings):
+        """Each function is in one of the two libraries; what else they export is private."""
+        names = [{name for name in listing if not linker_made(name)} for listing in listings]
+        self.assertEqual(names[0] & names[1], set(), "exported twice")
+        names = {name for name in names[0] | names[1] if not name.startswith("starg_private_")}
         self.assertEqual(self.declared - names, set(), "declared but not exported")
         self.assertEqual(names - self.declared, set(), "exported but not declared")
 
     def test_shared(self):
-        self.check(exported("libstarguard.so", "-D"))
+        self.check(exported("libstarguard.so", "-D"), exported("libstarguard-shapes.so", "-D"))
 
     def test_static(self):
-        self.check(exported("libstarguard.a"))
+        self.check(exported("libstarguard.a"), exported("libstarguard-shapes.a"))
 
     def test_every_header_is_included(self):
         with open(f"{SOURCE}/include/starguard/starguard.h", encoding="utf-8") as file:
@@ -59,10 +62,11 @@ class Symbols(unittest.TestCase):
         self.assertEqual(headers - included, {"starguard.h", "export.h"})
 
     def test_soname(self):
-        text = subprocess.run(["readelf", "-d", os.path.join(BUILD, "libstarguard.so")], check=True,
-                              capture_output=True, text=True).stdout
-        self.assertRegex(text, r"SONAME.*\[libstarguard\.so\.\d+(\.\d+)?\]")
-        self.assertNotRegex(text, r"\((RPATH|RUNPATH|TEXTREL)\)")
+        for name in "libstarguard", "libstarguard-shapes":
+            text = subprocess.run(["readelf", "-d", os.path.join(BUILD, f"{name}.so")], check=True,
+                                  capture_output=True, text=True).stdout
+            self.assertRegex(text, rf"SONAME.*\[{name}\.so\.\d+(\.\d+)?\]")
+            self.assertNotRegex(text, r"\((RPATH|RUNPATH|TEXTREL)\)")
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "starguard/database.h"
 #include "starguard/shape.h"
@@ -15,30 +14,8 @@ static input_bytes descriptor_text, database_file;
 
 /* ---- signatures ---- */
 
-static starg_status signature_result(starg_context *context, starg_status status,
-                                     starg_signature *signature) {
-    failing_result(status, signature);
-    starg_signature_free(context, signature);
-    return status;
-}
-
-static starg_status signature_of(starg_context *context, starg_signature_kind kind) {
-    starg_signature *s = NULL;
-    starg_status status = starg_signature_create(context, in.cube, kind, &s);
-    return signature_result(context, status, s);
-}
-
-static starg_status signature_d2(starg_context *context) {
-    return signature_of(context, STARG_SIGNATURE_D2);
-}
-
-static starg_status signature_dna(starg_context *context) {
-    return signature_of(context, STARG_SIGNATURE_SHAPE_DNA);
-}
-
-static starg_status signature_star(starg_context *context) {
-    return signature_of(context, STARG_SIGNATURE_STAR);
-}
+#define SIGNATURE(NAME, VARIANT, ...)                                                              \
+    FAILING_MAKES(NAME, VARIANT, starg_signature, starg_signature_free(context, out), __VA_ARGS__)
 
 static starg_status signature_create_all(starg_context *context) {
     starg_signature *all[STARG_SIGNATURE_KINDS] = {NULL};
@@ -50,121 +27,52 @@ static starg_status signature_create_all(starg_context *context) {
     return status;
 }
 
-static starg_status signature_restore(starg_context *context) {
-    const starg_signature *from = in.papers[0];
-    starg_signature *s = NULL;
-    starg_status status =
-        starg_signature_restore(context, from->kind, from->version, from->numbers, from->count, &s);
-    return signature_result(context, status, s);
-}
-
-static starg_status distance_star(starg_context *context) {
-    double d;
-    return starg_signature_distance(context, in.stars[0], in.stars[1], &d);
-}
-
-static starg_status distance_paper(starg_context *context) {
-    double d;
-    return starg_signature_distance(context, in.papers[0], in.papers[1], &d);
-}
-
-static starg_status distances(starg_context *context) {
-    double d[4];
-    return starg_signature_distances(context, in.papers, 2, d);
-}
-
-static starg_status retrieval_measure(starg_context *context) {
+static starg_status signatures(starg_context *context) {
     static const double table[] = {0, 1, 2, 1, 0, 3, 2, 3, 0};
     static const uint32_t class_of[] = {0, 0, 1};
+    const starg_signature *from = in.papers[0];
     starg_retrieval classes[2], overall;
-    return starg_retrieval_measure(context, table, class_of, 3, 2, classes, &overall);
+    double d[4];
+    SIGNATURE(starg_signature_create, "d2", in.cube, STARG_SIGNATURE_D2);
+    SIGNATURE(starg_signature_create, "shape-dna", in.cube, STARG_SIGNATURE_SHAPE_DNA);
+    SIGNATURE(starg_signature_create, "star", in.cube, STARG_SIGNATURE_STAR);
+    FAILING_BY(starg_signature_create_all, "", signature_create_all(context));
+    SIGNATURE(starg_signature_restore, "", from->kind, from->version, from->numbers, from->count);
+    FAILING(starg_signature_distance, "star", in.stars[0], in.stars[1], d);
+    FAILING(starg_signature_distance, "paper", in.papers[0], in.papers[1], d);
+    FAILING(starg_signature_distances, "paper", in.papers, 2, d);
+    FAILING(starg_retrieval_measure, "", table, class_of, 3, 2, classes, &overall);
+    return STARG_OK;
 }
 
 /* ---- descriptors ---- */
 
-static starg_status descriptor_result(starg_context *context, starg_status status,
-                                      starg_descriptor *descriptor) {
-    failing_result(status, descriptor);
-    starg_descriptor_free(context, descriptor);
-    return status;
-}
+#define DESCRIPTOR(NAME, VARIANT, ...)                                                             \
+    FAILING_MAKES(NAME, VARIANT, starg_descriptor, starg_descriptor_free(context, out), __VA_ARGS__)
 
-static starg_status describe(starg_context *context, const starg_mesh *mesh, size_t detail) {
-    starg_descriptor_options options;
-    starg_descriptor *d = NULL;
-    starg_descriptor_options_default(&options);
-    options.direction_count = 12;
-    options.detail = detail;
-    options.effort = 3;
-    starg_status status = starg_descriptor_create(context, mesh, &options, &d);
-    return descriptor_result(context, status, d);
-}
-
-static starg_status descriptor_create(starg_context *context) {
-    return describe(context, in.cube, 0);
-}
-
-static starg_status descriptor_simplified(starg_context *context) {
-    return describe(context, in.fine_blob, 100);
-}
-
-static starg_status descriptor_write(starg_context *context) {
-    return starg_descriptor_write(context, in.descriptor, "r.off", failing_output("d.json"));
-}
-
-static starg_status descriptor_read(starg_context *context) {
-    starg_descriptor *d = NULL;
-    starg_status status = starg_descriptor_read(context, failing_input("descriptor.json"), &d);
-    return descriptor_result(context, status, d);
-}
-
-static starg_status descriptor_read_memory(starg_context *context) {
-    starg_descriptor *d = NULL;
-    starg_status status =
-        starg_descriptor_read_memory(context, descriptor_text.data, descriptor_text.size, "d", &d);
-    return descriptor_result(context, status, d);
-}
-
-static starg_status descriptor_points(starg_context *context) {
-    double *points = NULL;
-    starg_status status = starg_descriptor_points(context, in.descriptor, &points);
-    failing_result(status, points);
-    starg_descriptor_points_free(context, points);
-    return status;
-}
-
-static starg_status descriptor_reconstruct(starg_context *context) {
+static starg_status descriptors(starg_context *context) {
+    starg_descriptor_options as_it_is, brought_down;
     starg_reconstruction result;
-    return starg_descriptor_reconstruct(context, in.descriptor, in.room, &result);
-}
-
-static starg_status signature_of_star(starg_context *context) {
-    starg_signature *s = NULL;
-    starg_status status =
-        starg_signature_of_descriptor(context, in.descriptor, STARG_SIGNATURE_STAR, &s);
-    return signature_result(context, status, s);
-}
-
-static starg_status signature_of_paper(starg_context *context) {
-    starg_signature *s = NULL;
-    starg_status status =
-        starg_signature_of_descriptor(context, in.descriptor, STARG_SIGNATURE_PAPER, &s);
-    return signature_result(context, status, s);
+    starg_descriptor_options_default(&as_it_is);
+    as_it_is.direction_count = 12;
+    as_it_is.detail = 0;
+    as_it_is.effort = 3;
+    brought_down = as_it_is;
+    brought_down.detail = 100;
+    DESCRIPTOR(starg_descriptor_create, "as it is", in.cube, &as_it_is);
+    DESCRIPTOR(starg_descriptor_create, "brought down", in.fine_blob, &brought_down);
+    FAILING(starg_descriptor_write, "", in.descriptor, "r.off", failing_output("d.json"));
+    DESCRIPTOR(starg_descriptor_read, "", failing_input("descriptor.json"));
+    DESCRIPTOR(starg_descriptor_read_memory, "", descriptor_text.data, descriptor_text.size, "d");
+    FAILING_MAKES(starg_descriptor_points, "", double, starg_descriptor_points_free(context, out),
+                  in.descriptor);
+    FAILING(starg_descriptor_reconstruct, "", in.descriptor, in.room, &result);
+    SIGNATURE(starg_signature_of_descriptor, "star", in.descriptor, STARG_SIGNATURE_STAR);
+    SIGNATURE(starg_signature_of_descriptor, "paper", in.descriptor, STARG_SIGNATURE_PAPER);
+    return STARG_OK;
 }
 
 /* ---- the database ---- */
-
-static starg_status database_create(starg_context *context) {
-    return starg_database_create(context, failing_output("new.db"));
-}
-
-static starg_status database_open(starg_context *context) {
-    starg_database *database = NULL;
-    starg_status status = starg_database_open(context, failing_input("shapes.db"), &database);
-    failing_result(status, database);
-    starg_database_close(database);
-    return status;
-}
 
 /* Opens a database with memory that holds; the call that follows has memory that fails. */
 static starg_database *opened(starg_context *context, const char *path) {
@@ -224,37 +132,6 @@ static starg_status database_remove(starg_context *context) {
     return status;
 }
 
-static starg_status models_result(starg_context *context, starg_database *database,
-                                  starg_status status, starg_database_models *models) {
-    failing_result(status, models);
-    starg_database_models_free(context, models);
-    starg_database_close(database);
-    return status;
-}
-
-static starg_status database_list(starg_context *context) {
-    starg_database *database = opened(context, failing_input("shapes.db"));
-    starg_database_models *models = NULL;
-    starg_status status = starg_database_list(database, &models);
-    return models_result(context, database, status, models);
-}
-
-static starg_status database_signatures(starg_context *context) {
-    starg_database *database = opened(context, failing_input("shapes.db"));
-    starg_database_models *models = NULL;
-    starg_status status = starg_database_signatures(database, STARG_SIGNATURE_PAPER, &models);
-    return models_result(context, database, status, models);
-}
-
-static starg_status database_query(starg_context *context) {
-    starg_database *database = opened(context, failing_input("shapes.db"));
-    starg_database_models *models = NULL;
-    starg_status status = starg_database_query(database, in.stars[0], 1, &models);
-    return models_result(context, database, status, models);
-}
-
-/* ---- classes ---- */
-
 static starg_database_models *two_models(void) {
     static char room[] = "room.off", cube[] = "cube.off";
     static starg_database_model items[] = {{.path = room, .name = room},
@@ -263,61 +140,37 @@ static starg_database_models *two_models(void) {
     return &models;
 }
 
-static starg_status classes_by_prefix(starg_context *context) {
-    starg_classes *classes = NULL;
-    starg_status status = starg_classes_by_prefix(context, two_models(), &classes);
-    failing_result(status, classes);
-    starg_classes_free(context, classes);
-    return status;
-}
+/* NAME(database, ..., &out), of a database that is there. */
+#define MODELS(NAME, VARIANT, ...)                                                                 \
+    do                                                                                             \
+        if (failing_turn(#NAME, VARIANT)) {                                                        \
+            starg_database *database = opened(context, failing_input("shapes.db"));                \
+            starg_database_models *out = NULL;                                                     \
+            starg_status status = NAME(__VA_ARGS__);                                               \
+            failing_result(status, out);                                                           \
+            starg_database_models_free(context, out);                                              \
+            starg_database_close(database);                                                        \
+            return status;                                                                         \
+        }                                                                                          \
+    while (0)
+#define CLASSES(NAME, VARIANT, ...)                                                                \
+    FAILING_MAKES(NAME, VARIANT, starg_classes, starg_classes_free(context, out), __VA_ARGS__)
 
-static starg_status classes_read(starg_context *context) {
-    starg_classes *classes = NULL;
-    starg_status status =
-        starg_classes_read(context, failing_input("classes.txt"), two_models(), &classes);
-    failing_result(status, classes);
-    starg_classes_free(context, classes);
-    return status;
+static starg_status databases(starg_context *context) {
+    FAILING(starg_database_create, "", failing_output("new.db"));
+    FAILING_MAKES(starg_database_open, "", starg_database, starg_database_close(out),
+                  failing_input("shapes.db"));
+    FAILING_BY(starg_database_add, "new, known, missing", database_add(context));
+    FAILING_BY(starg_database_remove, "", database_remove(context));
+    MODELS(starg_database_list, "", database, &out);
+    MODELS(starg_database_signatures, "", database, STARG_SIGNATURE_PAPER, &out);
+    MODELS(starg_database_query, "", database, in.stars[0], 1, &out);
+    CLASSES(starg_classes_by_prefix, "", two_models());
+    CLASSES(starg_classes_read, "", failing_input("classes.txt"), two_models());
+    return STARG_OK;
 }
 
 /* ---- maps ---- */
-
-static starg_status map_result(starg_context *context, starg_status status, starg_map *map) {
-    failing_result(status, map);
-    starg_map_free(context, map);
-    return status;
-}
-
-static starg_status map_same(starg_context *context) {
-    starg_map *map = NULL;
-    starg_status status = starg_map_create(context, in.cube, in.box, NULL, &map);
-    return map_result(context, status, map);
-}
-
-static starg_status map_sphere(starg_context *context) {
-    starg_map *map = NULL;
-    starg_status status = starg_map_create(context, in.blob, in.other_blob, NULL, &map);
-    return map_result(context, status, map);
-}
-
-static starg_status map_landmarks(starg_context *context) {
-    static const uint32_t pairs[] = {0, 0, 2, 2, 4, 4};
-    const starg_map_options options = {pairs, 3};
-    starg_map *map = NULL;
-    starg_status status = starg_map_create(context, in.blob, in.other_blob, &options, &map);
-    return map_result(context, status, map);
-}
-
-static starg_status map_write(starg_context *context) {
-    return starg_map_write(context, in.map, failing_output("m.json"));
-}
-
-static starg_status map_read(starg_context *context) {
-    starg_map *map = NULL;
-    starg_status status =
-        starg_map_read(context, failing_input("map.json"), in.blob, in.other_blob, &map);
-    return map_result(context, status, map);
-}
 
 static starg_status landmarks_read(starg_context *context) {
     uint32_t *pairs = NULL;
@@ -330,90 +183,39 @@ static starg_status landmarks_read(starg_context *context) {
     return status;
 }
 
+#define MAP(NAME, VARIANT, ...)                                                                    \
+    FAILING_MAKES(NAME, VARIANT, starg_map, starg_map_free(context, out), __VA_ARGS__)
+
+static starg_status maps(starg_context *context) {
+    static const uint32_t pairs[] = {0, 0, 2, 2, 4, 4};
+    const starg_map_options landmarks = {pairs, 3};
+    MAP(starg_map_create, "same faces", in.cube, in.box, NULL);
+    MAP(starg_map_create, "sphere", in.blob, in.other_blob, NULL);
+    MAP(starg_map_create, "sphere, landmarks", in.blob, in.other_blob, &landmarks);
+    FAILING(starg_map_write, "", in.map, failing_output("m.json"));
+    MAP(starg_map_read, "", failing_input("map.json"), in.blob, in.other_blob);
+    FAILING_BY(starg_landmarks_read, "", landmarks_read(context));
+    return STARG_OK;
+}
+
 /* ---- morphs ---- */
 
-static starg_status morph_of(starg_context *context, starg_morph_method method,
-                             starg_morph **morph) {
-    starg_morph_options options;
+static const starg_morph_options *by(starg_morph_method method) {
+    static starg_morph_options options;
     starg_morph_options_default(&options);
     options.method = method;
     options.candidates = 8;
-    return starg_morph_create(context, in.cube, starg_mesh_vertices(in.box), &options, morph);
-}
-
-static starg_status morph_result(starg_status status, starg_morph *morph) {
-    failing_result(status, morph);
-    starg_morph_free(morph);
-    return status;
-}
-
-static starg_status morph_star(starg_context *context) {
-    starg_morph *morph = NULL;
-    starg_status status = morph_of(context, STARG_MORPH_STAR, &morph);
-    return morph_result(status, morph);
-}
-
-static starg_status morph_arap(starg_context *context) {
-    starg_morph *morph = NULL;
-    starg_status status = morph_of(context, STARG_MORPH_ARAP, &morph);
-    return morph_result(status, morph);
-}
-
-static starg_status morph_linear(starg_context *context) {
-    starg_morph *morph = NULL;
-    starg_status status = morph_of(context, STARG_MORPH_LINEAR, &morph);
-    return morph_result(status, morph);
-}
-
-static starg_status morph_spherical(starg_context *context) {
-    starg_morph *morph = NULL;
-    starg_status status = morph_of(context, STARG_MORPH_SPHERICAL, &morph);
-    return morph_result(status, morph);
+    return &options;
 }
 
 /* A morph with memory that holds; what is asked of it has memory that fails. */
 static starg_morph *ready(starg_context *context) {
     starg_morph *morph = NULL;
     failing_pause();
-    test_ok(context, morph_of(context, STARG_MORPH_STAR, &morph));
+    test_ok(context, starg_morph_create(context, in.cube, starg_mesh_vertices(in.box),
+                                        by(STARG_MORPH_STAR), &morph));
     failing_resume();
     return morph;
-}
-
-static starg_status morph_frame(starg_context *context) {
-    starg_morph *morph = ready(context);
-    double positions[24];
-    starg_status status = starg_morph_frame(morph, 0.5, positions);
-    starg_morph_free(morph);
-    return status;
-}
-
-static starg_status morph_measure(starg_context *context) {
-    starg_morph *morph = ready(context);
-    starg_frame_measures measures;
-    starg_status status = starg_morph_measure(morph, 0, starg_mesh_vertices(in.cube), &measures);
-    starg_morph_free(morph);
-    return status;
-}
-
-static starg_status morph_guards_result(starg_context *context) {
-    starg_morph *morph = ready(context);
-    starg_guards *guards = NULL;
-    starg_status status = starg_morph_guards_result(morph, 0, &guards);
-    failing_result(status, guards);
-    starg_guards_free(context, guards);
-    starg_morph_free(morph);
-    return status;
-}
-
-static starg_status morph_guards_separate(starg_context *context) {
-    starg_morph *morph = ready(context);
-    starg_guards *guards = NULL;
-    starg_status status = starg_morph_guards_separate(morph, 1, &guards);
-    failing_result(status, guards);
-    starg_guards_free(context, guards);
-    starg_morph_free(morph);
-    return status;
 }
 
 static starg_status morph_solids(starg_context *context) {
@@ -428,102 +230,51 @@ static starg_status morph_solids(starg_context *context) {
     return status;
 }
 
-/* ---- the tables ---- */
+#define MORPH(NAME, VARIANT, METHOD)                                                               \
+    FAILING_MAKES(NAME, VARIANT, starg_morph, starg_morph_free(out), in.cube,                      \
+                  starg_mesh_vertices(in.box), by(STARG_MORPH_##METHOD))
+/* NAME(morph, ...), which may make guards. */
+#define OF_MORPH(NAME, VARIANT, ...)                                                               \
+    do                                                                                             \
+        if (failing_turn(#NAME, VARIANT)) {                                                        \
+            starg_morph *morph = ready(context);                                                   \
+            starg_status status = NAME(morph, __VA_ARGS__);                                        \
+            assert_true(status == STARG_OK || guards == NULL);                                     \
+            starg_guards_free(context, guards);                                                    \
+            starg_morph_free(morph);                                                               \
+            return status;                                                                         \
+        }                                                                                          \
+    while (0)
 
-static const failing_call signatures[] = {
-    {"starg_signature_create", "d2", signature_d2, NULL},
-    {"starg_signature_create", "shape-dna", signature_dna, NULL},
-    {"starg_signature_create", "star", signature_star, NULL},
-    {"starg_signature_create_all", "", signature_create_all, NULL},
-    {"starg_signature_restore", "", signature_restore, NULL},
-    {"starg_signature_distance", "star", distance_star, NULL},
-    {"starg_signature_distance", "paper", distance_paper, NULL},
-    {"starg_signature_distances", "paper", distances, NULL},
-    {"starg_retrieval_measure", "", retrieval_measure, NULL},
-};
-
-static const failing_call descriptors[] = {
-    {"starg_descriptor_create", "as it is", descriptor_create, NULL},
-    {"starg_descriptor_create", "brought down", descriptor_simplified, NULL},
-    {"starg_descriptor_write", "", descriptor_write, NULL},
-    {"starg_descriptor_read", "", descriptor_read, NULL},
-    {"starg_descriptor_read_memory", "", descriptor_read_memory, NULL},
-    {"starg_descriptor_points", "", descriptor_points, NULL},
-    {"starg_descriptor_reconstruct", "", descriptor_reconstruct, NULL},
-    {"starg_signature_of_descriptor", "star", signature_of_star, NULL},
-    {"starg_signature_of_descriptor", "paper", signature_of_paper, NULL},
-};
-
-static const failing_call databases[] = {
-    {"starg_database_create", "", database_create, NULL},
-    {"starg_database_open", "", database_open, NULL},
-    {"starg_database_add", "new, known, missing", database_add, NULL},
-    {"starg_database_remove", "", database_remove, NULL},
-    {"starg_database_list", "", database_list, NULL},
-    {"starg_database_signatures", "", database_signatures, NULL},
-    {"starg_database_query", "", database_query, NULL},
-    {"starg_classes_by_prefix", "", classes_by_prefix, NULL},
-    {"starg_classes_read", "", classes_read, NULL},
-};
-
-static const failing_call maps[] = {
-    {"starg_map_create", "same faces", map_same, NULL},
-    {"starg_map_create", "sphere", map_sphere, NULL},
-    {"starg_map_create", "sphere, landmarks", map_landmarks, NULL},
-    {"starg_map_write", "", map_write, NULL},
-    {"starg_map_read", "", map_read, NULL},
-    {"starg_landmarks_read", "", landmarks_read, NULL},
-};
-
-static const failing_call morphs[] = {
-    {"starg_morph_create", "star", morph_star, NULL},
-    {"starg_morph_create", "arap", morph_arap, NULL},
-    {"starg_morph_create", "linear", morph_linear, NULL},
-    {"starg_morph_create", "spherical", morph_spherical, NULL},
-    {"starg_morph_frame", "star", morph_frame, NULL},
-    {"starg_morph_measure", "", morph_measure, NULL},
-    {"starg_morph_guards_result", "", morph_guards_result, NULL},
-    {"starg_morph_guards_separate", "", morph_guards_separate, NULL},
-};
-
-static const failing_call by_tetgen[] = {
-    {"starg_morph_solids", "", morph_solids, NULL},
-};
-
-static void test_signatures(void **state) {
-    (void)state;
-    FAILING_RUN(signatures);
+static starg_status morphs(starg_context *context) {
+    double positions[24];
+    starg_frame_measures measures;
+    starg_guards *guards = NULL;
+    MORPH(starg_morph_create, "star", STAR);
+    MORPH(starg_morph_create, "arap", ARAP);
+    MORPH(starg_morph_create, "linear", LINEAR);
+    MORPH(starg_morph_create, "spherical", SPHERICAL);
+    OF_MORPH(starg_morph_frame, "star", 0.5, positions);
+    OF_MORPH(starg_morph_measure, "", 0, starg_mesh_vertices(in.cube), &measures);
+    OF_MORPH(starg_morph_guards_result, "", 0, &guards);
+    OF_MORPH(starg_morph_guards_separate, "", 1, &guards);
+    return STARG_OK;
 }
 
-static void test_descriptors(void **state) {
-    (void)state;
-    FAILING_RUN(descriptors);
+static starg_status by_tetgen(starg_context *context) {
+    FAILING_BY(starg_morph_solids, "", morph_solids(context));
+    return STARG_OK;
 }
 
-static void test_databases(void **state) {
-    (void)state;
-    FAILING_RUN(databases);
-}
-
-static void test_maps(void **state) {
-    (void)state;
-    FAILING_RUN(maps);
-}
-
-static void test_morphs(void **state) {
-    (void)state;
-    FAILING_RUN(morphs);
-}
+FAILING_TEST(signatures)
+FAILING_TEST(descriptors)
+FAILING_TEST(databases)
+FAILING_TEST(maps)
+FAILING_TEST(morphs)
 
 static void test_tetgen(void **state) {
     (void)state;
-    starg_status status = morph_solids(in.context);
-    if (status == STARG_ERROR_SOLVER) {
-        printf("skipped: %s\n", starg_context_error(in.context)->message);
-        skip();
-    }
-    test_ok(in.context, status);
-    FAILING_RUN(by_tetgen);
+    failing_run_with_tetgen(by_tetgen);
 }
 
 static int set_up(void **state) {

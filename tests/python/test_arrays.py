@@ -118,7 +118,7 @@ class Out(Case):
             kept.append(mesh.vertices[10:20])
             wanted.append(mesh.vertices[10:20].copy())
             del mesh
-        pieces = starguard.decompose(starguard.sample("star", vertices=500), time_limit=5)
+        pieces = starguard.decompose(starguard.sample("star", vertices=500), effort=30)
         tets, guards = pieces.mesh.tetrahedra[:5], pieces.guards
         expected = tets.copy(), guards.copy()
         del pieces
@@ -136,7 +136,7 @@ class Out(Case):
         self.assertGreater(float(mesh.vertices.max()), 0)
 
     def test_structured_arrays(self):
-        pieces = starguard.decompose(starguard.sample("gallery", vertices=1000), time_limit=5)
+        pieces = starguard.decompose(starguard.sample("gallery", vertices=1000), effort=30)
         self.assertGreater(len(pieces), 1)
         records = pieces.pieces
         self.assertEqual(records.dtype.names, ("guard", "radius", "tetrahedra", "volume", "star"))

@@ -17,8 +17,8 @@ DOG = starguard.sample("dog", vertices=2000)
 
 
 def long_work(**options):
-    """Takes many seconds on any machine, and is asked to stop long before."""
-    return starguard.decompose(DOG, time_limit=100, **options)
+    """Takes hours on any machine, and is asked to stop long before."""
+    return starguard.decompose(DOG, effort=2**60, time_limit=10000, **options)
 
 
 class Progress(Case):
@@ -35,9 +35,9 @@ class Progress(Case):
         self.assertEqual(threads, {threading.get_ident()})
 
     def test_false_cancels(self):
-        begun = time.monotonic()
+        begun = time.process_time()
         self.fails(starguard.CancelledError, "cancelled", long_work, progress=lambda *_: False)
-        self.assertLess(time.monotonic() - begun, 20 * SLOWNESS)
+        self.assertLess(time.process_time() - begun, 20 * SLOWNESS)
 
     def test_none_and_others_go_on(self):
         for answer in (None, True, 0, ""):
@@ -73,11 +73,11 @@ class Progress(Case):
 
 class Interruption(Case):
     def interrupt(self, function, after=0.5):
-        """Calls a function, and sends Ctrl-C meanwhile; how long it took from then on."""
+        """Calls a function, and sends Ctrl-C meanwhile; processor time from then on."""
         sent = []
 
         def send():
-            sent.append(time.monotonic())
+            sent.append(time.process_time())
             os.kill(os.getpid(), signal.SIGINT)
 
         timer = threading.Timer(after, send)
@@ -88,7 +88,7 @@ class Interruption(Case):
         finally:
             timer.cancel()
             timer.join()
-        return time.monotonic() - sent[0]
+        return time.process_time() - sent[0]
 
     def test_ctrl_c(self):
         self.assertLess(self.interrupt(long_work), 10 * SLOWNESS)
@@ -124,18 +124,27 @@ class Interruption(Case):
 
     def test_handlers_of_the_program(self):
         """A handler that does not raise runs at once, and the call goes on."""
-        heard = []
-        before = signal.signal(signal.SIGINT, lambda *_: heard.append(time.monotonic()))
+        timers = []
+
+        def send_soon():
+            timers.append(threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)))
+            timers[-1].start()
+
+        def hear(*_):
+            if len(timers) == 2:
+                raise KeyboardInterrupt
+            send_soon()
+
+        before = signal.signal(signal.SIGINT, hear)
         try:
-            timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
-            timer.start()
-            starguard.decompose(starguard.sample("dog", vertices=1000), time_limit=2)
-            ended = time.monotonic()
+            send_soon()
+            with self.assertRaises(KeyboardInterrupt): # of the second signal: the first has ended nothing
+                long_work()
         finally:
-            timer.join()
+            for timer in timers:
+                timer.join()
             signal.signal(signal.SIGINT, before)
-        self.assertEqual(len(heard), 1)
-        self.assertLess(heard[0], ended - 0.5)
+        self.assertEqual(len(timers), 2)
 
     def test_a_script_ends_as_scripts_do(self):
         script = ("import starguard, sys\nprint('go', flush=True)\n"
@@ -143,9 +152,9 @@ class Interruption(Case):
         with subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE) as process:
             process.stdout.readline()
-            time.sleep(1)
+            time.sleep(1) # it is at work, or will be soon: either ends so
             process.send_signal(signal.SIGINT)
-            _, error = process.communicate(timeout=30 * SLOWNESS)
+            _, error = process.communicate()
         self.assertIn(b"KeyboardInterrupt", error)
         self.assertEqual(process.returncode, -signal.SIGINT)
 
@@ -196,7 +205,11 @@ class Threads(Case):
                 time.sleep(0.001)
 
         def off_the_main_thread():
-            starguard.decompose(starguard.sample("dog", vertices=1000), time_limit=1, threads=1)
+            limit = 1
+            while counts[0] <= 50 and limit <= 64:
+                starguard.decompose(starguard.sample("dog", vertices=1000), effort=2**60,
+                                    time_limit=limit, threads=1)
+                limit *= 2
 
         counter, worker = threading.Thread(target=count), threading.Thread(target=off_the_main_thread)
         counter.start()
@@ -229,17 +242,23 @@ class Log(Case):
             self.assertGreater(starguard.Solid(inward).mesh.volume, 0)
         self.assertEqual(caught.records[0].levelno, logging.INFO)
         with self.assertLogs("starguard", logging.INFO) as caught:
-            starguard.decompose((VERTICES, FACES[:3]), time_limit=5)
+            starguard.decompose((VERTICES, FACES[:3]), effort=30)
         self.assertIn("stuffing", caught.output[0])
 
 
 class Time(Case):
     def test_a_limit_that_strikes_is_told(self):
         model = starguard.sample("dog", vertices=2000)
-        begun = time.monotonic()
-        pieces = starguard.decompose(model, time_limit=1)
+        limit, pieces = 1, None
+        while pieces is None:
+            begun = time.process_time()
+            try:
+                pieces = starguard.decompose(model, effort=2**60, time_limit=limit, threads=1)
+            except starguard.TimeLimitError: # no start by then
+                pass
+            self.assertLess(time.process_time() - begun, (limit + 20) * SLOWNESS)
+            limit *= 2
         self.assertTrue(pieces.time_limited)
-        self.assertLess(time.monotonic() - begun, 20 * SLOWNESS)
         self.assertEqual(pieces.strictly_star, len(pieces))
 
 

@@ -124,7 +124,7 @@ class Cases(Case):
         descriptor = starguard.describe(room)
         self.fails(starguard.ArgumentError, "needs the model itself", starguard.match, descriptor,
                    descriptor, "d2")
-        report = starguard.decompose(room, time_limit=5)
+        report = starguard.decompose(room, effort=30)
         report.write_report("pieces.json")
         self.fails(starguard.ArgumentError, "only reports", starguard.verify, room, "pieces.json")
 

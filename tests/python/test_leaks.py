@@ -34,7 +34,7 @@ def use_everything():
     starguard.cover(seen, prices=True, method="lp")
     starguard.kernel(solid)
     starguard.skeleton(solid, nodes=20)
-    pieces = starguard.decompose((VERTICES, FACES), generator="stuffing", time_limit=5)
+    pieces = starguard.decompose((VERTICES, FACES), generator="stuffing", effort=30)
     pieces.surfaces()
     starguard.TetMesh(VERTICES, [[0, 1, 2, 3]]).surface()
     starguard.verify((VERTICES, FACES), starguard.guard((VERTICES, FACES)))
@@ -75,7 +75,7 @@ class Leaks(Case):
     def test_results_of_files(self):
         before = live()
         guards = starguard.guard(ROOM)
-        pieces = starguard.decompose(ROOM, time_limit=5)
+        pieces = starguard.decompose(ROOM, effort=30)
         guards.write("g.json"), pieces.write("p.vtk"), pieces.write_report("p.json")
         kept = [starguard.read_result(name).__class__ for name in ("g.json", "p.vtk", "p.json")]
         self.assertEqual(kept, [starguard.Guards, starguard.PiecesMesh, starguard.PiecesReport])

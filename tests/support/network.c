@@ -4,6 +4,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "starguard/database.h"
+
 static struct timespec after(double seconds) {
     struct timespec when;
     timespec_get(&when, TIME_UTC);
@@ -86,7 +88,7 @@ static void break_way(network *net) {
 /* A helper that cannot go on ends the run, as a launcher would. */
 static int serve(void *user) {
     network_end *self = user;
-    if (starg_ranks_serve(self->context, &self->ranks) != STARG_OK)
+    if (starg_database_ranks_serve(self->context, &self->ranks) != STARG_OK)
         break_way(self->net);
     return 0;
 }

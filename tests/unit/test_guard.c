@@ -10,6 +10,7 @@
 #include "models.h"
 #include "starguard/guard.h"
 #include "starguard/sample.h"
+#include "starguard/skeleton.h"
 #include "starguard/verify.h"
 
 static starg_guard_options small_options(void) {
@@ -181,6 +182,61 @@ static void test_file(void **state) {
     free(text[1]);
 }
 
+/* The nodes of a skeleton are points, whichever format it is written in. */
+static void test_skeletons_are_points(void **state) {
+    static const char *const endings[] = {"obj", "cg", "vtk"};
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "star", 700);
+    starg_skeleton *skeleton = NULL;
+    test_ok(context, starg_skeleton_create(context, solid, NULL, &skeleton));
+    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+        char path[64];
+        double *points = NULL;
+        size_t count = 0;
+        snprintf(path, sizeof path, "curve-%ld.%s", (long)getpid(), endings[i]);
+        test_ok(context, starg_skeleton_write(context, skeleton, path, STARG_SKELETON_AUTO));
+        test_ok(context, starg_points_read(context, path, &points, &count));
+        assert_int_equal(count, skeleton->node_count);
+        assert_memory_equal(points, skeleton->positions, 24 * count);
+        starg_points_free(context, points);
+        unlink(path);
+    }
+    starg_skeleton_free(context, skeleton);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* A line of too many numbers is told by its number; six are a position and a direction. */
+static void test_lines_of_points(void **state) {
+    static const struct {
+        const char *text, *says;
+    } cases[] = {{"1 2 3\n1 2 3 0 0 1\n", "directions"}, {"1 2 3\nv 1 2 3 4\n", "not 4"},
+                 {"1 2 3\n1 2\n3 4 5\n", "not 2"},       {"1 2 3\n1 2 3 4 5 6 7\n", "not 7"},
+                 {"1 2 3\n1 2 hall\n", "hall"},          {"1 2 3\n1 2 3 # 4 5 6\nl 1 2\n", ""}};
+    (void)state;
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        double *points = NULL;
+        size_t count = 0, size = strlen(cases[i].text);
+        starg_status status =
+            starg_points_read_memory(context, cases[i].text, size, "p.txt", &points, &count);
+        if (*cases[i].says == '\0') {
+            test_ok(context, status);
+            assert_int_equal(count, 2);
+            starg_points_free(context, points);
+            continue;
+        }
+        const starg_error *error = starg_context_error(context);
+        assert_int_equal(status, STARG_ERROR_FORMAT);
+        assert_null(points);
+        assert_non_null(strstr(error->message, cases[i].says));
+        assert_int_equal(error->element, STARG_ELEMENT_LINE);
+        assert_int_equal(error->indices[0], 2);
+    }
+    test_context_free(context);
+}
+
 /* Every change to a good file that makes it bad is told, and none crashes. */
 static void test_bad_files(void **state) {
     static const char good[] =
@@ -349,10 +405,15 @@ static void test_given_guards(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_sample), cmocka_unit_test(test_sphere_takes_one),
-        cmocka_unit_test(test_options),      cmocka_unit_test(test_file),
-        cmocka_unit_test(test_bad_files),    cmocka_unit_test(test_bad_options),
-        cmocka_unit_test(test_memory),       cmocka_unit_test(test_given_guards)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_every_sample),
+                                       cmocka_unit_test(test_sphere_takes_one),
+                                       cmocka_unit_test(test_options),
+                                       cmocka_unit_test(test_file),
+                                       cmocka_unit_test(test_skeletons_are_points),
+                                       cmocka_unit_test(test_lines_of_points),
+                                       cmocka_unit_test(test_bad_files),
+                                       cmocka_unit_test(test_bad_options),
+                                       cmocka_unit_test(test_memory),
+                                       cmocka_unit_test(test_given_guards)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

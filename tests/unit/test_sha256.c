@@ -1,5 +1,5 @@
 /* SHA-256 against the examples that FIPS 180-4 and its test vectors give. */
-#include "core/sha256.h"
+#include "shape/sha256.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -24,7 +24,11 @@ export function whatIsMissing() {
 export async function openBrowser() {
     const require = createRequire(path.resolve(process.env.STARGUARD_MODULES, "package.json"));
     const { chromium } = require("playwright-core");
-    return chromium.launch({ executablePath: process.env.STARGUARD_CHROMIUM, args: FLAGS });
+    return chromium.launch({
+        executablePath: process.env.STARGUARD_CHROMIUM,
+        args: FLAGS,
+        timeout: 0,
+    });
 }
 
 /** Opens a page, waits until it is ready, and keeps all that it complains of or asks for. */
@@ -34,7 +38,7 @@ export async function openPage(browser, file, options = {}) {
         ...options,
     });
     const page = await context.newPage();
-    page.setDefaultTimeout(90000); // drawing by a program on a busy machine is slow
+    page.setDefaultTimeout(0); // a busy machine takes as long as it takes
     const watched = { complaints: [], requests: [], dialogs: 0 };
     const address = pathToFileURL(file).href;
     page.on("console", (message) =>
@@ -50,6 +54,6 @@ export async function openPage(browser, file, options = {}) {
         dialog.dismiss();
     });
     await page.goto(address);
-    await page.waitForSelector("html[data-ready=true]", { timeout: 60000 });
+    await page.waitForSelector("html[data-ready=true]");
     return { page, watched, close: () => context.close() };
 }

@@ -3,6 +3,7 @@
 #define STARG_STAR_STRICT_TWINS_H
 
 #include "core/context.h"
+#include "core/private.h"
 #include "starguard/decompose.h"
 
 /* Labels the tetrahedra of a mesh so that every piece is strictly star-shaped in it and in its
@@ -10,6 +11,7 @@
  * same pieces; copies of both. Errors: MESH (a tetrahedron so thin that no point is found in it),
  * MEMORY, CANCELLED. */
 starg_status twins_decompose(starg_context *context, const starg_tetmesh *mesh,
-                             const starg_tetmesh *twin, starg_decomposition *out[2]);
+                             const starg_tetmesh *twin, starg_decomposition *out[2])
+    STARG_PRIVATE(twins_decompose);
 
 #endif

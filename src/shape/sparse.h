@@ -1,6 +1,6 @@
 /* Sparse symmetric positive definite systems that are solved for many right-hand sides. */
-#ifndef STARG_CORE_SPARSE_H
-#define STARG_CORE_SPARSE_H
+#ifndef STARG_SHAPE_SPARSE_H
+#define STARG_SHAPE_SPARSE_H
 
 #include <stdint.h>
 

@@ -1,7 +1,7 @@
 /* SHA-256 (FIPS 180-4) of a block of memory: names contents, so that equal files are known as such.
  */
-#ifndef STARG_CORE_SHA256_H
-#define STARG_CORE_SHA256_H
+#ifndef STARG_SHAPE_SHA256_H
+#define STARG_SHAPE_SHA256_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -3,25 +3,20 @@
  * of functions in its own folder. */
 #include "core/ranks.h"
 
-#include "shape/database_files.h"
-#include "visibility/rows.h"
+#include "core/memory.h"
 
 static const double PATIENCE = 0.05; /* until a cancellation is seen */
 
 typedef struct helper {
     starg_context *context;
     const starg_ranks *ranks;
+    const ranks_work *const *works;
     const ranks_work *work; /* of the job at hand, NULL before the first */
     void *state;
     starg_status begun; /* the job's own status */
     uint64_t loop;
     bool released;
 } helper;
-
-static const ranks_work *const works[RANKS_WORKS] = {
-    [RANKS_VISIBILITY] = &visibility_ranks_work,
-    [RANKS_DESCRIBE] = &database_ranks_work,
-};
 
 static void end_job(helper *h) {
     if (h->work != NULL)
@@ -34,11 +29,11 @@ static void begin_job(helper *h, const ranks_message *head, starg_bytes_reader *
     end_job(h);
     h->loop = head->loop;
     h->begun = STARG_ERROR_RANK;
-    if (head->work >= RANKS_WORKS)
+    if (head->work >= RANKS_WORKS || h->works[head->work] == NULL)
         return;
     h->context->seed = head->seed;
     starg_context_set_time_limit(h->context, head->seconds);
-    h->work = works[head->work];
+    h->work = h->works[head->work];
     h->begun = h->work->begin(h->context, rest, &h->state);
 }
 
@@ -85,9 +80,10 @@ done:
     return status;
 }
 
-starg_status starg_ranks_serve(starg_context *context, const starg_ranks *ranks) {
+starg_status ranks_serve(starg_context *context, const starg_ranks *ranks,
+                         const ranks_work *const works[RANKS_WORKS]) {
     starg_status status = STARG_OK;
-    helper h = {.context = context, .ranks = ranks};
+    helper h = {.context = context, .ranks = ranks, .works = works};
     while (!h.released) {
         STARG_TRY(starg_check_cancel(context, "ranks"));
         STARG_TRY(take_message(&h));

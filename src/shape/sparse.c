@@ -2,7 +2,7 @@
  * takes its memory from malloc; all other memory is the context's.
  *
  * Cost: the fill-in; for surfaces of n vertices about 30 n to 60 n numbers, for each solution. */
-#include "core/sparse.h"
+#include "shape/sparse.h"
 
 #include <suitesparse/amd.h>
 #include <suitesparse/ldl.h>
