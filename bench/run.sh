@@ -27,6 +27,8 @@ for n in 10000 25000 100000 1000000; do
 done
 # shellcheck disable=SC2086
 "$build/bench/bench_visibility" 300 4 $models $sizes
+# shellcheck disable=SC2086
+"$build/bench/bench_region" 60 200 $models
 
 echo "== guarding"
 for method in greedy ilp "pilp --no-refine" pilp; do

@@ -12,8 +12,7 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 
-static const double TIME_LIMIT = 60; /* seconds, unless another one is asked for */
-static const double APART = 0.18;    /* pictures: how far pieces are moved from the middle of all */
+static const double APART = 0.18; /* pictures: how far pieces are moved from the middle of all */
 
 typedef struct values {
     const char *output, *report, *guards, *tets, *surfaces, *picture;
@@ -79,7 +78,8 @@ static starg_status cut(cli_session *session, const subject *s,
     if (s->tets != NULL)
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
     starg_status status = starg_solid_create(session->context, s->surface, &solid);
-    if (status == STARG_ERROR_MESH) { /* a surface with holes is filled with what it winds around */
+    /* a surface with holes is filled with what it winds around; faults without a place have none */
+    if (status == STARG_ERROR_MESH && starg_context_error(session->context)->index_count > 0) {
         cli_log(session, STARG_LOG_WARNING,
                 "%s; isosurface stuffing fills what the surface winds around, and closes holes "
                 "of its own accord",
@@ -111,59 +111,26 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
         cli_say(session, "surface       kept\n");
     else
         cli_say(session, "surface       within %.3g of the model's, which is within %.3g of it\n",
-                d->tetra.to_surface + d->tetra.step, d->tetra.from_surface + d->tetra.step);
+                d->tetra.distance, d->tetra.distance_back);
     if (d->time_limited)
         cli_say(session, "time limit    reached; this is the best that was found\n");
 }
 
-static json_t *pieces_json(cli_session *session, const starg_decomposition *d) {
-    json_t *list = json_array();
-    for (size_t p = 0; p < d->piece_count; p++) {
-        const starg_piece *piece = &d->pieces[p];
-        json_t *item = json_object();
-        cli_put(session, item, "guard", cli_json_point(piece->guard));
-        cli_put(session, item, "tetrahedra", json_integer((json_int_t)piece->tetrahedra));
-        cli_put(session, item, "volume", cli_json_real(piece->volume));
-        cli_put(session, item, "star", json_boolean(piece->star));
-        cli_put(session, item, "radius", cli_json_real(piece->radius));
-        cli_append(session, list, item);
-    }
-    return list;
-}
-
-static void report_pieces(cli_session *session, const starg_decomposition *d, const values *v) {
+/* What the file holds, and what is of the run. */
+static starg_status report_pieces(cli_session *session, const starg_decomposition *d,
+                                  const char *file, const values *v) {
+    starg_status status = STARG_OK;
     json_t *report = session->report;
+    char *text;
+    size_t size;
+    CLI_TRY(starg_decomposition_write_report_memory(session->context, d, file, &text, &size));
+    cli_report_take(session, text, size);
     cli_put(session, report, "output", cli_json_text(v->output));
-    cli_put(session, report, "mode",
-            json_string(starg_fields_word(starg_decompose_options_fields(), "mode", d->mode)));
-    cli_put(session, report, "surface",
-            json_string(d->tetra.surface_kept ? "kept" : "approximated"));
-    if (!d->tetra.surface_kept) {
-        cli_put(session, report, "distance", cli_json_real(d->tetra.to_surface + d->tetra.step));
-        cli_put(session, report, "distance_back",
-                cli_json_real(d->tetra.from_surface + d->tetra.step));
-    }
-    cli_put(session, report, "tetrahedra", json_integer((json_int_t)starg_tetmesh_count(d->mesh)));
     cli_put(session, report, "volume", cli_json_real(starg_tetmesh_volume(d->mesh)));
-    cli_put(session, report, "pieces", pieces_json(session, d));
-    cli_put(session, report, "strictly_star", json_integer((json_int_t)d->strictly_star));
     cli_put(session, report, "single_tetrahedra", json_integer((json_int_t)count_single(d)));
-    cli_put(session, report, "visible_vertices", cli_json_real(d->visible_vertices));
-    cli_put(session, report, "flattest", cli_json_real(d->flattest));
-    cli_put(session, report, "flattest_given", cli_json_real(d->flattest_given));
     cli_put(session, report, "contacts", json_integer((json_int_t)d->contact_count));
-    cli_put(session, report, "time_limited", json_boolean(d->time_limited));
-}
-
-static void report(cli_session *session, const subject *s, const starg_decomposition *d,
-                   const values *v) {
-    static const char format[] = "starguard-decompose";
-    if (s->surface != NULL)
-        cli_report_head(session, format, s->file, s->surface);
-    else
-        cli_report_head_tetrahedra(session, format, s->file, d->model_vertices,
-                                   d->model_tetrahedra);
-    report_pieces(session, d, v);
+done:
+    return status;
 }
 
 /* ---- surfaces ---- */
@@ -359,9 +326,11 @@ done:
 static starg_status make_options(cli_session *session, const values *v, double **points,
                                  starg_decompose_options *wanted) {
     starg_status status = STARG_OK;
+    starg_tetra_options usual;
+    starg_tetra_options_default(&usual);
     *wanted = v->wanted;
     /* half of the time is left for the pieces */
-    wanted->tetra.tetgen_limit = fmax(wanted->tetra.tetgen_limit, session->common.time_limit / 2);
+    wanted->tetra.tetgen_limit = fmax(usual.tetgen_limit, session->common.time_limit / 2);
     if (v->guards != NULL)
         CLI_TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));
     wanted->guards = *points;
@@ -379,13 +348,11 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(announce_files(session, v));
     CLI_TRY(make_options(session, v, &points, &wanted));
     CLI_TRY(read_subject(session, v, &what));
-    if (session->common.time_limit == 0)
-        starg_context_set_time_limit(session->context, TIME_LIMIT);
     CLI_TRY(cut(session, &what, &wanted, &pieces));
     CLI_TRY(write_files(session, v, what.file, pieces));
     say_pieces(session, pieces);
     if (session->report != NULL)
-        report(session, &what, pieces, v);
+        CLI_TRY(report_pieces(session, pieces, what.file, v));
 done:
     starg_decomposition_free(session->context, pieces);
     starg_points_free(session->context, points);
@@ -405,8 +372,9 @@ const cli_command cli_command_decompose = {
         "The surface is kept, face by face, where the program tetgen can be had. Surfaces that "
         "pass through themselves or have holes are filled by isosurface stuffing instead, with a "
         "warning, and how far its surface is from the model's is told.\n"
-        "The search ends when it finds nothing better, at the latest after 60 seconds unless "
-        "--time-limit says otherwise, with the best that it has.",
+        "The search ends when it finds nothing better, at the latest after a fixed amount of work "
+        "(some 15 seconds), so that the same input gives the same bytes. --effort counts trials "
+        "instead; with --time-limit the search goes on until then and gives the best it has.",
     .examples = "# pieces with their proofs, and what they look like\n"
                 "starguard decompose model.off -o pieces.vtk --report pieces.json \\\n"
                 "    --picture pieces.png\n"

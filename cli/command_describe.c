@@ -53,21 +53,21 @@ static void tell(cli_session *session, const starg_descriptor *d, const starg_re
         cli_say(session, "time limit    reached; another run may differ\n");
 }
 
-static void report(cli_session *session, const starg_descriptor *d, const starg_reconstruction *r,
-                   const values *v) {
-    json_t *json = session->report;
-    cli_report_head(session, "starguard-describe", session->operands[0], session->mesh);
-    cli_put(session, json, "output", cli_json_text(v->output));
-    cli_put(session, json, "guards", json_integer((json_int_t)d->guard_count));
-    cli_put(session, json, "edges", json_integer((json_int_t)d->edge_count));
-    cli_put(session, json, "directions", json_integer((json_int_t)d->direction_count));
-    cli_put(session, json, "detail", json_integer((json_int_t)d->detail));
-    cli_put(session, json, "effort", json_integer((json_int_t)d->effort));
-    cli_put(session, json, "time_limited", json_boolean(d->time_limited));
-    cli_put(session, json, "reconstruction",
+/* What the file holds, and what is of the run. */
+static starg_status report(cli_session *session, const starg_descriptor *d,
+                           const starg_reconstruction *r, const values *v) {
+    starg_status status = STARG_OK;
+    char *text;
+    size_t size;
+    CLI_TRY(starg_descriptor_write_memory(session->context, d, session->operands[0], &text, &size));
+    cli_report_take(session, text, size);
+    cli_put(session, session->report, "output", cli_json_text(v->output));
+    cli_put(session, session->report, "reconstruction",
             json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "points", (json_int_t)r->points, "samples",
                       (json_int_t)r->samples, "to_mean", r->to_mean, "to_largest", r->to_largest,
                       "from_mean", r->from_mean, "from_largest", r->from_largest));
+done:
+    return status;
 }
 
 /* ---- points and guards ---- */
@@ -192,7 +192,7 @@ static starg_status run(cli_session *session, void *data) {
     CLI_TRY(write_files(session, descriptor, v));
     tell(session, descriptor, &reconstruction);
     if (session->report != NULL)
-        report(session, descriptor, &reconstruction, v);
+        CLI_TRY(report(session, descriptor, &reconstruction, v));
 done:
     starg_descriptor_free(context, descriptor);
     return status;

@@ -109,15 +109,14 @@ static void say_guards(cli_session *session, const starg_guards *g) {
 
 /* What the file holds, and what is of the run. */
 static starg_status report_guards(cli_session *session, const starg_guards *g, const char *output) {
+    starg_status status = STARG_OK;
     char *text;
     size_t size;
-    starg_status status =
-        starg_guards_write_memory(session->context, g, session->operands[0], &text, &size);
-    if (status == STARG_OK)
-        cli_report_take(session, text, size);
-    starg_text_free(session->context, text);
+    CLI_TRY(starg_guards_write_memory(session->context, g, session->operands[0], &text, &size));
+    cli_report_take(session, text, size);
     cli_put(session, session->report, "output", cli_json_text(output));
     cli_put(session, session->report, "sight_lines", json_integer((json_int_t)g->lines_tested));
+done:
     return status;
 }
 

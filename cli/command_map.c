@@ -33,16 +33,21 @@ static void say_map(cli_session *session, const starg_map *map) {
     cli_say(session, "areas         %.4g (1 is best)\n", map->mean_area_distortion);
 }
 
-static void report_map(cli_session *session, const starg_map *map, const values *v) {
-    static const char *const kinds[] = {"same", "sphere", "given"};
+/* What the file holds, and what is of the run. */
+static starg_status report_map(cli_session *session, const starg_map *map, const values *v) {
+    starg_status status = STARG_OK;
     json_t *report = session->report;
-    cli_put(session, report, "output", cli_json_text(v->output));
-    cli_put(session, report, "kind", json_string(kinds[map->kind]));
+    char *text;
+    size_t size;
+    CLI_TRY(starg_map_write_memory(session->context, map, &text, &size));
+    cli_report_take(session, text, size);
+    if (json_object_update_missing(report, json_object_get(report, "map")) != 0)
+        session->report_broken = true;
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
-    cli_put(session, report, "landmarks", json_integer((json_int_t)map->landmark_count));
-    cli_put(session, report, "mean_angle_distortion", cli_json_real(map->mean_angle_distortion));
-    cli_put(session, report, "mean_area_distortion", cli_json_real(map->mean_area_distortion));
+    cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "collapsed", json_integer((json_int_t)map->collapsed));
+done:
+    return status;
 }
 
 static starg_status run(cli_session *session, void *data) {
@@ -63,7 +68,7 @@ static starg_status run(cli_session *session, void *data) {
         starg_map_write(session->context, map, cli_outputs_place(&session->outputs, v->output)));
     say_map(session, map);
     if (session->report != NULL)
-        report_map(session, map, v);
+        CLI_TRY(report_map(session, map, v));
 done:
     starg_map_free(session->context, map);
     starg_landmarks_free(session->context, pairs);

@@ -1,4 +1,4 @@
-/* starguard visible: what do points inside a solid see? */
+/* starguard visible: what do points inside a solid, or boxes in it, see? */
 #include <stdlib.h>
 
 #include "commands.h"
@@ -10,7 +10,7 @@
 #include "starguard/visibility.h"
 
 typedef struct values {
-    starg_places from;
+    starg_places from, boxes;
     starg_visibility_options view;
     const char *output;
 } values;
@@ -19,9 +19,15 @@ static const cli_option options[] = {
     CLI_POINTS_OPTION(
         "from", from, "X,Y,Z",
         "A point to look from, in coordinates of the model. May be given many times."),
+    CLI_BOXES_OPTION("box", boxes, "X0,Y0,Z0,X1,Y1,Z1",
+                     "Instead of points: a box to look from, by two opposite corners. Told is what "
+                     "is potentially visible: what is left out is hidden from every point of the "
+                     "box inside the solid, for certain; some of what is told may be hidden as "
+                     "well, the less the smaller the box. May be given many times."),
     CLI_OUTPUT_OPTION(
         "FILE.ply",
-        "Write the model with each face in the colour of the first point that sees it; faces "
+        "Write the model with each face in the colour of the first point or box that sees it; "
+        "faces "
         "that none sees are grey. With --target vertices a face counts whose vertices one "
         "point sees."),
 };
@@ -32,7 +38,7 @@ typedef struct look {
     const starg_solid *solid;
     const starg_bits *seen;
     const double *fractions; /* of the area; by face */
-    json_t *points;
+    json_t *places;
 } look;
 
 /* Exactly 1 when all is seen, never more. */
@@ -43,43 +49,64 @@ static double area_seen(const look *l, size_t row) {
     return seen / (seen + hidden);
 }
 
-static void tell_point(cli_session *session, const look *l, size_t row) {
-    const double *p = l->wanted->from.values + 3 * row;
+/* What the point or box of the row sees; `place` says where it is. */
+static void tell_seen(cli_session *session, const look *l, size_t row, const char *sees,
+                      json_t *place) {
     bool faces = l->wanted->view.target == STARG_TARGET_FACES;
-    bool inside = starg_solid_contains(l->solid, p);
     size_t count = starg_bits_count(l->seen, row), all = starg_bits_columns(l->seen);
     double area = faces ? area_seen(l, row) : 0;
+    if (faces && sees != NULL)
+        cli_say(session, "%s %zu of %zu faces, %.2f %% of the area\n", sees, count, all,
+                cli_percent(area));
+    else if (sees != NULL)
+        cli_say(session, "%s %zu of %zu vertices\n", sees, count, all);
+    if (place == NULL)
+        return;
+    cli_put(session, place, "count", json_integer((json_int_t)count));
+    if (faces)
+        cli_put(session, place, "area", cli_json_real(area));
+    cli_put(session, place, faces ? "faces" : "vertices", cli_json_row(session, l->seen, row));
+    cli_append(session, l->places, place);
+}
+
+static void tell_point(cli_session *session, const look *l, size_t row) {
+    const double *p = l->wanted->from.values + 3 * row;
+    bool inside = starg_solid_contains(l->solid, p);
+    json_t *point = session->report == NULL ? NULL : json_object();
     cli_say(session, "%.17g,%.17g,%.17g  ", p[0], p[1], p[2]);
     if (!inside)
         cli_say(session, "not inside the solid: sees nothing\n");
-    else if (faces)
-        cli_say(session, "sees %zu of %zu faces, %.2f %% of the area\n", count, all,
-                cli_percent(area));
-    else
-        cli_say(session, "sees %zu of %zu vertices\n", count, all);
-    if (session->report == NULL)
-        return;
-    json_t *point = json_object();
-    cli_put(session, point, "position", cli_json_point(p));
-    cli_put(session, point, "inside", json_boolean(inside));
-    cli_put(session, point, "count", json_integer((json_int_t)count));
-    if (faces)
-        cli_put(session, point, "area", cli_json_real(area));
-    cli_put(session, point, faces ? "faces" : "vertices", cli_json_row(session, l->seen, row));
-    cli_append(session, l->points, point);
+    if (point != NULL) {
+        cli_put(session, point, "position", cli_json_point(p));
+        cli_put(session, point, "inside", json_boolean(inside));
+    }
+    tell_seen(session, l, row, inside ? "sees" : NULL, point);
+}
+
+static void tell_box(cli_session *session, const look *l, size_t row) {
+    const double *b = l->wanted->boxes.values + 6 * row;
+    json_t *box = session->report == NULL ? NULL : json_object();
+    cli_say(session, "%.17g,%.17g,%.17g to %.17g,%.17g,%.17g  ", b[0], b[1], b[2], b[3], b[4],
+            b[5]);
+    if (box != NULL) {
+        cli_put(session, box, "lower", cli_json_point(b));
+        cli_put(session, box, "upper", cli_json_point(b + 3));
+    }
+    tell_seen(session, l, row, "sees at most", box);
 }
 
 static starg_status tell(cli_session *session, look *l) {
-    l->points = json_array();
+    bool boxes = l->wanted->boxes.count > 0;
+    l->places = json_array();
     for (size_t row = 0; row < starg_bits_rows(l->seen); row++)
-        tell_point(session, l, row);
+        (boxes ? tell_box : tell_point)(session, l, row);
     if (session->report == NULL) {
-        json_decref(l->points);
+        json_decref(l->places);
         return STARG_OK;
     }
     cli_put(session, session->report, "options",
             cli_json_record(session, starg_visibility_options_fields(), &l->wanted->view));
-    cli_put(session, session->report, "points", l->points);
+    cli_put(session, session->report, boxes ? "boxes" : "points", l->places);
     return STARG_OK;
 }
 
@@ -111,19 +138,43 @@ static starg_status write_seen(cli_session *session, const look *l) {
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    if (v->from.count == 0)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name a point to look from: --from X,Y,Z");
+    if (v->from.count == 0 && v->boxes.count == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "name a point to look from: --from X,Y,Z, or a box: --box "
+                        "X0,Y0,Z0,X1,Y1,Z1");
+    if (v->from.count > 0 && v->boxes.count > 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--from and --box do not go together: what points see is exact, what boxes "
+                        "see is not");
     return cli_announce_with_ending(session, "-o", v->output, ".ply");
 }
 
+/* Boxes by opposite corners become boxes by lower and upper ones. */
+static void order_corners(starg_places *boxes) {
+    for (size_t i = 0; i < boxes->count; i++)
+        for (size_t k = 6 * i; k < 6 * i + 3; k++) {
+            double a = boxes->values[k], b = boxes->values[k + 3];
+            boxes->values[k] = a < b ? a : b;
+            boxes->values[k + 3] = a < b ? b : a;
+        }
+}
+
+static starg_status see(cli_session *session, values *v, starg_bits **seen) {
+    if (v->boxes.count == 0)
+        return starg_visibility(session->context, session->solid, v->from.values, v->from.count,
+                                &v->view, seen);
+    order_corners(&v->boxes);
+    return starg_visibility_region(session->context, session->solid, v->boxes.values,
+                                   v->boxes.count, &v->view, seen);
+}
+
 static starg_status run(cli_session *session, void *data) {
-    const values *v = data;
+    values *v = data;
     const starg_solid *solid = session->solid;
     starg_status status = STARG_OK;
     starg_bits *seen = NULL;
     double *fractions = NULL;
-    CLI_TRY(
-        starg_visibility(session->context, solid, v->from.values, v->from.count, &v->view, &seen));
+    CLI_TRY(see(session, v, &seen));
     fractions = cli_area_fractions(starg_solid_mesh(solid));
     if (fractions == NULL) {
         status = cli_fail_memory(session);
@@ -141,17 +192,21 @@ done:
 
 const cli_command cli_command_visible = {
     .name = "visible",
-    .usage = "MODEL --from X,Y,Z [--from ...] [-o FILE.ply] [options]",
-    .summary = "which faces do points inside a solid see",
+    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1 [-o FILE.ply] [...]",
+    .summary = "which faces do points inside a solid see, or boxes in it",
     .description =
         "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is seen "
         "when the segment from the point to it meets the boundary nowhere else; a face, when its "
         "three vertices are and the point lies on its inner side. A point that is not inside sees "
-        "nothing. --json lists the faces, counted from 0 in the order of the file.",
+        "nothing. --json lists the faces, counted from 0 in the order of the file. From a box it "
+        "tells what is potentially visible: all that any point of the box inside the solid sees, "
+        "and perhaps more.",
     .examples = "# how much of the room does one see from here\n"
                 "starguard visible room.off --from 1,1.7,2\n"
                 "# two points, and a picture for a mesh viewer\n"
                 "starguard visible room.off --from 1,1.7,2 --from 6,1.7,2 -o seen.ply\n"
+                "# all that anybody can see from this part of the room\n"
+                "starguard visible room.off --box 0.5,0.5,0.5,1.5,1.5,1.5\n"
                 "# indices of the faces that are seen wholly, within 5 units\n"
                 "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json",
     CLI_OPTIONS(options),

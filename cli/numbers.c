@@ -33,10 +33,10 @@ bool cli_number_real(const char *word, double *value) {
     return read_real(word, strlen(word), value);
 }
 
-bool cli_number_point(const char *word, double point[3]) {
-    for (int i = 0; i < 3; i++) {
+bool cli_number_list(const char *word, double *values, int count) {
+    for (int i = 0; i < count; i++) {
         size_t size = strcspn(word, ",");
-        if (!read_real(word, size, &point[i]) || (word[size] == ',') != (i < 2))
+        if (!read_real(word, size, &values[i]) || (word[size] == ',') != (i < count - 1))
             return false;
         word += size + 1;
     }

@@ -11,8 +11,8 @@ bool cli_number_count(const char *word, uint64_t *value);
 /* A finite decimal number; no spaces, hexadecimal, "inf" or "nan". */
 bool cli_number_real(const char *word, double *value);
 
-/* Three reals with commas between them. */
-bool cli_number_point(const char *word, double point[3]);
+/* `count` reals with commas between them. */
+bool cli_number_list(const char *word, double *values, int count);
 
 /* A fraction in percent with two digits, rounded down, so that only what is whole is called 100;
  * what is a hundredth of a percent as exactly as a double can be stays it. */

@@ -78,15 +78,17 @@ static bool set_choice(parser *p, const match *m, const char *word) {
     return complain(p, "%s takes %s, not '%.100s'", m->shown, list, word);
 }
 
-static bool add_point(parser *p, const match *m, const char *word, starg_places *points) {
-    double point[3];
-    if (!cli_number_point(word, point))
-        return complain(p, "%s takes a point as X,Y,Z (three numbers, no spaces), not '%.100s'",
-                        m->shown, word);
-    double *grown = realloc(points->values, (points->count + 1) * sizeof point);
+static bool add_place(parser *p, const match *m, const char *word, starg_places *points) {
+    size_t width = m->option->length;
+    double place[6];
+    if (!cli_number_list(word, place, (int)width))
+        return complain(p, "%s takes a %s (%s numbers, no spaces), not '%.100s'", m->shown,
+                        width == 3 ? "point as X,Y,Z" : "box as X0,Y0,Z0,X1,Y1,Z1",
+                        width == 3 ? "three" : "six", word);
+    double *grown = realloc(points->values, (points->count + 1) * width * sizeof *place);
     if (grown == NULL)
         return complain(p, "%s: out of memory", m->shown);
-    memcpy(grown + 3 * points->count, point, sizeof point);
+    memcpy(grown + width * points->count, place, width * sizeof *place);
     points->values = grown;
     points->count++;
     return true;
@@ -110,7 +112,7 @@ static bool set_value(parser *p, const match *m, const char *word) {
     case STARG_FIELD_CHOICE:
         return set_choice(p, m, word);
     case STARG_FIELD_PLACES:
-        return add_point(p, m, word, variable);
+        return add_place(p, m, word, variable);
     default:
         *(const char **)variable = word;
         return *word != '\0' || complain(p, "%s takes a name, not an empty word", m->shown);

@@ -25,7 +25,9 @@ typedef starg_field cli_option;
 #define CLI_INPUT_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
     { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP), .flags = STARG_FIELD_INPUT }
 #define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
-    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP) }
+    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP), .length = 3 }
+#define CLI_BOXES_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
+    { CLI_OPTION(NAME, STARG_FIELD_PLACES, MEMBER, VALUE, HELP), .length = 6 }
 #define CLI_CHOICE_OPTION(NAME, MEMBER, WORDS, DEFAULT, VALUE, HELP)                               \
     {                                                                                              \
         CLI_OPTION(NAME, STARG_FIELD_CHOICE, MEMBER, VALUE, HELP), .words = WORDS,                 \

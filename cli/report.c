@@ -70,16 +70,6 @@ json_t *cli_json_point(const double point[3]) {
     return json_pack("[fff]", point[0], point[1], point[2]);
 }
 
-/* `elements` of them, called `what`. */
-static void put_model(cli_session *session, const char *file, size_t vertices, const char *what,
-                      size_t elements) {
-    json_t *model = json_object();
-    cli_put(session, model, "file", cli_json_text(file));
-    cli_put(session, model, "vertices", json_integer((json_int_t)vertices));
-    cli_put(session, model, what, json_integer((json_int_t)elements));
-    cli_put(session, session->report, "model", model);
-}
-
 void cli_report_head(cli_session *session, const char *format, const char *file,
                      const starg_mesh *mesh) {
     json_t *report = session->report;
@@ -87,23 +77,21 @@ void cli_report_head(cli_session *session, const char *format, const char *file,
         return;
     cli_put(session, report, "format", json_string(format));
     cli_put(session, report, "version", json_integer(1));
-    if (mesh != NULL)
-        put_model(session, file, starg_mesh_vertex_count(mesh), "faces",
-                  starg_mesh_face_count(mesh));
+    if (mesh == NULL)
+        return;
+    json_t *model = json_object();
+    cli_put(session, model, "file", cli_json_text(file));
+    cli_put(session, model, "vertices", json_integer((json_int_t)starg_mesh_vertex_count(mesh)));
+    cli_put(session, model, "faces", json_integer((json_int_t)starg_mesh_face_count(mesh)));
+    cli_put(session, report, "model", model);
 }
 
-void cli_report_head_tetrahedra(cli_session *session, const char *format, const char *file,
-                                size_t vertices, size_t tetrahedra) {
-    cli_report_head(session, format, file, NULL);
-    if (session->report != NULL)
-        put_model(session, file, vertices, "tetrahedra", tetrahedra);
-}
-
-void cli_report_take(cli_session *session, const char *text, size_t size) {
+void cli_report_take(cli_session *session, char *text, size_t size) {
     json_t *object = json_loadb(text, size, 0, NULL);
     if (object == NULL || json_object_update(session->report, object) != 0)
         session->report_broken = true;
     json_decref(object);
+    starg_text_free(session->context, text);
 }
 
 json_t *cli_json_record(cli_session *session, const starg_fields *fields, const void *record) {

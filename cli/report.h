@@ -23,12 +23,8 @@ json_t *cli_json_point(const double point[3]);
 void cli_report_head(cli_session *session, const char *format, const char *file,
                      const starg_mesh *mesh);
 
-/* The same for a model of tetrahedra. */
-void cli_report_head_tetrahedra(cli_session *session, const char *format, const char *file,
-                                size_t vertices, size_t tetrahedra);
-
-/* Takes the members of an object that stands in a text. */
-void cli_report_take(cli_session *session, const char *text, size_t size);
+/* Takes the members of the object that stands in a text of the library, which is freed. */
+void cli_report_take(cli_session *session, char *text, size_t size);
 
 /* The members of a record that have keys, as an object; NULL when memory is out. */
 json_t *cli_json_record(cli_session *session, const starg_fields *fields, const void *record);

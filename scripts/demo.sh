@@ -7,7 +7,7 @@ starguard=$1/starguard
 mkdir -p demo
 "$starguard" sample horse --vertices 5000 -o demo/horse.off
 "$starguard" guard demo/horse.off -o demo/guards.json --picture demo/guards.png
-"$starguard" decompose demo/horse.off -o demo/pieces.vtk --report demo/pieces.json --time-limit 10
+"$starguard" decompose demo/horse.off -o demo/pieces.vtk --report demo/pieces.json --effort 2000
 "$starguard" verify demo/horse.off demo/guards.json demo/pieces.vtk demo/pieces.json
 echo
 if "$starguard" view demo/guards.json demo/pieces.vtk demo/pieces.json -o demo/horse.html; then

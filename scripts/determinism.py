@@ -27,8 +27,6 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # Of a run, not of its result (docs/formats.md).
 OF_THE_RUN = ("seconds", "memory", "ranks")
 
-LIMIT = ["--time-limit", "100000"]  # decompose has one of its own, which must not strike
-
 # Every command writes into one folder, in this order.
 COMMANDS = [
     "sample horse --vertices 600 -o horse.off",
@@ -98,8 +96,6 @@ def of_the_result(text):
 
 def run(program, folder, line, threads):
     words = [program, *line.split(), "--json", "--threads", str(threads)]
-    if line.startswith("decompose"):
-        words += LIMIT
     process = subprocess.run(words, cwd=folder, capture_output=True, stdin=subprocess.DEVNULL,
                              check=False)
     if process.returncode == 3 and line.startswith("view"):

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "guard/guards_fields.h"
+#include "morph/map.h"
+#include "shape/descriptor_fields.h"
 #include "starguard/starguard.h"
 
 /* ---- what there is: a new table is a new row here ---- */
@@ -20,6 +22,8 @@ static const starg_fields GUARD_REPORT_TABLE = {.name = "report", FIELD_ROWS(GUA
 
 const document documents[] = {
     {"guards", "GUARDS.json", "guard", &guards_file_fields, &GUARD_REPORT_TABLE},
+    {"descriptor", "DESCRIPTOR.json", "describe", &descriptor_file_fields, NULL},
+    {"map", "MAP.json", "map", &map_file_fields, NULL},
 };
 const size_t document_count = sizeof documents / sizeof *documents;
 
@@ -38,8 +42,8 @@ const size_t call_count = sizeof calls / sizeof *calls;
 
 bool is_required(const starg_field *f) {
     /* A list as long as another is there with it; any other may never have been made. */
-    bool may_lack = f->kind == STARG_FIELD_LIST && (f->flags & STARG_FIELD_OPTIONAL) &&
-                    !(f->flags & STARG_FIELD_MATCHING);
+    bool may_lack = (f->kind == STARG_FIELD_LIST || f->kind == STARG_FIELD_RECORD) &&
+                    (f->flags & STARG_FIELD_OPTIONAL) && !(f->flags & STARG_FIELD_MATCHING);
     return f->applies == NULL && !may_lack;
 }
 

@@ -19,7 +19,7 @@ static const char *type_of(const starg_field *f, char *text, size_t size) {
     if (f->kind == STARG_FIELD_CONSTANT)
         name = f->value != NULL ? "string" : "integer";
     if (f->kind == STARG_FIELD_NUMBERS)
-        snprintf(text, size, "%zu reals", f->length);
+        snprintf(text, size, (f->flags & STARG_FIELD_COUNTED) ? "reals" : "%zu reals", f->length);
     else if (f->kind == STARG_FIELD_LIST && f->of->form == STARG_FORM_BARE)
         snprintf(text, size, "array of %s", type_of(&f->of->fields[0], item, sizeof item));
     else

@@ -38,6 +38,8 @@ static void put_type(json_t *schema, const char *type, bool nullable) {
 
 /* ---- values ---- */
 
+static json_t *record_schema(const starg_fields *fields);
+
 static json_t *count_schema(const starg_field *f) {
     json_t *schema = needed(json_object());
     put_type(schema, "integer", f->flags & STARG_FIELD_NULLABLE);
@@ -76,8 +78,15 @@ static json_t *array_schema(json_t *items, size_t length) {
     return schema;
 }
 
-static json_t *numbers_schema(size_t length) {
-    return array_schema(json_pack("{s:s, s:i}", "type", "number", "minimum", 0), length);
+static json_t *numbers_schema(const starg_field *f) {
+    return array_schema(real_schema(f), (f->flags & STARG_FIELD_COUNTED) ? 0 : f->length);
+}
+
+static json_t *list_schema(const starg_field *f) {
+    json_t *schema = array_schema(record_schema(f->of), 0);
+    if (f->least > 0)
+        put(schema, "minItems", json_integer((json_int_t)f->least));
+    return schema;
 }
 
 static json_t *indices_schema(void) {
@@ -90,8 +99,6 @@ static json_t *constant_schema(const starg_field *f) {
     return f->value != NULL ? json_pack("{s:s}", "const", f->value)
                             : json_pack("{s:I}", "const", (json_int_t)f->initial);
 }
-
-static json_t *record_schema(const starg_fields *fields);
 
 static json_t *value_schema(const starg_field *f) {
     json_t *schema;
@@ -110,13 +117,13 @@ static json_t *value_schema(const starg_field *f) {
     case STARG_FIELD_POINT:
         return array_schema(typed("number"), 3);
     case STARG_FIELD_NUMBERS:
-        return numbers_schema(f->length);
+        return numbers_schema(f);
     case STARG_FIELD_INDICES:
         return indices_schema();
     case STARG_FIELD_RECORD:
         return record_schema(f->of);
     case STARG_FIELD_LIST:
-        return array_schema(record_schema(f->of), 0);
+        return list_schema(f);
     case STARG_FIELD_CONSTANT:
         return constant_schema(f);
     default:

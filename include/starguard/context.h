@@ -35,8 +35,10 @@ typedef enum starg_log_level { STARG_LOG_NOTICE = 0, STARG_LOG_WARNING = 1 } sta
 /* Receives one line of text without a newline; called on the calling thread. */
 typedef void starg_log_fn(void *user, starg_log_level level, const char *message);
 
-/* Called on the calling thread while a stage runs. `stage` is a static lower-case name, `fraction`
- * lies in [0, 1]. Returning false cancels: the call returns STARG_ERROR_CANCELLED soon. */
+/* Called on the calling thread while a stage runs. `stage` is a static lower-case name. `fraction`
+ * is 0 when the stage begins, 1 when it ends, and ascends in between. Stages nest: what begins
+ * inside of a stage ends there, and until then the calls are about it. Returning false cancels:
+ * the call returns STARG_ERROR_CANCELLED soon. */
 typedef bool starg_progress_fn(void *user, const char *stage, double fraction);
 
 typedef struct starg_context_options {

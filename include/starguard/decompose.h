@@ -40,13 +40,16 @@ typedef struct starg_piece_contact {
 
 /* A solid in pieces. Every tetrahedron belongs to one piece, none is empty. */
 typedef struct starg_decomposition {
+    char *file; /* the model's path in the report that was read; else NULL */
     starg_decompose_mode mode;
     /* Size of the model that was cut: a surface (no tetrahedra) or a tetrahedral mesh (no faces).
      */
     size_t model_vertices, model_faces, model_tetrahedra;
-    starg_tetra_report tetra; /* how the model was filled; given tetrahedra keep the surface */
+    starg_tetra_report tetra; /* how the model was filled; given tetrahedra keep the surface. Of
+                                 what was read: whether it was kept, and distances */
     starg_tetmesh *mesh;
-    int32_t *labels; /* one per tetrahedron: its piece */
+    size_t tetrahedra; /* of the mesh */
+    int32_t *labels;   /* one per tetrahedron: its piece */
     size_t piece_count;
     starg_piece *pieces;
     size_t contact_count;
@@ -73,7 +76,11 @@ typedef struct starg_decompose_options {
     const double *guards; /* guard_count x 3, or NULL. PAPER: to grow from; NULL: those of
                              starg_guard. STRICT: points that are tried as guards first */
     size_t guard_count;
-    uint64_t effort; /* STRICT: trials after which the search ends; 0: the default */
+    /* STRICT: trials after which the search ends. 0: a fixed amount of work, the same on every
+     * machine and at any number of threads; no bound where the context has a time limit */
+    uint64_t effort;
+    /* starg_decompose_open_mesh: fill the surface even where what it winds around is far from it */
+    bool fill;
 } starg_decompose_options;
 
 /* STRICT, tetrahedra as they come, as few pieces as can be found. */
@@ -97,8 +104,12 @@ STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const sta
                                                const starg_decompose_options *options,
                                                starg_decomposition **out);
 
+/* How far the surface of what a mesh with holes winds around may be from the mesh, either way, as a
+ * fraction of the diagonal of its box, unless `fill` is said. */
+#define STARG_DECOMPOSE_FILL_MOST 0.2
+
 /* Cuts what a mesh with holes winds around (starg_tetmesh_from_open_mesh). Errors: as of
- * starg_decompose, and MESH. */
+ * starg_decompose, and MESH, also when that is farther from the mesh than it may be. */
 STARG_API starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                                  const starg_decompose_options *options,
                                                  starg_decomposition **out);
@@ -127,6 +138,28 @@ STARG_API starg_status starg_decomposition_write(starg_context *context,
 STARG_API starg_status starg_decomposition_write_report(starg_context *context,
                                                         const starg_decomposition *decomposition,
                                                         const char *model_file, const char *path);
+
+/* The same in memory, with one zero byte behind the end. Free with starg_text_free. Errors: MEMORY.
+ */
+STARG_API starg_status starg_decomposition_write_report_memory(
+    starg_context *context, const starg_decomposition *decomposition, const char *model_file,
+    char **text, size_t *size);
+
+/* Reads both files back: writing the result gives the same bytes. Errors: READ, FORMAT (also where
+ * the files are not of one decomposition), MEMORY, CANCELLED, and those of starg_tetmesh_read. */
+STARG_API starg_status starg_decomposition_read(starg_context *context, const char *pieces_path,
+                                                const char *report_path, starg_decomposition **out);
+
+/* The same from memory; names are used in messages. */
+typedef struct starg_file_bytes {
+    const void *bytes;
+    size_t size;
+    const char *name;
+} starg_file_bytes;
+STARG_API starg_status starg_decomposition_read_memory(starg_context *context,
+                                                       const starg_file_bytes *pieces,
+                                                       const starg_file_bytes *report,
+                                                       starg_decomposition **out);
 
 #ifdef __cplusplus
 }

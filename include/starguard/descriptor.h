@@ -54,9 +54,8 @@ typedef struct starg_descriptor {
      */
     double views[STARG_DESCRIPTOR_VIEW][STARG_DESCRIPTOR_SPREAD];
     /* The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area,
-     * ascending: as a surface, and as a shell as thick as the solid is wide there. */
+     * ascending. */
     double surface_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
-    double solid_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
     /* Where the boundary vibrates: row k holds quantiles, over the surface, of how strong
      * vibrations of about the k-th energy are at a point, 1 on average. Rows ascend. */
     double waves[STARG_DESCRIPTOR_ENERGIES][STARG_DESCRIPTOR_SPREAD];
@@ -98,6 +97,12 @@ STARG_API void starg_descriptor_free(starg_context *context, starg_descriptor *d
 STARG_API starg_status starg_descriptor_write(starg_context *context,
                                               const starg_descriptor *descriptor,
                                               const char *model_file, const char *path);
+/* The same in memory, with one zero byte behind the end. Free with starg_text_free. Errors: MEMORY.
+ */
+STARG_API starg_status starg_descriptor_write_memory(starg_context *context,
+                                                     const starg_descriptor *descriptor,
+                                                     const char *model_file, char **text,
+                                                     size_t *size);
 
 /* Reads it back. Errors: READ, FORMAT, MEMORY. */
 STARG_API starg_status starg_descriptor_read(starg_context *context, const char *path,

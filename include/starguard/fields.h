@@ -27,13 +27,14 @@ typedef enum starg_field_kind {
     STARG_FIELD_TEXT = 4,    /* const char *, or NULL                                          */
     STARG_FIELD_PLACES = 5,  /* starg_places: each occurrence of the option adds a row         */
     STARG_FIELD_POINT = 6,   /* double[3], each below 1e100 in magnitude                       */
-    STARG_FIELD_NUMBERS = 7, /* double[length], finite, none negative                          */
+    STARG_FIELD_NUMBERS = 7, /* double[length], each in the range of a REAL                    */
     STARG_FIELD_INDICES = 8, /* uint32_t *, as many as the member at `length` says: ascending, below
                                 the member at `limit`                                          */
     STARG_FIELD_RECORD = 9, /* a struct within the struct, or (at offset 0) more members of the same
                                struct, as `of` says: an object of their own                   */
     STARG_FIELD_LIST = 10, /* an array, as many as the member at `length` says, of what `of` says */
-    STARG_FIELD_CONSTANT = 11 /* no member: the word `value`, or the number `initial`           */
+    STARG_FIELD_CONSTANT = 11 /* no member: the word `value`, or the number `initial`; files with
+                                  one from `least` on are read, if that is not 0 */
 } starg_field_kind;
 
 /* Rows of numbers from a command line. */
@@ -50,7 +51,8 @@ enum {
     STARG_FIELD_LINES = 4,    /* a list with a line for each item                                */
     STARG_FIELD_MATCHING = 8, /* a list as long as the member at `length`, which was read before */
     STARG_FIELD_ABOVE = 16,   /* a real above `low`, not `low` itself                            */
-    STARG_FIELD_INPUT = 32    /* a text that names a file to be read, or is a word of `value`    */
+    STARG_FIELD_INPUT = 32,   /* a text that names a file to be read, or is a word of `value`    */
+    STARG_FIELD_COUNTED = 64  /* numbers of a column: as many as the member at `length` says     */
 };
 
 typedef struct starg_fields starg_fields;
@@ -65,12 +67,14 @@ typedef struct starg_field {
     size_t offset, size; /* of the member, in bytes                                             */
 
     uint64_t least, most, initial, none; /* COUNT: range, default, what null stands for. CHOICE and
-                                            FLAG: `initial` is the default                      */
-    double low, high, standard;          /* REAL: range, default                                */
+                                            FLAG: `initial` is the default. LIST: `least` items */
+    double low, high, standard;          /* REAL, NUMBERS: range, default                       */
     const char *const *words;            /* CHOICE: by number, NULL behind the last             */
 
-    size_t length,
-        limit; /* LIST, INDICES: offsets of size_t members. NUMBERS: `length` is how many */
+    size_t length, limit; /* LIST, INDICES: offsets of size_t members. NUMBERS: `length` is how many
+                             PLACES: numbers in a row */
+    size_t stride, within; /* of a column that is a member of structs: their size, and where in them
+                              it is; stride 0: the values follow one another                    */
     const starg_fields *of;
     bool (*applies)(const void *record); /* does this record have the member? NULL: always      */
 

@@ -67,6 +67,10 @@ STARG_API void starg_map_free(starg_context *context, starg_map *map);
 /* Writes MAP.json; path "-" is standard output. Errors: WRITE, MEMORY. */
 STARG_API starg_status starg_map_write(starg_context *context, const starg_map *map,
                                        const char *path);
+/* The same in memory, with one zero byte behind the end. Free with starg_text_free. Errors: MEMORY.
+ */
+STARG_API starg_status starg_map_write_memory(starg_context *context, const starg_map *map,
+                                              char **text, size_t *size);
 
 /* Reads MAP.json as a map from A to B and measures it. Errors: READ, FORMAT (also where counts are
  * not those of the meshes, or coordinates not those of a point of a face), MEMORY. */

@@ -16,8 +16,11 @@ extern "C" {
 typedef struct starg_solid starg_solid;
 
 /* Makes a solid of a mesh, which is copied. Inward shells are turned, with a notice; a mesh that
- * intersects itself is taken as it is, with a warning. Vertex and face order are kept.
- * Errors: MESH (not closed, not manifold, not oriented, no volume: with indices), MEMORY. */
+ * intersects itself is taken as it is, with a warning. Vertices and faces keep their numbers; where
+ * the mesh is closed and manifold only once vertices at exactly equal positions are one, faces name
+ * the first of these, with a notice.
+ * Errors: MESH (not closed, not manifold, not oriented: with indices; no volume: without), RANGE
+ * (narrower than 1e-90), MEMORY. */
 STARG_API starg_status starg_solid_create(starg_context *context, const starg_mesh *mesh,
                                           starg_solid **out);
 STARG_API void starg_solid_free(starg_solid *solid);

@@ -16,7 +16,8 @@ typedef enum starg_status {
     STARG_ERROR_WRITE = 4,      /* an output cannot be written: permission, full disk           */
     STARG_ERROR_FORMAT = 5,     /* a file's text does not follow its format                     */
     STARG_ERROR_MESH = 6,       /* a mesh is not usable for the call: open, non-manifold, empty */
-    STARG_ERROR_RANGE = 7,      /* a coordinate is not finite or not below 1e100 in magnitude   */
+    STARG_ERROR_RANGE = 7,      /* a coordinate is not finite or not below 1e100 in magnitude,
+                                   or a solid is narrower than 1e-90                           */
     STARG_ERROR_SOLVER = 8,     /* the solver library gave up without a usable answer           */
     STARG_ERROR_TIME = 9,       /* the time limit struck before anything was found              */
     STARG_ERROR_CANCELLED = 10, /* the progress callback or starg_context_cancel said stop */

@@ -89,6 +89,9 @@ typedef struct starg_tetra_report {
      * either that are at most `step` from all others, so that no distance is larger than the one
      * here plus `step`. All 0 when the surface was kept. */
     double to_surface, from_surface, step;
+    /* With `step` added: no point of the boundary is farther from the solid's surface than
+     * `distance`, and none of the surface farther from the boundary than `distance_back`. */
+    double distance, distance_back;
 } starg_tetra_report;
 
 /* Fills a solid with tetrahedra. Where the surface is kept, the vertices of the solid that faces

@@ -63,6 +63,19 @@ STARG_API starg_status starg_visibility(starg_context *context, const starg_soli
                                         const double *points, size_t count,
                                         const starg_visibility_options *options, starg_bits **out);
 
+/* Computes what is potentially visible from each of `count` boxes (count x 6 doubles, the lower
+ * corner before the upper one): a matrix of count rows with one column per face (or vertex), where
+ * a 0 says for certain that no point of the closed box that is strictly inside the solid sees it. A
+ * 1 says nothing for certain: the smaller the box, the fewer are too many. Of the options only
+ * `target` and `range` are asked; what sees a face by either rule is in the row; the cone must be
+ * 360. `options` may be NULL. Parallel over the boxes.
+ * Errors: ARGUMENT (range negative or NaN, a cone, a box with corners that are not finite or in the
+ * wrong order), MEMORY, CANCELLED, TIME. */
+STARG_API starg_status starg_visibility_region(starg_context *context, const starg_solid *solid,
+                                               const double *boxes, size_t count,
+                                               const starg_visibility_options *options,
+                                               starg_bits **out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -35,7 +35,7 @@ from .solid import Solid
 from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, is_tetrahedral, tetrahedralize
 from .verification import Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
 from .views import page_available, write_page, write_scene
-from .visibility import Bits, cone_cosine, visible
+from .visibility import Bits, cone_cosine, visible, visible_from_box
 
 __all__ = [
     "Added", "ArgumentError", "Bits", "CancelledError", "Check", "Claim", "Cover", "Database",
@@ -50,6 +50,6 @@ __all__ = [
     "describe", "directions", "distances", "distinct_colors", "guard", "is_descriptor",
     "is_tetrahedral", "kernel", "logger", "map_surface", "match", "page_available", "picture",
     "points_from_bytes", "read_animation", "read_landmarks", "read_points", "read_result", "retrieval", "sample", "samples", "signature",
-    "signatures", "skeleton", "tetrahedralize", "verify", "visible", "write_animation",
-    "write_chart", "write_matrix_picture", "write_page", "write_picture", "write_picture_sheet",
+    "signatures", "skeleton", "tetrahedralize", "verify", "visible", "visible_from_box",
+    "write_animation", "write_chart", "write_matrix_picture", "write_page", "write_picture", "write_picture_sheet",
     "write_scene"]

@@ -27,10 +27,10 @@ def reals(value: ArrayLike, columns: int, what: str) -> Array:
     return array
 
 
-def points(value: ArrayLike, what: str) -> Array:
-    """Rows of three doubles; a single point becomes one row."""
-    single = np.ndim(value) == 1 and np.size(value) == 3
-    return reals(np.reshape(value, (1, 3)) if single else value, 3, what)
+def points(value: ArrayLike, what: str, columns: int = 3) -> Array:
+    """Rows of three doubles (six for boxes); a single point becomes one row."""
+    single = np.ndim(value) == 1 and np.size(value) == columns
+    return reals(np.reshape(value, (1, columns)) if single else value, columns, what)
 
 
 def indices(value: ArrayLike, columns: int, what: str) -> Array:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from . import _arrays
 from ._fields import fill
-from ._library import ffi, lib
+from ._library import ffi, lib, text
 from ._options import Options, takes
 from ._session import Session, logger
 from ._types import Array, PathLike, Progress
@@ -92,6 +92,34 @@ class Decomposition:
             meshes.append(Mesh(whole.vertices[low:high + 1], faces - low))
         return meshes
 
+    @classmethod
+    def read(cls, pieces: PathLike, report: PathLike) -> Decomposition:
+        """Reads PIECES.vtk and PIECES.json (docs/formats.md) back.
+
+        >>> import starguard
+        >>> room = starguard.sample("l-room", vertices=500)
+        >>> made = starguard.decompose(room, time_limit=5)
+        >>> made.write("pieces.vtk"), made.write_report("pieces.json")
+        (None, None)
+        >>> starguard.Decomposition.read("pieces.vtk", "pieces.json")
+        Decomposition(1 pieces, 1 proven star-shaped)
+        """
+        session = Session()
+        return _of(session.make(
+            "starg_decomposition", lib.starg_decomposition_free, lib.starg_decomposition_read,
+            session.context, _arrays.path(pieces), _arrays.path(report), shared=True))
+
+    @classmethod
+    def from_bytes(cls, pieces: bytes, report: bytes) -> Decomposition:
+        """Reads the bytes of both files."""
+        session = Session()
+        keep = [(ffi.from_buffer(data) if data else ffi.NULL, len(data), ffi.new("char[]", name))
+                for data, name in ((pieces, b"pieces"), (report, b"report"))]
+        files = [ffi.new("starg_file_bytes *", file) for file in keep]
+        return _of(session.make(
+            "starg_decomposition", lib.starg_decomposition_free,
+            lib.starg_decomposition_read_memory, session.context, *files, shared=True))
+
     def write(self, path: PathLike, *, binary: bool = False) -> None:
         """Writes PIECES.vtk (docs/formats.md).
 
@@ -121,14 +149,16 @@ class Decomposition:
 
 @takes(OPTIONS)
 def decompose(model: Any, *, guards: ArrayLike | None = None, threads: int | None = None,
-              seed: int | None = None, time_limit: float | None = 60,
+              seed: int | None = None, time_limit: float | None = None,
               progress: Progress | None = None,
               **options: Unpack[DecomposeOptions]) -> Decomposition:
     """Cuts a solid into few pieces that each one guard sees as a whole.
 
     The model is what `as_mesh` takes, or a TetMesh; a surface with holes is filled with what it
-    winds around, with a notice. `guards` (n, 3) are points to grow from or to try first. The search
-    stops after `time_limit` seconds (None: when it finds no more) with the best that it has.
+    winds around, with a notice, if that is near the surface or `fill` is true. `guards` (n, 3) are
+    points to grow from or to try first. The search stops after `effort` trials, or by default after
+    a fixed amount of work (some 15 seconds), which gives the same result everywhere. With
+    `time_limit` and no `effort` it goes on until then, with the best that it has.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -157,14 +187,17 @@ def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
     try:
         return lib.starg_decompose, shape.solid._handle
     except MeshError as error:
+        if len(error.elements) == 0:  # nothing is inside
+            raise
         logger.info("%s; isosurface stuffing fills what the surface winds around, and closes holes "
                     "of its own accord", error)
         return lib.starg_decompose_open_mesh, shape._handle
 
 
-def _of(d: Any, file: PathLike | None) -> Decomposition:
+def _of(d: Any, file: PathLike | None = None) -> Decomposition:
     mesh = TetMesh._of(d.mesh, owner=d)
-    return fill(Decomposition, d, _handle=d, file=name_of(file), mode=OPTIONS.word("mode", d.mode),
+    return fill(Decomposition, d, _handle=d, file=text(d.file) if d.file else name_of(file),
+                mode=OPTIONS.word("mode", d.mode),
                 tetra=TetraReport._of(d.tetra), mesh=mesh,
                 labels=_arrays.view(d, d.labels, (len(mesh.tetrahedra),), np.int32),
                 pieces=_arrays.records(d, d.pieces, d.piece_count),

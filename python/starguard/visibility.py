@@ -129,6 +129,31 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
                              wanted.pointer, progress=progress, time_limit=time_limit))
 
 
+def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
+                     range: float | None = None, threads: int | None = None,
+                     time_limit: float | None = None, progress: Progress | None = None) -> Bits:
+    """Which faces (or vertices) are potentially visible from each box of a solid.
+
+    A box is given by its lower and its upper corner, six numbers. What is left out is hidden from
+    every point of the box that is inside, for certain; some of the others may be hidden as well, the
+    fewer the smaller the box.
+
+    >>> import starguard
+    >>> room = starguard.sample("l-room", vertices=500)
+    >>> box = starguard.visible_from_box(room, [[0.4, 0.4, 0.4, 0.6, 0.6, 0.6]])
+    >>> point = starguard.visible(room, [[0.5, 0.5, 0.5]])
+    >>> bool((point[0] <= box[0]).all())
+    True
+    """
+    solid = as_solid(model)
+    rows = _arrays.points(boxes, "boxes", 6)
+    session = Session(threads)
+    wanted = _OPTIONS.make({"target": target, "range": range})
+    return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility_region,
+                             session.context, solid._handle, _arrays.pointer("double[]", rows),
+                             len(rows), wanted.pointer, progress=progress, time_limit=time_limit))
+
+
 def cone_cosine(degrees: float) -> float:
     """The cosine of half an opening angle: the number that decides what a cone holds.
 

@@ -1,5 +1,6 @@
 #include "core/context.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -88,13 +89,13 @@ starg_status starg_context_create(const starg_context_options *options, starg_co
     starg_context *context = allocator.allocate(allocator.user, sizeof *context);
     if (context == NULL)
         return STARG_ERROR_MEMORY;
-    *context = (starg_context){.allocator = allocator,
-                               .threads = options->threads ? options->threads : machine_threads(),
-                               .seed = options->seed,
-                               .log = options->log,
-                               .log_user = options->log_user,
-                               .progress = options->progress,
-                               .progress_user = options->progress_user};
+    *context = (starg_context){
+        .allocator = allocator,
+        .threads = options->threads ? options->threads : machine_threads(),
+        .seed = options->seed,
+        .log = options->log,
+        .log_user = options->log_user,
+        .progress = {.report = options->progress, .user = options->progress_user, .pause = 0.05}};
     context->error.stage = "";
     context->error.message = context->message;
     *out = context;
@@ -123,11 +124,33 @@ double starg_clock(void) {
 }
 
 void starg_context_set_time_limit(starg_context *context, double seconds) {
-    context->deadline = seconds > 0 ? starg_clock() + seconds : 0;
+    context->deadline.at = seconds > 0 ? starg_clock() + seconds : 0;
+}
+
+starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule) {
+    starg_time_rule former = context->deadline.rule;
+    if (rule > former)
+        context->deadline.rule = rule;
+    return former;
+}
+
+void starg_time_end(starg_context *context, starg_time_rule former) {
+    context->deadline.rule = former;
+}
+
+double starg_seconds_left(const starg_context *context) {
+    const starg_deadline *deadline = &context->deadline;
+    if (deadline->at <= 0 || deadline->rule == STARG_TIME_IGNORED)
+        return INFINITY;
+    return deadline->at - starg_clock();
 }
 
 bool starg_time_is_over(const starg_context *context) {
-    return context->deadline > 0 && starg_clock() >= context->deadline;
+    return starg_seconds_left(context) <= 0;
+}
+
+bool starg_time_has_failed(const starg_context *context) {
+    return context->deadline.rule == STARG_TIME_FAILS && starg_time_is_over(context);
 }
 
 size_t starg_context_peak_bytes(const starg_context *context) {
@@ -179,20 +202,8 @@ starg_status starg_fail_time(starg_context *context, const char *stage) {
                       "the time limit struck in the stage '%s', before there was a result", stage);
 }
 
-void starg_deadline_begin(starg_context *context) {
-    context->unfinished++;
-}
-
-void starg_deadline_end(starg_context *context) {
-    context->unfinished--;
-}
-
-bool starg_deadline_struck(const starg_context *context) {
-    return context->unfinished > 0 && starg_time_is_over(context);
-}
-
 starg_status starg_check_cancel(starg_context *context, const char *stage) {
-    if (starg_deadline_struck(context))
+    if (starg_time_has_failed(context))
         return starg_fail_time(context, stage);
     if (!atomic_load_explicit(&context->cancelled, memory_order_relaxed))
         return STARG_OK;
@@ -210,24 +221,67 @@ void starg_log(starg_context *context, starg_log_level level, const char *format
     context->log(context->log_user, level, line);
 }
 
-static void report(starg_context *context, double fraction) {
-    if (!context->progress(context->progress_user, context->progress_stage, fraction))
+/* ---- progress ---- */
+
+static const double ALMOST = 1 - 0x1p-20; /* 1 itself says that a stage is over */
+
+/* The stage that the callback hears of: those of one name in each other are the outermost. */
+static size_t shown_stage(const starg_progress *p) {
+    size_t shown = p->depth - 1;
+    while (shown > 0 && strcmp(p->stages[shown].name, p->stages[shown - 1].name) == 0)
+        shown--;
+    return shown;
+}
+
+static void report(starg_context *context, const char *stage, double fraction) {
+    starg_progress *p = &context->progress;
+    if (!p->report(p->user, stage, fraction))
         starg_context_cancel(context);
-    context->progress_next = starg_clock() + 0.05;
+    p->next = starg_clock() + p->pause;
+}
+
+/* Brings a stage forward to a fraction, and those that it is a part of by its share of them. */
+static void advance(starg_progress *p, size_t stage, double fraction) {
+    double gained = fraction - p->stages[stage].fraction;
+    if (!(gained > 0))
+        return;
+    p->stages[stage].fraction = fraction;
+    if (stage > 0)
+        advance(p, stage - 1,
+                fmin(p->stages[stage - 1].fraction + gained * p->stages[stage].share, ALMOST));
 }
 
 void starg_progress_begin(starg_context *context, const char *stage) {
-    context->progress_stage = stage;
-    if (context->progress != NULL)
-        report(context, 0);
+    starg_progress_begin_part(context, stage, 0);
+}
+
+void starg_progress_begin_part(starg_context *context, const char *stage, double share) {
+    starg_progress *p = &context->progress;
+    if (p->depth++ >= STARG_STAGES)
+        return;
+    p->stages[p->depth - 1].name = stage;
+    p->stages[p->depth - 1].fraction = 0;
+    p->stages[p->depth - 1].share = share;
+    if (p->report != NULL && shown_stage(p) == p->depth - 1)
+        report(context, stage, 0);
 }
 
 void starg_progress_step(starg_context *context, size_t done, size_t total) {
-    if (context->progress != NULL && starg_clock() >= context->progress_next)
-        report(context, total ? (double)done / (double)total : 1);
+    starg_progress *p = &context->progress;
+    if (p->report == NULL || p->depth == 0 || p->depth > STARG_STAGES)
+        return;
+    advance(p, p->depth - 1, total > 0 ? fmin((double)done / (double)total, ALMOST) : ALMOST);
+    size_t shown = shown_stage(p);
+    if (p->stages[shown].fraction > 0 && starg_clock() >= p->next)
+        report(context, p->stages[shown].name, p->stages[shown].fraction);
 }
 
 void starg_progress_end(starg_context *context) {
-    if (context->progress != NULL)
-        report(context, 1);
+    starg_progress *p = &context->progress;
+    if (p->depth <= STARG_STAGES) {
+        advance(p, p->depth - 1, 1);
+        if (p->report != NULL && shown_stage(p) == p->depth - 1)
+            report(context, p->stages[p->depth - 1].name, 1);
+    }
+    p->depth--;
 }

@@ -12,18 +12,41 @@
 #include "starguard/context.h"
 #include "starguard/ranks.h"
 
+/* What the time limit does to the code under way. */
+typedef enum starg_time_rule {
+    STARG_TIME_SHORTENS, /* searches look at the clock and return the best they have         */
+    STARG_TIME_FAILS,    /* nothing to show before all is done: the call ends with ERROR_TIME */
+    STARG_TIME_IGNORED   /* runs to its end                                                  */
+} starg_time_rule;
+
+typedef struct starg_deadline {
+    double at; /* of starg_clock(); 0: none */
+    starg_time_rule rule;
+} starg_deadline;
+
+enum { STARG_STAGES = 16 };
+
+/* The stages under way, the innermost last. */
+typedef struct starg_progress {
+    starg_progress_fn *report; /* NULL: none */
+    void *user;
+    double pause, next; /* seconds between two steps that are reported; when the next is due */
+    struct {
+        const char *name;
+        double fraction, share; /* share: of the stage around it */
+    } stages[STARG_STAGES];
+    size_t depth; /* what is deeper than STARG_STAGES is not reported */
+} starg_progress;
+
 struct starg_context {
     starg_allocator allocator;
     int threads;
     uint64_t seed;
     starg_log_fn *log;
     void *log_user;
-    starg_progress_fn *progress;
-    void *progress_user;
 
     atomic_bool cancelled;
-    double deadline;     /* of starg_clock(); 0: none */
-    unsigned unfinished; /* calls under way that have nothing to show until they are done */
+    starg_deadline deadline;
 
     const starg_ranks *ranks; /* whom the work is shared with, or NULL */
     uint64_t shared_loops;    /* so far: the number of the last one    */
@@ -32,8 +55,7 @@ struct starg_context {
 
     atomic_size_t live_bytes, peak_bytes, live_blocks;
 
-    const char *progress_stage;
-    double progress_next; /* clock at which the callback is due again */
+    starg_progress progress;
 
     starg_error error;
     char message[512];
@@ -50,21 +72,24 @@ struct starg_context {
 /* Seconds of a monotonic clock. */
 double starg_clock(void) STARG_PRIVATE(starg_clock);
 
-/* True when the time limit has passed. */
+/* Puts what follows under a rule, until starg_time_end gets what this returned. Inside of another
+ * rule the later one of the enum holds: what runs to its end does so with all its parts. */
+starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule) STARG_PRIVATE(starg_time_begin);
+void starg_time_end(starg_context *context, starg_time_rule former) STARG_PRIVATE(starg_time_end);
+
+/* Seconds until the time limit, negative once it has passed; INFINITY where there is none or it is
+ * ignored. */
+double starg_seconds_left(const starg_context *context) STARG_PRIVATE(starg_seconds_left);
+
+/* True when the time limit has passed and is not ignored. */
 bool starg_time_is_over(const starg_context *context) STARG_PRIVATE(starg_time_is_over);
 
-/* Between these two, which may be nested, there is nothing to show before all is done: the time
- * limit ends the call as a cancellation would, with STARG_ERROR_TIME. */
-void starg_deadline_begin(starg_context *context) STARG_PRIVATE(starg_deadline_begin);
-void starg_deadline_end(starg_context *context) STARG_PRIVATE(starg_deadline_end);
-
-/* Has the time limit passed in such a call? */
-bool starg_deadline_struck(const starg_context *context);
+/* True when it has passed and ends the call. */
+bool starg_time_has_failed(const starg_context *context) STARG_PRIVATE(starg_time_has_failed);
 
 /* STARG_ERROR_CANCELLED (with its message set) once a cancellation was asked for; STARG_ERROR_TIME
- * where the deadline has struck. Cheap. */
-starg_status starg_check_cancel(starg_context *context, const char *stage)
-    STARG_PRIVATE(starg_check_cancel);
+ * where the time limit ends the call. Cheap. */
+starg_status starg_check_cancel(starg_context *context, const char *stage) STARG_PRIVATE(starg_check_cancel);
 
 /* Records the detail of a failure and returns `status`, so that callers can return the call. */
 starg_status starg_fail(starg_context *context, starg_status status, const char *stage,
@@ -88,13 +113,14 @@ starg_status starg_fail_time(starg_context *context, const char *stage);
 void starg_log(starg_context *context, starg_log_level level, const char *format, ...)
     STARG_PRIVATE(starg_log) __attribute__((format(printf, 3, 4)));
 
-/* Progress of a stage in steps: begin, then step with 0 <= done <= total on the calling thread.
- * step is cheap: it asks the callback at most about 20 times a second. A callback that returns
- * false marks the context cancelled; starg_check_cancel then says so. */
-void starg_progress_begin(starg_context *context, const char *stage)
-    STARG_PRIVATE(starg_progress_begin);
-void starg_progress_step(starg_context *context, size_t done, size_t total)
-    STARG_PRIVATE(starg_progress_step);
+/* Progress of a stage: begin, steps with 0 <= done <= total, end, on the calling thread; end on
+ * every way out. Stages nest. The callback gets the innermost one: 0 at its begin, 1 at its end,
+ * between them ascending fractions above 0 and below 1, at most about 20 a second. A part takes
+ * the stage around it along by its `share`; a stage in one of the same name goes on with that.
+ * A callback that returns false marks the context cancelled; starg_check_cancel then says so. */
+void starg_progress_begin(starg_context *context, const char *stage) STARG_PRIVATE(starg_progress_begin);
+void starg_progress_begin_part(starg_context *context, const char *stage, double share) STARG_PRIVATE(starg_progress_begin_part);
+void starg_progress_step(starg_context *context, size_t done, size_t total) STARG_PRIVATE(starg_progress_step);
 void starg_progress_end(starg_context *context) STARG_PRIVATE(starg_progress_end);
 
 #endif

@@ -110,6 +110,8 @@ void starg_field_expectation(const starg_field *field, char *text, size_t size) 
     else if (f->kind == STARG_FIELD_COUNT)
         snprintf(text, size, "%llu to %llu", (unsigned long long)f->least,
                  (unsigned long long)f->most);
+    else if (unlimited && f->low <= -1e100)
+        snprintf(text, size, "a number");
     else if (unlimited)
         snprintf(text, size, (f->flags & STARG_FIELD_ABOVE) ? "above %g" : "zero or more", f->low);
     else if (f->flags & STARG_FIELD_ABOVE)
@@ -126,8 +128,15 @@ static void spell_name(const starg_field *f, char *text, size_t size) {
             *c = ' ';
 }
 
-static bool is_default_count(const starg_field *f, uint64_t value) {
-    return value == f->initial || ((f->flags & STARG_FIELD_NULLABLE) && value == f->none);
+bool field_fits(const starg_field *field, const void *record) {
+    const starg_field *f = field;
+    bool nullable = f->flags & STARG_FIELD_NULLABLE;
+    if (f->kind == STARG_FIELD_REAL) {
+        double value = real_of(f, record);
+        return real_fits(f, value) || (nullable && value == f->standard);
+    }
+    uint64_t value = starg_field_count(f, record);
+    return count_fits(f, value) || (nullable && value == f->none);
 }
 
 static starg_status check_field(starg_context *context, const char *stage, const starg_field *f,
@@ -136,8 +145,7 @@ static starg_status check_field(starg_context *context, const char *stage, const
     bool real = f->kind == STARG_FIELD_REAL;
     double value = real ? real_of(f, record) : 0;
     uint64_t number = real ? 0 : starg_field_count(f, record);
-    if (real ? real_fits(f, value) || value == f->standard
-             : count_fits(f, number) || is_default_count(f, number))
+    if (field_fits(f, record) || (real ? value == f->standard : number == f->initial))
         return STARG_OK;
     spell_name(f, name, sizeof name);
     starg_field_expectation(f, expected, sizeof expected);
@@ -171,6 +179,8 @@ void starg_fields_default(const starg_fields *fields, void *record) {
             store_count(f, record, f->initial);
         else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES)
             memset(member(f, record), 0, f->size);
+        else if (f->kind == STARG_FIELD_RECORD)
+            starg_fields_default(f->of, member(f, record));
     }
 }
 

@@ -12,6 +12,9 @@
 /* The rows of a table and their number. */
 #define FIELD_ROWS(ROWS) .fields = (ROWS), .count = sizeof(ROWS) / sizeof *(ROWS)
 
+/* Is a COUNT, CHOICE, FLAG or REAL within its range, or what null stands for? */
+bool field_fits(const starg_field *field, const void *record);
+
 /* Are all members that the record has within their ranges? Errors: ARGUMENT. */
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
                           const void *record) STARG_PRIVATE(fields_check);

@@ -20,8 +20,7 @@ bool team_must_stop(team *crew, size_t item) {
         return true;
     if (atomic_load(&crew->context->cancelled))
         team_fail(crew, item, STARG_ERROR_CANCELLED);
-    else if (starg_deadline_struck(crew->context) ||
-             (crew->loop->stop_at_deadline && starg_time_is_over(crew->context)))
+    else if (starg_time_has_failed(crew->context))
         team_fail(crew, item, STARG_ERROR_TIME);
     return atomic_load(&crew->stop);
 }
@@ -50,8 +49,7 @@ void team_report(team *crew) {
     if (loop->advance != NULL)
         advance(crew);
     if (!loop->silent)
-        starg_progress_step(crew->context, loop->before + atomic_load(&crew->finished),
-                            loop->whole > 0 ? loop->whole : loop->count);
+        starg_progress_step(crew->context, atomic_load(&crew->finished), loop->count);
 }
 
 static void work(team *crew, bool calling) {
@@ -124,12 +122,11 @@ done:
 starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop) {
     starg_status status = STARG_OK;
     team crew = {.context = context, .loop = loop};
-    bool tells = loop->whole == 0 && !loop->silent;
     bool shared = loop->remote != NULL && context->ranks != NULL && loop->count > 1;
     size_t helpers = count_threads(&crew, shared), started = 0;
     thrd_t *threads = NULL;
-    if (tells)
-        starg_progress_begin(context, loop->stage);
+    if (!loop->silent)
+        starg_progress_begin_part(context, loop->stage, loop->share);
     STARG_TRY(prepare(&crew, helpers, &threads));
 
     /* A thread that cannot be started is no failure: the others do its share. */
@@ -145,13 +142,20 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
         advance(&crew);
 
     mtx_destroy(&crew.lock);
-    if (tells)
-        starg_progress_end(context);
     status = crew.calling_status;
     if (status == STARG_OK)
         status = explain(context, loop->stage, crew.failed_status);
 done:
+    if (!loop->silent)
+        starg_progress_end(context);
     starg_release(context, threads);
     starg_release(context, crew.is_finished);
+    return status;
+}
+
+starg_status starg_parallel_in_time(starg_context *context, const starg_parallel_loop *loop) {
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    starg_status status = starg_parallel_for(context, loop);
+    starg_time_end(context, former);
     return status;
 }

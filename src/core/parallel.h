@@ -29,11 +29,8 @@ typedef struct starg_parallel_loop {
     /* Scratch memory of each thread; both may be NULL. make sets *scratch or fails. */
     starg_status (*make_scratch)(starg_context *context, void *shared, void **scratch);
     void (*free_scratch)(starg_context *context, void *scratch);
-    bool stop_at_deadline; /* give up with STARG_ERROR_TIME when the time limit passes */
-    bool silent;           /* the caller tells the progress of a longer stage */
-    /* One of several loops that are a stage together: `whole` items, of which `before` are done.
-     * The caller begins and ends the progress of the stage. whole 0: the loop is the stage. */
-    size_t before, whole;
+    double share; /* of the stage around it, for its progress                             */
+    bool silent;  /* one of many short loops: the caller reports the progress of them all */
     /* Called on the calling thread, now and then and at the end, when the items below `finished`
      * are. It may set error detail. NULL: not wanted. */
     starg_status (*advance)(starg_context *context, void *shared, size_t finished);
@@ -45,5 +42,9 @@ typedef struct starg_parallel_loop {
  * not been run. */
 starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop)
     STARG_PRIVATE(starg_parallel_for);
+
+/* The same, and gives up with STARG_ERROR_TIME when the time limit passes. */
+starg_status starg_parallel_in_time(starg_context *context, const starg_parallel_loop *loop)
+    STARG_PRIVATE(starg_parallel_in_time);
 
 #endif

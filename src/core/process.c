@@ -47,8 +47,8 @@ static void become(const char *const *arguments) {
 static starg_status explain(starg_context *context, const char *stage, const char *program,
                             int status) {
     if (WIFSIGNALED(status))
-        return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' crashed (signal %d)", program,
-                          WTERMSIG(status));
+        return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was ended by signal %d",
+                          program, WTERMSIG(status));
     if (WEXITSTATUS(status) == NOT_FOUND)
         return starg_fail(context, STARG_ERROR_SOLVER, stage,
                           "'%s' cannot be run; is it installed?", program);

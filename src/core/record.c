@@ -35,21 +35,23 @@ static bool applies(const starg_field *f, const void *record) {
     return f->applies == NULL || f->applies(record);
 }
 
-/* Item i of a list as a record: a struct, or for columns a copy of nothing but its values. */
-static size_t value_size(const starg_field *f) {
-    return f->kind == STARG_FIELD_POINT ? 3 * sizeof(double) : f->size;
-}
-
-/* A field of item i of columns as a member at the pointer's target. */
-static starg_field in_column(const starg_field *f) {
+/* A field of columns as a member of one of the rows. */
+static starg_field in_column(const starg_field *f, const void *record) {
     starg_field own = *f;
-    own.offset = 0;
+    own.offset = f->within;
+    if (f->flags & STARG_FIELD_COUNTED)
+        own.length = load_size(record, f->length);
+    if (f->kind == STARG_FIELD_POINT || f->kind == STARG_FIELD_NUMBERS)
+        own.size = (f->kind == STARG_FIELD_POINT ? 3 : own.length) * sizeof(double);
+    if (own.stride == 0)
+        own.stride = own.size;
     return own;
 }
 
-static char *in_column_at(const starg_field *f, const void *record, size_t i) {
+/* Row i of the column that `own` describes. */
+static char *row_of(const starg_field *f, const starg_field *own, const void *record, size_t i) {
     char *column = load_pointer(record, f->offset);
-    return column + i * value_size(f);
+    return column + i * own->stride;
 }
 
 /* ---- writing ---- */
@@ -146,9 +148,13 @@ static json_t *field_json(const starg_field *f, const void *record) {
     }
 }
 
-/* A list that was never filled is no part of the record. */
+/* A list that was never filled is no part of the record, nor is a default that no file can hold. */
 static bool is_absent(const starg_field *f, const void *record) {
-    if (f->kind != STARG_FIELD_LIST || !(f->flags & STARG_FIELD_OPTIONAL))
+    if (!(f->flags & STARG_FIELD_OPTIONAL))
+        return false;
+    if (f->kind <= STARG_FIELD_CHOICE)
+        return !field_fits(f, record);
+    if (f->kind != STARG_FIELD_LIST)
         return false;
     if (!(f->flags & STARG_FIELD_MATCHING) && load_size(record, f->length) == 0)
         return true;
@@ -169,12 +175,12 @@ static json_t *fields_json(const starg_fields *fields, const void *record, size_
     bool columns = fields->columns, done = true;
     json_t *result = fields->form == STARG_FORM_TUPLE ? json_array() : json_object();
     for (size_t k = 0; k < fields->count && result != NULL && done; k++) {
-        const starg_field *f = &fields->fields[k], own = columns ? in_column(f) : *f;
+        const starg_field *f = &fields->fields[k], own = columns ? in_column(f, record) : *f;
         if (columns && (!applies(f, record) || load_pointer(record, f->offset) == NULL))
             continue;
         if (!columns && !is_written(f, record))
             continue;
-        json_t *value = field_json(&own, columns ? in_column_at(f, record, i) : record);
+        json_t *value = field_json(&own, columns ? row_of(f, &own, record, i) : record);
         if (fields->form == STARG_FORM_BARE) {
             json_decref(result);
             return value;
@@ -239,9 +245,11 @@ typedef struct reader {
     starg_context *context;
     const char *name;
     const starg_fields *file; /* of the whole, for messages */
+    const char *list;         /* in whose entry `item` the reader is; NULL: in none */
+    size_t item;
 } reader;
 
-static starg_status read_fields(const reader *r, json_t *object, const starg_fields *fields,
+static starg_status read_fields(reader *r, json_t *object, const starg_fields *fields,
                                 void *record);
 
 starg_status record_reject(starg_context *context, const char *name, const starg_fields *fields,
@@ -251,8 +259,22 @@ starg_status record_reject(starg_context *context, const char *name, const starg
                       expected);
 }
 
+/* Where the reader is, for messages. */
+typedef struct place {
+    char text[128];
+} place;
+
+static place place_of(const reader *r) {
+    place own = {""};
+    if (r->list != NULL)
+        snprintf(own.text, sizeof own.text, " in entry %zu of \"%s\"", r->item, r->list);
+    return own;
+}
+
 static starg_status reject(const reader *r, const starg_field *f, const char *expected) {
-    return record_reject(r->context, r->name, r->file, f->key, expected);
+    return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
+                      "'%.200s' is no valid %s: \"%s\"%s must be %s", r->name, r->file->name,
+                      f->key, place_of(r).text, expected);
 }
 
 static starg_status reject_value(const reader *r, const starg_field *f) {
@@ -332,17 +354,16 @@ static starg_status read_point(const reader *r, json_t *value, const starg_field
 
 static starg_status read_numbers(const reader *r, json_t *value, const starg_field *f,
                                  void *record) {
-    bool good = json_array_size(value) == f->length;
-    for (size_t k = 0; k < f->length && good; k++) {
+    starg_field number = *f;
+    number.size = sizeof(double);
+    bool good = json_is_array(value) && json_array_size(value) == f->length;
+    for (size_t k = 0; k < f->length && good; k++, number.offset += number.size) {
         json_t *item = json_array_get(value, k);
-        double number = json_number_value(item);
-        good = json_is_number(item) && number >= 0 && isfinite(number);
-        memcpy((char *)record + f->offset + k * sizeof number, &number, sizeof number);
+        good =
+            json_is_number(item) && starg_field_set_real(&number, record, json_number_value(item));
     }
     return good ? STARG_OK
-                : reject(r, f,
-                         "an array of finite numbers, zero or more, as many as the format "
-                         "says");
+                : reject(r, f, "an array of numbers in their range, as many as the format says");
 }
 
 static starg_status read_indices(const reader *r, json_t *value, const starg_field *f,
@@ -366,15 +387,20 @@ done:
     return status;
 }
 
+/* Is that column in a block that the column before it has made? Members of structs are. */
+static bool shares_block(const starg_fields *columns, size_t k) {
+    return k > 0 && columns->fields[k].offset == columns->fields[k - 1].offset;
+}
+
 /* Zeroed blocks for `count` items: one of structs, or one for each column that applies. */
 static starg_status make_items(const reader *r, const starg_field *f, void *record, size_t count) {
     bool columns = f->of->columns;
     for (size_t k = 0; k < (columns ? f->of->count : 1); k++) {
         const starg_field *column = columns ? &f->of->fields[k] : f;
-        if (columns && !applies(column, record))
+        if (columns && (!applies(column, record) || shares_block(f->of, k)))
             continue;
-        void *block =
-            starg_allocate_zero(r->context, count, columns ? value_size(column) : f->of->size);
+        void *block = starg_allocate_zero(r->context, count,
+                                          columns ? in_column(column, record).stride : f->of->size);
         if (block == NULL)
             return starg_fail_memory(r->context, r->file->name);
         store_pointer(record, column->offset, block);
@@ -382,45 +408,101 @@ static starg_status make_items(const reader *r, const starg_field *f, void *reco
     return STARG_OK;
 }
 
-static starg_status read_value(const reader *r, json_t *value, const starg_field *f, void *record);
+static starg_status read_field(reader *r, json_t *value, const starg_field *f, void *record);
+
+/* The value of field k in an object, a tuple, or bare. */
+static json_t *value_in(json_t *item, const starg_fields *fields, size_t k) {
+    switch (fields->form) {
+    case STARG_FORM_TUPLE:
+        return json_array_get(item, k);
+    case STARG_FORM_BARE:
+        return item;
+    default:
+        return fields->fields[k].key != NULL ? json_object_get(item, fields->fields[k].key) : NULL;
+    }
+}
+
+/* Is the value, which is called `what`, of the form that is asked for? */
+static starg_status check_form(const reader *r, json_t *value, const starg_fields *fields,
+                               const char *what) {
+    if (fields->form == STARG_FORM_BARE ||
+        (fields->form == STARG_FORM_OBJECT ? json_is_object(value)
+                                           : json_array_size(value) == fields->count))
+        return STARG_OK;
+    char expected[64] = "an object";
+    if (fields->form == STARG_FORM_TUPLE)
+        snprintf(expected, sizeof expected, "an array of %zu values", fields->count);
+    return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
+                      "'%.200s' is no valid %s: %s%s must be %s", r->name, r->file->name, what,
+                      place_of(r).text, expected);
+}
+
+/* Have the items as many numbers as they must? Asked before there is room for them, of which there
+ * is then no more than the file is long. */
+static starg_status check_numbers(const reader *r, json_t *items, const starg_fields *fields,
+                                  const void *record) {
+    for (size_t k = 0; k < fields->count; k++) {
+        const starg_field *f = &fields->fields[k];
+        for (size_t i = 0; f->kind == STARG_FIELD_NUMBERS && i < json_array_size(items); i++)
+            if (json_array_size(value_in(json_array_get(items, i), fields, k)) !=
+                in_column(f, record).length)
+                return reject(r, f, "an array of as many numbers as the format says");
+    }
+    return STARG_OK;
+}
 
 /* Row i of columns. */
-static starg_status read_row(const reader *r, json_t *item, const starg_fields *fields,
-                             void *record, size_t i) {
+static starg_status read_row(reader *r, json_t *item, const starg_fields *fields, void *record,
+                             size_t i) {
     starg_status status = STARG_OK;
     for (size_t k = 0; k < fields->count; k++) {
-        const starg_field *f = &fields->fields[k], own = in_column(f);
-        json_t *value = fields->form == STARG_FORM_OBJECT  ? json_object_get(item, f->key)
-                        : fields->form == STARG_FORM_TUPLE ? json_array_get(item, k)
-                                                           : item;
+        const starg_field *f = &fields->fields[k], own = in_column(f, record);
         if (applies(f, record))
-            STARG_TRY(read_value(r, value, &own, in_column_at(f, record, i)));
+            STARG_TRY(read_field(r, value_in(item, fields, k), &own, row_of(f, &own, record, i)));
     }
 done:
     return status;
 }
 
-static starg_status read_list(const reader *r, json_t *value, const starg_field *f, void *record) {
+static starg_status read_items(reader *r, json_t *items, const starg_field *f, void *record) {
     starg_status status = STARG_OK;
-    size_t count = json_array_size(value);
-    if (!json_is_array(value))
-        return reject(r, f, "an array");
-    if ((f->flags & STARG_FIELD_MATCHING) && count != load_size(record, f->length))
-        return reject(r, f, "an array with an item for each guard");
-    STARG_TRY(make_items(r, f, record, count));
-    memcpy((char *)record + f->length, &count, sizeof count);
-    for (size_t i = 0; i < count; i++) {
-        json_t *item = json_array_get(value, i);
-        if (f->of->form == STARG_FORM_TUPLE && json_array_size(item) != f->of->count)
-            return reject(r, f, "an array of arrays, each with as many numbers as the format says");
+    const reader outside = *r;
+    r->list = f->key;
+    for (r->item = 0; r->item < json_array_size(items); r->item++) {
+        json_t *item = json_array_get(items, r->item);
+        STARG_TRY(check_form(r, item, f->of, "what stands"));
         if (f->of->columns)
-            STARG_TRY(read_row(r, item, f->of, record, i));
+            STARG_TRY(read_row(r, item, f->of, record, r->item));
         else
             STARG_TRY(read_fields(r, item, f->of,
-                                  (char *)load_pointer(record, f->offset) + i * f->of->size));
+                                  (char *)load_pointer(record, f->offset) + r->item * f->of->size));
     }
+    *r = outside;
 done:
     return status;
+}
+
+static starg_status read_list(reader *r, json_t *value, const starg_field *f, void *record) {
+    starg_status status = STARG_OK;
+    size_t count = json_array_size(value);
+    if (!json_is_array(value) || count < f->least)
+        return reject(r, f, f->least > 0 ? "an array that is not empty" : "an array");
+    if ((f->flags & STARG_FIELD_MATCHING) && count != load_size(record, f->length))
+        return reject(r, f, "an array with an item for each guard");
+    if (f->of->columns)
+        STARG_TRY(check_numbers(r, value, f->of, record));
+    STARG_TRY(make_items(r, f, record, count));
+    memcpy((char *)record + f->length, &count, sizeof count);
+    STARG_TRY(read_items(r, value, f, record));
+done:
+    return status;
+}
+
+static starg_status read_record(reader *r, json_t *value, const starg_field *f, void *record) {
+    char what[64];
+    snprintf(what, sizeof what, "\"%s\"", f->key);
+    starg_status status = check_form(r, value, f->of, what);
+    return status == STARG_OK ? read_fields(r, value, f->of, record) : status;
 }
 
 static starg_status read_constant(const reader *r, json_t *value, const starg_field *f) {
@@ -428,18 +510,23 @@ static starg_status read_constant(const reader *r, json_t *value, const starg_fi
     if (f->value != NULL && json_is_string(value) &&
         strcmp(json_string_value(value), f->value) == 0)
         return STARG_OK;
+    uint64_t oldest = f->least > 0 ? f->least : f->initial;
     if (f->value == NULL && json_is_integer(value) &&
-        json_integer_value(value) == (json_int_t)f->initial)
+        json_integer_value(value) >= (json_int_t)oldest &&
+        json_integer_value(value) <= (json_int_t)f->initial)
         return STARG_OK;
     if (f->value != NULL)
         snprintf(text, sizeof text, "\"%s\"", f->value);
-    else
+    else if (oldest == f->initial)
         snprintf(text, sizeof text, "%llu, the only one that is known",
+                 (unsigned long long)f->initial);
+    else
+        snprintf(text, sizeof text, "%llu to %llu", (unsigned long long)oldest,
                  (unsigned long long)f->initial);
     return reject(r, f, text);
 }
 
-static starg_status read_value(const reader *r, json_t *value, const starg_field *f, void *record) {
+static starg_status read_value(reader *r, json_t *value, const starg_field *f, void *record) {
     switch (f->kind) {
     case STARG_FIELD_CHOICE:
         return read_word(r, value, f, record);
@@ -452,7 +539,7 @@ static starg_status read_value(const reader *r, json_t *value, const starg_field
     case STARG_FIELD_INDICES:
         return read_indices(r, value, f, record);
     case STARG_FIELD_RECORD:
-        return read_fields(r, value, f->of, (char *)record + f->offset);
+        return read_record(r, value, f, (char *)record + f->offset);
     case STARG_FIELD_LIST:
         return read_list(r, value, f, record);
     case STARG_FIELD_CONSTANT:
@@ -462,15 +549,15 @@ static starg_status read_value(const reader *r, json_t *value, const starg_field
     }
 }
 
-static starg_status read_field(const reader *r, json_t *value, const starg_field *f, void *record) {
+static starg_status read_field(reader *r, json_t *value, const starg_field *f, void *record) {
     if (value == NULL && (f->flags & STARG_FIELD_OPTIONAL)) {
         set_default(f, record);
         return STARG_OK;
     }
     if (value == NULL)
         return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
-                          "'%.200s' is no valid %s: key \"%s\" is missing", r->name, r->file->name,
-                          f->key);
+                          "'%.200s' is no valid %s: key \"%s\"%s is missing", r->name,
+                          r->file->name, f->key, place_of(r).text);
     if (json_is_null(value) && (f->flags & STARG_FIELD_NULLABLE)) {
         set_none(f, record);
         return STARG_OK;
@@ -478,19 +565,12 @@ static starg_status read_field(const reader *r, json_t *value, const starg_field
     return read_value(r, value, f, record);
 }
 
-static starg_status read_fields(const reader *r, json_t *object, const starg_fields *fields,
+static starg_status read_fields(reader *r, json_t *object, const starg_fields *fields,
                                 void *record) {
     starg_status status = STARG_OK;
-    if (fields->form == STARG_FORM_OBJECT && !json_is_object(object))
-        return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
-                          "'%.200s' is no valid %s: the %s must be an object", r->name,
-                          r->file->name, fields->name);
     for (size_t k = 0; k < fields->count; k++) {
         const starg_field *f = &fields->fields[k];
-        json_t *value = fields->form == STARG_FORM_TUPLE  ? json_array_get(object, k)
-                        : fields->form == STARG_FORM_BARE ? object
-                        : f->key != NULL                  ? json_object_get(object, f->key)
-                                                          : NULL;
+        json_t *value = value_in(object, fields, k);
         if (f->key == NULL && fields->form == STARG_FORM_OBJECT)
             set_default(f, record);
         else if (applies(f, record))
@@ -504,6 +584,7 @@ done:
 
 starg_status record_read(starg_context *context, const char *name, json_t *object,
                          const starg_fields *fields, void *record) {
-    const reader r = {.context = context, .name = name, .file = fields};
-    return read_fields(&r, object, fields, record);
+    reader r = {.context = context, .name = name, .file = fields};
+    starg_status status = check_form(&r, object, fields, "the whole");
+    return status == STARG_OK ? read_fields(&r, object, fields, record) : status;
 }

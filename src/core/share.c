@@ -12,6 +12,8 @@
  * At the end nothing is under way: replies that nobody needs any more, after a failure, are waited
  * for and dropped, so that no process is stuck with an answer while it is sent the next job. Only
  * where this process is cancelled or cannot go on at all they are left. */
+#include <math.h>
+
 #include "core/memory.h"
 #include "core/team.h"
 
@@ -33,10 +35,9 @@ static starg_status send_jobs(const share *s) {
     ranks_message head = {
         .kind = RANKS_JOB, .loop = s->number, .seed = context->seed, .work = remote->work};
     for (int to = 1; to < s->ranks->count; to++) {
-        if (context->deadline > 0) {
-            double left = context->deadline - starg_clock();
-            head.seconds = left > 0 ? left : 1e-9;
-        }
+        double left = starg_seconds_left(context);
+        if (left < INFINITY) /* 0 is no limit */
+            head.seconds = fmax(left, 1e-9);
         STARG_TRY(ranks_send(context, s->ranks, to, &head, remote->job->data, remote->job->count));
     }
 done:

@@ -202,23 +202,31 @@ done:
     return status;
 }
 
+static starg_status run_rounds(block_solve *block) {
+    starg_status status = STARG_OK;
+    bool again = true;
+    starg_progress_begin(block->run->context, "bound");
+    while (again) {
+        STARG_TRY(run_round(block, &again));
+        again = again && !is_closed(block) && !block->run->relaxed;
+    }
+done:
+    starg_progress_end(block->run->context);
+    return status;
+}
+
 /* `block->rest` holds the block; `block->best` ends as its cover. */
 static starg_status solve_block(block_solve *block) {
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
     for (size_t i = 0; i < block->rest.rows; i++)
         STARG_PUSH(context, "cover", &block->best, block->rest.row_names[i]);
-    bool again;
-    starg_progress_begin(context, "bound");
-    do {
-        STARG_TRY(run_round(block, &again));
-    } while (again && !is_closed(block) && !block->run->relaxed);
-    starg_progress_end(context);
+    STARG_TRY(run_rounds(block));
     if (is_closed(block) || block->run->relaxed || is_too_large(block, 0) ||
         cover_time_is_over(block->run))
         goto done;
     starg_progress_begin(context, "ilp");
-    STARG_TRY(branch_and_bound(block));
+    status = branch_and_bound(block);
     starg_progress_end(context);
 done:
     return status;
@@ -274,9 +282,7 @@ starg_status cover_solve_full(cover_run *run, cover_instance *instance, cover_an
     uint32_t *blocks = NULL;
     size_t count;
     bool feasible; /* always: the problem leaves out what cannot be covered */
-    starg_progress_begin(run->context, "reduce");
     STARG_TRY(cover_reduce_full(run, instance, &answer->rows, run->prices, &feasible));
-    starg_progress_end(run->context);
     answer->lower_bound = answer->rows.count;
     STARG_NEW(run->context, "reduce", blocks, instance->rows);
     STARG_TRY(cover_find_blocks(instance, blocks, &count));

@@ -77,9 +77,7 @@ static starg_status reduce_rows(cover_run *run, const cover_instance *instance,
                                 cover_instance *rest) {
     starg_status status = STARG_OK;
     STARG_TRY(cover_instance_select(instance, NULL, NULL, rest));
-    starg_progress_begin(run->context, "reduce");
     STARG_TRY(cover_reduce_partial(run, rest));
-    starg_progress_end(run->context);
 done:
     return status;
 }

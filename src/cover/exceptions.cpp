@@ -1,42 +1,63 @@
 /* The one file in C++: C has no way to catch.
  *
- * When memory is out, operator new calls a handler. It leaves by longjmp: an exception would run
- * the destructors of half-made objects on its way, and some in CBC read what was never written.
- * What the libraries held is lost with either. */
+ * When memory is out, operator new calls a handler, again and again until it finds some. The first
+ * time it gets a reserve, and the solver is asked to stop. Where the reserve does not last until it
+ * does, the handler of the process has its turn, if it has one; else the process ends with
+ * status 3. A jump out of the handler would be undefined, and an exception runs the destructors of
+ * half-made objects, some of which read in CBC what was never written. */
 #include "cover/exceptions.h"
 
 #include <atomic>
-#include <csetjmp>
+#include <cstdio>
+#include <cstdlib>
 #include <new>
 
-static thread_local std::jmp_buf *way_out;    /* of the call that this thread is in */
-static std::atomic<std::new_handler> process; /* the handler of the process         */
+static const std::size_t RESERVE = std::size_t(32) << 20;
+static const int OUT_OF_MEMORY =
+    3; /* exit status, that of the command line for what could not finish */
 
-static void leave() {
-    if (way_out != nullptr)
-        std::longjmp(*way_out, 1);
+static thread_local bool is_inside;           /* this thread is in a call            */
+static thread_local void *reserve;            /* NULL: used up                       */
+static std::atomic<std::new_handler> process; /* the handler of the process          */
+
+static void find_memory() {
     std::new_handler own = process;
-    if (own == nullptr)
+    if (is_inside && reserve != nullptr) {
+        std::free(reserve);
+        reserve = nullptr;
+    } else if (own != nullptr) {
+        own();
+    } else if (is_inside) {
+        std::fputs("starguard: memory is out within the solver library, which cannot go on; take "
+                   "fewer candidates, or --method greedy\n",
+                   stderr);
+        std::_Exit(OUT_OF_MEMORY);
+    } else {
         throw std::bad_alloc();
-    own();
+    }
+}
+
+bool cover_memory_is_low(void) {
+    return is_inside && reserve == nullptr;
 }
 
 bool cover_call_safely(void (*call)(void *argument), void *argument) {
-    std::jmp_buf here;
-    volatile bool done = false;
+    bool done = false;
+    reserve = std::malloc(RESERVE);
+    if (reserve == nullptr)
+        return false;
     process = std::get_new_handler();
-    std::set_new_handler(leave);
-    way_out = &here;
-    if (setjmp(here) == 0) {
-        try {
-            call(argument);
-            done = true;
-        } catch (...) {
-            done = false;
-        }
+    std::set_new_handler(find_memory);
+    is_inside = true;
+    try {
+        call(argument);
+        done = true;
+    } catch (...) {
+        done = false;
     }
-    way_out = nullptr;
-    if (std::get_new_handler() == leave)
+    is_inside = false;
+    if (std::get_new_handler() == find_memory)
         std::set_new_handler(process);
+    std::free(reserve);
     return done;
 }

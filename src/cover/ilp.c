@@ -16,8 +16,8 @@
  *   - Its heuristics find nothing that our local search has not found: off. Its preprocessing can
  *     crash on infeasible models and gains nothing after our reductions: off. Limits are by elapsed
  *     time. All printing is off.
- *   - When memory is out it throws, wherever it is. Its search then ends as one that has found
- *     nothing; its model is lost, and it is not called again (solver.h).
+ *   - When memory is out it cannot go on: it lives on a reserve until the next node, where it is
+ *     stopped (exceptions.h). After an exception its model is lost, and it is not called again.
  *
  * Trust: coefficients and costs are 1, demands at most 1,000, so the model is exact in doubles. A
  * cover from CBC is checked on the bits. Gaps are closed by our exact dual bound first (dual.h);
@@ -108,18 +108,16 @@ done:
 /* What the cut callback sees. */
 typedef struct stop_request {
     cover_run *run;
-    size_t calls;
+    size_t nodes; /* of the searches before, and calls since: about as many */
     bool stopped;
 } stop_request;
 
 static void stop_if_asked(void *solver, void *cuts, void *user) {
     stop_request *request = user;
     (void)solver;
-    /* How much is left is not known; being asked is what counts, it can cancel. */
-    request->calls++;
-    starg_progress_step(request->run->context, request->calls, 2 * request->calls);
+    starg_progress_step(request->run->context, ++request->nodes, request->run->max_nodes);
     if (starg_check_cancel(request->run->context, "ilp") != STARG_OK ||
-        cover_time_is_over(request->run))
+        cover_time_is_over(request->run) || cover_memory_is_low())
         request->stopped = true;
     if (request->stopped) {
         int variable = 0;
@@ -148,7 +146,7 @@ static void set_limits(const part_search *search, Cbc_Model *model) {
     Cbc_setParameter(model, "preprocess", "off");
     Cbc_setParameter(model, "heuristicsOnOff", "off");
     Cbc_setMaximumNodes(model, nodes < INT_MAX ? (int)nodes : INT_MAX);
-    if (search->run->context->deadline > 0)
+    if (starg_seconds_left(search->run->context) < INFINITY)
         Cbc_setMaximumSeconds(model, cover_seconds_left(search->run));
 }
 
@@ -223,7 +221,7 @@ typedef struct cbc_call {
 static void run_cbc(void *argument) {
     part_search *search = ((cbc_call *)argument)->search;
     const model_data *data = ((cbc_call *)argument)->data;
-    stop_request request = {.run = search->run};
+    stop_request request = {.run = search->run, .nodes = search->nodes};
     Cbc_Model *model = Cbc_newModel();
     if (model == NULL)
         return;

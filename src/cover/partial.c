@@ -23,16 +23,12 @@ static starg_status try_rows(cover_run *run, const cover_instance *instance, siz
     cover_state found = {0};
     uint64_t goal = bound->goal;
     STARG_TRY(cover_state_create(instance, &found));
-    starg_progress_begin(run->context, "bound");
     cover_weight_bound_restart(instance, bound, rows);
     STARG_TRY(cover_weight_bound_improve(run, instance, goal - 1, bound));
-    starg_progress_end(run->context);
     *decided = bound->most < goal;
     if (*decided || cover_time_is_over(run))
         goto done;
-    starg_progress_begin(run->context, "ilp");
     STARG_TRY(cover_search(run, instance, bound, goal - 1, goal, &found, decided));
-    starg_progress_end(run->context);
     if (found.weight >= goal) {
         cover_state_copy(best, &found);
         *decided = true;
@@ -46,9 +42,7 @@ done:
 static starg_status close_gap(cover_run *run, const cover_instance *instance,
                               cover_weight_bound *bound, cover_state *choice) {
     starg_status status = STARG_OK;
-    starg_progress_begin(run->context, "bound");
     STARG_TRY(cover_weight_bound_improve(run, instance, bound->goal - 1, bound));
-    starg_progress_end(run->context);
     while (bound->least < choice->count && !cover_time_is_over(run)) {
         size_t rows = bound->least;
         bool decided;
@@ -85,14 +79,10 @@ static starg_status close_weight_gap(cover_run *run, const cover_instance *insta
                                      cover_weight_bound *bound, cover_state *choice) {
     starg_status status = STARG_OK;
     bool exhausted;
-    starg_progress_begin(run->context, "bound");
     STARG_TRY(cover_weight_bound_improve(run, instance, choice->weight, bound));
-    starg_progress_end(run->context);
     if (bound->most <= choice->weight || cover_time_is_over(run))
         goto done;
-    starg_progress_begin(run->context, "ilp");
     STARG_TRY(cover_search(run, instance, bound, 0, goal, choice, &exhausted));
-    starg_progress_end(run->context);
     if (exhausted && choice->weight < goal)
         bound->most = choice->weight;
 done:

@@ -329,6 +329,7 @@ static bool every_demand_can_be_met(const cover_instance *instance) {
 starg_status cover_reduce_full(cover_run *run, cover_instance *instance, cover_names *forced,
                                double *prices, bool *feasible) {
     starg_status status = STARG_OK;
+    starg_progress_begin(run->context, "reduce");
     *feasible = every_demand_can_be_met(instance);
     for (bool changed = *feasible; changed;) {
         changed = false;
@@ -339,12 +340,16 @@ starg_status cover_reduce_full(cover_run *run, cover_instance *instance, cover_n
         STARG_TRY(apply_row_dominance(run, instance, &changed));
     }
 done:
+    starg_progress_end(run->context);
     return status;
 }
 
 starg_status cover_reduce_partial(cover_run *run, cover_instance *instance) {
     bool changed;
-    return apply_row_dominance(run, instance, &changed);
+    starg_progress_begin(run->context, "reduce");
+    starg_status status = apply_row_dominance(run, instance, &changed);
+    starg_progress_end(run->context);
+    return status;
 }
 
 /* A walk over the rows and columns of one block. */

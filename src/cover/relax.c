@@ -103,7 +103,7 @@ static bool start_model(relaxing *relax) {
 }
 
 static bool run_simplex(const cover_run *run, relaxing *relax, bool first) {
-    if (run->context->deadline > 0)
+    if (starg_seconds_left(run->context) < INFINITY)
         Clp_setMaximumSeconds(relax->model, cover_seconds_left(run));
     if (first)
         Clp_initialDualSolve(relax->model);

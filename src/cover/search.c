@@ -35,6 +35,8 @@ static bool is_over(search *seek) {
         return true;
     }
     seek->nodes_left--;
+    starg_progress_step(seek->run->context, seek->run->max_nodes - seek->nodes_left,
+                        seek->run->max_nodes);
     seek->steps_left -= cost;
     seek->run->nodes++;
     return false;
@@ -152,6 +154,7 @@ starg_status cover_search(cover_run *run, const cover_instance *instance,
                    .nodes_left = run->max_nodes,
                    .steps_left = (cover_wide)run->max_nodes * STEPS_PER_NODE};
     *exhausted = false;
+    starg_progress_begin(run->context, "ilp");
     STARG_TRY(cover_state_create(instance, &at));
     STARG_NEW(run->context, "ilp", all, instance->rows);
     for (size_t i = 0; i < instance->rows; i++)
@@ -159,6 +162,7 @@ starg_status cover_search(cover_run *run, const cover_instance *instance,
     STARG_TRY(explore(&seek, all, instance->rows));
     *exhausted = !seek.stopped;
 done:
+    starg_progress_end(run->context);
     cover_state_free(&at);
     starg_release(run->context, all);
     return status;

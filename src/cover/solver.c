@@ -1,5 +1,6 @@
 #include "cover/solver.h"
 
+#include <math.h>
 #include <threads.h>
 #include <time.h>
 
@@ -45,6 +46,5 @@ void cover_solver_unlock(bool held) {
 }
 
 double cover_seconds_left(const cover_run *run) {
-    double left = run->context->deadline - starg_clock();
-    return left > 0.001 ? left : 0.001;
+    return fmax(0.001, starg_seconds_left(run->context));
 }

@@ -160,6 +160,7 @@ starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *in
     double *slope = NULL;
     double factor = 1;
     uint64_t reviewed = bound->most;
+    starg_progress_begin(run->context, "bound");
     STARG_NEW(run->context, "bound", slope, instance->columns);
     for (size_t j = 0; j < instance->columns; j++)
         bound->trial[j] = bound->multipliers[j];
@@ -182,6 +183,7 @@ starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *in
         }
     }
 done:
+    starg_progress_end(run->context);
     starg_release(run->context, slope);
     return status;
 }

@@ -314,14 +314,15 @@ static json_t *guard_json(book *b, size_t i) {
 
 static json_t *guards_json(book *b) {
     const starg_guards *g = b->page->guards;
-    static const char *const methods[] = {"ilp", "greedy", "pilp"};
+    const char *method =
+        starg_fields_word(starg_guard_options_fields(), "method", g->options.method);
     json_t *list = json_array();
     for (size_t i = 0; i < g->count; i++)
         append(b, list, guard_json(b, i));
     return json_pack("{s:o, s:I, s:s, s:f, s:f, s:I, s:b, s:b, s:o}", "list", list, "faces",
-                     (json_int_t)g->face_count, "method", methods[g->options.method],
-                     "coverage_faces", g->coverage_faces, "coverage_area", g->coverage_area,
-                     "lower_bound", (json_int_t)g->lower_bound, "optimal", (int)g->optimal, "seen",
+                     (json_int_t)g->face_count, "method", method, "coverage_faces",
+                     g->coverage_faces, "coverage_area", g->coverage_area, "lower_bound",
+                     (json_int_t)g->lower_bound, "optimal", (int)g->optimal, "seen",
                      (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
 }
 

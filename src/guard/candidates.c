@@ -162,9 +162,9 @@ static starg_status find(starg_context *context, const candidate_shape *shape,
 
 starg_status candidates_find(starg_context *context, const candidate_shape *shape,
                              starg_candidates source, size_t wanted, candidate_points *points) {
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = find(context, shape, source, wanted, points);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     return status;
 }
 

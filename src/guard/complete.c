@@ -156,12 +156,9 @@ starg_status complete_candidates(starg_context *context, const completion *all,
     for (size_t rank = 0; rank < face_count; rank++)
         job.rank_of[job.scene->face_of[rank]] = (uint32_t)rank;
     size_t count = pick_faces(all, unseen, face_count, job.faces);
-    starg_parallel_loop loop = {.stage = STAGE,
-                                .count = count,
-                                .shared = &job,
-                                .item = complete_face,
-                                .stop_at_deadline = true};
-    STARG_TRY(starg_parallel_for(context, &loop));
+    starg_parallel_loop loop = {
+        .stage = STAGE, .count = count, .shared = &job, .item = complete_face};
+    STARG_TRY(starg_parallel_in_time(context, &loop));
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < job.found[i].count; k++)
             STARG_TRY(candidates_push(context, points, job.found[i].p[k],

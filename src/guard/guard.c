@@ -13,9 +13,8 @@
 #include <math.h>
 
 #include "core/fields.h"
-#include "geometry/vec3.h"
-#include "guard/job.h"
 #include "guard/samples.h"
+#include "guard/stages.h"
 
 static const char STAGE[] = "guard";
 
@@ -36,222 +35,216 @@ done:
 }
 
 /* Given points that may not be used are left out, with a notice. */
-static starg_status take_given(guard_job *job, candidate_points *points) {
+static starg_status take_given(const guard_problem *problem, candidate_points *points) {
     starg_status status = STARG_OK;
-    const starg_guard_options *options = job->options;
+    const starg_guard_options *options = problem->options;
     size_t dropped = 0;
     for (size_t i = 0; i < options->point_count; i++) {
         const double *p = options->points + 3 * i;
         uint64_t index = i;
         if (!(fabs(p[0]) < 1e100 && fabs(p[1]) < 1e100 && fabs(p[2]) < 1e100))
-            return starg_fail_at(job->context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_CANDIDATE,
-                                 &index, 1, "candidate %zu has a coordinate that is not finite", i);
-        bool usable = candidates_allowed(job->solid, p, options->clearance);
+            return starg_fail_at(problem->context, STARG_ERROR_ARGUMENT, STAGE,
+                                 STARG_ELEMENT_CANDIDATE, &index, 1,
+                                 "candidate %zu has a coordinate that is not finite", i);
+        bool usable = candidates_allowed(problem->solid, p, options->clearance);
         if (usable)
-            STARG_TRY(candidates_push(job->context, points, p, NULL));
+            STARG_TRY(candidates_push(problem->context, points, p, NULL));
         dropped += !usable;
     }
     if (dropped > 0)
-        starg_log(job->context, STARG_LOG_WARNING,
+        starg_log(problem->context, STARG_LOG_WARNING,
                   "%zu of %zu given candidates are left out: not inside, or too close to the wall",
                   dropped, options->point_count);
 done:
     return status;
 }
 
-static bool needs_samples(const guard_job *job) {
-    return job->options->candidates != STARG_CANDIDATES_GIVEN && samples_wanted(job->solid);
+static bool needs_samples(const guard_problem *problem) {
+    return problem->options->candidates != STARG_CANDIDATES_GIVEN && samples_wanted(problem->solid);
 }
 
 /* Levels of detail, for the method or as samples. Without the time to make them there is the model
  * alone. */
-static starg_status make_levels(guard_job *job) {
-    const starg_guard_options *options = job->options;
-    if (options->method != STARG_GUARD_PILP && !needs_samples(job))
-        return STARG_OK;
-    starg_progress_begin(job->context, "levels");
-    starg_status status = starg_mesh_levels(job->context, job->solid->mesh, options->coarsest,
-                                            options->step, NULL, &job->detail);
-    starg_progress_end(job->context);
-    if (status != STARG_ERROR_TIME)
-        return status;
-    job->time_limited = true;
-    return STARG_OK;
+static starg_status make_levels(const guard_problem *problem, guard_detail *out) {
+    const starg_guard_options *options = problem->options;
+    starg_progress_begin(problem->context, "levels");
+    starg_status status = starg_mesh_levels(problem->context, problem->solid->mesh,
+                                            options->coarsest, options->step, NULL, &out->levels);
+    starg_progress_end(problem->context);
+    out->time_limited = status == STARG_ERROR_TIME;
+    return out->time_limited ? STARG_OK : status;
 }
 
-static starg_status choose_samples(guard_job *job) {
+static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
     starg_status status = STARG_OK;
-    if (needs_samples(job) && job->detail != NULL)
-        STARG_TRY(samples_of_levels(job->context, job->detail, &job->samples));
-    job->shape = (candidate_shape){job->solid, job->samples ? job->samples : job->solid,
-                                   job->options->clearance};
+    bool samples = needs_samples(problem);
+    if (problem->options->method == STARG_GUARD_PILP || samples)
+        STARG_TRY(make_levels(problem, out));
+    if (samples && out->levels != NULL)
+        STARG_TRY(samples_of_levels(problem->context, out->levels, &out->samples));
 done:
     return status;
 }
 
-/* The first candidates, before completion. */
-static starg_status make_candidates(guard_job *job) {
-    starg_status status = STARG_OK;
-    const starg_guard_options *options = job->options;
-    candidate_points points = {0};
+static starg_status find_first(const guard_problem *problem, const guard_detail *detail,
+                               candidate_points *out) {
+    const starg_guard_options *options = problem->options;
+    const candidate_shape shape = guard_shape(problem, detail);
     if (options->candidates == STARG_CANDIDATES_GIVEN)
-        STARG_TRY(take_given(job, &points));
-    else
-        STARG_TRY(candidates_find(job->context, &job->shape, options->candidates,
-                                  options->candidate_count, &points));
-    STARG_TRY(pool_add(&job->pool, &points));
-done:
-    candidates_free(job->context, &points);
-    return status;
+        return take_given(problem, out);
+    return candidates_find(problem->context, &shape, options->candidates, options->candidate_count,
+                           out);
 }
 
-static starg_status complete_pool(guard_job *job) {
+/* The candidates before completion, and what they see. */
+static starg_status find_candidates(const guard_problem *problem, const guard_detail *detail,
+                                    guard_pool *out) {
     starg_status status = STARG_OK;
-    STARG_TRY(pool_complete(&job->pool, &job->weights));
-    job->time_limited = job->time_limited || job->pool.time_limited;
-    if (pool_count(&job->pool) > 0)
-        goto done;
-    if (job->time_limited)
-        status = starg_fail(job->context, STARG_ERROR_TIME, STAGE,
-                            "the time limit struck before any candidate was looked at");
-    else
-        status = starg_fail(job->context, STARG_ERROR_MESH, STAGE,
-                            "there is no point inside the solid from which anything is seen; a "
-                            "smaller clearance, a larger range or other candidates may help");
+    candidate_points points = {0};
+    STARG_TRY(pool_create(problem->context, problem->solid, problem->options, out));
+    STARG_TRY(find_first(problem, detail, &points));
+    STARG_TRY(pool_add(out, &points));
+done:
+    candidates_free(problem->context, &points);
+    return status;
+}
+
+static starg_status fail_without_candidates(starg_context *context, bool time_limited) {
+    if (time_limited)
+        return starg_fail(context, STARG_ERROR_TIME, STAGE,
+                          "the time limit struck before any candidate was looked at");
+    return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                      "there is no point inside the solid from which anything is seen; a smaller "
+                      "clearance, a larger range or other candidates may help");
+}
+
+static starg_status find_pool(const guard_problem *problem, const guard_detail *detail,
+                              guard_pool *out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_candidates(problem, detail, out));
+    STARG_TRY(pool_complete(out, &problem->weights));
+    if (pool_count(out) == 0)
+        status =
+            fail_without_candidates(problem->context, detail->time_limited || out->time_limited);
 done:
     return status;
 }
 
-int job_level_of(const guard_job *job, uint32_t candidate, int otherwise) {
-    for (size_t i = 0; i < job->chosen.count; i++)
-        if (job->chosen.data[i] == candidate)
-            return job->levels.data[i];
+static int level_of(const guard_selection *selection, uint32_t candidate, int otherwise) {
+    for (size_t i = 0; i < selection->chosen.count; i++)
+        if (selection->chosen.data[i] == candidate)
+            return selection->levels.data[i];
     return otherwise;
 }
 
-starg_status job_take_cover(guard_job *job, const starg_cover *cover, int level) {
+starg_status selection_of_cover(starg_context *context, const starg_cover *cover,
+                                const guard_selection *before, int level, guard_selection *out) {
     starg_status status = STARG_OK;
-    int *levels = NULL;
-    STARG_NEW(job->context, STAGE, levels, cover->count);
-    for (size_t i = 0; i < cover->count; i++)
-        levels[i] = job_level_of(job, cover->rows[i], level);
-    job->chosen.count = job->levels.count = 0;
+    *out = (guard_selection){.level = level,
+                             .lower_bound = cover->lower_bound,
+                             .weight_bound = cover->weight_bound,
+                             .time_limited = before->time_limited || cover->time_limited};
     for (size_t i = 0; i < cover->count; i++) {
-        STARG_PUSH(job->context, STAGE, &job->chosen, cover->rows[i]);
-        STARG_PUSH(job->context, STAGE, &job->levels, levels[i]);
+        STARG_PUSH(context, STAGE, &out->chosen, cover->rows[i]);
+        STARG_PUSH(context, STAGE, &out->levels, level_of(before, cover->rows[i], level));
     }
-    job->lower_bound = cover->lower_bound;
-    job->weight_bound = cover->weight_bound;
-    job->time_limited = job->time_limited || cover->time_limited;
 done:
-    starg_release(job->context, levels);
     return status;
 }
 
+starg_status selection_copy(starg_context *context, const guard_selection *from,
+                            guard_selection *out) {
+    starg_status status = STARG_OK;
+    *out = (guard_selection){.level = from->level,
+                             .lower_bound = from->lower_bound,
+                             .weight_bound = from->weight_bound,
+                             .time_limited = from->time_limited};
+    for (size_t i = 0; i < from->chosen.count; i++) {
+        STARG_PUSH(context, STAGE, &out->chosen, from->chosen.data[i]);
+        STARG_PUSH(context, STAGE, &out->levels, from->levels.data[i]);
+    }
+    for (size_t i = 0; i < from->kept.count; i++)
+        STARG_PUSH(context, STAGE, &out->kept, from->kept.data[i]);
+done:
+    return status;
+}
+
+void selection_free(starg_context *context, guard_selection *selection) {
+    STARG_ARRAY_FREE(context, &selection->chosen);
+    STARG_ARRAY_FREE(context, &selection->levels);
+    STARG_ARRAY_FREE(context, &selection->kept);
+}
+
 /* One cover problem over the model as it is. */
-static starg_status choose_at_once(guard_job *job) {
+static starg_status choose_at_once(const guard_problem *problem, const guard_pool *pool,
+                                   bool time_limited, guard_selection *out) {
     starg_status status = STARG_OK;
     starg_cover *cover = NULL;
-    bool greedy = job->options->method == STARG_GUARD_GREEDY;
+    bool greedy = problem->options->method == STARG_GUARD_GREEDY;
+    const guard_selection none = {.time_limited = time_limited};
     const choice how = {.method = greedy ? STARG_COVER_GREEDY : STARG_COVER_ILP,
-                        .max_nodes = job->options->max_nodes};
-    STARG_TRY(choose_candidates(&job->pool, &job->weights, &how, &cover));
-    STARG_TRY(job_take_cover(job, cover, 0));
+                        .max_nodes = problem->options->max_nodes};
+    STARG_TRY(choose_candidates(pool, &problem->weights, &how, &cover));
+    STARG_TRY(selection_of_cover(problem->context, cover, &none, 0, out));
 done:
     starg_cover_free(cover);
     return status;
 }
 
-static starg_status choose(guard_job *job) {
+static bool may_refine(const starg_guard_options *options) {
+    return options->refine && options->coverage == 1 && options->max_guards == 0 &&
+           options->candidates != STARG_CANDIDATES_GIVEN;
+}
+
+/* To build the whole problem once more, for the bounds, takes seconds. */
+static bool must_end(const guard_problem *problem, const guard_selection *first) {
+    return first->lower_bound > 0 && starg_time_is_over(problem->context);
+}
+
+static starg_status choose_by_levels(const guard_problem *problem, const guard_detail *detail,
+                                     guard_outcome *out) {
     starg_status status = STARG_OK;
-    const starg_guard_options *options = job->options;
-    if (options->method != STARG_GUARD_PILP)
-        return choose_at_once(job);
-    STARG_TRY(progressive_guards(job));
-    if (job->lower_bound > 0 && starg_time_is_over(job->context)) {
-        job->time_limited = true; /* to build the whole problem once more takes seconds */
-        return STARG_OK;
+    guard_selection first = {0};
+    STARG_TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
+    bool ends = must_end(problem, &first), refines = !ends && may_refine(problem->options);
+    if (refines)
+        STARG_TRY(refine_guards(problem, detail, &first, &out->pool, &out->selection,
+                                &out->lines_tested));
+    else if (!ends)
+        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
+    const guard_selection *of_levels = ends || refines ? &first : &out->selection;
+    STARG_TRY(record_level(&out->pool, of_levels, &out->records));
+    if (ends) {
+        out->selection = first;
+        out->selection.time_limited = true;
+        first = (guard_selection){0};
     }
-    if (options->refine && options->coverage == 1 && options->max_guards == 0 &&
-        options->candidates != STARG_CANDIDATES_GIVEN)
-        STARG_TRY(refine_guards(job));
+done:
+    selection_free(problem->context, &first);
+    return status;
+}
+
+/* Everything from the solid to the choice. */
+static starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
+    starg_status status = STARG_OK;
+    guard_detail detail = {0};
+    STARG_TRY(find_detail(problem, &detail));
+    STARG_TRY(find_pool(problem, &detail, &out->pool));
+    if (problem->options->method == STARG_GUARD_PILP)
+        STARG_TRY(choose_by_levels(problem, &detail, out));
     else
-        STARG_TRY(bound_guards(job));
+        STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
+                                 &out->selection));
 done:
+    starg_solid_free(detail.samples);
+    starg_levels_free(problem->context, detail.levels);
     return status;
 }
 
-static starg_status copy_choice(guard_job *job, starg_guards *result) {
-    starg_status status = STARG_OK;
-    STARG_NEW(job->context, STAGE, result->positions, 3 * job->chosen.count);
-    if (job->options->visibility.cone < 360)
-        STARG_NEW(job->context, STAGE, result->directions, 3 * job->chosen.count);
-    STARG_NEW(job->context, STAGE, result->levels, job->chosen.count);
-    STARG_NEW_ZERO(job->context, STAGE, result->seen_faces, job->chosen.count);
-    result->count = job->chosen.count;
-    for (size_t i = 0; i < result->count; i++) {
-        vec3_copy(pool_point(&job->pool, job->chosen.data[i]), result->positions + 3 * i);
-        if (result->directions != NULL)
-            vec3_copy(pool_direction(&job->pool, job->chosen.data[i]), result->directions + 3 * i);
-        result->levels[i] = job->levels.data[i];
-    }
-    result->level_list = job->records.data;
-    result->level_count = job->records.count;
-    job->records.data = NULL;
-    job->records.count = job->records.capacity = 0;
-done:
-    return status;
-}
-
-/* Is the weight that was bounded the area that is seen? Not with vertices, nor where a face counts
- * only once it is seen by several. */
-static bool bounds_area(const starg_guard_options *o) {
-    return o->max_guards > 0 && o->redundancy == 1 && o->visibility.target == STARG_TARGET_FACES;
-}
-
-static starg_status report(guard_job *job, starg_guards **out) {
-    starg_status status = STARG_OK;
-    starg_guards *result = NULL;
-    double deadline = job->context->deadline;
-    job->context->deadline = 0; /* what was found is measured in full */
-    STARG_NEW_ZERO(job->context, STAGE, result, 1);
-    result->vertex_count = job->solid->mesh->vertex_count;
-    result->face_count = job->solid->mesh->face_count;
-    result->options = *job->options;
-    result->options.points = NULL;
-    result->options.visibility.directions = NULL;
-    result->candidate_count = pool_count(&job->pool);
-    result->lines_tested = job->lines_tested;
-    result->time_limited = job->time_limited;
-    result->area_bound = 1;
-    if (bounds_area(job->options))
-        result->area_bound = (double)job->weight_bound / (double)job->weights.total;
-    STARG_TRY(copy_choice(job, result));
-    result->lower_bound = job->lower_bound;
-    result->optimal = result->count == result->lower_bound;
-    STARG_TRY(measure_guards(job, result));
-    *out = result;
-done:
-    job->context->deadline = deadline;
-    if (status != STARG_OK)
-        starg_guards_free(job->context, result);
-    return status;
-}
-
-static void free_records(starg_context *context, starg_guard_level *records, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        starg_release(context, records[i].positions);
-    starg_release(context, records);
-}
-
-static void job_free(guard_job *job) {
-    free_records(job->context, job->records.data, job->records.count);
-    STARG_ARRAY_FREE(job->context, &job->chosen);
-    STARG_ARRAY_FREE(job->context, &job->levels);
-    column_weights_free(job->context, &job->weights);
-    pool_free(&job->pool);
-    starg_solid_free(job->samples);
-    starg_levels_free(job->context, job->detail);
+static void outcome_free(starg_context *context, guard_outcome *outcome) {
+    records_free(context, &outcome->records);
+    selection_free(context, &outcome->selection);
+    pool_free(&outcome->pool);
 }
 
 starg_status starg_guard(starg_context *context, const starg_solid *solid,
@@ -260,36 +253,34 @@ starg_status starg_guard(starg_context *context, const starg_solid *solid,
     starg_guard_options defaults;
     starg_guard_options_default(&defaults);
     starg_guard_options used = options ? *options : defaults;
-    guard_job job = {.context = context, .solid = solid, .options = &used};
+    guard_problem problem = {.context = context, .solid = solid, .options = &used};
+    guard_outcome outcome = {0};
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
-    STARG_TRY(check_options(context, job.options));
-    STARG_TRY(pool_create(context, solid, job.options, &job.pool));
+    STARG_TRY(check_options(context, &used));
     STARG_TRY(
-        column_weights_create(context, solid->mesh, job.options->visibility.target, &job.weights));
-    STARG_TRY(make_levels(&job));
-    STARG_TRY(choose_samples(&job));
-    STARG_TRY(make_candidates(&job));
-    STARG_TRY(complete_pool(&job));
-    STARG_TRY(choose(&job));
-    STARG_TRY(report(&job, out));
+        column_weights_create(context, solid->mesh, used.visibility.target, &problem.weights));
+    STARG_TRY(find_guards(&problem, &outcome));
+    STARG_TRY(report_guards(&problem, &outcome, out));
 done:
-    job_free(&job);
+    outcome_free(context, &outcome);
+    column_weights_free(context, &problem.weights);
     return status;
 }
 
-static starg_status choose_all(guard_job *job) {
+static starg_status choose_all(const guard_problem *problem, const guard_pool *pool,
+                               guard_selection *out) {
     starg_status status = STARG_OK;
-    size_t given = job->options->point_count;
-    for (uint32_t i = 0; i < pool_count(&job->pool); i++) {
-        STARG_PUSH(job->context, STAGE, &job->chosen, i);
-        STARG_PUSH(job->context, STAGE, &job->levels, 0);
+    size_t given = problem->options->point_count;
+    for (uint32_t i = 0; i < pool_count(pool); i++) {
+        STARG_PUSH(problem->context, STAGE, &out->chosen, i);
+        STARG_PUSH(problem->context, STAGE, &out->levels, 0);
     }
-    if (given == 0 || job->chosen.count != given)
-        status = starg_fail(job->context, STARG_ERROR_ARGUMENT, STAGE,
+    if (given == 0 || out->chosen.count != given)
+        status = starg_fail(problem->context, STARG_ERROR_ARGUMENT, STAGE,
                             "%zu of %zu given guards are strictly inside the solid; there must be "
                             "guards, and all of them inside",
-                            job->chosen.count, given);
+                            out->chosen.count, given);
 done:
     return status;
 }
@@ -303,31 +294,40 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     used.candidates = STARG_CANDIDATES_GIVEN;
     used.candidate_count = used.point_count = count;
     used.points = points;
-    guard_job job = {.context = context, .solid = solid, .options = &used};
-    double deadline = context->deadline;
-    context->deadline = 0; /* what stands already is measured in full */
+    guard_problem problem = {.context = context, .solid = solid, .options = &used};
+    guard_outcome outcome = {0};
+    /* what stands already is measured in full */
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
-    STARG_TRY(pool_create(context, solid, job.options, &job.pool));
-    STARG_TRY(column_weights_create(context, solid->mesh, used.visibility.target, &job.weights));
-    STARG_TRY(make_candidates(&job));
-    STARG_TRY(choose_all(&job));
-    STARG_TRY(report(&job, out));
+    STARG_TRY(
+        column_weights_create(context, solid->mesh, used.visibility.target, &problem.weights));
+    STARG_TRY(find_candidates(&problem, &(guard_detail){0}, &outcome.pool));
+    STARG_TRY(choose_all(&problem, &outcome.pool, &outcome.selection));
+    STARG_TRY(report_guards(&problem, &outcome, out));
 done:
-    context->deadline = deadline;
-    job_free(&job);
+    starg_time_end(context, former);
+    outcome_free(context, &outcome);
+    column_weights_free(context, &problem.weights);
     return status;
+}
+
+void records_free(starg_context *context, guard_records *records) {
+    for (size_t i = 0; i < records->count; i++)
+        starg_release(context, records->data[i].positions);
+    STARG_ARRAY_FREE(context, records);
 }
 
 void starg_guards_free(starg_context *context, starg_guards *guards) {
     if (guards == NULL)
         return;
+    guard_records records = {.data = guards->level_list, .count = guards->level_count};
+    records_free(context, &records);
     starg_release(context, guards->file);
     starg_release(context, guards->positions);
     starg_release(context, guards->directions);
     starg_release(context, guards->seen_faces);
     starg_release(context, guards->levels);
-    free_records(context, guards->level_list, guards->level_count);
     starg_release(context, guards->curve_faces);
     starg_release(context, guards->curve_area);
     starg_release(context, guards->uncovered);

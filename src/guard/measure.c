@@ -1,13 +1,14 @@
-/* What a set of guards sees, counted anew from its positions. */
-#include "guard/job.h"
+/* The result: what a set of guards sees, counted anew from its positions. */
+#include "geometry/vec3.h"
+#include "guard/stages.h"
 
 static const char STAGE[] = "guard";
 
 /* By the fastest engine, whichever chose the guards: all give the same bits, and what was found is
  * measured in full after a time limit has struck. */
-static starg_visibility_options view_of(const guard_job *job, starg_target target,
+static starg_visibility_options view_of(const guard_problem *problem, starg_target target,
                                         const double *directions) {
-    starg_visibility_options view = job->options->visibility;
+    starg_visibility_options view = problem->options->visibility;
     view.engine = STARG_VISIBILITY_FASTEST;
     view.target = target;
     view.directions = directions;
@@ -15,10 +16,11 @@ static starg_visibility_options view_of(const guard_job *job, starg_target targe
 }
 
 /* Lists the columns that are not in `joined`; `skip` (may be NULL) leaves some out. */
-static starg_status list_missing(guard_job *job, const uint64_t *joined, size_t columns,
-                                 const uint64_t *skip, uint32_t **missing, size_t *count) {
+static starg_status list_missing(const guard_problem *problem, const uint64_t *joined,
+                                 size_t columns, const uint64_t *skip, uint32_t **missing,
+                                 size_t *count) {
     starg_status status = STARG_OK;
-    STARG_NEW(job->context, STAGE, *missing, columns);
+    STARG_NEW(problem->context, STAGE, *missing, columns);
     for (size_t j = 0; j < columns; j++)
         if (!starg_bit_test(joined, j) && (skip == NULL || !starg_bit_test(skip, j)))
             (*missing)[(*count)++] = (uint32_t)j;
@@ -27,57 +29,60 @@ done:
 }
 
 /* What the first guards see together, for each number of them; `joined` ends as what all see. */
-static starg_status measure_curve(guard_job *job, const starg_bits *seen, uint64_t *joined,
-                                  starg_guards *result) {
+static starg_status measure_curve(const guard_problem *problem, const starg_bits *seen,
+                                  uint64_t *joined, starg_guards *result) {
     starg_status status = STARG_OK;
     size_t faces = 0;
     double area = 0;
-    STARG_NEW(job->context, STAGE, result->curve_faces, result->count);
-    STARG_NEW(job->context, STAGE, result->curve_area, result->count);
+    STARG_NEW(problem->context, STAGE, result->curve_faces, result->count);
+    STARG_NEW(problem->context, STAGE, result->curve_area, result->count);
     for (size_t i = 0; i < result->count; i++) {
         for (size_t w = 0; w < seen->words; w++) {
             uint64_t fresh = starg_bits_row(seen, i)[w] & ~joined[w];
             joined[w] |= fresh;
             STARG_FOR_BITS (bit, fresh) {
                 faces++;
-                area += job->weights.areas[64 * w + bit];
+                area += problem->weights.areas[64 * w + bit];
             }
         }
         bool all = faces == result->face_count;
         result->curve_faces[i] = (double)faces / (double)result->face_count;
-        result->curve_area[i] = all || !(job->weights.area > 0) ? 1 : area / job->weights.area;
+        result->curve_area[i] =
+            all || !(problem->weights.area > 0) ? 1 : area / problem->weights.area;
     }
 done:
     return status;
 }
 
-static starg_status measure_faces(guard_job *job, starg_guards *result) {
+static starg_status measure_faces(const guard_problem *problem, starg_guards *result) {
     starg_status status = STARG_OK;
-    const starg_visibility_options options = view_of(job, STARG_TARGET_FACES, result->directions);
+    const starg_visibility_options options =
+        view_of(problem, STARG_TARGET_FACES, result->directions);
     starg_bits *seen = NULL;
     uint64_t *joined = NULL;
-    STARG_TRY(starg_visibility(job->context, job->solid, result->positions, result->count, &options,
-                               &seen));
+    STARG_TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
+                               &options, &seen));
     for (size_t i = 0; i < result->count; i++)
         result->seen_faces[i] = starg_bits_count(seen, i);
-    STARG_NEW_ZERO(job->context, STAGE, joined, seen->words);
-    STARG_TRY(measure_curve(job, seen, joined, result));
-    STARG_TRY(list_missing(job, joined, result->face_count, NULL, &result->uncovered,
+    STARG_NEW_ZERO(problem->context, STAGE, joined, seen->words);
+    STARG_TRY(measure_curve(problem, seen, joined, result));
+    STARG_TRY(list_missing(problem, joined, result->face_count, NULL, &result->uncovered,
                            &result->uncovered_count));
     result->coverage_faces = result->count > 0 ? result->curve_faces[result->count - 1] : 0;
     result->coverage_area = result->count > 0 ? result->curve_area[result->count - 1] : 0;
 done:
     starg_bits_free(seen);
-    starg_release(job->context, joined);
+    starg_release(problem->context, joined);
     return status;
 }
 
 /* Bits of the vertices that no face uses: they are nobody's target. */
-static starg_status find_unused(guard_job *job, uint64_t **unused, size_t *used_count) {
+static starg_status find_unused(const guard_problem *problem, uint64_t **unused,
+                                size_t *used_count) {
     starg_status status = STARG_OK;
-    const starg_mesh *mesh = job->solid->mesh;
+    const starg_mesh *mesh = problem->solid->mesh;
     size_t words = starg_bit_words(mesh->vertex_count);
-    STARG_NEW(job->context, STAGE, *unused, words);
+    STARG_NEW(problem->context, STAGE, *unused, words);
     memset(*unused, 0xff, words * sizeof **unused);
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         starg_bit_clear(*unused, mesh->faces[i]);
@@ -87,56 +92,125 @@ done:
     return status;
 }
 
-static starg_status measure_vertices(guard_job *job, starg_guards *result) {
+static starg_status measure_vertices(const guard_problem *problem, const guard_pool *pool,
+                                     starg_guards *result) {
     starg_status status = STARG_OK;
     starg_bits *seen = NULL;
     uint64_t *joined = NULL, *unused = NULL;
     size_t used = 0;
     const starg_visibility_options options =
-        view_of(job, STARG_TARGET_VERTICES, result->directions);
-    STARG_TRY(find_unused(job, &unused, &used));
-    STARG_TRY(starg_visibility(job->context, job->solid, result->positions, result->count, &options,
-                               &seen));
-    STARG_TRY(pool_join_rows(job->context, seen, &joined));
-    STARG_TRY(list_missing(job, joined, seen->columns, unused, &result->uncovered_vertices,
+        view_of(problem, STARG_TARGET_VERTICES, result->directions);
+    STARG_TRY(find_unused(problem, &unused, &used));
+    STARG_TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
+                               &options, &seen));
+    STARG_TRY(pool_join_rows(problem->context, seen, &joined));
+    STARG_TRY(list_missing(problem, joined, seen->columns, unused, &result->uncovered_vertices,
                            &result->uncovered_vertex_count));
     result->coverage_vertices = (double)(used - result->uncovered_vertex_count) / (double)used;
-    result->coverable_vertices = starg_bit_count(job->pool.coverable, job->pool.rows->words);
+    result->coverable_vertices = starg_bit_count(pool->coverable, pool->rows->words);
 done:
     starg_bits_free(seen);
-    starg_release(job->context, joined);
-    starg_release(job->context, unused);
+    starg_release(problem->context, joined);
+    starg_release(problem->context, unused);
     return status;
 }
 
 /* Faces that some candidate sees; with vertices as the target the rows do not tell. */
-static starg_status count_coverable_faces(guard_job *job, starg_guards *result) {
+static starg_status count_coverable_faces(const guard_problem *problem, const guard_pool *pool,
+                                          starg_guards *result) {
     starg_status status = STARG_OK;
     starg_bits *rows = NULL;
     uint64_t *joined = NULL;
-    const guard_pool *pool = &job->pool;
-    if (job->options->visibility.target == STARG_TARGET_FACES) {
+    if (problem->options->visibility.target == STARG_TARGET_FACES) {
         result->coverable_faces = starg_bit_count(pool->coverable, pool->rows->words);
         return STARG_OK;
     }
     const starg_visibility_options options =
-        view_of(job, STARG_TARGET_FACES, pool->points.directions.data);
-    STARG_TRY(starg_visibility(job->context, job->solid, pool->points.data.data, pool_count(pool),
-                               &options, &rows));
-    STARG_TRY(pool_join_rows(job->context, rows, &joined));
+        view_of(problem, STARG_TARGET_FACES, pool->points.directions.data);
+    STARG_TRY(starg_visibility(problem->context, problem->solid, pool->points.data.data,
+                               pool_count(pool), &options, &rows));
+    STARG_TRY(pool_join_rows(problem->context, rows, &joined));
     result->coverable_faces = starg_bit_count(joined, rows->words);
 done:
     starg_bits_free(rows);
-    starg_release(job->context, joined);
+    starg_release(problem->context, joined);
     return status;
 }
 
-starg_status measure_guards(guard_job *job, starg_guards *result) {
+static starg_status measure_guards(const guard_problem *problem, const guard_pool *pool,
+                                   starg_guards *result) {
     starg_status status = STARG_OK;
-    STARG_TRY(measure_faces(job, result));
-    STARG_TRY(count_coverable_faces(job, result));
-    if (job->options->visibility.target == STARG_TARGET_VERTICES)
-        STARG_TRY(measure_vertices(job, result));
+    STARG_TRY(measure_faces(problem, result));
+    STARG_TRY(count_coverable_faces(problem, pool, result));
+    if (problem->options->visibility.target == STARG_TARGET_VERTICES)
+        STARG_TRY(measure_vertices(problem, pool, result));
 done:
+    return status;
+}
+
+static starg_status copy_choice(const guard_problem *problem, const guard_pool *pool,
+                                const guard_selection *selection, starg_guards *result) {
+    starg_status status = STARG_OK;
+    size_t count = selection->chosen.count;
+    STARG_NEW(problem->context, STAGE, result->positions, 3 * count);
+    if (problem->options->visibility.cone < 360)
+        STARG_NEW(problem->context, STAGE, result->directions, 3 * count);
+    STARG_NEW(problem->context, STAGE, result->levels, count);
+    STARG_NEW_ZERO(problem->context, STAGE, result->seen_faces, count);
+    result->count = count;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t candidate = selection->chosen.data[i];
+        vec3_copy(pool_point(pool, candidate), result->positions + 3 * i);
+        if (result->directions != NULL)
+            vec3_copy(pool_direction(pool, candidate), result->directions + 3 * i);
+        result->levels[i] = selection->levels.data[i];
+    }
+done:
+    return status;
+}
+
+/* Is the weight that was bounded the area that is seen? Not with vertices, nor where a face counts
+ * only once it is seen by several. */
+static bool bounds_area(const starg_guard_options *o) {
+    return o->max_guards > 0 && o->redundancy == 1 && o->visibility.target == STARG_TARGET_FACES;
+}
+
+static void copy_facts(const guard_problem *problem, const guard_outcome *outcome,
+                       starg_guards *result) {
+    const guard_selection *selection = &outcome->selection;
+    result->vertex_count = problem->solid->mesh->vertex_count;
+    result->face_count = problem->solid->mesh->face_count;
+    result->options = *problem->options;
+    result->options.points = NULL;
+    result->options.visibility.directions = NULL;
+    result->candidate_count = pool_count(&outcome->pool);
+    result->lines_tested = outcome->lines_tested;
+    result->time_limited = selection->time_limited;
+    result->area_bound = 1;
+    if (bounds_area(problem->options))
+        result->area_bound = (double)selection->weight_bound / (double)problem->weights.total;
+    result->lower_bound = selection->lower_bound;
+    result->optimal = selection->chosen.count == selection->lower_bound;
+}
+
+starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
+                           starg_guards **out) {
+    starg_status status = STARG_OK;
+    starg_guards *result = NULL;
+    /* what was found is measured in full */
+    starg_time_rule former = starg_time_begin(problem->context, STARG_TIME_IGNORED);
+    STARG_NEW_ZERO(problem->context, STAGE, result, 1);
+    copy_facts(problem, outcome, result);
+    STARG_TRY(copy_choice(problem, &outcome->pool, &outcome->selection, result));
+    STARG_TRY(measure_guards(problem, &outcome->pool, result));
+    result->level_list = outcome->records.data;
+    result->level_count = outcome->records.count;
+    outcome->records.data = NULL;
+    outcome->records.count = outcome->records.capacity = 0;
+    *out = result;
+done:
+    starg_time_end(problem->context, former);
+    if (status != STARG_OK)
+        starg_guards_free(problem->context, result);
     return status;
 }

@@ -17,17 +17,16 @@
  * as asked).
  * Cost: visibility of all candidates on all levels, which is a third more than that of the model
  * where each level is a quarter of the next; an ILP per level on what is left of it. */
-#include "geometry/vec3.h"
-#include "guard/job.h"
+#include "guard/stages.h"
 #include "mesh/solid.h"
 
 static const char STAGE[] = "levels";
 
 typedef struct level_work {
-    guard_job *job;
-    int level;
+    const guard_problem *problem;
     const guard_pool *pool; /* of this level */
     column_weights weights;
+    int level;
     STARG_ARRAY(uint32_t) kept;
 } level_work;
 
@@ -38,181 +37,201 @@ static bool is_significant(const level_work *work, uint32_t candidate) {
         STARG_FOR_BITS (bit, row[w])
             seen += work->weights.weights[64 * w + bit];
     }
-    return (double)seen >= work->job->options->significance * (double)work->weights.total;
+    double least = work->problem->options->significance * (double)work->weights.total;
+    return (double)seen >= least;
 }
 
-static starg_status keep_significant(level_work *work) {
+static starg_status keep_significant(level_work *work, const guard_selection *before) {
     starg_status status = STARG_OK;
-    size_t limit = work->job->options->max_guards;
-    for (size_t i = 0; i < work->job->chosen.count; i++) {
-        uint32_t candidate = work->job->chosen.data[i];
+    size_t limit = work->problem->options->max_guards;
+    for (size_t i = 0; i < before->chosen.count; i++) {
+        uint32_t candidate = before->chosen.data[i];
         if (limit > 0 && work->kept.count + 1 == limit)
             break; /* one at least is free, that the choice has a limit to keep */
         if (is_significant(work, candidate))
-            STARG_PUSH(work->job->context, STAGE, &work->kept, candidate);
+            STARG_PUSH(work->problem->context, STAGE, &work->kept, candidate);
     }
 done:
     return status;
 }
 
-/* Of the kept and the added candidates the fewest that see as much as all of them, in the order of
- * what they add; they become the chosen ones. */
-static starg_status take_needed(level_work *work, const starg_cover *added) {
-    starg_status status = STARG_OK;
-    guard_job *job = work->job;
-    size_t count = work->kept.count + added->count;
-    uint32_t *all = NULL;
-    int *levels = NULL;
-    starg_bits *rows = NULL;
-    starg_cover *needed = NULL;
-    starg_cover_problem problem;
-    STARG_NEW(job->context, STAGE, all, count);
-    STARG_NEW(job->context, STAGE, levels, count);
-    STARG_TRY(starg_bits_create(job->context, count, work->pool->columns, &rows));
-    for (size_t i = 0; i < count; i++) {
-        all[i] = i < work->kept.count ? work->kept.data[i] : added->rows[i - work->kept.count];
-        levels[i] = job_level_of(job, all[i], work->level);
-        memcpy(starg_bits_row_mutable(rows, i), starg_bits_row(work->pool->rows, all[i]),
-               rows->words * sizeof *rows->data);
-    }
-    starg_cover_problem_default(&problem);
-    problem.rows = rows;
-    problem.redundancy = job->options->redundancy;
-    if (job->options->coverage < 1 || job->options->max_guards > 0) {
-        problem.weights = work->weights.weights;
-        problem.target = added->weight;
-    }
-    STARG_TRY(starg_cover_solve(job->context, &problem, NULL, &needed));
-    job->chosen.count = job->levels.count = 0;
-    for (size_t i = 0; i < needed->count; i++) {
-        STARG_PUSH(job->context, STAGE, &job->chosen, all[needed->rows[i]]);
-        STARG_PUSH(job->context, STAGE, &job->levels, levels[needed->rows[i]]);
-    }
-done:
-    starg_release(job->context, all);
-    starg_release(job->context, levels);
-    starg_bits_free(rows);
-    starg_cover_free(needed);
-    return status;
-}
-
-static bool is_kept(const level_work *work, uint32_t candidate) {
-    for (size_t i = 0; i < work->kept.count; i++)
-        if (work->kept.data[i] == candidate)
+static bool is_listed(uint32_t candidate, const uint32_t *list, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (list[i] == candidate)
             return true;
     return false;
 }
 
-/* Writes down the guards of the level, the kept ones first. */
-static starg_status record_level(level_work *work) {
+/* Fills `kept` with those of a list that are chosen. */
+static starg_status mark_kept(starg_context *context, const uint32_t *list, size_t count,
+                              guard_selection *selection) {
     starg_status status = STARG_OK;
-    guard_job *job = work->job;
-    const starg_mesh *mesh = work->pool->solid->mesh;
+    for (size_t i = 0; i < selection->chosen.count; i++)
+        if (is_listed(selection->chosen.data[i], list, count))
+            STARG_PUSH(context, STAGE, &selection->kept, selection->chosen.data[i]);
+done:
+    return status;
+}
+
+/* Of `all` candidates the fewest that see as much as they do together, or `weight` where a part is
+ * enough. */
+static starg_status cover_by(const level_work *work, const uint32_t *all, size_t count,
+                             uint64_t weight, starg_cover **out) {
+    starg_status status = STARG_OK;
+    const guard_problem *problem = work->problem;
+    starg_bits *rows = NULL;
+    starg_cover_problem cover;
+    STARG_TRY(starg_bits_create(problem->context, count, work->pool->columns, &rows));
+    for (size_t i = 0; i < count; i++)
+        memcpy(starg_bits_row_mutable(rows, i), starg_bits_row(work->pool->rows, all[i]),
+               rows->words * sizeof *rows->data);
+    starg_cover_problem_default(&cover);
+    cover.rows = rows;
+    cover.redundancy = problem->options->redundancy;
+    if (problem->options->coverage < 1 || problem->options->max_guards > 0) {
+        cover.weights = work->weights.weights;
+        cover.target = weight;
+    }
+    STARG_TRY(starg_cover_solve(problem->context, &cover, NULL, out));
+done:
+    starg_bits_free(rows);
+    return status;
+}
+
+/* Of the kept and the added candidates the fewest that see as much as all of them, in the order of
+ * what they add. The bounds are those of the whole problem where nothing was kept. */
+static starg_status take_needed(const level_work *work, const starg_cover *added,
+                                const guard_selection *before, guard_selection *out) {
+    starg_status status = STARG_OK;
+    starg_context *context = work->problem->context;
+    size_t count = work->kept.count + added->count;
+    uint32_t *all = NULL;
+    starg_cover *needed = NULL;
+    STARG_NEW(context, STAGE, all, count);
+    for (size_t i = 0; i < count; i++)
+        all[i] = i < work->kept.count ? work->kept.data[i] : added->rows[i - work->kept.count];
+    STARG_TRY(cover_by(work, all, count, added->weight, &needed));
+    for (size_t i = 0; i < needed->count; i++)
+        needed->rows[i] = all[needed->rows[i]];
+    STARG_TRY(selection_of_cover(context, needed, before, work->level, out));
+    out->time_limited = before->time_limited || added->time_limited;
+    out->lower_bound = work->kept.count == 0 ? added->lower_bound : 0;
+    out->weight_bound = work->kept.count == 0 ? added->weight_bound : 0;
+    STARG_TRY(mark_kept(context, work->kept.data, work->kept.count, out));
+done:
+    starg_release(context, all);
+    starg_cover_free(needed);
+    return status;
+}
+
+starg_status record_level(const guard_pool *pool, const guard_selection *selection,
+                          guard_records *records) {
+    starg_status status = STARG_OK;
+    const starg_mesh *mesh = pool->solid->mesh;
+    size_t count = selection->chosen.count;
     starg_guard_level record = {mesh->vertex_count, mesh->face_count, 0, NULL, 0};
-    STARG_NEW(job->context, STAGE, record.positions, 3 * job->chosen.count);
+    STARG_NEW(pool->context, STAGE, record.positions, 3 * count);
     for (int kept = 1; kept >= 0; kept--) {
-        for (size_t i = 0; i < job->chosen.count; i++)
-            if (is_kept(work, job->chosen.data[i]) == (kept == 1))
-                memcpy(record.positions + 3 * record.count++,
-                       pool_point(&job->pool, job->chosen.data[i]), 3 * sizeof *record.positions);
+        for (size_t i = 0; i < count; i++) {
+            uint32_t candidate = selection->chosen.data[i];
+            if (is_listed(candidate, selection->kept.data, selection->kept.count) == (kept == 1))
+                memcpy(record.positions + 3 * record.count++, pool_point(pool, candidate),
+                       3 * sizeof *record.positions);
+        }
         if (kept == 1)
             record.kept = record.count;
     }
-    STARG_PUSH(job->context, STAGE, &job->records, record);
+    STARG_PUSH(pool->context, STAGE, records, record);
     record.positions = NULL;
 done:
-    starg_release(job->context, record.positions);
+    starg_release(pool->context, record.positions);
     return status;
 }
 
 /* Guards for one level, from those of the level before. */
-static starg_status guard_level(guard_job *job, int level, const guard_pool *pool) {
+static starg_status guard_level(const guard_problem *problem, const guard_pool *pool, int level,
+                                const guard_selection *before, guard_selection *out) {
     starg_status status = STARG_OK;
     starg_cover *added = NULL;
-    level_work work = {.job = job, .level = level, .pool = pool};
-    STARG_TRY(column_weights_create(job->context, pool->solid->mesh,
-                                    job->options->visibility.target, &work.weights));
-    STARG_TRY(keep_significant(&work));
+    level_work work = {.problem = problem, .pool = pool, .level = level};
+    STARG_TRY(column_weights_create(problem->context, pool->solid->mesh,
+                                    problem->options->visibility.target, &work.weights));
+    STARG_TRY(keep_significant(&work, before));
     const choice how = {.method = STARG_COVER_ILP,
-                        .max_nodes = job->options->max_nodes,
+                        .max_nodes = problem->options->max_nodes,
                         .given = work.kept.data,
                         .given_count = work.kept.count};
     STARG_TRY(choose_candidates(pool, &work.weights, &how, &added));
-    job->time_limited = job->time_limited || added->time_limited;
-    if (pool == &job->pool && work.kept.count == 0) { /* that was the whole problem */
-        job->lower_bound = added->lower_bound;
-        job->weight_bound = added->weight_bound;
-    }
-    STARG_TRY(take_needed(&work, added));
-    STARG_TRY(record_level(&work));
+    STARG_TRY(take_needed(&work, added, before, out));
 done:
     starg_cover_free(added);
-    column_weights_free(job->context, &work.weights);
-    STARG_ARRAY_FREE(job->context, &work.kept);
+    column_weights_free(problem->context, &work.weights);
+    STARG_ARRAY_FREE(problem->context, &work.kept);
     return status;
 }
 
-/* Without the time for a level, it is skipped. */
-static starg_status guard_coarse_level(guard_job *job, int level, const starg_mesh *mesh) {
+/* The choice for a coarse level takes the place of the one before, and is written down. Without the
+ * time for a level, it is skipped. */
+static starg_status guard_coarse_level(const guard_problem *problem, const guard_pool *finest,
+                                       const starg_mesh *mesh, guard_records *records,
+                                       guard_selection *chosen) {
+    starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     guard_pool pool = {0};
-    starg_status status = solid_make_in_time(job->context, mesh, &solid);
-    job->time_limited = job->time_limited || status == STARG_ERROR_TIME;
+    guard_selection next = {0};
+    status = solid_make_in_time(problem->context, mesh, &solid);
+    chosen->time_limited = chosen->time_limited || status == STARG_ERROR_TIME;
     if (status == STARG_ERROR_TIME)
         return STARG_OK;
     STARG_TRY(status);
-    STARG_TRY(pool_on_level(&job->pool, solid, &pool));
-    if (!pool.time_limited)
-        STARG_TRY(guard_level(job, level, &pool));
-    job->time_limited = job->time_limited || pool.time_limited;
+    STARG_TRY(pool_on_level(finest, solid, &pool));
+    chosen->time_limited = chosen->time_limited || pool.time_limited;
+    if (pool.time_limited)
+        goto done;
+    STARG_TRY(guard_level(problem, &pool, (int)records->count, chosen, &next));
+    STARG_TRY(record_level(&pool, &next, records));
+    selection_free(problem->context, chosen);
+    *chosen = next;
+    next = (guard_selection){0};
 done:
+    selection_free(problem->context, &next);
     pool_free(&pool);
     starg_solid_free(solid);
     return status;
 }
 
-/* Fewer guards matter more than keeping some: the cover becomes that of the last level. */
-static starg_status take_smaller(guard_job *job, const starg_cover *cover) {
-    starg_status status = STARG_OK;
-    int last = (int)job->records.count - 1;
-    level_work work = {.job = job, .level = last, .pool = &job->pool};
-    starg_guard_level *record = &job->records.data[last];
-    for (size_t i = 0; i < record->kept; i++)
-        for (size_t k = 0; k < job->chosen.count; k++)
-            if (vec3_equal(pool_point(&job->pool, job->chosen.data[k]), record->positions + 3 * i))
-                STARG_PUSH(job->context, STAGE, &work.kept, job->chosen.data[k]);
-    STARG_TRY(job_take_cover(job, cover, last));
-    starg_release(job->context, record->positions);
-    record->positions = NULL;
-    job->records.count--;
-    STARG_TRY(record_level(&work));
-done:
-    STARG_ARRAY_FREE(job->context, &work.kept);
-    return status;
-}
-
-starg_status bound_guards(guard_job *job) {
+starg_status bound_guards(const guard_problem *problem, const guard_pool *pool,
+                          const guard_selection *first, guard_selection *out) {
     starg_status status = STARG_OK;
     starg_cover *bound = NULL;
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = 0};
-    STARG_TRY(choose_candidates(&job->pool, &job->weights, &how, &bound));
-    if (bound->target_reached && bound->count < job->chosen.count)
-        STARG_TRY(take_smaller(job, bound));
-    job->lower_bound = bound->lower_bound;
-    job->weight_bound = bound->weight_bound;
+    STARG_TRY(choose_candidates(pool, &problem->weights, &how, &bound));
+    bool smaller = bound->target_reached && bound->count < first->chosen.count;
+    if (smaller)
+        STARG_TRY(selection_of_cover(problem->context, bound, first, first->level, out));
+    else
+        STARG_TRY(selection_copy(problem->context, first, out));
+    if (smaller)
+        STARG_TRY(mark_kept(problem->context, first->kept.data, first->kept.count, out));
+    out->lower_bound = bound->lower_bound;
+    out->weight_bound = bound->weight_bound;
 done:
     starg_cover_free(bound);
     return status;
 }
 
-starg_status progressive_guards(guard_job *job) {
+starg_status progressive_guards(const guard_problem *problem, const guard_detail *detail,
+                                const guard_pool *pool, guard_records *records,
+                                guard_selection *out) {
     starg_status status = STARG_OK;
-    const starg_levels *levels = job->detail;
-    int last = levels == NULL ? 0 : (int)levels->count - 1;
-    for (int level = 0; level < last && !job->time_limited && job->pool.first_count > 0; level++)
-        STARG_TRY(guard_coarse_level(job, level, levels->levels[level].mesh));
+    const starg_levels *levels = detail->levels;
+    size_t coarse = levels == NULL || pool->first_count == 0 ? 0 : levels->count - 1;
+    guard_selection chosen = {.time_limited = detail->time_limited || pool->time_limited};
+    for (size_t i = 0; i < coarse && !chosen.time_limited; i++)
+        STARG_TRY(guard_coarse_level(problem, pool, levels->levels[i].mesh, records, &chosen));
     /* levels that were skipped have no number */
-    STARG_TRY(guard_level(job, (int)job->records.count, &job->pool));
+    STARG_TRY(guard_level(problem, pool, (int)records->count, &chosen, out));
 done:
+    selection_free(problem->context, &chosen);
     return status;
 }

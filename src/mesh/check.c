@@ -154,34 +154,38 @@ static int compare_places(const void *left, const void *right) {
     return (a->vertex > b->vertex) - (a->vertex < b->vertex);
 }
 
-static int compare_indices(const void *left, const void *right) {
-    const uint32_t *a = left, *b = right;
-    return (*a > *b) - (*a < *b);
+starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh, uint32_t **first,
+                                  size_t *count) {
+    starg_status status = STARG_OK;
+    place *places = NULL;
+    *first = NULL;
+    *count = 0;
+    STARG_NEW(context, "check", places, mesh->vertex_count);
+    STARG_NEW(context, "check", *first, mesh->vertex_count);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        memcpy(places[v].p, mesh->vertices + 3 * v, sizeof places[v].p);
+        places[v].vertex = (uint32_t)v;
+    }
+    qsort(places, mesh->vertex_count, sizeof *places, compare_places);
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const double *p = places[i].p, *q = places[i > 0 ? i - 1 : 0].p;
+        bool again = i > 0 && p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+        (*first)[places[i].vertex] = again ? (*first)[places[i - 1].vertex] : places[i].vertex;
+        *count += again;
+    }
+done:
+    starg_release(context, places);
+    return status;
 }
 
 static starg_status check_positions(checker *c) {
-    starg_status status = STARG_OK;
-    size_t count = c->mesh->vertex_count, doubled = 0;
-    place *places = NULL;
-    uint32_t *found = NULL;
-    STARG_NEW(c->context, "check", places, count);
-    STARG_NEW(c->context, "check", found, count);
-    for (size_t v = 0; v < count; v++) {
-        memcpy(places[v].p, position(c, (uint32_t)v), sizeof places[v].p);
-        places[v].vertex = (uint32_t)v;
-    }
-    qsort(places, count, sizeof *places, compare_places);
-    for (size_t i = 1; i < count; i++) {
-        const double *p = places[i].p, *q = places[i - 1].p;
-        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
-            found[doubled++] = places[i].vertex;
-    }
-    qsort(found, doubled, sizeof *found, compare_indices);
-    for (size_t i = 0; i < doubled; i++)
-        find_one(c, STARG_FINDING_DUPLICATE_VERTEX, STARG_ELEMENT_VERTEX, found[i]);
-done:
-    starg_release(c->context, places);
-    starg_release(c->context, found);
+    uint32_t *first = NULL;
+    size_t count;
+    starg_status status = mesh_find_coincident(c->context, c->mesh, &first, &count);
+    for (size_t v = 0; status == STARG_OK && v < c->mesh->vertex_count; v++)
+        if (first[v] != v)
+            find_one(c, STARG_FINDING_DUPLICATE_VERTEX, STARG_ELEMENT_VERTEX, v);
+    starg_release(c->context, first);
     return status;
 }
 
@@ -235,7 +239,7 @@ static bool check_pair(void *user, uint32_t a, uint32_t b) {
             c->shells[first].crossed = c->shells[second].crossed = true;
     }
     bool look_up = ++c->pairs % PAIRS_PER_CLOCK == 0;
-    return !(look_up && starg_deadline_struck(c->context)) &&
+    return !(look_up && starg_time_has_failed(c->context)) &&
            !atomic_load_explicit(&c->context->cancelled, memory_order_relaxed);
 }
 
@@ -332,9 +336,9 @@ void mesh_examination_free(starg_context *context, mesh_examination *examination
 starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh, starg_check **out) {
     mesh_examination all;
     *out = NULL;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = mesh_examine(context, mesh, &all);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     if (status == STARG_OK) {
         *out = all.check;
         all.check = NULL;

@@ -30,7 +30,8 @@ static const double LEAST_VOLUME = 0.5;
 
 /* Appends the faces about the start of `first` that the collapse keeps; false if too many. */
 static bool gather_end(const mesh_surface *s, uint32_t first, collapse_star *star) {
-    uint32_t gone = star->halfedge / 3, other = s->twin[star->halfedge] / 3, h = first;
+    uint32_t gone = star->halfedge / 3, other = halfedges_twin(&s->mesh, star->halfedge) / 3,
+             h = first;
     size_t limit = star->count + COLLAPSE_DEGREE - 2;
     do {
         if (h / 3 != gone && h / 3 != other) {
@@ -38,28 +39,25 @@ static bool gather_end(const mesh_surface *s, uint32_t first, collapse_star *sta
                 return false;
             star->kept[star->count++] = h;
         }
-        h = surface_turn(s, h);
+        h = halfedges_turn(&s->mesh, h);
     } while (h != first);
     return true;
 }
 
 bool collapse_gather(const mesh_surface *s, uint32_t halfedge, collapse_star *star) {
-    *star = (collapse_star){.halfedge = halfedge, .a = s->faces[halfedge]};
-    star->b = surface_end(s, halfedge);
+    *star = (collapse_star){.halfedge = halfedge, .a = halfedges_start(&s->mesh, halfedge)};
+    star->b = halfedges_end(&s->mesh, halfedge);
     if (!gather_end(s, halfedge, star))
         return false;
     size_t about_a = star->count;
-    if (!gather_end(s, s->twin[halfedge], star) || star->count > COLLAPSE_DEGREE)
+    if (!gather_end(s, halfedges_twin(&s->mesh, halfedge), star) || star->count > COLLAPSE_DEGREE)
         return false;
     if (star->count < 3) /* a tetrahedron */
         return false;
     /* The kept faces of an end come in turn: the first begins at one opposite corner, the last ends
      * at the other, and all corners between them must be of this end alone. */
-    for (size_t i = 1; i < about_a; i++)
-        for (size_t j = about_a + 1; j < star->count; j++)
-            if (surface_end(s, star->kept[i]) == surface_end(s, star->kept[j]))
-                return false;
-    return true;
+    return halfedges_common(&s->mesh, star->kept + 1, about_a - 1, star->kept + about_a + 1,
+                            star->count - about_a - 1) == 0;
 }
 
 /* ---- shape ---------------------------------------------------------------------------------- */
@@ -70,9 +68,9 @@ static double longest_squared(const double u[3], const double v[3]) {
 
 /* Corners of a kept face from its end on; the second and third do not change. */
 static void kept_corners(const mesh_surface *s, uint32_t halfedge, const double *corner[3]) {
-    corner[0] = surface_at(s, s->faces[halfedge]);
-    corner[1] = surface_at(s, surface_end(s, halfedge));
-    corner[2] = surface_at(s, s->faces[corner_previous(halfedge)]);
+    corner[0] = surface_at(s, halfedges_start(&s->mesh, halfedge));
+    corner[1] = surface_at(s, halfedges_end(&s->mesh, halfedge));
+    corner[2] = surface_at(s, halfedges_apex(&s->mesh, halfedge));
 }
 
 /* The normal of a face as seen from its first corner, and how far it is from a sliver. */
@@ -100,7 +98,7 @@ static bool keeps_volume(const mesh_surface *s, const collapse_star *star,
                          const double position[3]) {
     double before = s->volume[s->component[star->halfedge / 3]];
     double lost = volume_below(s, star->halfedge, position) +
-                  volume_below(s, s->twin[star->halfedge], position);
+                  volume_below(s, halfedges_twin(&s->mesh, star->halfedge), position);
     for (size_t i = 0; i < star->count; i++)
         lost += volume_below(s, star->kept[i], position);
     double after = before - lost;
@@ -169,8 +167,8 @@ static void describe(change *c) {
     extend(&c->box, surface_at(s, star->b));
     for (size_t i = 0; i < star->count; i++) {
         c->corner[i][0] = star->a;
-        c->corner[i][1] = surface_end(s, star->kept[i]);
-        c->corner[i][2] = s->faces[corner_previous(star->kept[i])];
+        c->corner[i][1] = halfedges_end(&s->mesh, star->kept[i]);
+        c->corner[i][2] = halfedges_apex(&s->mesh, star->kept[i]);
         c->face_box[i] = nearby_face_box(s, c->corner[i]);
         extend(&c->box, surface_at(s, c->corner[i][1]));
     }
@@ -262,7 +260,7 @@ static bool star_is_embedded(const change *c) {
 static bool sweeps(const change *c, uint32_t face, const double p[3]) {
     const double *t[4];
     for (size_t k = 0; k < 3; k++) {
-        uint32_t vertex = c->surface->faces[3 * (size_t)face + k];
+        uint32_t vertex = surface_face(c->surface, face)[k];
         t[k] = vertex == c->star->a ? c->old : surface_at(c->surface, vertex);
     }
     t[3] = surface_at(c->surface, c->star->a);
@@ -274,7 +272,8 @@ static bool sweeps(const change *c, uint32_t face, const double p[3]) {
 
 static bool is_swept(const change *c, const double p[3]) {
     const collapse_star *star = c->star;
-    if (sweeps(c, star->halfedge / 3, p) || sweeps(c, c->surface->twin[star->halfedge] / 3, p))
+    if (sweeps(c, star->halfedge / 3, p) ||
+        sweeps(c, halfedges_twin(&c->surface->mesh, star->halfedge) / 3, p))
         return true;
     for (size_t i = 0; i < star->count; i++)
         if (sweeps(c, star->kept[i] / 3, p))
@@ -286,7 +285,7 @@ static bool is_swept(const change *c, const double p[3]) {
 static bool clear_of(void *user, uint32_t face) {
     const change *c = user;
     const mesh_surface *s = c->surface;
-    const uint32_t *corner = s->faces + 3 * (size_t)face;
+    const uint32_t *corner = surface_face(s, face);
     if (is_corner(c->star->a, corner) || is_corner(c->star->b, corner))
         return true;
     bvh_box box = nearby_face_box(s, corner);

@@ -16,6 +16,10 @@ typedef struct mesh_examination {
 
 /* Examines a mesh; release with mesh_examination_free, whatever the status. */
 starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_examination *out);
+/* By vertex the first one at its position; `count` is how many are not that themselves. Release
+ * with starg_release, whatever the status. Errors: MEMORY. */
+starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh, uint32_t **first,
+                                  size_t *count);
 void mesh_examination_free(starg_context *context, mesh_examination *examination);
 
 #endif

@@ -119,11 +119,26 @@ void starg_mesh_bounds(const starg_mesh *mesh, double lower[3], double upper[3])
     }
 }
 
-int starg_mesh_exponent(const starg_mesh *mesh) {
+static double extent_of(const starg_mesh *mesh) {
     double lower[3], upper[3];
-    int exponent;
     starg_mesh_bounds(mesh, lower, upper);
-    frexp(fmax(upper[0] - lower[0], fmax(upper[1] - lower[1], upper[2] - lower[2])), &exponent);
+    return fmax(upper[0] - lower[0], fmax(upper[1] - lower[1], upper[2] - lower[2]));
+}
+
+starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage) {
+    double extent = extent_of(mesh);
+    if (extent == 0 || extent >= STARG_EXTENT_LEAST)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_RANGE, stage,
+                      "the model is only %.3g wide, and areas and volumes of anything below %g "
+                      "vanish in floating point: multiply its coordinates, by a power of two to "
+                      "keep them exact",
+                      extent, STARG_EXTENT_LEAST);
+}
+
+int starg_mesh_exponent(const starg_mesh *mesh) {
+    int exponent;
+    frexp(extent_of(mesh), &exponent);
     return exponent;
 }
 

@@ -18,6 +18,12 @@ struct starg_mesh {
 /* Every coordinate is smaller in magnitude. */
 #define STARG_COORDINATE_LIMIT 1e100
 
+/* Solids are at least that wide along some axis: squares of areas of far smaller ones vanish. */
+#define STARG_EXTENT_LEAST 1e-90
+
+/* Errors: RANGE, when the mesh has an extent, but one below STARG_EXTENT_LEAST. */
+starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage);
+
 /* The power of two of the mesh's extent: differences of coordinates times 2^-exponent are at most 1
  * in magnitude, so that their products neither over- nor underflow as a whole. */
 int starg_mesh_exponent(const starg_mesh *mesh);

@@ -40,15 +40,15 @@ static starg_status list_faces(mesh_nearby *n) {
     const mesh_surface *surface = n->surface;
     size_t count = 0;
     for (uint32_t f = 0; f < surface->face_count; f++)
-        count += surface_face_lives(surface, f);
+        count += halfedges_face_lives(&surface->mesh, f);
     STARG_NEW(n->context, "simplify", n->corners, 3 * count);
     STARG_NEW(n->context, "simplify", n->face, count);
     n->listed = 0;
     for (uint32_t f = 0; f < surface->face_count; f++) {
-        if (!surface_face_lives(surface, f))
+        if (!halfedges_face_lives(&surface->mesh, f))
             continue;
         for (size_t k = 0; k < 3; k++)
-            n->corners[3 * n->listed + k] = surface->faces[3 * (size_t)f + k];
+            n->corners[3 * n->listed + k] = surface_face(surface, f)[k];
         n->face[n->listed++] = f;
     }
 done:
@@ -122,7 +122,7 @@ static bool enclose(bvh_box *box, const bvh_box *other) {
 }
 
 void nearby_update(mesh_nearby *n, uint32_t face) {
-    bvh_box box = nearby_face_box(n->surface, n->surface->faces + 3 * (size_t)face);
+    bvh_box box = nearby_face_box(n->surface, surface_face(n->surface, face));
     uint32_t node = n->leaf[face];
     while (enclose(&n->tree->nodes[node].box, &box) && node != 0)
         node = n->parent[node];
@@ -151,9 +151,9 @@ static bool visit_rank(void *user, size_t rank) {
     const box_query *query = user;
     const mesh_nearby *n = query->nearby;
     uint32_t face = n->face[n->tree->order[rank]];
-    if (!surface_face_lives(n->surface, face))
+    if (!halfedges_face_lives(&n->surface->mesh, face))
         return true;
-    bvh_box own = nearby_face_box(n->surface, n->surface->faces + 3 * (size_t)face);
+    bvh_box own = nearby_face_box(n->surface, surface_face(n->surface, face));
     return !nearby_boxes_meet(&own, query->box) || query->visit(query->user, face);
 }
 

@@ -43,6 +43,9 @@ typedef struct ply_reader {
     starg_scan scan; /* in binary data only its `at` is used */
     ply_encoding encoding;
     bool has_encoding;
+    bool by_lines; /* each item has a line of its own, whose further values are ignored */
+    size_t extra;  /* lines that had some */
+    size_t first_extra;
     STARG_ARRAY(ply_element) elements;
     STARG_ARRAY(ply_property) properties;
 } ply_reader;

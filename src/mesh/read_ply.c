@@ -1,7 +1,10 @@
 /* PLY, the Stanford polygon format: a text header that declares elements and their properties,
  * then the elements in text or in binary of either byte order. Any types and order of properties
  * are read; elements and properties that do not matter here are stepped over. Faces may stand
- * before the vertices: then they are stepped over first and read at the end. */
+ * before the vertices: then they are stepped over first and read at the end.
+ *
+ * Text is read value by value, wherever lines end. Some programs write more values for an item than
+ * the header declares: where that is what went wrong, it is read again line by line. */
 #include <math.h>
 #include <string.h>
 
@@ -153,12 +156,30 @@ done:
     return status;
 }
 
+/* One item on a line of its own. */
+static starg_status read_line(ply_reader *ply, const ply_element *element, bool skip) {
+    starg_status status = STARG_OK;
+    starg_scan ahead = ply->scan;
+    starg_word word;
+    STARG_TRY(starg_scan_expect(&ahead, "the value of a property", &word));
+    STARG_TRY(read_item(ply, element, skip));
+    if (ply->scan.line != word.line)
+        return starg_source_fail(ply->source, starg_at_line(word.line), "the line is too short");
+    if (starg_scan_word_here(&ply->scan, &word)) {
+        if (ply->extra++ == 0)
+            ply->first_extra = word.line;
+        starg_scan_next_line(&ply->scan);
+    }
+done:
+    return status;
+}
+
 static starg_status read_items(ply_reader *ply, const ply_element *element, bool skip) {
     if (element->properties == 0)
         return STARG_OK; /* takes no bytes, however many there are */
     starg_status status = STARG_OK;
     for (size_t i = 0; i < element->count && status == STARG_OK; i++)
-        status = read_item(ply, element, skip);
+        status = ply->by_lines ? read_line(ply, element, skip) : read_item(ply, element, skip);
     return status;
 }
 
@@ -197,6 +218,32 @@ done:
     return status;
 }
 
+/* The data from its beginning, into an empty builder. */
+static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_lines) {
+    ply->scan = *begin;
+    ply->by_lines = by_lines;
+    ply->extra = 0;
+    ply->builder->vertices.count = ply->builder->faces.count = ply->builder->corners.count = 0;
+    return read_data(ply);
+}
+
+/* If that fails line by line as well, the first fault is what is told. */
+static starg_status read_either_way(ply_reader *ply) {
+    const starg_scan begin = ply->scan;
+    starg_status status = read_anew(ply, &begin, false);
+    if (status != STARG_ERROR_FORMAT || ply->encoding != PLY_TEXT)
+        return status;
+    status = read_anew(ply, &begin, true);
+    if (status == STARG_ERROR_FORMAT)
+        return read_anew(ply, &begin, false);
+    if (status == STARG_OK)
+        starg_log(ply->source->context, STARG_LOG_NOTICE,
+                  "'%s': %zu lines, the first being line %zu, have more values than the header "
+                  "declares, which were ignored",
+                  ply->source->name, ply->extra, ply->first_extra);
+    return status;
+}
+
 starg_status starg_ply_read(starg_mesh_builder *builder) {
     starg_status status = STARG_OK;
     ply_reader ply = {
@@ -205,7 +252,7 @@ starg_status starg_ply_read(starg_mesh_builder *builder) {
     STARG_TRY(starg_ply_read_header(&ply));
     STARG_TRY(starg_builder_reserve(builder, starg_ply_find(&ply, PLY_VERTICES)->count,
                                     starg_ply_find(&ply, PLY_FACES)->count));
-    STARG_TRY(read_data(&ply));
+    STARG_TRY(read_either_way(&ply));
 done:
     STARG_ARRAY_FREE(builder->source->context, &ply.elements);
     STARG_ARRAY_FREE(builder->source->context, &ply.properties);

@@ -125,27 +125,32 @@ done:
     return status;
 }
 
+/* What stands behind the triangles is of no use to anybody. */
 static starg_status check_size(const starg_source *source) {
     if (source->size < HEADER)
         return starg_source_fail(source, starg_at_byte(source->size),
                                  "the file ends within the header of a binary STL file; it is cut "
                                  "off, or it is something else");
-    if (size_fits(source))
-        return STARG_OK;
-    bool shorter = source->size < announced_size(source);
-    return starg_source_fail(source, starg_at_byte(80),
-                             "%u triangles are announced, which take %llu bytes, but the file has "
-                             "%zu; it is %s",
-                             little_endian(source->bytes + 80),
-                             (unsigned long long)announced_size(source), source->size,
-                             shorter ? "cut off, or no STL file" : "damaged");
+    uint64_t announced = announced_size(source);
+    if (source->size < announced)
+        return starg_source_fail(source, starg_at_byte(80),
+                                 "%u triangles are announced, which take %llu bytes, but the file "
+                                 "has %zu; it is cut off, or no STL file",
+                                 little_endian(source->bytes + 80), (unsigned long long)announced,
+                                 source->size);
+    if (source->size > announced)
+        starg_log(source->context, STARG_LOG_NOTICE,
+                  "'%s': %llu bytes behind the %u triangles that are announced were ignored",
+                  source->name, (unsigned long long)(source->size - announced),
+                  little_endian(source->bytes + 80));
+    return STARG_OK;
 }
 
 static starg_status read_binary(const starg_source *source, starg_weld *weld) {
     enum { NORMAL = 12, POINT = 12, COORDINATE = 4 };
     starg_status status = STARG_OK;
     STARG_TRY(check_size(source));
-    for (size_t at = HEADER; at < source->size; at += RECORD) {
+    for (size_t at = HEADER; at < announced_size(source); at += RECORD) {
         for (size_t corner = 0; corner < 3; corner++) {
             double point[3];
             size_t begin = at + NORMAL + POINT * corner;

@@ -196,7 +196,7 @@ starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
     starg_repair_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(fields_check(context, REPAIR_STAGE, &OPTIONS_TABLE, options));
     STARG_TRY(starg_mesh_check(context, mesh, &before));
     STARG_TRY(repair_begin(&state, context, mesh, options));
@@ -208,7 +208,7 @@ starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
     STARG_TRY(finish(&state, out));
     *report = state.report;
 done:
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     starg_check_free(context, before);
     repair_end(&state);
     return status;

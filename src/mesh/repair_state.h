@@ -1,5 +1,6 @@
 /* The mesh that repair works on: an indexed face set that every operation of repair changes in
- * place, and that remembers where its vertices and faces came from. */
+ * place, and that remembers where its vertices and faces came from. Not on mesh/halfedges.h: until
+ * repair is done, edges may have one face or many, that run along them either way. */
 #ifndef STARG_MESH_REPAIR_STATE_H
 #define STARG_MESH_REPAIR_STATE_H
 

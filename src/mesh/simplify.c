@@ -84,7 +84,8 @@ static double try_optimum(const mesh_surface *surface, const quadric *q, const d
 /* The edge's placement of `rank` by error (0: the best); false when there is none. */
 static bool place(const simplifier *s, uint32_t edge, int rank, placement *out) {
     const mesh_surface *surface = s->surface;
-    uint32_t h = surface->halfedge[edge], a = surface->faces[h], b = surface_end(surface, h);
+    uint32_t h = surface->halfedge[edge], a = halfedges_start(&surface->mesh, h),
+             b = halfedges_end(&surface->mesh, h);
     const double *start = surface_at(surface, a), *end = surface_at(surface, b);
     quadric q = edge_quadric(s, a, b);
     double along[3], middle[3];
@@ -133,7 +134,7 @@ static void enter_all(simplifier *s) {
 static void make_quadrics(simplifier *s) {
     const mesh_surface *surface = s->surface;
     for (size_t f = 0; f < surface->face_count; f++) {
-        const uint32_t *corner = surface->faces + 3 * f;
+        const uint32_t *corner = surface_face(surface, f);
         double u[3], v[3], normal[3];
         surface_difference(surface, surface_at(surface, corner[1]), surface_at(surface, corner[0]),
                            u);
@@ -149,7 +150,7 @@ static void make_quadrics(simplifier *s) {
 
 static starg_status collapse(simplifier *s, const collapse_star *star, const double position[3]) {
     mesh_surface *surface = s->surface;
-    uint32_t h = star->halfedge, twin = surface->twin[h], a = star->a;
+    uint32_t h = star->halfedge, twin = halfedges_twin(&surface->mesh, h), a = star->a;
     quadric sum = edge_quadric(s, a, star->b);
     double offset[3];
     surface_difference(surface, position, surface_at(surface, a), offset);
@@ -245,24 +246,6 @@ static void end(simplifier *s) {
     starg_release(s->context, s->attempt);
 }
 
-/* number[v] = place of v among the vertices that stand; their positions and the living faces. */
-static void copy_out(const mesh_surface *surface, uint32_t *number, double *vertices,
-                     uint32_t *faces) {
-    uint32_t count = 0;
-    for (size_t v = 0; v < surface->vertex_count; v++) {
-        if (surface->merged[v] != v)
-            continue;
-        vec3_copy(surface_at(surface, (uint32_t)v), vertices + 3 * (size_t)count);
-        number[v] = count++;
-    }
-    for (uint32_t f = 0; f < surface->face_count; f++) {
-        if (!surface_face_lives(surface, f))
-            continue;
-        for (size_t k = 0; k < 3; k++)
-            *faces++ = number[surface->faces[3 * (size_t)f + k]];
-    }
-}
-
 /* A mesh of the surface as it is, and per vertex of the input its vertex there. */
 static starg_status snapshot(const mesh_surface *surface, uint32_t *number, starg_mesh **out) {
     starg_status status = STARG_OK;
@@ -272,7 +255,10 @@ static starg_status snapshot(const mesh_surface *surface, uint32_t *number, star
     *out = NULL;
     STARG_NEW(context, "simplify", vertices, 3 * surface->vertices_left);
     STARG_NEW(context, "simplify", faces, 3 * surface->faces_left);
-    copy_out(surface, number, vertices, faces);
+    halfedges_compact(&surface->mesh, number, faces);
+    for (size_t v = 0; v < surface->vertex_count; v++)
+        if (surface->merged[v] == v)
+            vec3_copy(surface_at(surface, (uint32_t)v), vertices + 3 * (size_t)number[v]);
     for (size_t v = 0; v < surface->vertex_count; v++) {
         uint32_t root = surface->merged[v];
         if (root == TOPOLOGY_NONE)

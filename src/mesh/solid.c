@@ -38,6 +38,53 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                       "the mesh is closed but encloses no volume: its shells are flat or doubled");
 }
 
+/* ---- coincident vertices ---- */
+
+/* Corners at equal positions become the first vertex there; the others stay, without a face, so
+ * that vertices and faces keep their numbers. *welded is how many those are. */
+static starg_status weld_faces(starg_context *context, starg_mesh *mesh, size_t *welded) {
+    starg_status status = STARG_OK;
+    uint32_t *first = NULL;
+    STARG_TRY(mesh_find_coincident(context, mesh, &first, welded));
+    for (size_t i = 0; i < 3 * mesh->face_count; i++)
+        mesh->faces[i] = first[mesh->faces[i]];
+done:
+    starg_release(context, first);
+    return status;
+}
+
+/* Many programs write a vertex for each corner of a seam. Where the faces bound a solid once such
+ * vertices are one, they are made one; where not, the examination is that of the mesh as given. */
+static starg_status weld_if_closed(starg_context *context, starg_solid *solid,
+                                   mesh_examination *all) {
+    starg_status status = STARG_OK;
+    mesh_examination welded = {0};
+    starg_mesh *copy = NULL;
+    size_t count = 0;
+    STARG_TRY(starg_mesh_create(context, solid->mesh->vertices, solid->mesh->vertex_count,
+                                solid->mesh->faces, solid->mesh->face_count, &copy));
+    STARG_TRY(weld_faces(context, copy, &count));
+    if (count == 0)
+        goto done;
+    STARG_TRY(mesh_examine(context, copy, &welded));
+    if (!welded.check->usable)
+        goto done;
+    starg_log(context, STARG_LOG_NOTICE,
+              "%zu vertices have the position of an earlier one, which stands for them: only so is "
+              "the surface closed",
+              count);
+    mesh_examination open = *all;
+    starg_mesh *given = solid->mesh;
+    *all = welded;
+    welded = open;
+    solid->mesh = copy;
+    copy = given;
+done:
+    mesh_examination_free(context, &welded);
+    starg_mesh_free(copy);
+    return status;
+}
+
 static void turn_shells(starg_mesh *mesh, const mesh_topology *topology, const mesh_shell *shells) {
     for (size_t f = 0; f < mesh->face_count; f++) {
         if (!shells[topology->component[f]].turn)
@@ -80,7 +127,10 @@ starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_so
     solid->context = context;
     STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
                                 mesh->face_count, &solid->mesh));
+    STARG_TRY(mesh_check_extent(context, mesh, "solid"));
     STARG_TRY(mesh_examine(context, solid->mesh, &all));
+    if (!all.check->usable && all.check->findings[STARG_FINDING_DUPLICATE_VERTEX].count > 0)
+        STARG_TRY(weld_if_closed(context, solid, &all));
     if (!all.check->usable) {
         status = fail_unusable(context, all.check);
         goto done;
@@ -99,9 +149,9 @@ done:
 }
 
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = solid_make(context, mesh, out);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     return status;
 }
 

@@ -1,8 +1,5 @@
-/* The working surface of the simplification.
- *
- * A collapse removes the two faces of an edge; of the two remaining edges of each, one goes and
- * the halfedges outside become twins. Nothing is renumbered, so that a collapse costs O(degree of
- * the vertex that goes). */
+/* The working surface of the simplification: what a collapse does to positions, to the numbers of
+ * edges, and to the volumes of components. It costs O(degree of the vertex that goes). */
 #include "mesh/surface.h"
 
 #include <math.h>
@@ -40,13 +37,13 @@ static starg_status check_edges(starg_context *context, const starg_mesh *mesh,
 static starg_status check_fans(const mesh_surface *s) {
     size_t met = 0;
     for (size_t v = 0; v < s->vertex_count; v++) {
-        uint32_t h = s->outgoing[v];
+        uint32_t first = s->mesh.leaving.data[v], h = first;
         if (h == TOPOLOGY_NONE)
             continue;
         do {
             met++;
-            h = surface_turn(s, h);
-        } while (h != s->outgoing[v]);
+            h = halfedges_turn(&s->mesh, h);
+        } while (h != first);
     }
     if (met == 3 * s->face_count)
         return STARG_OK;
@@ -58,23 +55,18 @@ static starg_status check_fans(const mesh_surface *s) {
 static void number_edges(mesh_surface *s) {
     uint32_t edge = 0;
     for (uint32_t h = 0; h < 3 * s->face_count; h++) {
-        if (h > s->twin[h])
+        if (h > halfedges_twin(&s->mesh, h))
             continue;
-        s->edge[h] = s->edge[s->twin[h]] = edge;
+        s->edge[h] = s->edge[halfedges_twin(&s->mesh, h)] = edge;
         s->halfedge[edge++] = h;
     }
 }
 
-static void find_outgoing(mesh_surface *s) {
-    for (size_t v = 0; v < s->vertex_count; v++)
-        s->outgoing[v] = s->merged[v] = TOPOLOGY_NONE;
-    for (size_t h = 3 * s->face_count; h-- > 0;)
-        s->outgoing[s->faces[h]] = (uint32_t)h;
+static void find_used(mesh_surface *s) {
     for (size_t v = 0; v < s->vertex_count; v++) {
-        if (s->outgoing[v] == TOPOLOGY_NONE)
-            continue;
-        s->merged[v] = (uint32_t)v;
-        s->vertices_left++;
+        bool used = s->mesh.leaving.data[v] != TOPOLOGY_NONE;
+        s->merged[v] = used ? (uint32_t)v : TOPOLOGY_NONE;
+        s->vertices_left += used;
     }
 }
 
@@ -85,7 +77,7 @@ static starg_status measure_volumes(mesh_surface *s) {
     STARG_NEW(s->context, "simplify", origin, s->component_count);
     memset(origin, 0xff, s->component_count * sizeof *origin);
     for (size_t f = 0; f < s->face_count; f++) {
-        const uint32_t *corner = s->faces + 3 * f, c = s->component[f];
+        const uint32_t *corner = surface_face(s, f), c = s->component[f];
         double p[3][3];
         if (origin[c] == TOPOLOGY_NONE)
             origin[c] = corner[0];
@@ -104,7 +96,7 @@ static double scale_of(const starg_mesh *mesh) {
     return ldexp(1, -(exponent < -1000 ? -1000 : exponent));
 }
 
-/* The tables of the topology are taken over. */
+/* The components are taken over from the topology. */
 static starg_status fill(mesh_surface *s, const starg_mesh *mesh, mesh_topology *topology) {
     starg_status status = STARG_OK;
     starg_context *context = s->context;
@@ -114,19 +106,16 @@ static starg_status fill(mesh_surface *s, const starg_mesh *mesh, mesh_topology 
     s->component_count = topology->component_count;
     s->scale = scale_of(mesh);
     STARG_NEW(context, "simplify", s->vertices, 3 * s->vertex_count);
-    STARG_NEW(context, "simplify", s->faces, 3 * s->face_count);
+    STARG_TRY(halfedges_create(topology, mesh, "simplify", &s->mesh));
     STARG_NEW(context, "simplify", s->edge, 3 * s->face_count);
     STARG_NEW(context, "simplify", s->halfedge, s->edge_count);
-    STARG_NEW(context, "simplify", s->outgoing, s->vertex_count);
     STARG_NEW(context, "simplify", s->merged, s->vertex_count);
     STARG_NEW_ZERO(context, "simplify", s->volume, s->component_count);
     memcpy(s->vertices, mesh->vertices, 3 * s->vertex_count * sizeof *s->vertices);
-    memcpy(s->faces, mesh->faces, 3 * s->face_count * sizeof *s->faces);
-    s->twin = topology->twin;
     s->component = topology->component;
-    topology->twin = topology->component = NULL;
+    topology->component = NULL;
     number_edges(s);
-    find_outgoing(s);
+    find_used(s);
     STARG_TRY(check_fans(s));
     STARG_TRY(measure_volumes(s));
 done:
@@ -155,11 +144,9 @@ void surface_free(mesh_surface *surface) {
     if (surface == NULL)
         return;
     starg_release(surface->context, surface->vertices);
-    starg_release(surface->context, surface->faces);
-    starg_release(surface->context, surface->twin);
+    halfedges_free(&surface->mesh);
     starg_release(surface->context, surface->edge);
     starg_release(surface->context, surface->halfedge);
-    starg_release(surface->context, surface->outgoing);
     starg_release(surface->context, surface->merged);
     starg_release(surface->context, surface->component);
     starg_release(surface->context, surface->volume);
@@ -168,12 +155,12 @@ void surface_free(mesh_surface *surface) {
 
 /* What a collapse does to the volume: the star of either end, seen from the new position. */
 static void update_volume(mesh_surface *s, uint32_t halfedge, const double position[3]) {
-    uint32_t a = s->faces[halfedge], b = surface_end(s, halfedge);
+    uint32_t a = halfedges_start(&s->mesh, halfedge), b = halfedges_end(&s->mesh, halfedge);
     double lost = 0;
     for (int end = 0; end < 2; end++) {
-        uint32_t first = end ? s->twin[halfedge] : halfedge, h = first;
+        uint32_t first = end ? halfedges_twin(&s->mesh, halfedge) : halfedge, h = first;
         do {
-            const uint32_t *corner = s->faces + 3 * (size_t)(h / 3);
+            const uint32_t *corner = surface_face(s, h / 3);
             bool both = (corner[0] == a || corner[1] == a || corner[2] == a) &&
                         (corner[0] == b || corner[1] == b || corner[2] == b);
             double p[3][3];
@@ -181,37 +168,29 @@ static void update_volume(mesh_surface *s, uint32_t halfedge, const double posit
                 surface_difference(s, surface_at(s, corner[k]), position, p[k]);
             if (end == 0 || !both)
                 lost += vec3_triple(p[0], p[1], p[2]);
-            h = surface_turn(s, h);
+            h = halfedges_turn(&s->mesh, h);
         } while (h != first);
     }
     s->volume[s->component[halfedge / 3]] -= lost;
 }
 
-/* Takes a face out whose corner at `halfedge` has been merged with the next one: the edges of its
- * other two sides become one, with the number of `kept`. */
-static void close_face(mesh_surface *s, uint32_t gone, uint32_t kept) {
-    uint32_t outer_gone = s->twin[gone], outer_kept = s->twin[kept];
+/* In the face of a collapsed edge, the edges of the other two sides become one, with the number of
+ * `kept`. */
+static void merge_edges(mesh_surface *s, uint32_t gone, uint32_t kept) {
+    uint32_t outer_gone = halfedges_twin(&s->mesh, gone);
     s->halfedge[s->edge[gone]] = TOPOLOGY_NONE;
     s->edge[outer_gone] = s->edge[kept];
-    s->halfedge[s->edge[kept]] = outer_kept;
-    s->twin[outer_gone] = outer_kept;
-    s->twin[outer_kept] = outer_gone;
-    s->outgoing[s->faces[outer_gone]] = outer_gone;
-    s->outgoing[s->faces[outer_kept]] = outer_kept;
-    memset(s->twin + 3 * (size_t)(gone / 3), 0xff, 3 * sizeof *s->twin);
+    s->halfedge[s->edge[kept]] = halfedges_twin(&s->mesh, kept);
 }
 
 void surface_collapse(mesh_surface *s, uint32_t halfedge, const double position[3]) {
-    uint32_t twin = s->twin[halfedge], a = s->faces[halfedge], b = s->faces[twin], h = twin;
+    uint32_t twin = halfedges_twin(&s->mesh, halfedge);
+    uint32_t a = halfedges_start(&s->mesh, halfedge), b = halfedges_end(&s->mesh, halfedge);
     update_volume(s, halfedge, position);
-    do { /* the corners keep their halfedges: turning does not look at them */
-        s->faces[h] = a;
-        h = surface_turn(s, h);
-    } while (h != twin);
     s->halfedge[s->edge[halfedge]] = TOPOLOGY_NONE;
-    close_face(s, corner_next(halfedge), corner_previous(halfedge));
-    close_face(s, corner_previous(twin), corner_next(twin));
-    s->outgoing[b] = TOPOLOGY_NONE;
+    merge_edges(s, corner_next(halfedge), corner_previous(halfedge));
+    merge_edges(s, corner_previous(twin), corner_next(twin));
+    halfedges_collapse(&s->mesh, halfedge);
     s->merged[b] = a;
     vec3_copy(position, s->vertices + 3 * (size_t)a);
     s->vertices_left--;

@@ -322,7 +322,7 @@ starg_status starg_map_create(starg_context *context, const starg_mesh *a, const
     if (options == NULL)
         options = &none;
     *out = NULL;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(check_landmarks(context, a, b, options));
     size_t different = map_different_faces(a, b);
     if (different <= a->face_count / SAME_SHARE)
@@ -333,7 +333,7 @@ starg_status starg_map_create(starg_context *context, const starg_mesh *a, const
     *out = map;
     map = NULL;
 done:
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     starg_map_free(context, map);
     return status;
 }

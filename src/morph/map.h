@@ -2,7 +2,11 @@
 #ifndef STARG_MORPH_MAP_H
 #define STARG_MORPH_MAP_H
 
+#include "core/fields.h"
 #include "starguard/morph.h"
+
+/* MAP.json as a starg_map. */
+extern const starg_fields map_file_fields;
 
 /* A map with room for its tables. Errors: MEMORY. */
 starg_status map_make(starg_context *context, const starg_mesh *a, const starg_mesh *b,

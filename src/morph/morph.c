@@ -163,7 +163,7 @@ starg_status starg_morph_create(starg_context *context, const starg_mesh *a, con
     if (options == NULL)
         options = &defaults;
     *out = NULL;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(check_input(context, a, images, options));
     STARG_NEW_ZERO(context, STAGE, m, 1);
     m->context = context;
@@ -182,7 +182,7 @@ starg_status starg_morph_create(starg_context *context, const starg_mesh *a, con
     *out = m;
     m = NULL;
 done:
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     starg_morph_free(m);
     return status;
 }
@@ -217,7 +217,7 @@ starg_status starg_morph_frame(const starg_morph *m, double t, double *positions
     if (!(t >= 0 && t <= 1))
         return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE, "time %g; it must lie in [0, 1]",
                           t);
-    starg_deadline_begin(m->context);
+    starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
     STARG_TRY(starg_check_cancel(m->context, STAGE));
     if (t == 0 || t == 1) {
         memcpy(positions, t == 0 ? m->source : m->target, count * sizeof *positions);
@@ -232,7 +232,7 @@ starg_status starg_morph_frame(const starg_morph *m, double t, double *positions
                                                  : morph_frame_rigid(m, t, positions));
     unscale(m, t, positions);
 done:
-    starg_deadline_end(m->context);
+    starg_time_end(m->context, former);
     return status;
 }
 

@@ -7,6 +7,10 @@
  * has none, and every vertex can be removed while more than four are left. Vertices of more than
  * DEGREE neighbours wait: those of at most five are never missing [Euler].
  *
+ * Not on mesh/halfedges.h: every removal is undone later, so that each cycle begins where it did
+ * (sums over it round accordingly); and relaxation reads the cycles as arrays, far more often than
+ * they change.
+ *
  * Order: the shortest merge first, so that what sticks out stays for long.
  * Cost: O(degree^2) for each removal with its neighbourhood, O(log n) for the queue. */
 #include "morph/rings.h"

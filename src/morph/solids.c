@@ -146,7 +146,7 @@ starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2
     starg_solid *solid = NULL;
     uint32_t *surface = NULL;
     out[0] = out[1] = NULL;
-    starg_deadline_begin(m->context);
+    starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
     STARG_TRY(check_ends(m, &solid));
     STARG_TRY(list_surface(m, &surface, &c.fixed));
     c.surface = surface;
@@ -154,7 +154,7 @@ starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2
     STARG_TRY(take_along(m, &c));
     STARG_TRY(cut(m, &c, out));
 done:
-    starg_deadline_end(m->context);
+    starg_time_end(m->context, former);
     carried_free(&c);
     starg_solid_free(solid);
     starg_release(m->context, surface);

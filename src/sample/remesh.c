@@ -17,108 +17,60 @@
 
 #include <math.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
+#include "mesh/halfedges.h"
 
 static const char STAGE[] = "sample";
 
 enum { MAX_RING = 32, MAX_VALENCE = 10, ROUNDS = 5, BLOCK = 2048 };
 
-static const uint32_t NONE = UINT32_MAX;
 static const double MIN_QUALITY = 0.1;
 
-/* Half-edge h = 3 f + i goes from corner i of face f to the next; faces[h] is where it starts. */
 typedef struct surface {
     starg_context *context;
     const implicit_field *field;
-    size_t vertex_count, face_count; /* slots */
-    size_t live;                     /* vertices */
+    mesh_halfedges mesh;
+    size_t vertex_count, halfedge_count; /* gone ones as well */
+    size_t live;                         /* vertices          */
     double *positions, *moved;
     double *thickness; /* of the solid at each vertex */
-    uint32_t *faces;   /* a face that is gone has NONE as its first corner */
-    uint32_t *twins;
-    uint32_t *leaving; /* a half-edge that starts at the vertex, or NONE when it is gone */
 } surface;
-
-static uint32_t next_edge(uint32_t h) {
-    return h % 3 == 2 ? h - 2 : h + 1;
-}
-
-static uint32_t previous_edge(uint32_t h) {
-    return h % 3 == 0 ? h + 2 : h - 1;
-}
 
 static const double *position(const surface *s, uint32_t v) {
     return s->positions + 3 * (size_t)v;
 }
 
 static uint32_t edge_end(const surface *s, uint32_t h) {
-    return s->faces[next_edge(h)];
-}
-
-/* ---- half-edges ----------------------------------------------------------------------------- */
-
-/* Pairs the half-edges: those that leave one vertex are chained, and each is looked up among those
- * that leave its end. */
-static starg_status pair_edges(surface *s) {
-    starg_status status = STARG_OK;
-    uint32_t *chain = NULL;
-    size_t count = 3 * s->face_count;
-    STARG_NEW(s->context, STAGE, chain, count);
-    memset(s->leaving, 0xff, s->vertex_count * sizeof *s->leaving);
-    for (uint32_t h = 0; h < count; h++) {
-        chain[h] = s->leaving[s->faces[h]];
-        s->leaving[s->faces[h]] = h;
-    }
-    for (uint32_t h = 0; h < count; h++) {
-        uint32_t other = s->leaving[edge_end(s, h)];
-        while (other != NONE && edge_end(s, other) != s->faces[h])
-            other = chain[other];
-        s->twins[h] = other;
-    }
-done:
-    starg_release(s->context, chain);
-    return status;
+    return halfedges_end(&s->mesh, h);
 }
 
 static void surface_free(surface *s) {
     starg_release(s->context, s->positions);
     starg_release(s->context, s->moved);
     starg_release(s->context, s->thickness);
-    starg_release(s->context, s->faces);
-    starg_release(s->context, s->twins);
-    starg_release(s->context, s->leaving);
+    halfedges_free(&s->mesh);
 }
 
 static starg_status surface_make(surface *s, const starg_mesh *raw) {
     starg_status status = STARG_OK;
+    mesh_topology *topology = NULL;
     s->vertex_count = s->live = raw->vertex_count;
-    s->face_count = raw->face_count;
+    s->halfedge_count = 3 * raw->face_count;
     STARG_NEW(s->context, STAGE, s->positions, 3 * s->vertex_count);
     STARG_NEW(s->context, STAGE, s->moved, 3 * s->vertex_count);
     STARG_NEW(s->context, STAGE, s->thickness, s->vertex_count);
-    STARG_NEW(s->context, STAGE, s->leaving, s->vertex_count);
-    STARG_NEW(s->context, STAGE, s->faces, 3 * s->face_count);
-    STARG_NEW(s->context, STAGE, s->twins, 3 * s->face_count);
     memcpy(s->positions, raw->vertices, 3 * s->vertex_count * sizeof *s->positions);
-    memcpy(s->faces, raw->faces, 3 * s->face_count * sizeof *s->faces);
-    STARG_TRY(pair_edges(s));
+    STARG_TRY(topology_create(s->context, raw, &topology));
+    STARG_TRY(halfedges_create(topology, raw, STAGE, &s->mesh));
 done:
+    topology_free(topology);
     return status;
 }
 
-/* The half-edges that leave v, in order about it; 0 when they are more than MAX_RING. */
+/* The half-edges about v; 0 when they are more than MAX_RING. */
 static size_t ring_of(const surface *s, uint32_t v, uint32_t ring[MAX_RING]) {
-    size_t count = 0;
-    uint32_t h = s->leaving[v];
-    do {
-        if (count == MAX_RING)
-            return 0;
-        ring[count++] = h;
-        h = s->twins[previous_edge(h)];
-    } while (h != s->leaving[v]);
-    return count;
+    return halfedges_ring(&s->mesh, v, ring, MAX_RING);
 }
 
 /* ---- work on all vertices ------------------------------------------------------------------- */
@@ -138,7 +90,7 @@ static starg_status run_block(starg_context *context, void *shared, void *scratc
     if (end > job->s->vertex_count)
         end = job->s->vertex_count;
     for (size_t v = item * BLOCK; v < end; v++)
-        if (job->s->leaving[v] != NONE)
+        if (job->s->mesh.leaving.data[v] != TOPOLOGY_NONE)
             job->work(job->s, (uint32_t)v);
     return STARG_OK;
 }
@@ -161,19 +113,9 @@ static void measure_thickness(const surface *s, uint32_t v) {
 
 /* Squared length over thickness. */
 static double edge_cost(const surface *s, uint32_t h) {
-    uint32_t a = s->faces[h], b = edge_end(s, h);
+    uint32_t a = halfedges_start(&s->mesh, h), b = edge_end(s, h);
     return 2 * vec3_distance_squared(position(s, a), position(s, b)) /
            (s->thickness[a] + s->thickness[b]);
-}
-
-static size_t common_neighbours(const surface *s, const uint32_t *ring_a, size_t count_a,
-                                const uint32_t *ring_b, size_t count_b) {
-    size_t common = 0;
-    for (size_t i = 0; i < count_a; i++)
-        for (size_t j = 0; j < count_b; j++)
-            if (edge_end(s, ring_a[i]) == edge_end(s, ring_b[j]))
-                common++;
-    return common;
 }
 
 /* How well-shaped the face is as seen along the unit `normal`: the sine of the angle between its
@@ -192,10 +134,10 @@ static double shape_quality(const double *a, const double *b, const double *c,
 static bool ring_keeps_shape(const surface *s, const uint32_t *ring, size_t count, uint32_t gone,
                              const double p[3], const double normal[3]) {
     for (size_t i = 0; i < count; i++) {
-        uint32_t b = edge_end(s, ring[i]), c = s->faces[previous_edge(ring[i])];
+        uint32_t b = edge_end(s, ring[i]), c = halfedges_apex(&s->mesh, ring[i]);
         if (b == gone || c == gone)
             continue;
-        const double *pa = position(s, s->faces[ring[i]]);
+        const double *pa = position(s, halfedges_start(&s->mesh, ring[i]));
         const double *pb = position(s, b), *pc = position(s, c);
         double before = shape_quality(pa, pb, pc, normal);
         if (!(shape_quality(p, pb, pc, normal) > fmin(MIN_QUALITY, before)))
@@ -209,7 +151,7 @@ static bool find_place(const surface *s, uint32_t h, const uint32_t *ring_a, siz
                        const uint32_t *ring_b, size_t count_b, double p[3]) {
     static const double places[3] = {0.5, 0, 1};
     double normal[3];
-    uint32_t a = s->faces[h], b = edge_end(s, h);
+    uint32_t a = halfedges_start(&s->mesh, h), b = edge_end(s, h);
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++)
             p[k] = (1 - places[i]) * position(s, a)[k] + places[i] * position(s, b)[k];
@@ -221,46 +163,24 @@ static bool find_place(const surface *s, uint32_t h, const uint32_t *ring_a, siz
     return false;
 }
 
-static void pair(surface *s, uint32_t g, uint32_t h) {
-    s->twins[g] = h;
-    s->twins[h] = g;
-}
-
-/* Merges the end of h into its start. */
-static void merge_edge(surface *s, uint32_t h, const uint32_t *ring_b, size_t count_b) {
-    uint32_t t = s->twins[h], a = s->faces[h], b = s->faces[t];
-    uint32_t c = s->faces[previous_edge(h)], d = s->faces[previous_edge(t)];
-    uint32_t c_to_a = s->twins[next_edge(h)], a_to_c = s->twins[previous_edge(h)];
-    uint32_t d_to_a = s->twins[next_edge(t)], b_to_d = s->twins[previous_edge(t)];
-    for (size_t i = 0; i < count_b; i++)
-        s->faces[ring_b[i]] = a;
-    pair(s, c_to_a, a_to_c);
-    pair(s, d_to_a, b_to_d);
-    s->leaving[a] = a_to_c;
-    s->leaving[b] = NONE;
-    s->leaving[c] = c_to_a;
-    s->leaving[d] = d_to_a;
-    s->faces[h - h % 3] = NONE;
-    s->faces[t - t % 3] = NONE;
-    s->live--;
-}
-
 /* Collapses the edge if the surface stays what it is; false if it would not. */
 static bool collapse_edge(surface *s, uint32_t h) {
     uint32_t ring_a[MAX_RING], ring_b[MAX_RING], ring_c[MAX_RING], ring_d[MAX_RING];
-    uint32_t a = s->faces[h], b = edge_end(s, h);
-    uint32_t c = s->faces[previous_edge(h)], d = s->faces[previous_edge(s->twins[h])];
+    uint32_t a = halfedges_start(&s->mesh, h), b = edge_end(s, h);
+    uint32_t c = halfedges_apex(&s->mesh, h),
+             d = halfedges_apex(&s->mesh, halfedges_twin(&s->mesh, h));
     size_t count_a = ring_of(s, a, ring_a), count_b = ring_of(s, b, ring_b);
     if (count_a == 0 || count_b == 0 || count_a + count_b > MAX_VALENCE + 4)
         return false;
     if (ring_of(s, c, ring_c) <= 3 || ring_of(s, d, ring_d) <= 3)
         return false;
-    if (common_neighbours(s, ring_a, count_a, ring_b, count_b) != 2)
+    if (halfedges_common(&s->mesh, ring_a, count_a, ring_b, count_b) != 2)
         return false;
     double p[3];
     if (!find_place(s, h, ring_a, count_a, ring_b, count_b, p))
         return false;
-    merge_edge(s, h, ring_b, count_b);
+    halfedges_collapse(&s->mesh, h);
+    s->live--;
     vec3_copy(p, s->positions + 3 * (size_t)a);
     s->thickness[a] = 0.5 * (s->thickness[a] + s->thickness[b]);
     return true;
@@ -293,8 +213,9 @@ static bool flip_keeps_side(const double *a, const double *b, const double *c, c
 }
 
 static bool is_flip_wanted(const surface *s, uint32_t h) {
-    uint32_t t = s->twins[h], a = s->faces[h], b = s->faces[t];
-    uint32_t c = s->faces[previous_edge(h)], d = s->faces[previous_edge(t)];
+    uint32_t t = halfedges_twin(&s->mesh, h), a = halfedges_start(&s->mesh, h),
+             b = halfedges_start(&s->mesh, t);
+    uint32_t c = halfedges_apex(&s->mesh, h), d = halfedges_apex(&s->mesh, t);
     const double *pa = position(s, a), *pb = position(s, b);
     const double *pc = position(s, c), *pd = position(s, d);
     if (cotangent(pc, pa, pb) + cotangent(pd, pa, pb) >= -1e-9)
@@ -303,43 +224,30 @@ static bool is_flip_wanted(const surface *s, uint32_t h) {
     size_t count_a = ring_of(s, a, ring), count_b = ring_of(s, b, ring);
     if (count_a == 0 || count_b == 0 || count_a <= 3 || count_b <= 3)
         return false;
-    size_t count_d = ring_of(s, d, ring);
-    size_t count_c = ring_of(s, c, ring);
+    size_t count_c = ring_of(s, c, ring), count_d = ring_of(s, d, ring);
     if (count_c == 0 || count_d == 0 || count_c > MAX_VALENCE || count_d > MAX_VALENCE)
         return false;
-    for (size_t i = 0; i < count_c; i++)
-        if (edge_end(s, ring[i]) == d)
-            return false;
-    return flip_keeps_side(pa, pb, pc, pd);
+    return halfedges_find(&s->mesh, c, d) == TOPOLOGY_NONE && flip_keeps_side(pa, pb, pc, pd);
 }
 
-/* The edge a b between c and d becomes d c; faces (a, d, c) and (d, b, c). */
+/* Of the two half-edges of an edge, the lower one stands for it. */
+static bool is_edge(const surface *s, uint32_t h) {
+    uint32_t twin = halfedges_twin(&s->mesh, h);
+    return twin != TOPOLOGY_NONE && h < twin;
+}
+
+/* Where faces and rings begin decides about the bytes of a sample: the first face begins at the
+ * start of h, and the other corner across from it keeps its ring's begin in the second. */
 static void flip_edge(surface *s, uint32_t h) {
-    uint32_t t = s->twins[h], a = s->faces[h], b = s->faces[t];
-    uint32_t c = s->faces[previous_edge(h)], d = s->faces[previous_edge(t)];
-    uint32_t c_to_b = s->twins[next_edge(h)], a_to_c = s->twins[previous_edge(h)];
-    uint32_t d_to_a = s->twins[next_edge(t)], b_to_d = s->twins[previous_edge(t)];
-    uint32_t f = h - h % 3, g = t - t % 3;
-    s->faces[f] = a;
-    s->faces[f + 1] = d;
-    s->faces[f + 2] = c;
-    s->faces[g] = d;
-    s->faces[g + 1] = b;
-    s->faces[g + 2] = c;
-    pair(s, f, d_to_a);
-    pair(s, f + 1, g + 2);
-    pair(s, f + 2, a_to_c);
-    pair(s, g, b_to_d);
-    pair(s, g + 1, c_to_b);
-    s->leaving[a] = f;
-    s->leaving[b] = g + 1;
-    s->leaving[c] = f + 2;
-    s->leaving[d] = g;
+    uint32_t twin = halfedges_twin(&s->mesh, h), x = halfedges_apex(&s->mesh, twin);
+    halfedges_flip(&s->mesh, h);
+    halfedges_begin_face(&s->mesh, h - h % 3 + 1);
+    s->mesh.leaving.data[x] = twin - twin % 3;
 }
 
 static void flip_edges(surface *s) {
-    for (uint32_t h = 0; h < 3 * s->face_count; h++)
-        if (s->faces[h - h % 3] != NONE && h < s->twins[h] && is_flip_wanted(s, h))
+    for (uint32_t h = 0; h < s->halfedge_count; h++)
+        if (is_edge(s, h) && is_flip_wanted(s, h))
             flip_edge(s, h);
 }
 
@@ -347,9 +255,9 @@ static void flip_edges(surface *s) {
 
 static double mean_cost(const surface *s) {
     double sum = 0;
-    for (uint32_t h = 0; h < 3 * s->face_count; h++)
+    for (uint32_t h = 0; h < s->halfedge_count; h++)
         sum += edge_cost(s, h);
-    return s->face_count ? sum / (3.0 * (double)s->face_count) : 0;
+    return s->halfedge_count ? sum / (double)s->halfedge_count : 0;
 }
 
 /* Passes over all edges with a rising limit, until the number is met or nothing can be done: at a
@@ -359,8 +267,8 @@ static starg_status coarsen(surface *s, size_t vertex_count) {
     double mean = mean_cost(s);
     for (double limit = 0.02 * mean; s->live > vertex_count && limit < 1e6 * mean; limit *= 1.35) {
         STARG_TRY(starg_check_cancel(s->context, STAGE));
-        for (uint32_t h = 0; h < 3 * s->face_count && s->live > vertex_count; h++)
-            if (s->faces[h - h % 3] != NONE && h < s->twins[h] && edge_cost(s, h) < limit)
+        for (uint32_t h = 0; h < s->halfedge_count && s->live > vertex_count; h++)
+            if (is_edge(s, h) && edge_cost(s, h) < limit)
                 collapse_edge(s, h);
         flip_edges(s);
     }
@@ -389,7 +297,7 @@ static void propose_move(const surface *s, uint32_t v) {
     vec3_along(step, -vec3_dot(step, here.gradient) / square, here.gradient, step);
     vec3_along(p, 0.6, step, p);
     implicit_project(s->field, p, 2, normal);
-    if (!ring_keeps_shape(s, ring, count, NONE, p, normal))
+    if (!ring_keeps_shape(s, ring, count, TOPOLOGY_NONE, p, normal))
         vec3_copy(position(s, v), p);
 }
 
@@ -403,27 +311,22 @@ static starg_status smooth(surface *s) {
 
 /* ---- result --------------------------------------------------------------------------------- */
 
-/* The mesh of what is left, in the order of the slots. */
+/* The mesh of what is left. */
 static starg_status compact(const surface *s, starg_mesh **out) {
     starg_status status = STARG_OK;
-    size_t face_count = 0, vertex_count = 0;
+    size_t face_count = 0;
     uint32_t *faces = NULL, *number = NULL;
     double *vertices = NULL;
+    for (size_t f = 0; f < s->halfedge_count / 3; f++)
+        face_count += halfedges_face_lives(&s->mesh, f);
     STARG_NEW(s->context, STAGE, number, s->vertex_count);
     STARG_NEW(s->context, STAGE, vertices, 3 * s->live);
-    for (size_t v = 0; v < s->vertex_count; v++)
-        if (s->leaving[v] != NONE) {
-            vec3_copy(position(s, (uint32_t)v), vertices + 3 * vertex_count);
-            number[v] = (uint32_t)vertex_count++;
-        }
-    for (size_t f = 0; f < s->face_count; f++)
-        face_count += s->faces[3 * f] != NONE;
     STARG_NEW(s->context, STAGE, faces, 3 * face_count);
-    size_t filled = 0;
-    for (size_t f = 0; f < s->face_count; f++)
-        for (size_t k = 0; s->faces[3 * f] != NONE && k < 3; k++)
-            faces[filled++] = number[s->faces[3 * f + k]];
-    STARG_TRY(starg_mesh_create(s->context, vertices, vertex_count, faces, face_count, out));
+    uint32_t count = halfedges_compact(&s->mesh, number, faces);
+    for (uint32_t v = 0; v < s->vertex_count; v++)
+        if (s->mesh.leaving.data[v] != TOPOLOGY_NONE)
+            vec3_copy(position(s, v), vertices + 3 * (size_t)number[v]);
+    STARG_TRY(starg_mesh_create(s->context, vertices, count, faces, face_count, out));
 done:
     starg_release(s->context, number);
     starg_release(s->context, vertices);

@@ -211,12 +211,11 @@ static starg_status describe_and_store(adding *a) {
                                       .item = database_files_describe,
                                       .make_scratch = database_files_scratch,
                                       .free_scratch = database_files_free_scratch,
-                                      .stop_at_deadline = true,
                                       .advance = store_described,
                                       .remote = &remote};
     if (a->context->ranks != NULL)
         STARG_TRY(database_files_pack(a->context, &a->files, &job));
-    STARG_TRY(starg_parallel_for(a->context, &loop));
+    STARG_TRY(starg_parallel_in_time(a->context, &loop));
 done:
     STARG_ARRAY_FREE(a->context, &job);
     return status;

@@ -3,9 +3,9 @@
  * Stages: the model at a standard level of detail (level.c); a strict star decomposition of it
  * within a budget of trials; its guards with the volumes of their pieces; an edge for each two
  * pieces that touch, with the centroid of what they share; from each guard the distance to the
- * boundary in directions that cover the sphere evenly; the spectra of the boundary, as a
- * surface and with the widths of the solid (thickness.c), and where it vibrates (waves.c), which
- * unlike all else do not depend on where guards came to stand.
+ * boundary in directions that cover the sphere evenly; the spectrum of the boundary
+ * (vibrations.c) and where it vibrates (waves.c), which unlike all else do not depend on where
+ * guards came to stand.
  *
  * The paper's graph follows the curve skeleton on which its guards lie. Here guards lie anywhere in
  * the kernels of their pieces and the edges are the contacts of pieces, so that the graph has a
@@ -27,7 +27,7 @@
 #include "mesh/solid.h"
 #include "shape/level.h"
 #include "shape/rays.h"
-#include "shape/thickness.h"
+#include "shape/vibrations.h"
 #include "shape/views.h"
 #include "star/piece_faces.h"
 #include "starguard/decompose.h"
@@ -99,6 +99,7 @@ static starg_status decompose_mesh(starg_context *context, const starg_mesh *mes
     starg_solid *solid = NULL;
     starg_decompose_options_default(&wanted);
     wanted.effort = options->effort;
+    wanted.fill = true;
     starg_status status = solid_make(context, mesh, &solid);
     *closed = status == STARG_OK;
     if (status == STARG_ERROR_MESH)
@@ -298,7 +299,7 @@ starg_status starg_descriptor_create(starg_context *context, const starg_mesh *m
     STARG_TRY(ray_caster_create(context, s.pieces->mesh, &caster));
     STARG_TRY(add_distances(context, &caster, d));
     STARG_TRY(views_measure(context, s.pieces->mesh, &caster, &d->views[0][0]));
-    STARG_TRY(thickness_spectra(context, s.pieces->mesh, s.surface, &caster, d));
+    STARG_TRY(vibrations_measure(context, s.pieces->mesh, s.surface, d));
     *out = d;
 done:
     ray_caster_free(context, &caster);

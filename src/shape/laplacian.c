@@ -5,7 +5,7 @@
  * triangles' contributions to edges, diagonal and masses; lay the matrix out by columns.
  *
  * A triangle with edge vectors e0, e1, e2 and area A adds e_i . e_j / (4 A) for the corners i and
- * j, a third of A to each corner's mass; both times the mean thickness of its corners in a shell.
+ * j, a third of A to each corner's mass.
  * That is a Gram matrix for any A > 0: so a needle, whose area is taken as at least a tiny part of
  * its longest edge's square, leaves the sum semidefinite.
  *
@@ -29,13 +29,11 @@ typedef struct surface {
     starg_context *context;
     size_t vertex_count, face_count;
     double *positions; /* within a unit cube */
-    double *field;     /* at the vertices: 1 unless given */
     uint32_t *faces;
 } surface;
 
 static void surface_free(surface *s) {
     starg_release(s->context, s->positions);
-    starg_release(s->context, s->field);
     starg_release(s->context, s->faces);
 }
 
@@ -50,7 +48,7 @@ static bool has_extent(const surface *s, const uint32_t f[3]) {
     return vec3_dot(u, u) + vec3_dot(v, v) > LEAST_EXTENT;
 }
 
-static starg_status copy_surface(const starg_mesh *mesh, const double *field, surface *s) {
+static starg_status copy_surface(const starg_mesh *mesh, surface *s) {
     starg_status status = STARG_OK;
     const double *vertices = starg_mesh_vertices(mesh);
     const uint32_t *faces = starg_mesh_faces(mesh);
@@ -62,10 +60,7 @@ static starg_status copy_surface(const starg_mesh *mesh, const double *field, su
     if (!(extent > 0))
         return starg_fail(s->context, STARG_ERROR_MESH, STAGE, "the mesh has no area");
     STARG_NEW(s->context, STAGE, s->positions, 3 * s->vertex_count);
-    STARG_NEW(s->context, STAGE, s->field, s->vertex_count);
     STARG_NEW(s->context, STAGE, s->faces, 3 * starg_mesh_face_count(mesh));
-    for (size_t i = 0; i < s->vertex_count; i++)
-        s->field[i] = field != NULL ? field[i] : 1;
     for (size_t i = 0; i < s->vertex_count; i++)
         for (size_t k = 0; k < 3; k++)
             s->positions[3 * i + k] = (vertices[3 * i + k] - lower[k]) / extent;
@@ -95,9 +90,7 @@ static starg_status subdivide(surface *s) {
     edge_table table = {0};
     STARG_TRY(edge_table_make(s->context, STAGE, edges, &table));
     STARG_NEW(s->context, STAGE, fine.positions, 3 * (s->vertex_count + edges));
-    STARG_NEW(s->context, STAGE, fine.field, s->vertex_count + edges);
     STARG_NEW(s->context, STAGE, fine.faces, 3 * fine.face_count);
-    memcpy(fine.field, s->field, s->vertex_count * sizeof *fine.field);
     memcpy(fine.positions, s->positions, 3 * s->vertex_count * sizeof *fine.positions);
     for (size_t i = 0; i < s->face_count; i++) {
         const uint32_t *f = s->faces + 3 * i;
@@ -105,7 +98,6 @@ static starg_status subdivide(surface *s) {
         for (size_t k = 0; k < 3; k++) {
             uint32_t a = f[k], b = f[(k + 1) % 3];
             middle[k] = (uint32_t)s->vertex_count + edge_table_number(&table, a, b);
-            fine.field[middle[k]] = 0.5 * (s->field[a] + s->field[b]);
             for (size_t c = 0; c < 3; c++)
                 fine.positions[3 * (size_t)middle[k] + c] =
                     0.5 * (s->positions[3 * (size_t)a + c] + s->positions[3 * (size_t)b + c]);
@@ -135,7 +127,6 @@ static starg_status renumber(surface *s, uint32_t **row_of) {
     for (size_t v = 0; v < s->vertex_count; v++) {
         if (numbers[v] == LAPLACIAN_NO_ROW)
             continue;
-        s->field[used] = s->field[v];
         memmove(s->positions + 3 * used, s->positions + 3 * v, 3 * sizeof *s->positions);
         numbers[v] = (uint32_t)used++;
     }
@@ -152,13 +143,12 @@ typedef struct sums {
     edge_table edges;
     double *weights;  /* of edges: minus the entry of the matrix */
     double *diagonal; /* of vertices */
-    double area, volume;
+    double area;
 } sums;
 
 /* Adds one triangle. */
-static void add_face(const surface *s, const uint32_t f[3], bool shell, sums *sum, double *masses) {
+static void add_face(const surface *s, const uint32_t f[3], sums *sum, double *masses) {
     double e[3][3], normal[3], longest = 0;
-    double thick = shell ? (s->field[f[0]] + s->field[f[1]] + s->field[f[2]]) / 3 : 1;
     for (size_t k = 0; k < 3; k++) {
         vec3_subtract(s->positions + 3 * (size_t)f[(k + 2) % 3],
                       s->positions + 3 * (size_t)f[(k + 1) % 3], e[k]);
@@ -168,25 +158,13 @@ static void add_face(const surface *s, const uint32_t f[3], bool shell, sums *su
     double area = fmax(0.5 * sqrt(vec3_dot(normal, normal)), LEAST_AREA * longest);
     for (size_t k = 0; k < 3; k++) {
         size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        double weight = -thick * vec3_dot(e[i], e[j]) / (4 * area);
+        double weight = -vec3_dot(e[i], e[j]) / (4 * area);
         sum->weights[edge_table_number(&sum->edges, f[i], f[j])] += weight;
         sum->diagonal[f[i]] += weight;
         sum->diagonal[f[j]] += weight;
-        masses[f[k]] += thick * area / 3;
+        masses[f[k]] += area / 3;
     }
     sum->area += area;
-    sum->volume += thick * area;
-}
-
-/* Masses sum to 1, and a thickness that is everywhere the same does not count. */
-static void normalise(sums *sum, laplacian *l) {
-    double mean = sum->volume / sum->area;
-    for (size_t i = 0; i < l->count; i++) {
-        l->masses[i] /= sum->volume;
-        sum->diagonal[i] /= mean;
-    }
-    for (size_t i = 0; i < sum->edges.count; i++)
-        sum->weights[i] /= mean;
 }
 
 static void put(laplacian *l, int64_t *next, uint32_t row, uint32_t column, double value) {
@@ -229,7 +207,7 @@ done:
     return status;
 }
 
-static starg_status assemble(const surface *s, bool shell, laplacian *l) {
+static starg_status assemble(const surface *s, laplacian *l) {
     starg_context *context = s->context;
     starg_status status = STARG_OK;
     sums sum = {0};
@@ -239,8 +217,9 @@ static starg_status assemble(const surface *s, bool shell, laplacian *l) {
     STARG_NEW_ZERO(context, STAGE, sum.diagonal, l->count);
     STARG_NEW_ZERO(context, STAGE, l->masses, l->count);
     for (size_t i = 0; i < s->face_count; i++)
-        add_face(s, s->faces + 3 * i, shell, &sum, l->masses);
-    normalise(&sum, l);
+        add_face(s, s->faces + 3 * i, &sum, l->masses);
+    for (size_t i = 0; i < l->count; i++)
+        l->masses[i] /= sum.area;
     STARG_TRY(lay_out(context, &sum, l));
 done:
     edge_table_free(context, &sum.edges);
@@ -249,35 +228,22 @@ done:
     return status;
 }
 
-static starg_status create(starg_context *context, const starg_mesh *mesh, const double *field,
-                           bool shell, laplacian *out) {
+starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, laplacian *out) {
     starg_status status = STARG_OK;
     surface s = {.context = context};
     *out = (laplacian){0};
-    STARG_TRY(copy_surface(mesh, field, &s));
+    STARG_TRY(copy_surface(mesh, &s));
     STARG_TRY(renumber(&s, &out->row_of));
     while (s.vertex_count < ENOUGH_VERTICES && s.face_count < ENOUGH_FACES) {
         STARG_TRY(starg_check_cancel(context, STAGE));
         STARG_TRY(subdivide(&s));
     }
-    STARG_TRY(assemble(&s, shell, out));
-    out->field = s.field;
-    s.field = NULL;
+    STARG_TRY(assemble(&s, out));
 done:
     surface_free(&s);
     if (status != STARG_OK)
         laplacian_free(context, out);
     return status;
-}
-
-starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, const double *field,
-                              laplacian *out) {
-    return create(context, mesh, field, false, out);
-}
-
-starg_status laplacian_create_shell(starg_context *context, const starg_mesh *mesh,
-                                    const double *thickness, laplacian *out) {
-    return create(context, mesh, thickness, true, out);
 }
 
 /* Its entries with the masses on the diagonal, which comes first by column. */
@@ -304,6 +270,5 @@ void laplacian_free(starg_context *context, laplacian *l) {
     starg_release(context, l->values);
     starg_release(context, l->masses);
     starg_release(context, l->row_of);
-    starg_release(context, l->field);
     *l = (laplacian){0};
 }

@@ -17,22 +17,15 @@ typedef struct laplacian {
     double *values;
     double *masses;
     uint32_t *row_of; /* of each vertex of the mesh: its row, or LAPLACIAN_NO_ROW */
-    double *field;    /* of each row: what was given, interpolated; else 1 */
 } laplacian;
 
 #define LAPLACIAN_NO_ROW UINT32_MAX
 
 /* Of a mesh that is closed or not; vertices that no face with an extent uses are left out. A mesh
  * of few vertices is subdivided first, which leaves the surface as it is: a spectrum needs a
- * resolution. `field`: NULL or a number for each vertex. Errors: MESH (no area), MEMORY,
+ * resolution. Errors: MESH (no area), MEMORY,
  * CANCELLED. */
-starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, const double *field,
-                              laplacian *out);
-
-/* The same of a shell, thin but of a thickness that varies (positive, for each vertex): where it is
- * thicker it holds more and lets more through, in proportion. Only ratios count. */
-starg_status laplacian_create_shell(starg_context *context, const starg_mesh *mesh,
-                                    const double *thickness, laplacian *out);
+starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, laplacian *out);
 
 /* Factorises L + shift M, which is positive definite for shift > 0. Errors: SOLVER, MEMORY. */
 starg_status laplacian_factorise(starg_context *context, const laplacian *l, double shift,

@@ -25,7 +25,7 @@ static starg_status compute(starg_context *context, const starg_mesh *mesh, doub
     starg_status status = STARG_OK;
     double *values = NULL;
     laplacian l = {0};
-    STARG_TRY(laplacian_create(context, mesh, NULL, &l));
+    STARG_TRY(laplacian_create(context, mesh, &l));
     STARG_NEW(context, STAGE, values, EIGENVALUES + 1);
     STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values, NULL));
     memmove(values, values + 1, EIGENVALUES * sizeof *values);

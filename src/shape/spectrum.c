@@ -61,23 +61,24 @@ static void start_vector(const iteration *it) {
  * columns of `vectors`. The lock is held. */
 static starg_status iterate(starg_context *context, const iteration *it, a_int wanted,
                             a_int vectors, double *largest) {
+    starg_status status = STARG_OK;
     a_int n = (a_int)it->l->count, ido = 0, info = 1, small = vectors * (vectors + 8);
     size_t expected = 8 * (size_t)wanted; /* more or less: for the progress only */
     a_int parameters[11] = {1, 0, ITERATIONS, 1, 0, 0, 1}, places[14] = {0};
     start_vector(it);
     starg_progress_begin(context, STAGE);
-    for (size_t steps = 0;; steps++) {
+    for (size_t steps = 0; status == STARG_OK; steps++) {
         dsaupd_c(&ido, "I", n, "LM", wanted, TOLERANCE, it->residual, vectors, it->vectors, n,
                  parameters, places, it->work, it->small, small, &info);
         if (ido != 1 && ido != -1)
             break;
         apply(it, it->work + places[0] - 1, it->work + places[1] - 1);
-        starg_progress_step(context, steps < expected ? steps : expected, expected);
-        starg_status status = starg_check_cancel(context, STAGE);
-        if (status != STARG_OK)
-            return status;
+        starg_progress_step(context, steps, expected);
+        status = starg_check_cancel(context, STAGE);
     }
     starg_progress_end(context);
+    if (status != STARG_OK)
+        return status;
     if (info == 0 && parameters[4] >= wanted)
         dseupd_c(it->functions, "A", it->chosen, largest, it->vectors, n, 0, "I", n, "LM", wanted,
                  TOLERANCE, it->residual, vectors, it->vectors, n, parameters, places, it->work,

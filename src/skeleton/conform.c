@@ -99,29 +99,29 @@ static const double *at(const conformer *c, uint32_t v) {
 }
 
 static uint32_t tail(const conformer *c, uint32_t h) {
-    return sample_mesh_tail(&c->mesh, h);
+    return halfedges_start(&c->mesh.net, h);
 }
 
 static uint32_t head(const conformer *c, uint32_t h) {
-    return sample_mesh_head(&c->mesh, h);
+    return halfedges_end(&c->mesh.net, h);
 }
 
 static uint32_t apex(const conformer *c, uint32_t h) {
-    return sample_mesh_apex(&c->mesh, h);
+    return halfedges_apex(&c->mesh.net, h);
 }
 
 static uint32_t twin(const conformer *c, uint32_t h) {
-    return c->mesh.twins.data[h];
+    return halfedges_twin(&c->mesh.net, h);
 }
 
 static uint32_t find_edge(const conformer *c, const mesh_edge *e) {
     if (tail(c, e->halfedge) == e->u && head(c, e->halfedge) == e->v)
         return e->halfedge;
-    return sample_mesh_halfedge(&c->mesh, e->u, e->v);
+    return halfedges_find(&c->mesh.net, e->u, e->v);
 }
 
 static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
-    return sample_mesh_halfedge(&c->mesh, v, w) != TOPOLOGY_NONE;
+    return halfedges_find(&c->mesh.net, v, w) != TOPOLOGY_NONE;
 }
 
 /* ---- what is lost ---- */
@@ -129,11 +129,11 @@ static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
 /* The halfedges that leave v, counter-clockwise; nothing of them is found yet. */
 static starg_status find_ring(conformer *c, uint32_t v) {
     starg_status status = STARG_OK;
-    uint32_t first = c->mesh.leaving.data[v], h = first;
+    uint32_t first = c->mesh.net.leaving.data[v], h = first;
     c->ring.count = 0;
     do {
         STARG_PUSH(c->context, STAGE, &c->ring, ((spoke){.halfedge = h, .head = head(c, h)}));
-        h = twin(c, corner_previous(h));
+        h = halfedges_turn(&c->mesh.net, h);
     } while (h != first);
 done:
     return status;
@@ -185,7 +185,7 @@ done:
 /* Is there anything new to find at v? All points of a tetrahedron that goes or comes have changed,
  * so that an edge whose other end has not is where it was. */
 static bool is_to_look_at(conformer *c, uint32_t v) {
-    uint32_t first = c->mesh.leaving.data[v], h = first;
+    uint32_t first = c->mesh.net.leaving.data[v], h = first;
     bool changed = delaunay_take_change(c->builder, v), dirty = c->mesh.dirty.data[v];
     c->mesh.dirty.data[v] = false;
     if (dirty || !changed)
@@ -193,7 +193,7 @@ static bool is_to_look_at(conformer *c, uint32_t v) {
     do {
         if (v < head(c, h) && delaunay_has_changed(c->builder, head(c, h)))
             return true;
-        h = twin(c, corner_previous(h));
+        h = halfedges_turn(&c->mesh.net, h);
     } while (h != first);
     return false;
 }
@@ -227,7 +227,7 @@ static starg_status find_lost(conformer *c) {
     swap_lists(&c->lost_edges, &c->last_edges);
     swap_lists(&c->lost_faces, &c->last_faces);
     for (uint32_t v = 0; v < point_count(c); v++) {
-        if (c->mesh.leaving.data[v] == TOPOLOGY_NONE)
+        if (c->mesh.net.leaving.data[v] == TOPOLOGY_NONE)
             continue;
         if (is_to_look_at(c, v)) {
             skip_lost(&c->last_edges, v, &next_edge);
@@ -467,7 +467,7 @@ static uint32_t terminal_edge(const conformer *c, uint32_t h) {
 static starg_status cut_and_pierce(conformer *c) {
     starg_status status = STARG_OK;
     bool *cut = NULL; /* faces with a lost edge */
-    STARG_NEW_ZERO(c->context, STAGE, cut, c->mesh.faces.count / 3);
+    STARG_NEW_ZERO(c->context, STAGE, cut, c->mesh.net.corners.count / 3);
     for (size_t i = 0; i < c->lost_edges.count; i++) {
         uint32_t h = find_edge(c, &c->lost_edges.data[i]);
         cut[h / 3] = cut[twin(c, h) / 3] = true;

@@ -268,7 +268,7 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     *out = NULL;
     starg_skeleton_options_default(&defaults);
     options = options != NULL ? options : &defaults;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
     STARG_NEW_ZERO(context, STAGE, skeleton, 1);
     STARG_TRY(find_graph(context, solid, &a));
@@ -283,7 +283,7 @@ starg_status starg_skeleton_create(starg_context *context, const starg_solid *so
     *out = skeleton;
     skeleton = NULL;
 done:
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     attempt_free(context, &a);
     graph_free(context, &graph);
     prune_free(context, &pruned);

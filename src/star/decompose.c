@@ -1,6 +1,7 @@
 /* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
 #include <math.h>
 
+#include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
@@ -24,6 +25,7 @@ static const starg_field OPTIONS[] = {
     {.key = "density",
      .option = "density",
      .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_NULLABLE,
      FIELD_MEMBER(starg_decompose_options, tetra.density),
      .high = 1e6,
      .standard = STARG_DECOMPOSE_DENSITY,
@@ -44,10 +46,17 @@ static const starg_field OPTIONS[] = {
      .option = "effort",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, effort),
-     .most = UINT64_MAX,
+     .most = INT64_MAX,
      .value = "N",
-     .help = "strict: trials after which the search ends, whatever the time.",
-     .default_text = "0, the library's choice"},
+     .help = "strict: trials after which the search ends.",
+     .default_text = "0, a fixed amount of work, the same on every machine, of some 15 seconds; no "
+                     "bound with --time-limit"},
+    {.key = "fill",
+     .option = "fill",
+     .kind = STARG_FIELD_FLAG,
+     FIELD_MEMBER(starg_decompose_options, fill),
+     .help = "Fill a surface with holes even where what it winds around is farther from it than a "
+             "fifth of its diagonal, which is refused otherwise."},
     TETRA_FIELDS(starg_decompose_options, tetra.),
 };
 static const starg_fields OPTIONS_TABLE = {
@@ -121,12 +130,27 @@ static starg_status fill(starg_context *context, const starg_solid *solid,
                          const starg_mesh *surface, const starg_decompose_options *options,
                          starg_tetra_report *report, starg_tetmesh **out) {
     const starg_tetra_options tetra = tetra_options(options);
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_status status = solid != NULL
                               ? starg_tetmesh_from_solid(context, solid, &tetra, report, out)
                               : starg_tetmesh_from_open_mesh(context, surface, &tetra, report, out);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     return status;
+}
+
+/* Where a surface is more hole than surface, what it winds around has little to do with it. */
+static starg_status check_filling(starg_context *context, const starg_mesh *surface,
+                                  const starg_tetra_report *report) {
+    double lower[3], upper[3], off = fmax(report->to_surface, report->from_surface) + report->step;
+    starg_mesh_bounds(surface, lower, upper);
+    double share = off / vec3_distance(lower, upper);
+    if (share <= STARG_DECOMPOSE_FILL_MOST)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                      "what the surface winds around is up to %.2g of its diagonal away from it, "
+                      "more than %g: its holes are too large to be filled so; close them with "
+                      "'starguard repair', or ask for it with --fill",
+                      share, STARG_DECOMPOSE_FILL_MOST);
 }
 
 static starg_status decompose_filled(starg_context *context, const starg_solid *solid,
@@ -143,6 +167,8 @@ static starg_status decompose_filled(starg_context *context, const starg_solid *
     *out = NULL;
     STARG_TRY(check_options(context, options));
     STARG_TRY(fill(context, solid, surface, options, &report, &mesh));
+    if (solid == NULL && !options->fill)
+        STARG_TRY(check_filling(context, surface, &report));
     STARG_TRY(run_mode(context, mesh, options, out));
     const starg_mesh *model = solid != NULL ? solid->mesh : surface;
     (*out)->model_vertices = model->vertex_count;

@@ -193,6 +193,7 @@ starg_status decomposition_finish(starg_context *context, starg_decompose_mode m
                                .model_tetrahedra = mesh->count,
                                .tetra = {.surface_kept = true},
                                .mesh = mesh,
+                               .tetrahedra = mesh->count,
                                .labels = labels};
     mesh = NULL;
     labels = NULL;
@@ -214,6 +215,7 @@ void starg_decomposition_free(starg_context *context, starg_decomposition *decom
     if (decomposition == NULL)
         return;
     starg_tetmesh_free(decomposition->mesh);
+    starg_release(context, decomposition->file);
     starg_release(context, decomposition->labels);
     starg_release(context, decomposition->pieces);
     starg_release(context, decomposition->contacts);

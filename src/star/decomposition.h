@@ -2,11 +2,14 @@
 #ifndef STARG_STAR_DECOMPOSITION_H
 #define STARG_STAR_DECOMPOSITION_H
 
-#include "core/context.h"
+#include "core/fields.h"
 #include "starguard/decompose.h"
 
 /* Words of starg_decompose_mode, by number; NULL behind the last. */
 extern const char *const decompose_mode_words[];
+
+/* PIECES.json as a starg_decomposition. */
+extern const starg_fields decomposition_file_fields;
 
 /* Makes a result of labels: `guards` is count x 3, `labels` (a block of the context) has one of 0
  * to count - 1 for each tetrahedron, each of them at least once. Counts and measures the pieces,

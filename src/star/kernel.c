@@ -338,7 +338,7 @@ starg_status starg_kernel(starg_context *context, const starg_mesh *mesh,
         options = &defaults;
     *result = (starg_kernel_result){.verdict = STARG_KERNEL_UNDECIDED};
     const kernel_faces surface = {mesh->vertices, mesh->faces, mesh->face_count};
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     starg_progress_begin(context, STAGE);
     if (mesh->face_count == 0) {
         status = starg_fail(context, STARG_ERROR_MESH, STAGE, "the mesh has no faces");
@@ -349,6 +349,6 @@ starg_status starg_kernel(starg_context *context, const starg_mesh *mesh,
     STARG_TRY(kernel_find(context, &surface, result));
 done:
     starg_progress_end(context);
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     return status;
 }

@@ -3,14 +3,16 @@
 #include "tetra/fields.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "mesh/mesh.h"
+#include "tetra/hollow.h"
 
 static const char STAGE[] = TETRA_STAGE;
 
-#define PAPER_DENSITY 17.5                /* tetrahedra per surface vertex [YL11] */
 static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, in mean volumes       */
 static const double LATTICE_DENSITY = 12; /* tetrahedra of the lattice per cube            */
+static const double THIN = 1e-4;          /* thickness, of the extent: worth a word         */
 static const double STEPS_PER_CUBE = 4;   /* of the measurement of distances               */
 
 const char *const tetra_generator_words[] = {"auto", "tetgen", "stuffing", NULL};
@@ -64,6 +66,8 @@ static starg_status by_stuffing(starg_context *context, const tetra_shape *shape
     report->step = report->spacing / STEPS_PER_CUBE;
     STARG_TRY(tetra_measure(context, shape, *out, report->step, &report->to_surface,
                             &report->from_surface));
+    report->distance = report->to_surface + report->step;
+    report->distance_back = report->from_surface + report->step;
 done:
     return status;
 }
@@ -90,6 +94,26 @@ static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
     return by_tetgen(context, solid, o, report, out);
 }
 
+/* Twice the volume over the area: the thickness of a plate, and about half the width of a needle.
+ */
+static double thickness_of(const starg_solid *solid) {
+    return 2 * solid->check->volume / starg_mesh_area(solid->mesh);
+}
+
+static bool is_thin(const starg_solid *solid) {
+    return thickness_of(solid) < THIN * ldexp(1, starg_mesh_exponent(solid->mesh));
+}
+
+/* Why the surface is not kept: what is wrong with the model before what the program said of it. */
+static void tell_stuffing(starg_context *context, const starg_solid *solid) {
+    char thin[96];
+    snprintf(thin, sizeof thin, "the solid is very thin (about %.2g)", thickness_of(solid));
+    starg_log(context, STARG_LOG_WARNING,
+              "%s; isosurface stuffing makes the tetrahedra instead, and their surface is only "
+              "near the model's",
+              is_thin(solid) ? thin : starg_context_error(context)->message);
+}
+
 static bool is_final(starg_status status) {
     return status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ||
            status == STARG_ERROR_TIME;
@@ -114,10 +138,7 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
         status = try_tetgen(context, solid, options, report, out);
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
             goto done;
-        starg_log(context, STARG_LOG_WARNING,
-                  "%s; isosurface stuffing makes the tetrahedra instead, and their surface is only "
-                  "near the model's",
-                  starg_context_error(context)->message);
+        tell_stuffing(context, solid);
     }
     const tetra_shape shape = {
         .mesh = solid->mesh, .tree = solid->tree, .volume = solid->check->volume};
@@ -150,6 +171,7 @@ starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_me
     starg_tetra_options_default(&defaults);
     bvh *tree = NULL;
     winding_field field = {0};
+    bool hollow = false;
     *out = NULL;
     if (options == NULL)
         options = &defaults;
@@ -158,10 +180,14 @@ starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_me
     *report = (starg_tetra_report){.generator = STARG_TETRA_STUFFING};
     starg_progress_begin(context, STAGE);
     STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
+    STARG_TRY(mesh_check_extent(context, mesh, STAGE));
     tetra_shape shape = {.mesh = mesh, .field = &field, .volume = guess_volume(mesh)};
-    if (mesh->face_count == 0 || shape.volume == 0) {
+    STARG_TRY(tetra_is_hollow(context, mesh, &hollow));
+    if (hollow || shape.volume == 0) {
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,
-                            "the mesh has no faces, or lies in a plane: nothing is inside");
+                            "nothing is inside of the surface: it has no faces, lies in a plane, "
+                            "or its faces cancel each other; give a surface that encloses a "
+                            "volume");
         goto done;
     }
     STARG_TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &tree));

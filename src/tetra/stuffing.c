@@ -282,8 +282,9 @@ static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *s
         *spacing *= 0.5;
     }
     status = starg_fail(s->context, STARG_ERROR_SOLVER, STAGE,
-                        "the solid is too thin for its size: no lattice that fits into memory has "
-                        "a point inside");
+                        "the solid is too thin to be filled: no lattice of at most %zu points has "
+                        "one inside; thicken it, or cut it where it is thin",
+                        LATTICE_LIMIT);
 done:
     return status;
 }

@@ -472,7 +472,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     starg_verdict *verdict = NULL;
     facts known = {.guards = guards};
     *out = NULL;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(verify_surface_create(context, mesh, &surface));
     known.surface = surface;
     STARG_TRY(find_facts(context, &known));
@@ -492,7 +492,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     *out = verdict;
     verdict = NULL;
 done:
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     starg_verdict_free(context, verdict);
     free_facts(context, &known);
     verify_surface_free(surface);

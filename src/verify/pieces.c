@@ -107,14 +107,14 @@ starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     *out = NULL;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     if (report != NULL && report->approximated)
         STARG_TRY(wrap_model(context, model, &surface));
     else
         STARG_TRY(verify_surface_create(context, model, &surface));
     STARG_TRY(verify_against(context, surface, pieces, report, out));
 done:
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     verify_surface_free(surface);
     return status;
 }
@@ -146,11 +146,11 @@ starg_status starg_verify_pieces_of_tetmesh(starg_context *context, const starg_
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     *out = NULL;
-    starg_deadline_begin(context);
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(wrap_boundary(context, model, &surface));
     STARG_TRY(verify_against(context, surface, pieces, report, out));
 done:
-    starg_deadline_end(context);
+    starg_time_end(context, former);
     verify_surface_free(surface);
     return status;
 }

@@ -9,6 +9,7 @@
 #include "verify/surface.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
@@ -274,6 +275,50 @@ static void find_bounds(verify_surface *surface) {
     }
 }
 
+/* ---- coincident vertices ---- */
+
+typedef struct place {
+    double p[3];
+    uint32_t vertex;
+} place;
+
+static int compare_positions(const place *a, const place *b) {
+    for (int k = 0; k < 3; k++)
+        if (a->p[k] != b->p[k])
+            return a->p[k] < b->p[k] ? -1 : 1;
+    return 0;
+}
+
+static int compare_places(const void *left, const void *right) {
+    const place *a = left, *b = right;
+    int order = compare_positions(a, b);
+    return order != 0 ? order : (a->vertex > b->vertex) - (a->vertex < b->vertex);
+}
+
+/* Corners at one position name the lowest vertex there, as in the library's solids. */
+static starg_status weld(verify_surface *surface) {
+    starg_status status = STARG_OK;
+    place *places = NULL;
+    uint32_t *first = NULL;
+    STARG_NEW(surface->context, STAGE, places, surface->vertex_count);
+    STARG_NEW(surface->context, STAGE, first, surface->vertex_count);
+    for (uint32_t v = 0; v < surface->vertex_count; v++) {
+        memcpy(places[v].p, surface->vertices + 3 * (size_t)v, sizeof places[v].p);
+        places[v].vertex = v;
+    }
+    qsort(places, surface->vertex_count, sizeof *places, compare_places);
+    for (size_t i = 0; i < surface->vertex_count; i++)
+        first[places[i].vertex] = i > 0 && compare_positions(&places[i - 1], &places[i]) == 0
+                                      ? first[places[i - 1].vertex]
+                                      : places[i].vertex;
+    for (size_t i = 0; i < 3 * surface->face_count; i++)
+        surface->faces[i] = first[surface->faces[i]];
+done:
+    starg_release(surface->context, places);
+    starg_release(surface->context, first);
+    return status;
+}
+
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out) {
     starg_status status = STARG_OK;
@@ -290,8 +335,12 @@ starg_status verify_surface_create(starg_context *context, const starg_mesh *mes
     STARG_NEW(context, STAGE, surface->faces, 3 * face_count);
     memcpy(surface->faces, starg_mesh_faces(mesh), 3 * face_count * sizeof *surface->faces);
     find_bounds(surface);
-    STARG_TRY(orient(surface));
-    *out = surface;
+    status = orient(surface);
+    if (status == STARG_ERROR_MESH) { /* nothing has been turned yet */
+        STARG_TRY(weld(surface));
+        STARG_TRY(orient(surface));
+    }
+    *out = status == STARG_OK ? surface : NULL;
 done:
     if (status != STARG_OK)
         verify_surface_free(surface);

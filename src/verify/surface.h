@@ -17,8 +17,8 @@ typedef struct verify_surface {
     double lower[3], upper[3]; /* bounds of the vertices that faces name */
 } verify_surface;
 
-/* Checks that every edge has two faces, which run along it in opposite ways, and turns shells.
- * Errors: MESH, MEMORY, CANCELLED. */
+/* Checks that every edge has two faces, which run along it in opposite ways (if need be once
+ * vertices at one position are one), and turns shells. Errors: MESH, MEMORY, CANCELLED. */
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
 /* The same for triangles of any kind, which are taken as they are: nothing is checked or turned.

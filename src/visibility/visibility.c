@@ -207,9 +207,8 @@ starg_status visibility_fill(starg_context *context, const visibility_job *of,
                                       .item = find_row,
                                       .make_scratch = make_worker,
                                       .free_scratch = free_worker,
-                                      .stop_at_deadline = true,
                                       .remote = remote};
-    return starg_parallel_for(context, &loop);
+    return starg_parallel_in_time(context, &loop);
 }
 
 /* With the help of other processes where there are any, and enough to do for them. */

@@ -14,12 +14,10 @@ class Describe(support.Case):
         report, file = self.describe("torus", "--detail", "0", "--directions", "100", "--reconstruct", "points.ply",
                                      "--picture", "guards.png",
                                      "--histograms", "seen.svg")
-        self.assertEqual(report["format"], "starguard-describe")
+        self.assertEqual({key: report[key] for key in file}, file)
         self.assertEqual(file["format"], "starguard-descriptor")
         self.assertEqual(file["version"], 3)
         self.assertEqual(file["model"]["file"], "torus.off")
-        self.assertEqual(report["guards"], len(file["guards"]))
-        self.assertEqual(report["edges"], len(file["edges"]))
         self.assertEqual({len(g["distances"]) for g in file["guards"]}, {100})
         points = report["reconstruction"]["points"]
         self.assertEqual(points, 100 * len(file["guards"]))

@@ -1,6 +1,5 @@
 """What is said: numbers that are right, elements of the model and of nothing else, each thing once."""
 import math
-import unittest
 
 import support
 from support import TETRAHEDRON

@@ -82,7 +82,9 @@ class Morph(Case):
                                "map.json")
         self.assertEqual(report["landmarks"], 2)
         self.assertEqual(report["kind"], "sphere")
-        points = json.loads(self.read("map.json"))["points"]
+        file = json.loads(self.read("map.json"))
+        self.assertEqual({key: report[key] for key in file}, file)
+        points = file["points"]
         count, source, faces = self.vertices("cat0.off")
         self.assertEqual(len(points), count)
         self.run_text("morph", "cat0.off", "ball.off", "--map", "map.json", "--frames", "2", "-o",

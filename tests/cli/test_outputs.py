@@ -218,10 +218,6 @@ class Outputs(support.Case):
                 if output != input and output is not None:
                     os.remove(self.path(output))
 
-    def test_repair_in_place(self):
-        self.run_text("repair", "open.off", "-o", "open.off")
-        self.run_text("check", "open.off")
-
     def test_words_are_no_inputs(self):
         """A file that is called like a word of an option is not what the word means."""
         for _ in range(2):

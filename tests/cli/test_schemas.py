@@ -157,6 +157,8 @@ class Schemas(support.Case):
         self.report("visible", "visible", room, "--from", "1,1,1", "--from", "99,0,0")
         self.report("visible", "visible", room, "--from", "1,1,1", "--target", "vertices",
                     "--range", "3")
+        for target in ["faces", "vertices"]:
+            self.report("visible", "visible", room, "--box", "1,1,1,2,2,2", "--target", target)
 
     def test_guards(self):
         room = self.sample("l-room")

@@ -39,7 +39,7 @@ class Help(support.Case):
             "sample": ["-o", "--pose", "--vertices", "--list"],
             "check": ["--marks"],
             "repair": ["-o"],
-            "visible": ["--from", "-o"],
+            "visible": ["--from", "--box", "-o"],
             "guard": ["-o", "--method", "--candidates", "--count", "--visibility", "--target",
                       "--faces", "--coverage", "--max-guards", "--range", "--redundancy",
                       "--clearance"],
@@ -121,6 +121,10 @@ class Mistakes(support.Case):
         for word in ["1,2", "1,2,3,4", "1,2,", ",,", "1,2,x", "1, 2,3", "1;2;3", "1,2,nan", ""]:
             self.usage_error("visible", "m.off", f"--from={word}", says="--from takes a point")
         self.run_text("visible", "m.off", "--from", "-1,2e-1,+.3")
+        for word in ["1,2,3", "1,2,3,4,5,6,7", "1,2,3,4,5,x"]:
+            self.usage_error("visible", "m.off", f"--box={word}", says="--box takes a box")
+        self.usage_error("visible", "m.off", "--box", "0,0,0,1,1,1", "--from", "0,0,0",
+                         says="do not go together")
 
     def test_choices(self):
         wrong = {

@@ -84,11 +84,14 @@ static starg_status decompositions(starg_context *context) {
     strict.tetra.generator = STARG_TETRA_STUFFING;
     strict.tetra.target = 20;
     strict.effort = 3;
+    strict.fill = true;
     paper = strict;
     paper.mode = STARG_DECOMPOSE_PAPER;
     starg_decompose_options given = paper;
     given.guards = in.guards->positions;
     given.guard_count = in.guards->count;
+    const starg_file_bytes pieces = {pieces_text.data, pieces_text.size, "pieces"},
+                           report = {report_text.data, report_text.size, "report"};
     DECOMPOSE(starg_decompose, "strict", in.solid, &strict);
     DECOMPOSE(starg_decompose, "paper", in.solid, &paper);
     DECOMPOSE(starg_decompose, "paper, given guards", in.solid, &given);
@@ -99,6 +102,10 @@ static starg_status decompositions(starg_context *context) {
     FAILING(starg_decomposition_write, "", in.decomposition, failing_output("p.vtk"), true);
     FAILING(starg_decomposition_write_report, "", in.decomposition, "room.off",
             failing_output("p.json"));
+    FAILING_TEXT(starg_decomposition_write_report_memory, "", in.decomposition, "room.off");
+    DECOMPOSE(starg_decomposition_read, "", failing_input("pieces.vtk"),
+              failing_input("pieces.json"));
+    DECOMPOSE(starg_decomposition_read_memory, "", &pieces, &report);
     return STARG_OK;
 }
 

@@ -62,6 +62,7 @@ static starg_status descriptors(starg_context *context) {
     DESCRIPTOR(starg_descriptor_create, "as it is", in.cube, &as_it_is);
     DESCRIPTOR(starg_descriptor_create, "brought down", in.fine_blob, &brought_down);
     FAILING(starg_descriptor_write, "", in.descriptor, "r.off", failing_output("d.json"));
+    FAILING_TEXT(starg_descriptor_write_memory, "", in.descriptor, "r.off");
     DESCRIPTOR(starg_descriptor_read, "", failing_input("descriptor.json"));
     DESCRIPTOR(starg_descriptor_read_memory, "", descriptor_text.data, descriptor_text.size, "d");
     FAILING_MAKES(starg_descriptor_points, "", double, starg_descriptor_points_free(context, out),
@@ -193,6 +194,7 @@ static starg_status maps(starg_context *context) {
     MAP(starg_map_create, "sphere", in.blob, in.other_blob, NULL);
     MAP(starg_map_create, "sphere, landmarks", in.blob, in.other_blob, &landmarks);
     FAILING(starg_map_write, "", in.map, failing_output("m.json"));
+    FAILING_TEXT(starg_map_write_memory, "", in.map);
     MAP(starg_map_read, "", failing_input("map.json"), in.blob, in.other_blob);
     FAILING_BY(starg_landmarks_read, "", landmarks_read(context));
     return STARG_OK;

@@ -1,6 +1,7 @@
 /* Memory of CBC and Clp that fails: the n-th call of C++'s operator new has none, in a process of
- * its own for each n. The cover that comes back is a cover all the same, with a bound that holds,
- * and the library's own memory is given back; only what the solver held is lost.
+ * its own for each n. Where there is some once the reserve is given up, the cover that comes back
+ * is a cover, with a bound that holds, and no memory is lost. Where there is none from then on, the
+ * process ends with status 3.
  *
  * The program has an operator new of its own for that, which libraries find before theirs. */
 #include <stdio.h>
@@ -14,6 +15,7 @@
 enum { OPTIMUM = 18 }; /* of cover_oracle_lines in three dimensions */
 
 static size_t asked, failing; /* 0: none fails */
+static bool for_good;         /* all from then on */
 
 void *_Znwm(size_t size) __attribute__((visibility("default")));
 void _ZdlPv(void *block) __attribute__((visibility("default")));
@@ -23,8 +25,8 @@ void (*_ZSt15get_new_handlerv(void))(void);
 
 /* operator new(unsigned long), as the C++ ABI calls it */
 void *_Znwm(size_t size) {
-    bool fails = ++asked == failing;
-    for (;;) {
+    bool fails = ++asked == failing || (for_good && asked > failing);
+    for (;; fails = fails && for_good) {
         void *block = fails ? NULL : malloc(size > 0 ? size : 1);
         void (*handler)(void) = _ZSt15get_new_handlerv(); /* std::get_new_handler() */
         if (block != NULL)
@@ -61,13 +63,14 @@ enum {
     FINE = 0,
     NO_COVER = 1,
     WRONG_COVER = 2,
-    WRONG_BOUND = 3,
+    WRONG_BOUND = 7,
+    OUT_OF_MEMORY = 3, /* the library's word */
     LEAK = 4,
     HANDLER = 5,
     NOT_REACHED = 6
 };
 
-/* Solves with the n-th allocation failing, twice: the second time the solver is left alone. */
+/* Solves, for some n twice; the n-th allocation of the first time fails. */
 static int solve(size_t n) {
     starg_context *context = test_context(1);
     starg_bits *bits = cover_oracle_lines(context, 3);
@@ -76,11 +79,11 @@ static int solve(size_t n) {
     starg_cover_problem_default(&problem);
     starg_cover_options_default(&options);
     problem.rows = bits;
-    options.max_nodes = 30;
+    options.max_nodes = 3;
     int result = FINE;
     asked = 0;
     failing = n;
-    for (int round = 0; round < 2 && result == FINE; round++) {
+    for (int round = 0; round < (n % 4 == 0 ? 2 : 1) && result == FINE; round++) {
         starg_cover *cover = NULL;
         if (starg_cover_solve(context, &problem, &options, &cover) != STARG_OK)
             result = NO_COVER;
@@ -108,7 +111,7 @@ static int solve_apart(size_t n) {
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0)
-        _exit(solve(n));
+        _exit(solve(n)); /* what the library says of it goes to standard error */
     assert_int_equal(waitpid(child, &status, 0), child);
     if (!WIFEXITED(status))
         print_error("allocation %zu: killed by signal %d\n", n, WTERMSIG(status));
@@ -119,7 +122,7 @@ static int solve_apart(size_t n) {
 static void test_solver(void **state) {
     (void)state;
     bool more = getenv("STARGUARD_LONG") != NULL;
-    size_t first = more ? 6000 : 40, part = more ? 64 : 6, attempts = 0, last = 0;
+    size_t first = more ? 6000 : 6, part = more ? 64 : 2, attempts = 0, last = 0;
     for (size_t n = 1;; n += n < first ? 1 : 1 + n / part) {
         int result = solve_apart(n);
         if (result == NOT_REACHED)
@@ -134,7 +137,16 @@ static void test_solver(void **state) {
     assert_true(last > 1000); /* both libraries were reached */
 }
 
+static void test_out_for_good(void **state) {
+    (void)state;
+    for_good = true;
+    for (size_t n = 1; n <= 1000; n *= 10)
+        assert_int_equal(solve_apart(n), OUT_OF_MEMORY);
+    for_good = false;
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_solver)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_solver),
+                                       cmocka_unit_test(test_out_for_good)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -146,6 +146,23 @@ class Out(Case):
         self.assertFalse(records.flags.writeable)
         self.assertTrue((pieces.contacts["first"] < pieces.contacts["second"]).all())
         self.assertEqual(sorted(set(pieces.labels.tolist())), list(range(len(pieces))))
+        self.check_read_back(pieces)
+
+    def check_read_back(self, pieces):
+        """Both files, written, read and written again."""
+        def written(pieces):
+            pieces.write("p.vtk", binary=True)
+            pieces.write_report("p.json", pieces.file or "room.off")
+            return [open(name, "rb").read() for name in ("p.vtk", "p.json")]
+        files = written(pieces)
+        for read in (starguard.Decomposition.read("p.vtk", "p.json"),
+                     starguard.Decomposition.from_bytes(*files)):
+            self.assertEqual(written(read), files)
+            self.assertEqual(read.file, "room.off")
+            self.assertTrue((read.labels == pieces.labels).all())
+            self.assertTrue((read.pieces == pieces.pieces).all())
+        self.fails(starguard.FormatError, "\"format\"", starguard.Decomposition.from_bytes,
+                   files[0], b"{}")
 
     def test_bits(self):
         rng = np.random.default_rng(1)

@@ -1,4 +1,5 @@
 """Calls: progress, cancelling, Ctrl-C, time limits, threads, and the interpreter lock."""
+import inspect
 import logging
 import os
 import signal
@@ -242,11 +243,15 @@ class Log(Case):
             self.assertGreater(starguard.Solid(inward).mesh.volume, 0)
         self.assertEqual(caught.records[0].levelno, logging.INFO)
         with self.assertLogs("starguard", logging.INFO) as caught:
-            starguard.decompose((VERTICES, FACES[:3]), effort=30)
+            starguard.decompose((VERTICES, FACES[:3]), effort=30, fill=True)
         self.assertIn("stuffing", caught.output[0])
 
 
 class Time(Case):
+    def test_no_clock_unless_asked_for(self):
+        for call in (starguard.decompose, starguard.guard, starguard.tetrahedralize):
+            self.assertIsNone(inspect.signature(call).parameters["time_limit"].default)
+
     def test_a_limit_that_strikes_is_told(self):
         model = starguard.sample("dog", vertices=2000)
         limit, pieces = 1, None

@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/context.h"
 #include "core/rng.h"
 
 /* ---- memory ---- */
@@ -183,6 +184,8 @@ static bool attempt(const manner *how, size_t n, tally *sum) {
     failing_pause();
     bool reached = atomic_load(&memory.failed) > 0;
     size_t left = starg_context_live_blocks(context);
+    if (context->progress.depth != 0)
+        complain(how, n, "a stage has not ended");
     sum->allocations = atomic_load(&memory.asked);
     sum->attempts++;
     sum->failed += status != STARG_OK;

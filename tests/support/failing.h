@@ -52,6 +52,19 @@ bool failing_turn(const char *name, const char *variant);
         }                                                                                          \
     while (0)
 
+/* NAME(context, ..., &text, &size) */
+#define FAILING_TEXT(NAME, VARIANT, ...)                                                           \
+    do                                                                                             \
+        if (failing_turn(#NAME, VARIANT)) {                                                        \
+            char *text = NULL;                                                                     \
+            size_t size;                                                                           \
+            starg_status status = NAME(context, __VA_ARGS__, &text, &size);                        \
+            failing_result(status, text);                                                          \
+            starg_text_free(context, text);                                                        \
+            return status;                                                                         \
+        }                                                                                          \
+    while (0)
+
 #define FAILING_TEST(CALLS)                                                                        \
     static void test_##CALLS(void **state) {                                                       \
         (void)state;                                                                               \

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include "core/context.h"
+
 starg_context *test_context(int threads) {
     starg_context_options options;
     starg_context_options_default(&options);
@@ -39,6 +41,7 @@ bool test_refuse(void *user, const char *stage, double fraction) {
 }
 
 void test_context_free(starg_context *context) {
+    assert_int_equal(context->progress.depth, 0);
     assert_int_equal(starg_context_live_blocks(context), 0);
     starg_context_free(context);
 }

@@ -22,7 +22,8 @@ starg_context *test_scarce_context(int threads, size_t *left);
 /* A starg_progress_fn that wants everything cancelled. */
 bool test_refuse(void *user, const char *stage, double fraction);
 
-/* Frees a context and fails the test if any block of it is still in use. */
+/* Frees a context and fails the test if any block of it is still in use, or any stage has not
+ * ended. */
 void test_context_free(starg_context *context);
 
 /* Folder of the shared data, or NULL with a printed reason when it is not there (then the caller

@@ -284,7 +284,7 @@ static void test_crumbs(void **state) {
     test_context_free(context);
 }
 
-/* A fin on a slab. Where it is thinner than the least room of a guard, cuts are taken back in vain,
+/* A fin on a slab. Where it is thinner than the least room of a guard, there is no start by planes,
  * but what they leave is in order. */
 static void test_fins(void **state) {
     (void)state;

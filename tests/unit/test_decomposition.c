@@ -10,6 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/rng.h"
 #include "decomposition_oracle.h"
@@ -262,6 +263,91 @@ static void test_files(void **state) {
     test_context_free(context);
 }
 
+/* What is read of both files is written as the same bytes. */
+static void check_reread(starg_context *context, const char *grid, const char *report,
+                         bool binary) {
+    starg_decomposition *d = NULL;
+    char *bytes[4], again[] = "/tmp/starguard-again-XXXXXX";
+    size_t sizes[4];
+    close(mkstemp(again));
+    test_ok(context, starg_decomposition_read(context, grid, report, &d));
+    test_ok(context, starg_file_read(context, "test", grid, &bytes[0], &sizes[0]));
+    test_ok(context, starg_file_read(context, "test", report, &bytes[1], &sizes[1]));
+    test_ok(context, starg_decomposition_write(context, d, again, binary));
+    test_ok(context, starg_file_read(context, "test", again, &bytes[2], &sizes[2]));
+    test_ok(context, starg_decomposition_write_report(context, d, d->file, again));
+    test_ok(context, starg_file_read(context, "test", again, &bytes[3], &sizes[3]));
+    unlink(again);
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(sizes[i], sizes[i + 2]);
+        assert_memory_equal(bytes[i], bytes[i + 2], sizes[i]);
+    }
+    for (int i = 0; i < 4; i++)
+        starg_release(context, bytes[i]);
+    starg_decomposition_free(context, d);
+}
+
+/* Any result at any size, a model of tetrahedra or a surface, kept or approximated. */
+static void test_read_back(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    char grid[] = "/tmp/starguard-grid-XXXXXX", report[] = "/tmp/starguard-report-XXXXXX";
+    close(mkstemp(grid));
+    close(mkstemp(report));
+    for (uint64_t seed = 0; seed < 24; seed++) {
+        starg_decomposition *d = random_result(context, seed, seed % 4 == 0 ? 0x1p300 : 1);
+        if (seed % 3 > 0) {
+            d->model_faces = 10;
+            d->model_tetrahedra = 0;
+            d->tetra.surface_kept = seed % 3 == 1;
+            d->tetra.distance = 0.1;
+            d->tetra.distance_back = 0.25;
+        }
+        test_ok(context, starg_decomposition_write(context, d, grid, seed % 2 == 0));
+        test_ok(context,
+                starg_decomposition_write_report(context, d, seed % 5 ? "m.off" : NULL, report));
+        check_reread(context, grid, report, seed % 2 == 0);
+        starg_decomposition_free(context, d);
+    }
+    unlink(grid);
+    unlink(report);
+    test_context_free(context);
+}
+
+/* A pair of files that are each right but not of one decomposition, and reports that do not agree
+ * with themselves. */
+static void test_bad_pairs(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    char grid[] = "/tmp/starguard-grid-XXXXXX", report[] = "/tmp/starguard-report-XXXXXX";
+    close(mkstemp(grid));
+    close(mkstemp(report));
+    for (int kind = 0; kind < 5; kind++) {
+        starg_decomposition *d = random_result(context, 2, 1), *read = NULL;
+        test_ok(context, starg_decomposition_write(context, d, grid, false));
+        if (kind == 0)
+            d->tetrahedra++;
+        else if (kind == 1)
+            d->pieces[0].tetrahedra++;
+        else if (kind == 2)
+            d->strictly_star++;
+        else if (kind == 3)
+            d->contacts[0].second = (uint32_t)d->piece_count;
+        else
+            d->labels[0]++;
+        if (kind == 4)
+            test_ok(context, starg_decomposition_write(context, d, grid, false));
+        test_ok(context, starg_decomposition_write_report(context, d, NULL, report));
+        starg_status status = starg_decomposition_read(context, grid, report, &read);
+        assert_int_equal(status, STARG_ERROR_FORMAT);
+        assert_null(read);
+        starg_decomposition_free(context, d);
+    }
+    unlink(grid);
+    unlink(report);
+    test_context_free(context);
+}
+
 /* ---- from solids ---- */
 
 static starg_solid *solid_of(starg_context *context, const shape *s) {
@@ -378,6 +464,7 @@ int main(void) {
         cmocka_unit_test(test_random),   cmocka_unit_test(test_scales),
         cmocka_unit_test(test_surfaces), cmocka_unit_test(test_files),
         cmocka_unit_test(test_solids),   cmocka_unit_test(test_arguments),
-        cmocka_unit_test(test_memory)};
+        cmocka_unit_test(test_memory),   cmocka_unit_test(test_read_back),
+        cmocka_unit_test(test_bad_pairs)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -352,6 +352,15 @@ static void stl_binary_forms(void **state) {
     expect_stl((const char *)bytes, size, "a.stl");
 }
 
+/* Bytes behind the triangles are ignored. */
+static void stl_trailing_bytes(void **state) {
+    (void)state;
+    unsigned char bytes[512] = {0};
+    size_t size = make_binary_stl(bytes, "made by hand");
+    for (size_t more = 1; more <= 120; more += 7)
+        expect_stl((const char *)bytes, size + more, "a.stl");
+}
+
 static void stl_errors(void **state) {
     (void)state;
     static const bad_file files[] = {
@@ -375,8 +384,6 @@ static void stl_errors(void **state) {
     bad_file bad = {"a.stl",  (const char *)bytes, STARG_ERROR_FORMAT, STARG_ELEMENT_BYTE, 80,
                     "cut off"};
     expect_error(&bad, size - 1);
-    bad.says = "damaged";
-    expect_error(&bad, size + 1);
     float infinite = 1e38f * 10;
     memcpy(bytes + 84 + 12 + 12, &infinite, 4);
     bad = (bad_file){"a.stl", (const char *)bytes, STARG_ERROR_RANGE, STARG_ELEMENT_VERTEX,
@@ -568,6 +575,34 @@ static void ply_binary_truncations(void **state) {
     expect_error(&bad, size + 1);
 }
 
+/* More values on a line than the header declares: of vertices, of faces, of both. */
+static void ply_extra_values(void **state) {
+    (void)state;
+    static const char *const texts[] = {
+        PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n0 0 0 1 0 0\n1 0 0\n0 1 0 9\n0 0 1\n" OFF_FACES,
+        PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n" OFF_VERTICES
+                                     "3 0 2 1 255 0 0\n3 0 1 3\n3 1 2 3 1\n3 2 0 3\n",
+        PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n0 0 0 7\n1 0 0 7\n0 1 0 7\n0 0 1 7\n3 0 2 1 x\n3 "
+                                     "0 1 3 x\n3 1 2 3 x\n3 2 0 3 x"};
+    starg_context *context = test_context(1);
+    starg_mesh *plain = NULL;
+    static const char good[] = PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n" OFF_VERTICES OFF_FACES;
+    test_ok(context, starg_mesh_read_memory(context, good, strlen(good), "a.ply", &plain));
+    for (size_t i = 0; i < COUNT(texts); i++) {
+        starg_mesh *mesh = NULL;
+        test_ok(context,
+                starg_mesh_read_memory(context, texts[i], strlen(texts[i]), "a.ply", &mesh));
+        assert_int_equal(starg_mesh_vertex_count(mesh), 4);
+        assert_int_equal(starg_mesh_face_count(mesh), 4);
+        assert_memory_equal(starg_mesh_vertices(mesh), starg_mesh_vertices(plain),
+                            12 * sizeof(double));
+        assert_memory_equal(starg_mesh_faces(mesh), starg_mesh_faces(plain), 12 * sizeof(uint32_t));
+        starg_mesh_free(mesh);
+    }
+    starg_mesh_free(plain);
+    test_context_free(context);
+}
+
 static void ply_errors(void **state) {
     (void)state;
     static const bad_file files[] = {
@@ -718,10 +753,12 @@ int main(void) {
         cmocka_unit_test(huge_concave_polygons_are_refused),
         cmocka_unit_test(stl_text_forms),
         cmocka_unit_test(stl_binary_forms),
+        cmocka_unit_test(stl_trailing_bytes),
         cmocka_unit_test(stl_errors),
         cmocka_unit_test(ply_text_forms),
         cmocka_unit_test(ply_binary_forms),
         cmocka_unit_test(ply_binary_truncations),
+        cmocka_unit_test(ply_extra_values),
         cmocka_unit_test(ply_errors),
         cmocka_unit_test(unreadable_files),
         cmocka_unit_test(long_names_leave_room_for_the_message),

@@ -258,12 +258,16 @@ static void test_map_files(void **state) {
         {"{\"format\":\"starguard-guards\",\"version\":1,\"points\":[]}", "format"},
         {"{\"format\":\"starguard-map\",\"version\":2,\"points\":[]}", "version"},
         {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[]}", "another pair"},
-        {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[[0,1,0],0,0,0]}", "vertex 0"},
-        {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[[0,1,0,0],[9,1,0,0],0,0]}",
+        {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[[0,1,0],0,0,0]}",
+         "entry 0 of \"points\" must be an array of 4"},
+        {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[[0,1,0,0],[9,1,0,0],[0,1,0,0],"
+         "[0,1,0,0]]}",
          "vertex 1 in \"points\" names a face"},
         {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[[0,1,0,0],[0,2,-1,0],0,0]}",
-         "outside"},
-        {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[[0,0.5,0,0],0,0,0]}", "sum"}};
+         "\"u\" in entry 1 of \"points\" must be 0 to 1"},
+        {"{\"format\":\"starguard-map\",\"version\":1,\"points\":[[0,0.5,0,0],[0,1,0,0],[0,1,0,0],"
+         "[0,1,0,0]]}",
+         "sum"}};
     starg_context *context = test_context(1);
     shape corner = shape_tetrahedron();
     starg_mesh *mesh = test_mesh_of(context, &corner);

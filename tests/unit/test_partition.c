@@ -595,7 +595,7 @@ static void test_tidy_after_search(void **state) {
         starg_rng rng = starg_rng_make(seed, 78, 0);
         partition first = random_crumbs(context, seed, 30);
         partition p = partition_oracle_copy(&first);
-        const improve_options options = {.trials = 320, .enough = 1};
+        const improve_options options = {.trials = 320, .work = UINT64_MAX, .enough = 1};
         improve_report report;
         test_ok(context, improve(&p, &options, &report));
         assert_int_equal(p.pieces.count,
@@ -614,6 +614,34 @@ static void test_tidy_after_search(void **state) {
     }
     assert_true(joins > 100 && recuts > 0 && moves > 0);
     test_context_free(context);
+}
+
+/* The search ends by its work, which is counted the same at any number of threads. */
+static void test_search_ends_by_work(void **state) {
+    (void)state;
+    improve_report report[2];
+    partition done[2];
+    starg_context *contexts[2];
+    for (int i = 0; i < 2; i++) {
+        contexts[i] = test_context(1 + i);
+        done[i] = random_crumbs(contexts[i], 3, 30);
+        const improve_options options = {.trials = UINT64_MAX, .work = 2000000, .enough = 1};
+        test_ok(contexts[i], improve(&done[i], &options, &report[i]));
+        assert_true(report[i].work >= options.work && report[i].trials > 0);
+        assert_false(report[i].time_limited);
+    }
+    assert_int_equal(report[0].work, report[1].work);
+    assert_int_equal(report[0].trials, report[1].trials);
+    assert_true(partition_oracle_same(&done[0], &done[1]));
+    const improve_options twice = {.trials = UINT64_MAX, .work = 20000000, .enough = 1};
+    partition more = random_crumbs(contexts[0], 3, 30);
+    test_ok(contexts[0], improve(&more, &twice, &report[1]));
+    assert_true(report[1].trials > report[0].trials);
+    partition_free(&more);
+    for (int i = 0; i < 2; i++) {
+        partition_free(&done[i]);
+        test_context_free(contexts[i]);
+    }
 }
 
 /* ---- plans ---- */
@@ -876,6 +904,7 @@ int main(void) {
         cmocka_unit_test(test_tidy_twice),
         cmocka_unit_test(test_tidy_refuses),
         cmocka_unit_test(test_tidy_after_search),
+        cmocka_unit_test(test_search_ends_by_work),
         cmocka_unit_test(test_plans),
         cmocka_unit_test(test_near_guards),
         cmocka_unit_test(test_joins),

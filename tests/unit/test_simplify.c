@@ -233,7 +233,7 @@ static shape lens(void) {
 
 static uint32_t halfedge_between(const mesh_surface *surface, uint32_t a, uint32_t b) {
     for (uint32_t h = 0; h < 3 * surface->face_count; h++)
-        if (surface->faces[h] == a && surface_end(surface, h) == b)
+        if (halfedges_start(&surface->mesh, h) == a && halfedges_end(&surface->mesh, h) == b)
             return h;
     fail();
     return 0;
@@ -285,7 +285,7 @@ static starg_mesh *collapsed(starg_context *context, const mesh_surface *surface
     for (size_t f = 0; f < surface->face_count; f++) {
         uint32_t *corner = s.faces + 3 * s.face_count;
         for (size_t k = 0; k < 3; k++) {
-            uint32_t v = surface->faces[3 * f + k];
+            uint32_t v = surface_face(surface, f)[k];
             corner[k] = v == star->b ? star->a : v;
         }
         s.face_count += corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];

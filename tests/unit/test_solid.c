@@ -197,8 +197,76 @@ static void test_distance(void **state) {
     test_context_free(context);
 }
 
+/* Each face with vertices of its own, as seams are written: the solid is that of the welded mesh,
+ * and vertices and faces keep their numbers. */
+static void test_welds_seams(void **state) {
+    (void)state;
+    for (int missing = 0; missing < 2; missing++) {
+        messages heard = {0};
+        starg_context *context = listening_context(&heard);
+        shape s = shape_cube(1);
+        starg_solid *solid = NULL;
+        starg_mesh *mesh = NULL;
+        size_t corners = 3 * (s.face_count - (size_t)missing);
+        double *vertices = malloc(3 * corners * sizeof *vertices);
+        uint32_t *faces = malloc(corners * sizeof *faces);
+        assert_true(vertices != NULL && faces != NULL);
+        for (size_t i = 0; i < corners; i++) {
+            memcpy(vertices + 3 * i, s.vertices + 3 * (size_t)s.faces[i], 3 * sizeof *vertices);
+            faces[i] = (uint32_t)i;
+        }
+        test_ok(context, starg_mesh_create(context, vertices, corners, faces, corners / 3, &mesh));
+        starg_status status = starg_solid_create(context, mesh, &solid);
+        assert_int_equal(status, missing ? STARG_ERROR_MESH : STARG_OK);
+        assert_int_equal(heard.notices, !missing);
+        for (size_t i = 0; !missing && i < corners; i++) {
+            const starg_mesh *own = starg_solid_mesh(solid);
+            uint32_t v = starg_mesh_faces(own)[i];
+            assert_int_equal(starg_mesh_vertex_count(own), corners);
+            assert_true(v <= i && s.faces[v] == s.faces[i]);
+            for (uint32_t k = 0; k < v; k++) /* the first one */
+                assert_int_not_equal(s.faces[k], s.faces[i]);
+        }
+        if (missing) /* what the mesh has, not what it would have */
+            assert_non_null(strstr(starg_context_error(context)->message, "open edges: 33"));
+        starg_solid_free(solid);
+        starg_mesh_free(mesh);
+        free(vertices);
+        free(faces);
+        shape_free(&s);
+        test_context_free(context);
+    }
+}
+
+/* Solids whose areas and volumes would vanish are refused; scaled up they are taken. */
+static void test_narrow(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    static const double scales[] = {1e-320, 1e-200, 1e-110, 9e-91, 1e-90, 1e-60};
+    for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+        shape s = shape_cube(1);
+        starg_mesh *mesh = NULL;
+        starg_solid *solid = NULL;
+        for (size_t k = 0; k < 3 * s.vertex_count; k++)
+            s.vertices[k] = s.vertices[k] > 0 ? scales[i] : 0;
+        test_ok(context, starg_mesh_create(context, s.vertices, s.vertex_count, s.faces,
+                                           s.face_count, &mesh));
+        bool narrow = scales[i] < 1e-90;
+        assert_int_equal(starg_solid_create(context, mesh, &solid),
+                         narrow ? STARG_ERROR_RANGE : STARG_OK);
+        if (narrow)
+            assert_non_null(strstr(starg_context_error(context)->message, "power of two"));
+        starg_solid_free(solid);
+        starg_mesh_free(mesh);
+        shape_free(&s);
+    }
+    test_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_welds_seams),
+        cmocka_unit_test(test_narrow),
         cmocka_unit_test(test_refuses_open),
         cmocka_unit_test(test_refuses_inconsistent),
         cmocka_unit_test(test_refuses_nonmanifold),

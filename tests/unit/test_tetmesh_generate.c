@@ -12,8 +12,10 @@
 #include <unistd.h>
 
 #include "core/context.h"
+#include "core/rng.h"
 #include "models.h"
 #include "starguard/tetra.h"
+#include "tetra/hollow.h"
 
 static const double DEGREES = 57.29577951308232;
 
@@ -265,6 +267,55 @@ static void test_nothing_inside(void **state) {
     test_context_free(context);
 }
 
+/* What encloses nothing is told at once: flat and tilted, doubled faces in any order, and again
+ * with a face that spoils it. */
+static void test_hollow(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (uint64_t seed = 0; seed < 50; seed++) {
+        enum { FACES = 12, POINTS = 9 };
+        starg_rng rng = starg_rng_make(seed, 5, 0);
+        double points[3 * POINTS];
+        uint32_t faces[3 * (2 * FACES + 1)];
+        bool flat = seed % 2 == 0, hollow, spoilt;
+        for (size_t i = 0; i < POINTS; i++) {
+            for (size_t k = 0; k < 3; k++)
+                points[3 * i + k] = (double)starg_rng_below(&rng, 64) / 8;
+            if (flat) /* tilted, and exact */
+                points[3 * i + 2] = points[3 * i] + 2 * points[3 * i + 1];
+        }
+        for (size_t f = 0; f < FACES; f++) {
+            size_t turn = (size_t)starg_rng_below(&rng, 3);
+            uint32_t a = (uint32_t)starg_rng_below(&rng, POINTS);
+            const uint32_t face[3] = {a, (a + 1) % POINTS, (a + 4) % POINTS};
+            for (size_t k = 0; k < 3; k++) {
+                faces[3 * f + k] = face[k];
+                faces[3 * (2 * FACES - f) + k] = face[(5 - k + turn) % 3];
+            }
+            faces[3 * FACES] = 0, faces[3 * FACES + 1] = 2, faces[3 * FACES + 2] = 5;
+        }
+        size_t half = 3 * (size_t)FACES;
+        for (int single = 0; single < 2; single++) {
+            starg_mesh *mesh = NULL;
+            if (!single) { /* without the one in the middle */
+                uint32_t all[6 * FACES];
+                memcpy(all, faces, half * sizeof *all);
+                memcpy(all + half, faces + half + 3, half * sizeof *all);
+                test_ok(context, starg_mesh_create(context, points, POINTS, all, 2 * FACES, &mesh));
+                test_ok(context, tetra_is_hollow(context, mesh, &hollow));
+            } else {
+                test_ok(context,
+                        starg_mesh_create(context, points, POINTS, faces, 2 * FACES + 1, &mesh));
+                test_ok(context, tetra_is_hollow(context, mesh, &spoilt));
+            }
+            starg_mesh_free(mesh);
+        }
+        assert_true(hollow);
+        assert_int_equal(spoilt, flat);
+    }
+    test_context_free(context);
+}
+
 static void test_threads(void **state) {
     (void)state;
     starg_context *context[2] = {test_context(1), test_context(3)};
@@ -393,7 +444,7 @@ static const struct {
 } BROKEN[] = {
     {NULL, "cannot be run"},
     {"exit 3", "status 3"},
-    {"kill -SEGV $$", "crashed"},
+    {"kill -SEGV $$", "signal"},
     {"sleep 100", "too long"},
     {"exit 0", "not used"},
     {"echo rubbish > \"${2%.smesh}.1.node\"; echo rubbish > \"${2%.smesh}.1.ele\"", "not used"},
@@ -464,6 +515,44 @@ static void test_broken_programs(void **state) {
 }
 
 /* Two cubes that pass through one another: usable with a warning, no food for TetGen. */
+typedef struct stopper {
+    starg_context *context;
+    char heard[512];
+} stopper;
+
+static void listen_and_cancel(void *user, starg_log_level level, const char *message) {
+    stopper *s = user;
+    (void)level;
+    snprintf(s->heard, sizeof s->heard, "%s", message);
+    starg_context_cancel(s->context);
+}
+
+/* Where no program makes tetrahedra of a plate, the model is told to be thin. */
+static void test_thin_is_told(void **state) {
+    (void)state;
+    stopper all = {0};
+    starg_context_options context_options;
+    starg_context_options_default(&context_options);
+    context_options.log = listen_and_cancel;
+    context_options.log_user = &all;
+    assert_int_equal(starg_context_create(&context_options, &all.context), STARG_OK);
+    shape s = shape_cube(1);
+    for (size_t i = 2; i < 3 * s.vertex_count; i += 3)
+        s.vertices[i] *= 1e-8;
+    starg_solid *solid = test_solid_of(all.context, &s);
+    starg_tetra_options options;
+    starg_tetmesh *mesh = NULL;
+    starg_tetra_options_default(&options);
+    options.tetgen = "false"; /* fails */
+    assert_int_equal(starg_tetmesh_from_solid(all.context, solid, &options, NULL, &mesh),
+                     STARG_ERROR_CANCELLED);
+    assert_non_null(strstr(all.heard, "very thin"));
+    assert_null(strstr(all.heard, "false"));
+    starg_solid_free(solid);
+    shape_free(&s);
+    test_context_free(all.context);
+}
+
 static void test_self_intersecting(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -606,6 +695,8 @@ int main(void) {
                                        cmocka_unit_test(test_thin),
                                        cmocka_unit_test(test_open),
                                        cmocka_unit_test(test_nothing_inside),
+                                       cmocka_unit_test(test_hollow),
+                                       cmocka_unit_test(test_thin_is_told),
                                        cmocka_unit_test(test_threads),
                                        cmocka_unit_test(test_tetgen),
                                        cmocka_unit_test(test_broken_programs),

@@ -45,7 +45,7 @@ static void test_tiny(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     starg_mesh *mesh = test_sample_mesh(context, "gallery", 500),
-               *tiny = scaled(context, mesh, -530);
+               *tiny = scaled(context, mesh, -290);
     starg_solid *solid = NULL;
     starg_guard_options options;
     starg_guard_options_default(&options);
@@ -59,7 +59,7 @@ static void test_tiny(void **state) {
     test_ok(context, starg_candidate_points(context, plain, STARG_CANDIDATES_INTERIOR, 50, 0,
                                             &points, &options.point_count));
     for (size_t i = 0; i < 3 * options.point_count; i++)
-        points[i] = ldexp(points[i], -530);
+        points[i] = ldexp(points[i], -290);
     options.points = points;
     starg_guards *guards = test_guard(context, solid, &options);
     assert_true(guards->coverage_area >= 0.5 && guards->coverage_area < 1);

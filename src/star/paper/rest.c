@@ -124,7 +124,7 @@ done:
 
 /* The guards before may have used up all the time: a little more is taken for what they leave. */
 static bool must_hurry(const starg_context *context) {
-    return context->deadline > 0 && starg_clock() > context->deadline + GRACE;
+    return starg_seconds_left(context) < -GRACE;
 }
 
 static starg_status colour_component(rest *r, uint32_t tetrahedron, size_t max_pieces,
@@ -142,6 +142,7 @@ static starg_status colour_component(rest *r, uint32_t tetrahedron, size_t max_p
 starg_status rest_colour(paper_state *s, size_t max_pieces, bool *time_limited) {
     starg_status status = STARG_OK;
     rest r = {.state = s};
+    starg_progress_begin_part(s->context, PAPER_STAGE, 0.5);
     STARG_TRY(component_create(s, &r.component));
     STARG_TRY(view_scratch_create(s, &r.scratch));
     STARG_TRY(view_create(s, &r.guard));
@@ -153,6 +154,7 @@ starg_status rest_colour(paper_state *s, size_t max_pieces, bool *time_limited) 
         }
     }
 done:
+    starg_progress_end(s->context);
     component_free(s, &r.component);
     view_scratch_free(s, &r.scratch);
     view_free(s, &r.guard);

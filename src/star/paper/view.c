@@ -110,6 +110,7 @@ starg_status views_create(paper_state *s, const paper_domain *all, const double 
                                       .shared = &job,
                                       .item = make_view,
                                       .make_scratch = make_scratch,
-                                      .free_scratch = free_scratch};
+                                      .free_scratch = free_scratch,
+                                      .share = 0.5};
     return starg_parallel_for(s->context, &loop);
 }

@@ -8,8 +8,8 @@
  *
  * A piece that resists (no plane gains, or the cut fails, or leaves a crumb that nothing sees) is
  * tried again with more effort and with less room for its guard, and is then halved: a plane that
- * is right where the trouble is may cost more elsewhere in a large piece. One that resists to the
- * last is joined with a neighbour, and both are cut anew, by other chances.
+ * is right where the trouble is may cost more elsewhere in a large piece. Where one resists to the
+ * last, there is no start by planes.
  *
  * Invariants: what a cut does to other pieces is nothing but split facets; every guard is certified
  * on the finished partition, and where that fails the piece is opened again. The result does not
@@ -27,9 +27,7 @@
 #include "star/strict/slice.h"
 #include "star/strict/tidy.h"
 
-enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3, UNDONE_MOST = 24 };
-
-static const uint32_t NO_PIECE = UINT32_MAX;
+enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3 };
 
 /* Numbers of stages are below. */
 static const uint64_t STREAMS = 1000;
@@ -54,7 +52,6 @@ typedef struct bisector {
     uint64_t stream;
     size_t most;     /* jobs, after which it is given up */
     size_t done;     /* jobs so far */
-    int undone;      /* cuts that were taken back */
     size_t crowded;  /* facets from which on it is time to tidy up */
     double volume;   /* of the solid, in unit coordinates */
     double finished; /* of it, in pieces that have a guard */
@@ -85,8 +82,6 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
                                               : j->attempts < HALVE_FROM ? DIVIDE_FAIR
                                                                          : DIVIDE_HALVE};
     j->found = false;
-    if (j->number == NO_PIECE)
-        goto done;
     STARG_TRY(region_gather(b->p, &j->number, 1, scratch, &r));
     STARG_TRY(region_find_center(&r, NULL, 0, scratch, j->guard, &j->radius));
     if (j->radius < options.margin)
@@ -166,52 +161,9 @@ done:
     return status;
 }
 
-/* Numbers of open pieces after `gone` has been joined to another and `last` has got its number. */
-static void follow(job *jobs, size_t count, uint32_t gone, uint32_t last) {
-    for (size_t i = 0; i < count; i++) {
-        if (jobs[i].number == gone)
-            jobs[i].number = NO_PIECE;
-        else if (jobs[i].number == last)
-            jobs[i].number = gone;
-    }
-}
-
-/* What is beyond a random facet of a piece; false when that is the outside. */
-static bool find_neighbour(const bisector *b, uint32_t number, uint32_t *neighbour) {
-    const partition *p = b->p;
-    starg_rng rng = starg_rng_make(p->context->seed, 79 + STREAMS * b->stream, (uint64_t)b->undone);
-    uint32_t first = p->start.data[number], count = p->start.data[number + 1] - first;
-    *neighbour = PARTITION_OUTSIDE;
-    for (uint32_t i = 0; i < count && *neighbour == PARTITION_OUTSIDE; i++) {
-        uint32_t entry = p->index.data[first + starg_rng_below(&rng, count)];
-        *neighbour = p->facets.data[entry / 2].side[1 - entry % 2];
-    }
-    return *neighbour != PARTITION_OUTSIDE;
-}
-
-/* The piece and a neighbour become one, to be cut anew. */
-static starg_status undo_cut(bisector *b, uint32_t number) {
-    starg_status status = STARG_OK;
-    partition *p = b->p;
-    uint32_t pair[2] = {number, 0}, last = (uint32_t)p->pieces.count - 1;
-    b->hopeless = ++b->undone > UNDONE_MOST || !find_neighbour(b, number, &pair[1]);
-    if (b->hopeless)
-        goto done;
-    p->pieces.data[number].volume += p->pieces.data[pair[1]].volume;
-    partition_join(p, pair, 2);
-    partition_renumber(p, last, pair[1]);
-    STARG_TRY(partition_build_index(p));
-    follow(b->jobs.data, b->jobs.count, pair[1], last);
-    follow(b->next.data, b->next.count, pair[1], last);
-    STARG_TRY(open_piece(b, number == last ? pair[1] : number, 0));
-done:
-    return status;
-}
-
 static starg_status try_again(bisector *b, const job *j) {
-    if (j->attempts >= ATTEMPTS_MOST)
-        return undo_cut(b, j->number);
-    return open_piece(b, j->number, j->attempts + 1);
+    b->hopeless = j->attempts >= ATTEMPTS_MOST;
+    return b->hopeless ? STARG_OK : open_piece(b, j->number, j->attempts + 1);
 }
 
 static starg_status carry_out(bisector *b, const job *j) {
@@ -270,7 +222,7 @@ static starg_status run_round(bisector *b) {
     for (size_t i = 0; i < b->jobs.count; i++) {
         const job *j = &b->jobs.data[i];
         STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
-        if (j->number == NO_PIECE || b->hopeless)
+        if (b->hopeless)
             continue;
         if (j->radius >= margin_of(j))
             settle(b, j);

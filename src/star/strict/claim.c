@@ -452,6 +452,7 @@ static starg_status run(claimer *c, claims *out) {
     size_t count = c->mesh->count;
     void *scratch = NULL;
     *out = (claims){.count = 0};
+    starg_progress_begin(context, STAGE);
     STARG_NEW(context, STAGE, c->volumes, count);
     STARG_NEW(context, STAGE, c->running, count);
     STARG_NEW_ZERO(context, STAGE, c->region, count);
@@ -461,7 +462,6 @@ static starg_status run(claimer *c, claims *out) {
     STARG_TRY(make_grower(context, c, &scratch));
     measure(c);
     locate_hints(c);
-    starg_progress_begin(context, STAGE);
     /* a component that a claim leaves is found again from one of its tetrahedra */
     for (uint32_t t = 0; t < count; t++)
         while (c->labels[t] == UNCLAIMED) {

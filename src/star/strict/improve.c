@@ -41,6 +41,7 @@ typedef struct trial {
     recut_plan plan; /* if it does not */
     fan_plan fan;    /* if it does     */
     bool found;
+    uint64_t work;
 } trial;
 
 typedef STARG_ARRAY(uint32_t) numbers;
@@ -110,6 +111,7 @@ done:
 static starg_status join_all(improver *m) {
     starg_status status = STARG_OK;
     bool any = true;
+    starg_progress_begin(m->p->context, "join");
     while (any && !starg_time_is_over(m->p->context)) {
         any = false;
         for (uint32_t a = 0; a < m->p->pieces.count; a++) {
@@ -123,6 +125,7 @@ static starg_status join_all(improver *m) {
         }
     }
 done:
+    starg_progress_end(m->p->context);
     return status;
 }
 
@@ -231,10 +234,13 @@ static starg_status run_trial(starg_context *context, void *shared, void *scratc
     improver *m = shared;
     trial *t = &m->trials[item];
     starg_rng rng = starg_rng_make(context->seed, 77, m->offset + m->report->trials + item);
+    region_scratch *own = scratch;
+    uint64_t before = own->work;
     *t = (trial){.found = false};
-    if (starg_rng_below(&rng, 2) == 0)
-        return try_recut(m, &rng, scratch, t);
-    return try_dissolve(m, &rng, scratch, t);
+    starg_status status =
+        starg_rng_below(&rng, 2) == 0 ? try_recut(m, &rng, own, t) : try_dissolve(m, &rng, own, t);
+    t->work = own->work - before;
+    return status;
 }
 
 static bool saves(const trial *t) {
@@ -328,6 +334,8 @@ static starg_status run_batch(improver *m) {
     STARG_TRY(starg_parallel_for(m->p->context, &loop));
     m->stalled += BATCH;
     STARG_TRY(carry_out_batch(m, BATCH));
+    for (int i = 0; i < BATCH; i++)
+        m->report->work += m->trials[i].work;
     m->report->trials += BATCH;
 done:
     for (int i = 0; i < BATCH; i++)
@@ -337,22 +345,22 @@ done:
 
 /* How far the search is, by whatever will end it. */
 static void tell_progress(const improver *m, const improve_options *options, uint64_t patience) {
-    const starg_context *context = m->p->context;
-    double part = (double)m->stalled / (double)patience, now = starg_clock();
+    double part = (double)m->stalled / (double)patience, passed = starg_clock() - m->began;
     if (options->trials != UINT64_MAX)
         part = fmax(part, (double)m->report->trials / (double)options->trials);
-    if (context->deadline > 0 && context->deadline > m->began)
-        part = fmax(part, (now - m->began) / (context->deadline - m->began));
+    if (options->work != UINT64_MAX)
+        part = fmax(part, (double)m->report->work / (double)options->work);
+    part = fmax(part, passed / (passed + fmax(0, starg_seconds_left(m->p->context))));
     starg_progress_step(m->p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
 }
 
-/* Until there are few enough, or trials, time or patience are at an end. */
+/* Until there are few enough, or trials, work, time or patience are at an end. */
 static starg_status search(improver *m, const improve_options *options) {
     starg_status status = STARG_OK;
     improve_report *report = m->report;
     report->time_limited = m->p->pieces.count > 1 && starg_time_is_over(m->p->context);
     while (!report->time_limited && m->p->pieces.count > options->enough &&
-           report->trials < options->trials) {
+           report->trials < options->trials && report->work < options->work) {
         uint64_t patience = PATIENCE * m->p->pieces.count + PATIENCE_LEAST;
         if (m->stalled >= patience)
             break;
@@ -376,11 +384,9 @@ starg_status improve_join(partition *p) {
     starg_status status = STARG_OK;
     improve_report report = {.trials = 0};
     improver m = {.p = p, .report = &report, .scratch = {.context = p->context}};
-    starg_progress_begin(p->context, "join");
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
 done:
-    starg_progress_end(p->context);
     improver_free(&m);
     return status;
 }

@@ -6,12 +6,13 @@
 
 typedef struct improve_options {
     uint64_t trials; /* to be made at most                             */
+    uint64_t work;   /* likewise, in vertices, facets and rows looked at; whole batches are made */
     size_t enough;   /* stop when there are no more pieces than that   */
     uint64_t first;  /* number of the first trial: others try other things */
 } improve_options;
 
 typedef struct improve_report {
-    uint64_t trials, joins, recuts, dissolved, moves, refused;
+    uint64_t trials, work, joins, recuts, dissolved, moves, refused;
     bool time_limited;
 } improve_report;
 
@@ -20,7 +21,7 @@ typedef struct improve_report {
 starg_status improve_join(partition *p);
 
 /* Joins pieces whose union is star-shaped and cuts unions again into fewer pieces, until no trial
- * helps for long, or the trials or the time are used up; then every guard goes where
+ * helps for long, or the trials, the work or the time are used up; then every guard goes where
  * it is farthest from all planes. The partition is valid at all times.
  * Errors: MEMORY, CANCELLED. */
 starg_status improve(partition *p, const improve_options *options, improve_report *report);

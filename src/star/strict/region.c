@@ -184,6 +184,7 @@ starg_status region_gather_some(const partition *p, const uint32_t *pieces, size
             if (i == 0)
                 out->first_rows = out->rows.count / ROW;
         }
+    scratch->work += 4 * out->triangles.count;
     forget(p, pieces, count, most, scratch);
     STARG_TRY(make_blocks(p->context, out));
 done:
@@ -327,6 +328,7 @@ done:
 static starg_status find_heights(const region *r, const double normal[3], region_scratch *scratch) {
     starg_status status = STARG_OK;
     size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
+    scratch->work += vertices + r->triangles.count;
     STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
     STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
     STARG_TRY(reset(scratch->context, &scratch->lowest_back, padded));
@@ -359,6 +361,7 @@ typedef struct ball_search {
     double bound;
     largest_ball ball;
     size_t at; /* the block of rows where the last violated one was begins there */
+    uint64_t *work;
 } ball_search;
 
 /* A row that the ball's centre is less than `room` inside of: the worst of the first block that has
@@ -368,6 +371,7 @@ static bool find_violated(ball_search *w, double room, uint32_t *worst) {
     for (size_t seen = 0; seen < blocks; seen++) {
         size_t found = scan_block(w->r->blocks.data + SCAN_SIZE * w->at,
                                   w->lowest + SCAN_BLOCK * w->at, w->bound, w->ball.center, room);
+        *w->work += SCAN_BLOCK;
         if (found < SCAN_BLOCK) {
             *worst = (uint32_t)(SCAN_BLOCK * w->at + found);
             return true;
@@ -441,12 +445,19 @@ starg_status region_find_reach(const region *r, const double normal[3], double m
     starg_status status = STARG_OK;
     double back[3] = {-normal[0], -normal[1], -normal[2]};
     STARG_TRY(find_heights(r, normal, scratch));
-    ball_search w = {.r = r, .normal = normal, .lowest = scratch->lowest.data, .bound = INFINITY};
+    ball_search w = {.r = r,
+                     .work = &scratch->work,
+                     .normal = normal,
+                     .lowest = scratch->lowest.data,
+                     .bound = INFINITY};
     find_reach(&w, margin, up);
     if (down == NULL || up->height == -INFINITY)
         goto done;
-    w = (ball_search){
-        .r = r, .normal = back, .lowest = scratch->lowest_back.data, .bound = INFINITY};
+    w = (ball_search){.r = r,
+                      .work = &scratch->work,
+                      .normal = back,
+                      .lowest = scratch->lowest_back.data,
+                      .bound = INFINITY};
     find_reach(&w, margin, down);
 done:
     return status;
@@ -457,6 +468,7 @@ static starg_status find_distances(const region *r, const double center[3],
                                    region_scratch *scratch) {
     starg_status status = STARG_OK;
     size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
+    scratch->work += vertices + r->triangles.count;
     STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
     STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
     double *distance = scratch->heights.data;
@@ -477,7 +489,8 @@ starg_status region_find_reach_about(const region *r, const double center[3], do
                                      region_scratch *scratch, region_reach *out) {
     starg_status status = STARG_OK;
     STARG_TRY(find_distances(r, center, scratch));
-    ball_search w = {.r = r, .lowest = scratch->lowest.data, .bound = INFINITY};
+    ball_search w = {
+        .r = r, .work = &scratch->work, .lowest = scratch->lowest.data, .bound = INFINITY};
     find_reach(&w, margin, out);
 done:
     return status;
@@ -489,7 +502,8 @@ starg_status region_find_reach_beyond(const region *r, const double center[3], d
     STARG_TRY(find_distances(r, center, scratch));
     for (size_t i = 0; i < r->first_rows; i++)
         scratch->lowest.data[i] = -INFINITY;
-    ball_search w = {.r = r, .lowest = scratch->lowest.data, .bound = INFINITY};
+    ball_search w = {
+        .r = r, .work = &scratch->work, .lowest = scratch->lowest.data, .bound = INFINITY};
     find_reach(&w, margin, out);
 done:
     return status;
@@ -502,6 +516,7 @@ starg_status region_find_center(const region *r, const double *normal, double he
     *radius = -1;
     STARG_TRY(find_heights(r, normal == NULL ? anywhere : normal, scratch));
     ball_search w = {.r = r,
+                     .work = &scratch->work,
                      .normal = normal,
                      .lowest = scratch->lowest.data,
                      .bound = normal == NULL ? INFINITY : height};

@@ -38,6 +38,7 @@ typedef struct region_scratch {
     region_values heights;           /* of vertices along a direction */
     region_values lowest;            /* of rows likewise: their lowest vertex */
     region_values lowest_back;       /* the same along the opposite direction */
+    uint64_t work;                   /* vertices, facets and rows looked at so far */
 } region_scratch;
 
 void region_scratch_free(region_scratch *scratch);

@@ -25,6 +25,10 @@ enum {
     LOOKS_MOST = 1500
 };
 
+/* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
+ * are counted the same at any number of threads. About 4e8 take a second. */
+static const uint64_t WORK_MOST = 6000000000;
+
 static starg_status collect_guards(const partition *p, double **guards) {
     starg_status status = STARG_OK;
     STARG_NEW(p->context, PARTITION_STAGE, *guards, 3 * p->pieces.count);
@@ -122,7 +126,7 @@ done:
 
 typedef struct searches {
     const starg_tetmesh *mesh;
-    uint64_t trials_left;
+    uint64_t trials_left, work_left;
     size_t enough;
     size_t looks;   /* of a start by planes */
     uint64_t count; /* searches so far */
@@ -132,10 +136,13 @@ typedef struct searches {
 
 static starg_status run_search(searches *s, partition *p) {
     improve_report report;
-    const improve_options wanted = {
-        .trials = s->trials_left, .enough = s->enough, .first = s->count << 40};
+    const improve_options wanted = {.trials = s->trials_left,
+                                    .work = s->work_left,
+                                    .enough = s->enough,
+                                    .first = s->count << 40};
     starg_status status = improve(p, &wanted, &report);
     s->trials_left -= report.trials < s->trials_left ? report.trials : s->trials_left;
+    s->work_left -= report.work < s->work_left ? report.work : s->work_left;
     s->time_limited = report.time_limited;
     s->count++;
     return status;
@@ -143,8 +150,8 @@ static starg_status run_search(searches *s, partition *p) {
 
 /* Two pieces are as few as can be when one was not enough. */
 static bool may_search_again(const searches *s, const partition *p) {
-    return s->count < SEARCHES && s->idle < IDLE_MOST && s->trials_left > 0 && !s->time_limited &&
-           p->pieces.count > (s->enough > 2 ? s->enough : 2);
+    return s->count < SEARCHES && s->idle < IDLE_MOST && s->trials_left > 0 && s->work_left > 0 &&
+           !s->time_limited && p->pieces.count > (s->enough > 2 ? s->enough : 2);
 }
 
 /* From the other start, or one more by planes; the better result stays. */
@@ -172,6 +179,8 @@ starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
     partition p = {.context = context}, other = {.context = context};
     searches s = {.mesh = mesh,
                   .trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
+                  .work_left =
+                      options->effort > 0 || context->deadline.at > 0 ? UINT64_MAX : WORK_MOST,
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
     STARG_TRY(begin(mesh, options, &p, &other, &s.looks));

@@ -1,0 +1,87 @@
+/* The stages of guarding a solid. Each takes finished inputs, which stay as they are, and returns
+ * one result; only a pool that grows is handed over. */
+#ifndef STARG_GUARD_STAGES_H
+#define STARG_GUARD_STAGES_H
+
+#include "guard/choose.h"
+#include "starguard/simplify.h"
+
+/* What is asked for, all through a call. */
+typedef struct guard_problem {
+    starg_context *context;
+    const starg_solid *solid;
+    const starg_guard_options *options;
+    column_weights weights;
+} guard_problem;
+
+/* Simpler versions of the solid. */
+typedef struct guard_detail {
+    starg_levels *levels; /* NULL: none are wanted, or there was no time                       */
+    starg_solid *samples; /* what medial axis and skeleton are taken from; NULL: the solid     */
+    bool time_limited;
+} guard_detail;
+
+/* Candidates that are chosen for the solid or for a level of detail. */
+typedef struct guard_selection {
+    STARG_ARRAY(uint32_t) chosen; /* the one that adds most first                              */
+    STARG_ARRAY(int) levels;      /* of `chosen`: the one that first asked for it              */
+    STARG_ARRAY(uint32_t) kept;   /* of `chosen`: those that the level before had chosen       */
+    int level;                    /* what they are for: its number                             */
+    size_t lower_bound;
+    uint64_t weight_bound; /* no max_guards candidates see more                                */
+    bool time_limited;     /* this, or what it was made from, was cut short                    */
+} guard_selection;
+
+typedef STARG_ARRAY(starg_guard_level) guard_records;
+
+/* What guards are reported from. */
+typedef struct guard_outcome {
+    guard_pool pool;
+    guard_selection selection;
+    guard_records records; /* of the levels */
+    uint64_t lines_tested;
+} guard_outcome;
+
+static inline candidate_shape guard_shape(const guard_problem *problem,
+                                          const guard_detail *detail) {
+    const starg_solid *samples = detail->samples != NULL ? detail->samples : problem->solid;
+    return (candidate_shape){problem->solid, samples, problem->options->clearance};
+}
+
+/* A cover's rows as the chosen ones, with its bounds. Those that were chosen `before` keep their
+ * level, the others get `level`. Errors: MEMORY. */
+starg_status selection_of_cover(starg_context *context, const starg_cover *cover,
+                                const guard_selection *before, int level, guard_selection *out);
+starg_status selection_copy(starg_context *context, const guard_selection *from,
+                            guard_selection *out);
+void selection_free(starg_context *context, guard_selection *selection);
+
+/* Writes down the guards of a level, the kept ones first. Errors: MEMORY. */
+starg_status record_level(const guard_pool *pool, const guard_selection *selection,
+                          guard_records *records);
+void records_free(starg_context *context, guard_records *records);
+
+/* STARG_GUARD_PILP (guard/progressive.c): the choice for the solid itself, and the records of the
+ * levels before. Its bounds are 0 where it is not of the whole problem. Errors: MEMORY, CANCELLED.
+ */
+starg_status progressive_guards(const guard_problem *problem, const guard_detail *detail,
+                                const guard_pool *pool, guard_records *records,
+                                guard_selection *out);
+
+/* The same choice with the bounds of the whole problem, or a smaller one that they come with.
+ * Errors: MEMORY, CANCELLED. */
+starg_status bound_guards(const guard_problem *problem, const guard_pool *pool,
+                          const guard_selection *first, guard_selection *out);
+
+/* Adds candidates where they pay, to the pool that it is given, and chooses again
+ * (guard/refine.c). Errors: MEMORY, CANCELLED. */
+starg_status refine_guards(const guard_problem *problem, const guard_detail *detail,
+                           const guard_selection *first, guard_pool *pool, guard_selection *out,
+                           uint64_t *lines_tested);
+
+/* The result: what the chosen guards see, counted anew (guard/measure.c). Takes the records over.
+ * Errors: MEMORY, CANCELLED. */
+starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
+                           starg_guards **out);
+
+#endif

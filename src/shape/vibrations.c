@@ -1,0 +1,58 @@
+/* The spectrum of a solid's boundary, and where it vibrates.
+ *
+ * Problem: numbers of a shape that change neither with its pose, nor with the decomposition that
+ * happens to come out, nor with noise on its surface: Shape-DNA [RWP06].
+ *
+ * Stages: the boundary; the smallest eigenvalues of its Laplacian and their eigenfunctions
+ * (spectrum.c); what waves.c makes of both.
+ *
+ * Invariants: eigenvalues are times the area, so that units do not count. Cost: that of spectrum.c.
+ */
+#include "shape/vibrations.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "shape/spectrum.h"
+#include "shape/waves.h"
+
+static const char STAGE[] = "vibrations";
+
+enum { EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES };
+
+/* All but the first one; what rounding put below 0 is 0. */
+static void keep_behind_zero(double *eigenvalues, double *out) {
+    for (size_t i = 0; i <= EIGENVALUES; i++)
+        eigenvalues[i] = fmax(eigenvalues[i], 0);
+    memcpy(out, eigenvalues + 1, EIGENVALUES * sizeof *out);
+}
+
+static starg_status take_surface(starg_context *context, const starg_mesh *surface, double *out,
+                                 double *waves) {
+    starg_status status = STARG_OK;
+    laplacian l = {0};
+    double eigenvalues[EIGENVALUES + 1], *functions = NULL;
+    STARG_TRY(laplacian_create(context, surface, &l));
+    STARG_NEW(context, STAGE, functions, (EIGENVALUES + 1) * l.count);
+    STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, functions));
+    keep_behind_zero(eigenvalues, out);
+    STARG_TRY(waves_measure(context, &l, eigenvalues, functions, waves));
+done:
+    starg_release(context, functions);
+    laplacian_free(context, &l);
+    return status;
+}
+
+starg_status vibrations_measure(starg_context *context, const starg_tetmesh *mesh,
+                                const starg_mesh *surface, starg_descriptor *out) {
+    starg_status status = STARG_OK;
+    starg_mesh *boundary = NULL;
+    if (surface == NULL)
+        STARG_TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
+    STARG_TRY(take_surface(context, surface != NULL ? surface : boundary, out->surface_spectrum,
+                           &out->waves[0][0]));
+done:
+    starg_mesh_free(boundary);
+    return status;
+}

@@ -1,0 +1,167 @@
+/* PIECES.json as a table (starguard/fields.h): the one place that says what its keys are called,
+ * may hold and mean. Rows are in the order of the file. */
+#include <float.h>
+
+#include "star/decomposition.h"
+
+#define RESULT(NAME)  FIELD_MEMBER(starg_decomposition, NAME)
+#define LENGTH(NAME)  .length = offsetof(starg_decomposition, NAME)
+#define PIECE(NAME)   FIELD_MEMBER(starg_piece, NAME)
+#define CONTACT(NAME) FIELD_MEMBER(starg_piece_contact, NAME)
+
+const char *const decompose_mode_words[] = {"strict", "paper", NULL};
+static const char *const SURFACES[] = {"approximated", "kept", NULL}; /* by surface_kept */
+
+static const starg_decomposition *of(const void *record) {
+    return record;
+}
+
+/* The model is a surface, or tetrahedra: what is written, and of what is read what has come. */
+static bool is_surface(const void *record) {
+    return of(record)->model_tetrahedra == 0;
+}
+
+static bool is_solid(const void *record) {
+    return of(record)->model_faces == 0;
+}
+
+static bool is_approximated(const void *record) {
+    return !of(record)->tetra.surface_kept;
+}
+
+static const starg_field MODEL[] = {
+    {.key = "file",
+     .kind = STARG_FIELD_TEXT,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(file),
+     .help = "The model's path as given."},
+    {.key = "vertices", .kind = STARG_FIELD_COUNT, RESULT(model_vertices), .most = UINT32_MAX},
+    {.key = "faces",
+     .kind = STARG_FIELD_COUNT,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(model_faces),
+     .applies = is_surface,
+     .least = 1,
+     .most = UINT32_MAX,
+     .help = "Of a model that is a surface."},
+    {.key = "tetrahedra",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(model_tetrahedra),
+     .applies = is_solid,
+     .least = 1,
+     .most = UINT32_MAX,
+     .help = "Of a model of tetrahedra."},
+};
+static const starg_fields MODEL_TABLE = {.name = "model", FIELD_ROWS(MODEL)};
+
+static const starg_field PIECES[] = {
+    {.key = "guard", .kind = STARG_FIELD_POINT, PIECE(guard), .help = "Sees the whole piece."},
+    {.key = "tetrahedra",
+     .kind = STARG_FIELD_COUNT,
+     PIECE(tetrahedra),
+     .least = 1,
+     .most = UINT32_MAX,
+     .help = "Those with the label of the piece."},
+    {.key = "volume",
+     .kind = STARG_FIELD_REAL,
+     PIECE(volume),
+     .low = -DBL_MAX,
+     .high = DBL_MAX,
+     .help = "In cubed units of the model; rounded."},
+    {.key = "star",
+     .kind = STARG_FIELD_FLAG,
+     PIECE(star),
+     .help = "The guard is strictly on the inner side of each face of the piece: proven."},
+    {.key = "radius",
+     .kind = STARG_FIELD_REAL,
+     PIECE(radius),
+     .low = -DBL_MAX,
+     .high = DBL_MAX,
+     .help = "Distance of the guard to the nearest plane of a face, negative behind it; rounded."},
+};
+static const starg_fields PIECES_TABLE = {
+    .name = "pieces", .size = sizeof(starg_piece), FIELD_ROWS(PIECES)};
+
+static const starg_field CONTACTS[] = {
+    {.key = "first", .kind = STARG_FIELD_COUNT, CONTACT(first), .most = INT32_MAX},
+    {.key = "second", .kind = STARG_FIELD_COUNT, CONTACT(second), .most = INT32_MAX},
+    {.key = "area", .kind = STARG_FIELD_REAL, CONTACT(area), .high = DBL_MAX},
+};
+static const starg_fields CONTACTS_TABLE = {.name = "adjacency",
+                                            .size = sizeof(starg_piece_contact),
+                                            .form = STARG_FORM_TUPLE,
+                                            FIELD_ROWS(CONTACTS)};
+
+static const starg_field FILE_ROWS[] = {
+    {.key = "format", .kind = STARG_FIELD_CONSTANT, .value = "starguard-pieces"},
+    {.key = "version", .kind = STARG_FIELD_CONSTANT, .initial = 1},
+    {.key = "model", .kind = STARG_FIELD_RECORD, .of = &MODEL_TABLE},
+    {.key = "mode", .kind = STARG_FIELD_CHOICE, RESULT(mode), .words = decompose_mode_words},
+    {.key = "surface",
+     .kind = STARG_FIELD_CHOICE,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(tetra.surface_kept),
+     .words = SURFACES,
+     .initial = 1,
+     .help = "Is the boundary that of the model, or near it?"},
+    {.key = "distance",
+     .kind = STARG_FIELD_REAL,
+     RESULT(tetra.distance),
+     .applies = is_approximated,
+     .high = DBL_MAX,
+     .help = "No point of the boundary is farther from the model's surface."},
+    {.key = "distance_back",
+     .kind = STARG_FIELD_REAL,
+     RESULT(tetra.distance_back),
+     .applies = is_approximated,
+     .high = DBL_MAX,
+     .help = "No point of the model's surface is farther from the boundary."},
+    {.key = "tetrahedra",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(tetrahedra),
+     .least = 1,
+     .most = UINT32_MAX,
+     .help = "As many as PIECES.vtk has."},
+    {.key = "pieces",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_LINES,
+     RESULT(pieces),
+     .of = &PIECES_TABLE,
+     LENGTH(piece_count),
+     .least = 1,
+     .help = "By their labels."},
+    {.key = "strictly_star",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(strictly_star),
+     .most = UINT32_MAX,
+     .help = "Pieces that are proven to be star-shaped."},
+    {.key = "visible_vertices",
+     .kind = STARG_FIELD_REAL,
+     RESULT(visible_vertices),
+     .high = 1,
+     .help = "Fraction of the vertices that the guards of their pieces see."},
+    {.key = "flattest",
+     .kind = STARG_FIELD_REAL,
+     RESULT(flattest),
+     .high = 1,
+     .help = "Least height over longest edge of a tetrahedron."},
+    {.key = "flattest_given",
+     .kind = STARG_FIELD_REAL,
+     RESULT(flattest_given),
+     .high = 1,
+     .help = "The same of the tetrahedra to begin with."},
+    {.key = "adjacency",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_LINES,
+     RESULT(contacts),
+     .of = &CONTACTS_TABLE,
+     LENGTH(contact_count),
+     .help = "Pieces that share faces, and over what area; ascending."},
+    {.key = "time_limited",
+     .kind = STARG_FIELD_FLAG,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(time_limited),
+     .help = "The time limit cut the search short."},
+};
+const starg_fields decomposition_file_fields = {
+    .name = "pieces file", .size = sizeof(starg_decomposition), FIELD_ROWS(FILE_ROWS)};

@@ -1,0 +1,120 @@
+/* Reads PIECES.vtk and PIECES.json back as a decomposition. What the tables do not know is checked
+ * here: that both files are of one decomposition, and that its counts agree. Whether pieces are
+ * star-shaped is not proven anew; that is what verification is for. */
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/record.h"
+#include "star/decomposition.h"
+#include "tetra/tetmesh.h"
+
+static const char STAGE[] = "pieces file";
+
+static starg_status reject(starg_context *context, const char *name, const char *key,
+                           const char *expected) {
+    return record_reject(context, name, &decomposition_file_fields, key, expected);
+}
+
+static starg_status check_contacts(starg_context *context, const char *name,
+                                   const starg_decomposition *d) {
+    for (size_t i = 0; i < d->contact_count; i++) {
+        const starg_piece_contact *c = &d->contacts[i];
+        bool ascending = i == 0 || c[-1].first < c->first ||
+                         (c[-1].first == c->first && c[-1].second < c->second);
+        if (c->first >= c->second || c->second >= d->piece_count || !ascending)
+            return reject(context, name, "adjacency", "ascending pairs of two ascending pieces");
+    }
+    return STARG_OK;
+}
+
+static starg_status check_report(starg_context *context, const char *name,
+                                 const starg_decomposition *d) {
+    size_t star = 0, tetrahedra = 0;
+    for (size_t p = 0; p < d->piece_count; p++) {
+        star += d->pieces[p].star;
+        tetrahedra += d->pieces[p].tetrahedra;
+    }
+    if (tetrahedra != d->tetrahedra)
+        return reject(context, name, "tetrahedra", "the sum of those of the pieces");
+    if (star != d->strictly_star)
+        return reject(context, name, "strictly_star", "the number of pieces with \"star\": true");
+    return check_contacts(context, name, d);
+}
+
+static starg_status read_report(starg_context *context, const starg_file_bytes *file,
+                                starg_decomposition *d) {
+    starg_status status = STARG_OK;
+    json_t *root = NULL;
+    STARG_TRY(starg_json_parse(context, STAGE, file->name, file->bytes, file->size, &root));
+    STARG_TRY(record_read(context, file->name, root, &decomposition_file_fields, d));
+    STARG_TRY(check_report(context, file->name, d));
+    d->tetra.generator = d->tetra.surface_kept ? STARG_TETRA_AUTO : STARG_TETRA_STUFFING;
+    d->tetra.to_surface = d->tetra.distance;
+    d->tetra.from_surface = d->tetra.distance_back;
+done:
+    json_decref(root);
+    return status;
+}
+
+/* The piece of each tetrahedron; a mesh with the same label everywhere has none of its own. */
+static starg_status take_labels(starg_context *context, const starg_file_bytes *report,
+                                starg_decomposition *d) {
+    starg_status status = STARG_OK;
+    const int32_t *regions = starg_tetmesh_regions(d->mesh);
+    size_t *left = NULL;
+    if (d->mesh->count != d->tetrahedra)
+        return reject(context, report->name, "tetrahedra", "the number of cells of PIECES.vtk");
+    STARG_NEW_ZERO(context, STAGE, d->labels, d->tetrahedra);
+    STARG_NEW_ZERO(context, STAGE, left, d->piece_count);
+    for (size_t p = 0; p < d->piece_count; p++)
+        left[p] = d->pieces[p].tetrahedra;
+    for (size_t t = 0; t < d->tetrahedra && status == STARG_OK; t++) {
+        int32_t label = regions != NULL ? regions[t] : 0;
+        d->labels[t] = label;
+        uint64_t index = t;
+        if (label < 0 || (size_t)label >= d->piece_count || left[label]-- == 0)
+            status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON,
+                                   &index, 1,
+                                   "tetrahedron %zu has the label %d, of which '%.200s' does not "
+                                   "say that there are so many; the files are not of one "
+                                   "decomposition",
+                                   t, label, report->name);
+    }
+done:
+    starg_release(context, left);
+    return status;
+}
+
+starg_status starg_decomposition_read_memory(starg_context *context, const starg_file_bytes *pieces,
+                                             const starg_file_bytes *report,
+                                             starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decomposition *d = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, d, 1);
+    STARG_TRY(read_report(context, report, d));
+    STARG_TRY(
+        starg_tetmesh_read_memory(context, pieces->bytes, pieces->size, pieces->name, &d->mesh));
+    STARG_TRY(take_labels(context, report, d));
+    *out = d;
+done:
+    if (status != STARG_OK)
+        starg_decomposition_free(context, d);
+    return status;
+}
+
+starg_status starg_decomposition_read(starg_context *context, const char *pieces_path,
+                                      const char *report_path, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_file_bytes pieces = {.name = pieces_path}, report = {.name = report_path};
+    char *pieces_bytes = NULL, *report_bytes = NULL;
+    *out = NULL;
+    STARG_TRY(starg_file_read(context, STAGE, report_path, &report_bytes, &report.size));
+    STARG_TRY(starg_file_read(context, STAGE, pieces_path, &pieces_bytes, &pieces.size));
+    report.bytes = report_bytes;
+    pieces.bytes = pieces_bytes;
+    STARG_TRY(starg_decomposition_read_memory(context, &pieces, &report, out));
+done:
+    starg_release(context, report_bytes);
+    starg_release(context, pieces_bytes);
+    return status;
+}

@@ -1,0 +1,416 @@
+/* Visibility from a box: tables, the question of a box, and the order in which reasons are tried.
+ *
+ * The cheap ones come first: planes, then where segments begin, patches, and entries. A vertex is
+ * asked about once in a box, however many faces share it; only where the box had to be clipped to
+ * the inner half-space of a face, the vertices of the face are asked about once more. */
+#include "visibility/box.h"
+
+#include <math.h>
+
+#include "core/bits.h"
+#include "core/memory.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "mesh/topology.h"
+#include "visibility/box_parts.h"
+
+static const char STAGE[] = "visibility";
+
+/* ---- the scene ---- */
+
+/* The error bound is that of visibility/scene.c, with the extent of the triangle itself. */
+static void make_plane(const box_scene *scene, box_triangle *t) {
+    const double *a = box_corner(scene, t, 0), *b = box_corner(scene, t, 1);
+    const double *c = box_corner(scene, t, 2);
+    double from_centre[3], edge = 0;
+    for (int k = 0; k < 3; k++)
+        edge = fmax(edge, fmax(fabs(b[k] - a[k]), fabs(c[k] - a[k])));
+    vec3_triangle_normal(a, b, c, t->normal);
+    vec3_subtract(a, scene->centre, from_centre);
+    t->offset = vec3_dot(t->normal, from_centre);
+    t->bound = 128 * 0x1p-53 * edge * edge * scene->extent;
+    if (!(t->bound > 1e-250))
+        t->bound = INFINITY; /* too small for the analysis: always decide exactly */
+}
+
+static void make_triangles(box_scene *scene, const mesh_topology *topology) {
+    const uint32_t *faces = scene->solid->mesh->faces, *order = scene->tree->order;
+    for (size_t v = 0; v < scene->vertex_count; v++)
+        scene->outgoing[v] = BOX_NONE;
+    for (size_t rank = 0; rank < scene->face_count; rank++)
+        scene->rank_of[order[rank]] = (uint32_t)rank;
+    for (size_t rank = 0; rank < scene->face_count; rank++) {
+        box_triangle *t = &scene->triangles[rank];
+        size_t face = order[rank];
+        for (size_t k = 0; k < 3; k++) {
+            uint32_t twin = topology->twin[3 * face + k];
+            t->corner[k] = faces[3 * face + k];
+            t->twin[k] = 3 * scene->rank_of[twin / 3] + twin % 3;
+            if (scene->outgoing[t->corner[k]] == BOX_NONE)
+                scene->outgoing[t->corner[k]] = (uint32_t)(3 * rank + k);
+        }
+        make_plane(scene, t);
+    }
+}
+
+starg_status box_scene_create(starg_context *context, const starg_solid *solid, box_scene **out) {
+    starg_status status = STARG_OK;
+    box_scene *scene = NULL;
+    mesh_topology *topology = NULL;
+    *out = NULL;
+    STARG_TRY(topology_create(context, solid->mesh, &topology));
+    STARG_NEW_ZERO(context, STAGE, scene, 1);
+    scene->context = context;
+    scene->solid = solid;
+    scene->tree = solid->tree;
+    scene->points = solid->mesh->vertices;
+    scene->vertex_count = solid->mesh->vertex_count;
+    scene->face_count = solid->mesh->face_count;
+    scene->embedded = solid->check->embedded;
+    const bvh_box *all = &scene->tree->nodes[0].box;
+    for (int k = 0; k < 3; k++) {
+        scene->centre[k] = 0.5 * all->lower[k] + 0.5 * all->upper[k];
+        scene->extent = fmax(scene->extent, all->upper[k] - all->lower[k]);
+    }
+    STARG_NEW(context, STAGE, scene->triangles, scene->face_count);
+    STARG_NEW(context, STAGE, scene->rank_of, scene->face_count);
+    STARG_NEW(context, STAGE, scene->outgoing, scene->vertex_count);
+    make_triangles(scene, topology);
+    STARG_TRY(box_tree_create(context, scene->tree, scene->centre, scene->extent, &scene->boxes));
+    *out = scene;
+done:
+    topology_free(topology);
+    if (status != STARG_OK)
+        box_scene_free(scene);
+    return status;
+}
+
+void box_scene_free(box_scene *scene) {
+    if (scene == NULL)
+        return;
+    box_tree_free(scene->boxes);
+    starg_release(scene->context, scene->triangles);
+    starg_release(scene->context, scene->rank_of);
+    starg_release(scene->context, scene->outgoing);
+    starg_release(scene->context, scene);
+}
+
+/* ---- a triangle against a box ---- */
+
+/* The values of an affine function on a box: that at its lower corner plus the sum of an interval
+ * an axis. The function is gradient . (x - origin), where the gradient's components are differences
+ * of two products, or single differences; `size` is the sum of their absolute values times the
+ * distances. The error is below 16 x 2^-53 times the sum of absolute products. */
+typedef struct interval {
+    double least, most, bound;
+} interval;
+
+static interval range_on_box(const double gradient[3], const double size[3], const double origin[3],
+                             const bvh_box *box) {
+    interval r = {0, 0, 0};
+    for (int k = 0; k < 3; k++) {
+        double low = box->lower[k] - origin[k], high = box->upper[k] - origin[k];
+        double at_low = gradient[k] * low, at_high = gradient[k] * high;
+        r.least += at_low < at_high ? at_low : at_high;
+        r.most += at_low < at_high ? at_high : at_low;
+        r.bound += size[k] * fmax(fabs(low), fabs(high));
+    }
+    r.bound = 16 * 0x1p-53 * r.bound + SHAFT_TINY_3;
+    return r;
+}
+
+/* Outward normal of the triangle, and the sums of the absolute products in its components. */
+static void normal_with_size(const double *const corner[3], double normal[3], double size[3]) {
+    double u[3], v[3];
+    vec3_subtract(corner[1], corner[0], u);
+    vec3_subtract(corner[2], corner[0], v);
+    for (int k = 0; k < 3; k++) {
+        double x = u[(k + 1) % 3] * v[(k + 2) % 3], y = u[(k + 2) % 3] * v[(k + 1) % 3];
+        normal[k] = x - y;
+        size[k] = fabs(x) + fabs(y);
+    }
+}
+
+/* In the projection along axis k: is there a strip beside the line through a and b, on its other
+ * side than c or on this, that keeps the box from the triangle? */
+static bool edge_separates(int k, const double a[3], const double b[3], const double c[3],
+                           const bvh_box *box) {
+    int u = (k + 1) % 3, w = (k + 2) % 3;
+    double gradient[3] = {0}, size[3] = {0};
+    gradient[u] = a[w] - b[w];
+    gradient[w] = b[u] - a[u];
+    size[u] = fabs(gradient[u]);
+    size[w] = fabs(gradient[w]);
+    interval r = range_on_box(gradient, size, a, box);
+    double x = gradient[u] * (c[u] - a[u]), y = gradient[w] * (c[w] - a[w]), at_c = x + y;
+    double bound = r.bound + 16 * 0x1p-53 * (fabs(x) + fabs(y));
+    return r.least > bound + fmax(at_c, 0) || r.most < fmin(at_c, 0) - bound;
+}
+
+bool box_may_cross(const box_scene *scene, const box_triangle *t, const bvh_box *box) {
+    const double *const corner[3] = {box_corner(scene, t, 0), box_corner(scene, t, 1),
+                                     box_corner(scene, t, 2)};
+    double normal[3], size[3];
+    for (int k = 0; k < 3; k++)
+        if ((corner[0][k] < box->lower[k] && corner[1][k] < box->lower[k] &&
+             corner[2][k] < box->lower[k]) ||
+            (corner[0][k] > box->upper[k] && corner[1][k] > box->upper[k] &&
+             corner[2][k] > box->upper[k]))
+            return false;
+    normal_with_size(corner, normal, size);
+    interval r = range_on_box(normal, size, corner[0], box);
+    if (r.least > r.bound || r.most < -r.bound)
+        return false;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            if (edge_separates(k, corner[i], corner[(i + 1) % 3], corner[(i + 2) % 3], box))
+                return false;
+    return true;
+}
+
+/* ---- the inner half-space of a face ---- */
+
+typedef enum clip_result { CLIP_NOTHING_LEFT, CLIP_ALL_LEFT, CLIP_SOME_LEFT } clip_result;
+
+static bool no_corner_is_inner(const box_scene *scene, const box_triangle *t, const bvh_box *box) {
+    for (int i = 0; i < 8; i++) {
+        double p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = i >> k & 1 ? box->upper[k] : box->lower[k];
+        if (orient3d(box_corner(scene, t, 0), box_corner(scene, t, 1), box_corner(scene, t, 2), p) >
+            0)
+            return false;
+    }
+    return true;
+}
+
+/* *out = a box about what of `box` is on the inner side of the triangle, with a margin above the
+ * rounding error. On axis k the inner side reaches to where the function is zero if it is as low
+ * as can be on the other axes. */
+static clip_result clip(const box_scene *scene, const box_triangle *t, const bvh_box *box,
+                        bvh_box *out) {
+    const double *const corner[3] = {box_corner(scene, t, 0), box_corner(scene, t, 1),
+                                     box_corner(scene, t, 2)};
+    double normal[3], size[3];
+    normal_with_size(corner, normal, size);
+    interval r = range_on_box(normal, size, corner[0], box); /* negative on the inner side */
+    *out = *box;
+    if (r.most < -r.bound)
+        return CLIP_ALL_LEFT;
+    if (r.least > r.bound || (r.least > -r.bound && no_corner_is_inner(scene, t, box)))
+        return CLIP_NOTHING_LEFT;
+    for (int k = 0; k < 3; k++) {
+        double a = corner[0][k];
+        double least = fmin(normal[k] * (box->lower[k] - a), normal[k] * (box->upper[k] - a));
+        double reach = (least - r.least) / normal[k];
+        double margin = 4 * r.bound / fabs(normal[k]) + 8 * 0x1p-53 * (fabs(reach) + fabs(a));
+        if (normal[k] > 0 && a + reach + margin < out->upper[k])
+            out->upper[k] = fmax(a + reach + margin, out->lower[k]);
+        if (normal[k] < 0 && a + reach - margin > out->lower[k])
+            out->lower[k] = fmin(a + reach - margin, out->upper[k]);
+    }
+    return CLIP_SOME_LEFT;
+}
+
+/* ---- a box's question ---- */
+
+starg_status box_worker_create(const box_scene *scene, box_worker **out) {
+    starg_context *context = scene->context;
+    size_t n = scene->vertex_count, m = scene->face_count;
+    box_worker *w = starg_allocate_zero(context, 1, sizeof *w);
+    *out = NULL;
+    if (w == NULL)
+        return STARG_ERROR_MEMORY;
+    w->scene = scene;
+    w->crossing = starg_allocate(context, m, sizeof *w->crossing);
+    w->crossing_mark = starg_allocate_zero(context, m, sizeof *w->crossing_mark);
+    w->visit = starg_allocate_zero(context, m, sizeof *w->visit);
+    w->stack = starg_allocate(context, 2 * m, sizeof *w->stack);
+    w->seed = starg_allocate(context, n, sizeof *w->seed);
+    w->answer_mark = starg_allocate_zero(context, n, sizeof *w->answer_mark);
+    w->answer = starg_allocate(context, n, sizeof *w->answer);
+    if (w->crossing == NULL || w->crossing_mark == NULL || w->visit == NULL || w->stack == NULL ||
+        w->seed == NULL || w->answer_mark == NULL || w->answer == NULL) {
+        box_worker_free(w);
+        return STARG_ERROR_MEMORY;
+    }
+    for (size_t v = 0; v < n; v++)
+        w->seed[v] = BOX_NONE;
+    *out = w;
+    return STARG_OK;
+}
+
+void box_worker_free(box_worker *w) {
+    if (w == NULL)
+        return;
+    starg_context *context = w->scene->context;
+    starg_release(context, w->crossing);
+    starg_release(context, w->crossing_mark);
+    starg_release(context, w->visit);
+    starg_release(context, w->stack);
+    starg_release(context, w->seed);
+    starg_release(context, w->answer_mark);
+    starg_release(context, w->answer);
+    starg_release(context, w);
+}
+
+uint64_t box_worker_tests(const box_worker *worker) {
+    return worker->tests;
+}
+
+static bool add_crossing(void *user, uint32_t face) {
+    box_worker *w = user;
+    uint32_t rank = w->scene->rank_of[face];
+    if (box_may_cross(w->scene, &w->scene->triangles[rank], &w->box)) {
+        w->crossing[w->crossing_count++] = rank;
+        w->crossing_mark[rank] = w->question;
+    }
+    return true;
+}
+
+/* Numbers of floods and questions begin anew before they run out. */
+static void renew_marks(box_worker *w) {
+    if (w->flood < UINT32_MAX / 2 && w->question < UINT32_MAX / 2)
+        return;
+    memset(w->visit, 0, w->scene->face_count * sizeof *w->visit);
+    memset(w->crossing_mark, 0, w->scene->face_count * sizeof *w->crossing_mark);
+    memset(w->answer_mark, 0, w->scene->vertex_count * sizeof *w->answer_mark);
+    w->flood = w->question = 0;
+}
+
+static void set_current(box_worker *w, const bvh_box *box) {
+    w->current = box;
+    for (int k = 0; k < 3; k++)
+        w->centre[k] =
+            fmin(fmax(0.5 * box->lower[k] + 0.5 * box->upper[k], box->lower[k]), box->upper[k]);
+}
+
+/* What is outside of the bounding box of all is outside of the solid. False: all of it. */
+static bool crop(const bvh_box *all, const bvh_box *box, bvh_box *out) {
+    bool any = true;
+    for (int k = 0; k < 3; k++) {
+        out->lower[k] = fmax(box->lower[k], all->lower[k]);
+        out->upper[k] = fmin(box->upper[k], all->upper[k]);
+        any = any && out->lower[k] <= out->upper[k];
+    }
+    return any;
+}
+
+/* False: the box is outside of the solid. */
+static bool begin(box_worker *w, const bvh_box *box) {
+    if (!crop(&w->scene->tree->nodes[0].box, box, &w->box))
+        return false;
+    renew_marks(w);
+    w->question++;
+    w->crossing_count = 0;
+    set_current(w, &w->box);
+    bvh_query_box(w->scene->tree, &w->box, add_crossing, w);
+    return w->crossing_count > 0 || starg_solid_contains(w->scene->solid, w->centre);
+}
+
+static bool is_beyond(const bvh_box *box, const double v[3], double range) {
+    double nearest[3];
+    for (int k = 0; k < 3; k++)
+        nearest[k] = fmin(fmax(v[k], box->lower[k]), box->upper[k]);
+    return range < 1e100 && compare_distance(nearest, v, range) > 0;
+}
+
+static bool holds(const bvh_box *box, const double p[3]) {
+    for (int k = 0; k < 3; k++)
+        if (p[k] < box->lower[k] || p[k] > box->upper[k])
+            return false;
+    return true;
+}
+
+/* Why the current box does not see the vertex. */
+static box_reason_kind ask_vertex(box_worker *w, const box_question *q, uint32_t vertex,
+                                  bool recorded, uint32_t *seed) {
+    const double *v = w->scene->points + 3 * (size_t)vertex;
+    box_shaft shaft;
+    *seed = BOX_NONE;
+    w->tests++;
+    w->vertex = vertex;
+    if (w->scene->outgoing[vertex] == BOX_NONE)
+        return BOX_OUTSIDE;
+    if (is_beyond(w->current, v, q->range))
+        return BOX_FAR;
+    if (holds(w->current, v))
+        return BOX_OPEN;
+    shaft_make(&shaft, v, w->current);
+    if (box_start_hides(w, &shaft))
+        return BOX_START;
+    if (box_patch_hides(w, &shaft, FLOOD_PATCH, recorded, seed))
+        return BOX_PATCH;
+    if (box_fold_hides(w, &shaft, recorded, seed))
+        return BOX_FOLD;
+    return box_entry_hides(w, &shaft) ? BOX_ENTRY : BOX_OPEN;
+}
+
+/* The same for the whole box, asked once. */
+static box_reason_kind ask_vertex_once(box_worker *w, const box_question *q, uint32_t vertex,
+                                       bool recorded, uint32_t *seed) {
+    *seed = BOX_NONE;
+    if (!recorded && w->answer_mark[vertex] == w->question)
+        return w->answer[vertex];
+    box_reason_kind kind = ask_vertex(w, q, vertex, recorded, seed);
+    w->answer_mark[vertex] = w->question;
+    w->answer[vertex] = (uint8_t)kind;
+    return kind;
+}
+
+static box_reason hidden_by(const box_scene *scene, box_reason_kind kind, uint32_t vertex,
+                            uint32_t seed, bool clipped) {
+    return (box_reason){kind, vertex, seed == BOX_NONE ? BOX_NONE : scene->tree->order[seed],
+                        clipped};
+}
+
+static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, bool recorded) {
+    const box_scene *scene = w->scene;
+    const box_triangle *t = &scene->triangles[scene->rank_of[face]];
+    bvh_box left;
+    uint32_t seed;
+    clip_result inner = clip(scene, t, &w->box, &left);
+    if (inner == CLIP_NOTHING_LEFT)
+        return (box_reason){BOX_PLANE, BOX_NONE, BOX_NONE, false};
+    for (int k = 0; k < 3; k++) {
+        box_reason_kind kind = ask_vertex_once(w, q, t->corner[k], recorded, &seed);
+        if (kind != BOX_OPEN)
+            return hidden_by(scene, kind, t->corner[k], seed, false);
+    }
+    box_reason reason = {BOX_OPEN, BOX_NONE, BOX_NONE, false};
+    if (inner == CLIP_ALL_LEFT)
+        return reason;
+    set_current(w, &left);
+    for (int k = 0; k < 3 && reason.kind == BOX_OPEN; k++) {
+        box_reason_kind kind = ask_vertex(w, q, t->corner[k], recorded, &seed);
+        if (kind != BOX_OPEN)
+            reason = hidden_by(scene, kind, t->corner[k], seed, true);
+    }
+    set_current(w, &w->box);
+    return reason;
+}
+
+static box_reason ask(box_worker *w, const box_question *q, uint32_t target, bool recorded) {
+    uint32_t seed;
+    if (q->target == STARG_TARGET_FACES)
+        return ask_face(w, q, target, recorded);
+    box_reason_kind kind = ask_vertex_once(w, q, target, recorded, &seed);
+    return hidden_by(w->scene, kind, target, seed, false);
+}
+
+void box_look(box_worker *w, const box_question *q, uint64_t *open, box_reason *reasons) {
+    memset(open, 0, starg_bit_words(q->count) * sizeof *open);
+    bool outside = !begin(w, &q->box);
+    for (size_t i = 0; i < q->count; i++) {
+        if (q->among != NULL && !starg_bit_test(q->among, i))
+            continue;
+        box_reason reason = {outside ? BOX_OUTSIDE : BOX_OPEN, BOX_NONE, BOX_NONE, false};
+        bool known = q->known != NULL && starg_bit_test(q->known, i);
+        if (!outside && !known)
+            reason = ask(w, q, q->targets != NULL ? q->targets[i] : (uint32_t)i, reasons != NULL);
+        if (reason.kind == BOX_OPEN)
+            starg_bit_set(open, i);
+        if (reasons != NULL)
+            reasons[i] = reason;
+    }
+}

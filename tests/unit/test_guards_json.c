@@ -1,0 +1,140 @@
+/* GUARDS.json that is read and written again: nothing is lost, made up or cut off. */
+#include "support.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "starguard/guard.h"
+
+/* A file with some options and with or without its curve, as text. */
+typedef struct file_text {
+    char text[2048];
+} file_text;
+
+static file_text file_of(const char *options, const char *curve) {
+    file_text file;
+    snprintf(file.text, sizeof file.text,
+             "{\"format\":\"starguard-guards\",\"version\":1,"
+             "\"model\":{\"file\":\"m.off\",\"vertices\":4,\"faces\":4},"
+             "\"options\":{\"candidates\":\"medial\",\"count\":10,\"target\":\"faces\","
+             "\"faces\":\"vertices\",\"coverage\":1.0,\"max_guards\":0,\"range\":null,"
+             "\"clearance\":0.0,%s},"
+             "\"guards\":[{\"position\":[0.1,0.1,0.1],\"faces\":3,\"level\":0}],"
+             "\"coverage\":{\"faces\":0.75,\"area\":0.7,\"coverable_faces\":3,"
+             "\"uncovered_faces\":[2]%s},\"candidates\":5,\"lower_bound\":1,\"optimal\":true}",
+             options, curve);
+    return file;
+}
+
+static starg_guards *read_file(starg_context *context, const file_text *file) {
+    starg_guards *guards = NULL;
+    test_ok(context,
+            starg_guards_read_memory(context, file->text, strlen(file->text), "text", &guards));
+    return guards;
+}
+
+/* Written again, and that read and written once more: the same; free with starg_text_free. */
+static char *rewrite(starg_context *context, const file_text *file) {
+    char *text, *again;
+    size_t size;
+    starg_guards *guards = read_file(context, file), *second = NULL;
+    test_ok(context, starg_guards_write_memory(context, guards, guards->file, &text, &size));
+    test_ok(context, starg_guards_read_memory(context, text, size, "again", &second));
+    test_ok(context, starg_guards_write_memory(context, second, second->file, &again, &size));
+    assert_string_equal(text, again);
+    starg_text_free(context, again);
+    starg_guards_free(context, guards);
+    starg_guards_free(context, second);
+    return text;
+}
+
+static const char ILP[] = "\"method\":\"ilp\",\"redundancy\":1,\"cone\":null";
+static const char CURVE[] = ",\"curve\":[[0.75,0.7]]";
+
+/* Writing crashed. */
+static void test_file_without_curve(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    file_text with = file_of(ILP, CURVE), without = file_of(ILP, "");
+    char *text = rewrite(context, &with);
+    assert_non_null(strstr(text, "\"curve\":"));
+    starg_text_free(context, text);
+    text = rewrite(context, &without);
+    assert_null(strstr(text, "\"curve\":"));
+    starg_text_free(context, text);
+    test_context_free(context);
+}
+
+/* They were dropped, and -1 was written as the step. */
+static void test_level_options_survive(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    file_text file = file_of("\"method\":\"pilp\",\"redundancy\":2,\"cone\":90,\"coarsest\":300,"
+                             "\"step\":150,\"significance\":0.25,\"refine\":false",
+                             CURVE);
+    char *at = strstr(file.text, "\"level\":0");
+    memmove(at + 9 + 20, at + 9, strlen(at + 9) + 1);
+    memcpy(at + 9, ",\"direction\":[0,0,1]", 20);
+    starg_guards *guards = read_file(context, &file);
+    assert_int_equal(guards->options.coarsest, 300);
+    assert_int_equal(guards->options.step, 150);
+    assert_true(guards->options.significance == 0.25);
+    assert_false(guards->options.refine);
+    starg_guards_free(context, guards);
+    char *text = rewrite(context, &file);
+    assert_non_null(strstr(text, "\"coarsest\":300,\"step\":150"));
+    assert_non_null(strstr(text, "\"refine\":false"));
+    starg_text_free(context, text);
+    test_context_free(context);
+}
+
+/* A file that does not tell the step tells none afterwards; null stands for quarters. */
+static void test_missing_step(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    file_text without = file_of("\"method\":\"pilp\",\"redundancy\":1,\"cone\":null", CURVE);
+    char *text = rewrite(context, &without);
+    assert_null(strstr(text, "\"step\""));
+    starg_text_free(context, text);
+    file_text quarters =
+        file_of("\"method\":\"pilp\",\"redundancy\":1,\"cone\":null,\"step\":null", CURVE);
+    text = rewrite(context, &quarters);
+    assert_non_null(strstr(text, "\"step\":null"));
+    starg_text_free(context, text);
+    test_context_free(context);
+}
+
+/* Casts cut them off, and a cone that is no number was taken for 360. */
+static void test_numbers_out_of_range(void **state) {
+    static const struct {
+        const char *from, *to, *key;
+    } changes[] = {{"\"redundancy\":1", "\"redundancy\":4294967298", "\"redundancy\""},
+                   {"\"redundancy\":1", "\"redundancy\":0", "\"redundancy\""},
+                   {"\"level\":0", "\"level\":4294967296", "\"level\""},
+                   {"\"level\":0", "\"level\":-1", "\"level\""},
+                   {"\"cone\":null", "\"cone\":\"wide\"", "\"cone\""},
+                   {"\"cone\":null", "\"cone\":361", "\"cone\""}};
+    (void)state;
+    starg_context *context = test_context(1);
+    file_text file = file_of(ILP, CURVE), changed;
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        const char *at = strstr(file.text, changes[i].from);
+        starg_guards *guards = NULL;
+        assert_non_null(at);
+        snprintf(changed.text, sizeof changed.text, "%.*s%s%s", (int)(at - file.text), file.text,
+                 changes[i].to, at + strlen(changes[i].from));
+        assert_int_equal(
+            starg_guards_read_memory(context, changed.text, strlen(changed.text), "text", &guards),
+            STARG_ERROR_FORMAT);
+        assert_null(guards);
+        assert_non_null(strstr(starg_context_error(context)->message, changes[i].key));
+    }
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_file_without_curve), cmocka_unit_test(test_level_options_survive),
+        cmocka_unit_test(test_missing_step), cmocka_unit_test(test_numbers_out_of_range)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
