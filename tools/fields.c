@@ -1,6 +1,7 @@
 /* Usage: starguard_fields schemas FOLDER | page FILE.md | keywords FILE.pyi */
 #include "fields.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,9 +21,36 @@ static const starg_field GUARD_REPORT[] = {
 };
 static const starg_fields GUARD_REPORT_TABLE = {.name = "report", FIELD_ROWS(GUARD_REPORT)};
 
+#define DISTANCE(KEY, HELP)                                                                        \
+    { .key = KEY, .kind = STARG_FIELD_REAL, .high = HUGE_VAL, .help = HELP }
+static const starg_field RECONSTRUCTION[] = {
+    {.key = "points",
+     .kind = STARG_FIELD_COUNT,
+     .most = UINT64_MAX,
+     .help = "Of the boundary, that the descriptor holds."},
+    {.key = "samples",
+     .kind = STARG_FIELD_COUNT,
+     .most = UINT64_MAX,
+     .help = "Random points of the surface."},
+    DISTANCE("to_mean", "Distance of the points from the surface, by the diagonal: mean."),
+    DISTANCE("to_largest", "The same: largest."),
+    DISTANCE("from_mean", "Distance of the samples to the nearest point, by the diagonal: mean."),
+    DISTANCE("from_largest", "The same: largest."),
+};
+static const starg_fields RECONSTRUCTION_TABLE = {.name = "reconstruction",
+                                                  FIELD_ROWS(RECONSTRUCTION)};
+static const starg_field DESCRIBE_REPORT[] = {
+    {.key = "output", .kind = STARG_FIELD_TEXT, .help = "The file that was written."},
+    {.key = "reconstruction",
+     .kind = STARG_FIELD_RECORD,
+     .of = &RECONSTRUCTION_TABLE,
+     .help = "How near what the descriptor holds comes to the surface."},
+};
+static const starg_fields DESCRIBE_REPORT_TABLE = {.name = "report", FIELD_ROWS(DESCRIBE_REPORT)};
+
 const document documents[] = {
     {"guards", "GUARDS.json", "guard", &guards_file_fields, &GUARD_REPORT_TABLE},
-    {"descriptor", "DESCRIPTOR.json", "describe", &descriptor_file_fields, NULL},
+    {"descriptor", "DESCRIPTOR.json", "describe", &descriptor_file_fields, &DESCRIBE_REPORT_TABLE},
     {"map", "MAP.json", "map", &map_file_fields, NULL},
 };
 const size_t document_count = sizeof documents / sizeof *documents;

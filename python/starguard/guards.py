@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 _OPTIONS = Options("starg_guard_options", old={
     "candidate_count": "count", "engine": "visibility", "face_rule": "faces"})
-_CANDIDATES = {"skeleton": lib.STARG_CANDIDATES_SKELETON, "medial": lib.STARG_CANDIDATES_MEDIAL,
-               "interior": lib.STARG_CANDIDATES_INTERIOR}
+_CANDIDATES = {word: number for number, word in enumerate(_OPTIONS.fields["candidates"].words)
+               if number != lib.STARG_CANDIDATES_GIVEN}
 
 
 @dataclass(frozen=True, eq=False)

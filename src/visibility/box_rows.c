@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "core/bits.h"
+#include "core/fields.h"
 #include "core/parallel.h"
 #include "visibility/box.h"
 
@@ -43,16 +44,10 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
 
 static starg_status check_arguments(starg_context *context, const double *boxes, size_t count,
                                     const starg_visibility_options *options) {
-    if (!(options->range >= 0))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the range is %g; it must be zero or more", options->range);
     if (options->cone != 360)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "the cone is %g degrees; from a box one looks all around: 360",
                           options->cone);
-    if (options->target > STARG_TARGET_VERTICES || options->face_rule > STARG_FACES_WHOLE)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "an option holds a number that its enum does not have");
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < 3; k++) {
             double lower = boxes[6 * i + k], upper = boxes[6 * i + 3 + k];
@@ -64,7 +59,7 @@ static starg_status check_arguments(starg_context *context, const double *boxes,
                                      "and in this order",
                                      i, lower, upper, "xyz"[k]);
         }
-    return STARG_OK;
+    return fields_check(context, STAGE, starg_visibility_options_fields(), options);
 }
 
 starg_status starg_visibility_region(starg_context *context, const starg_solid *solid,
