@@ -7,5 +7,5 @@ command -v cppcheck >/dev/null || {
     exit 0
 }
 cppcheck --enable=warning,performance,portability --inline-suppr --quiet --std=c11 -j "$(nproc)" \
-    -Iinclude -Isrc --suppress=missingIncludeSystem --error-exitcode=1 src cli
+    -Iinclude -Isrc --suppress=missingIncludeSystem --error-exitcode=1 src cli tools
 echo "cppcheck: nothing to complain of"

@@ -34,7 +34,8 @@ make_package() {
     for part in bin/starguard /libstarguard.so /libstarguard-shapes.so /libstarguard.a \
         /libstarguard-shapes.a include/starguard/starguard.h \
         pkgconfig/starguard.pc pkgconfig/starguard-shapes.pc starguardConfig.cmake man1/starguard-guard.1 \
-        bash-completion/completions/starguard doc/starguard/copyright doc/starguard/docs/README.md; do
+        bash-completion/completions/starguard doc/starguard/copyright doc/starguard/docs/README.md \
+        docs/fields.md docs/c-api.md docs/python-api.md schema/guards.schema.json; do
         grep -q "$part" "$scratch/contents" || { echo "not in the package: $part" >&2; exit 1; }
     done
 }

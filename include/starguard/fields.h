@@ -108,6 +108,10 @@ STARG_API void starg_fields_default(const starg_fields *fields, void *record);
  * `size` bytes; empty where there is nothing to say. */
 STARG_API void starg_field_default_text(const starg_field *field, char *text, size_t size);
 
+/* What a FLAG, COUNT, REAL or CHOICE must be, for messages ("above 0 and at most 1") in `text`,
+ * which is cut off at `size` bytes. */
+STARG_API void starg_field_expectation(const starg_field *field, char *text, size_t size);
+
 /* The word for a number of the CHOICE that a table has under a key; NULL if there is none. */
 STARG_API const char *starg_fields_word(const starg_fields *fields, const char *key,
                                         uint64_t number);

@@ -1,7 +1,7 @@
 """starguard: the fewest guards inside a solid that see its whole boundary, and star-shaped pieces.
 
     >>> import starguard
-    >>> room = starguard.sample("gallery", vertex_count=1000)
+    >>> room = starguard.sample("gallery", vertices=1000)
     >>> guards = starguard.guard(room)
     >>> starguard.verify(room, guards).passed
     True

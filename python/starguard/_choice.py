@@ -3,18 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Mapping
 
-from ._library import ffi, lib, text
 from .errors import ArgumentError
-
-
-def words(fields: Any, key: str) -> dict[str, int]:
-    """The words of an option and their values, as its table in C has them."""
-    found: dict[str, int] = {}
-    while True:
-        word = lib.starg_fields_word(fields, key.encode(), len(found))
-        if word == ffi.NULL:
-            return found
-        found[text(word)] = len(found)
 
 
 def choose(name: str, word: str, words: Mapping[str, int]) -> int:

@@ -2,12 +2,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from ._choice import give
-from ._library import ffi, lib, text
+from ._library import lib, text
+from ._options import Options, takes
 from ._session import Session
 from ._types import Progress
 from .mesh import Mesh
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import SampleOptions
+
+_OPTIONS = Options("starg_sample_options", old={"vertex_count": "vertices"})
 
 
 @dataclass(frozen=True)
@@ -31,17 +39,15 @@ def samples() -> list[SampleInfo]:
     return [SampleInfo(text(e.name), text(e.description), e.poses) for e in entries]
 
 
-def sample(name: str, *, pose: int | None = None, vertex_count: int | None = None,
-           progress: Progress | None = None) -> Mesh:
-    """Makes the sample of that name: a closed, outward, embedded mesh of about 5,000 vertices.
+@takes(_OPTIONS)
+def sample(name: str, *, progress: Progress | None = None, **options: Unpack[SampleOptions]) -> Mesh:
+    """Makes the sample of that name: a closed, outward, embedded mesh.
 
     >>> import starguard
-    >>> starguard.sample("dog", pose=2, vertex_count=1000)
+    >>> starguard.sample("dog", pose=2, vertices=1000)
     Mesh(1000 vertices, 1996 faces)
     """
     session = Session()
-    options = ffi.new("starg_sample_options *")
-    lib.starg_sample_options_default(options)
-    give(options, pose=pose, vertex_count=vertex_count)
+    wanted = _OPTIONS.make(options)
     return Mesh._of(session.make("starg_mesh", lib.starg_mesh_free, lib.starg_sample_create,
-                                 session.context, name.encode(), options, progress=progress))
+                                 session.context, name.encode(), wanted.pointer, progress=progress))

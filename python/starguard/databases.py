@@ -94,7 +94,7 @@ class Database:
     >>> import starguard
     >>> for name in ("l-room", "star"):
     ...     for size in (500, 700):
-    ...         starguard.sample(name, vertex_count=size).write(f"{name}_{size}.off")
+    ...         starguard.sample(name, vertices=size).write(f"{name}_{size}.off")
     >>> with starguard.Database.create("shapes.db") as shapes:
     ...     added = shapes.add(["l-room_500.off", "star_500.off", "no.off"])
     ...     nearest = shapes.query("star_700.off", 1)

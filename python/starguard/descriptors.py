@@ -3,21 +3,28 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Sequence, Union
+from typing import TYPE_CHECKING, Any, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give
+from ._choice import choose
 from ._fields import fill
 from ._library import ffi, lib, text
+from ._options import Options, takes
 from ._session import Session
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .guards import name_of
 from .mesh import as_mesh
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import DescribeOptions
+
+_OPTIONS = Options("starg_descriptor_options")
 KINDS = {text(lib.starg_signature_name(kind)): kind for kind in range(lib.STARG_SIGNATURE_KINDS)}
 
 #: What stands for "no class" in `retrieval`.
@@ -75,7 +82,7 @@ class Descriptor:
         """Reads DESCRIPTOR.json.
 
         >>> import starguard
-        >>> starguard.describe(starguard.sample("l-room", vertex_count=500)).write("room.json")
+        >>> starguard.describe(starguard.sample("l-room", vertices=500)).write("room.json")
         >>> starguard.Descriptor.read("room.json")
         Descriptor(1 guards, 0 edges)
         """
@@ -104,7 +111,7 @@ class Descriptor:
         """The boundary as the descriptor knows it: (guards, directions, 3).
 
         >>> import starguard
-        >>> room = starguard.sample("l-room", vertex_count=500)
+        >>> room = starguard.sample("l-room", vertices=500)
         >>> starguard.describe(room, directions=100).points().shape
         (1, 100, 3)
         """
@@ -130,24 +137,23 @@ class Descriptor:
             session.context, self._handle, choose("kind", kind, KINDS), shared=True))
 
 
-def describe(model: Any, *, directions: int | None = None, effort: int | None = None,
-             threads: int | None = None, seed: int | None = None, time_limit: float | None = None,
-             progress: Progress | None = None) -> Descriptor:
+@takes(_OPTIONS)
+def describe(model: Any, *, threads: int | None = None, seed: int | None = None,
+             time_limit: float | None = None, progress: Progress | None = None,
+             **options: Unpack[DescribeOptions]) -> Descriptor:
     """Describes a shape by the guards of a quick star decomposition and what they see.
 
     >>> import starguard
-    >>> d = starguard.describe(starguard.sample("l-room", vertex_count=500))
+    >>> d = starguard.describe(starguard.sample("l-room", vertices=500))
     >>> d.distances.shape, d.guards["position"].shape
     ((1, 256), (1, 3))
     """
     mesh = as_mesh(model)
     session = Session(threads, seed)
-    options = ffi.new("starg_descriptor_options *")
-    lib.starg_descriptor_options_default(options)
-    give(options, direction_count=directions, effort=effort)
+    wanted = _OPTIONS.make(options)
     return Descriptor._of(session.make(
         "starg_descriptor", lib.starg_descriptor_free, lib.starg_descriptor_create, session.context,
-        mesh._handle, options, shared=True, progress=progress, time_limit=time_limit), mesh.file)
+        mesh._handle, wanted.pointer, shared=True, progress=progress, time_limit=time_limit), mesh.file)
 
 
 def directions(count: int = 256) -> Array:
@@ -188,7 +194,7 @@ class Signature:
         """A signature of numbers that were stored.
 
         >>> import starguard
-        >>> a = starguard.signature(starguard.sample("star", vertex_count=500), "d2")
+        >>> a = starguard.signature(starguard.sample("star", vertices=500), "d2")
         >>> b = starguard.Signature.restore(a.kind, a.version, a.numbers)
         >>> starguard.match(a, b)
         0.0
@@ -210,7 +216,7 @@ def signature(model: Any, kind: str = "star", *, threads: int | None = None,
     """Computes a signature. It does not change when the model is moved, turned, scaled or mirrored.
 
     >>> import starguard
-    >>> starguard.signature(starguard.sample("star", vertex_count=500), "shape-dna").numbers.shape
+    >>> starguard.signature(starguard.sample("star", vertices=500), "shape-dna").numbers.shape
     (50,)
     """
     mesh = as_mesh(model)
@@ -227,7 +233,7 @@ def signatures(model: Any, *, threads: int | None = None, seed: int | None = Non
     """The signatures of all kinds, for which a descriptor is made once.
 
     >>> import starguard
-    >>> sorted(starguard.signatures(starguard.sample("l-room", vertex_count=500)))
+    >>> sorted(starguard.signatures(starguard.sample("l-room", vertices=500)))
     ['d2', 'paper', 'shape-dna', 'star']
     """
     mesh = as_mesh(model)
@@ -271,7 +277,7 @@ def is_descriptor(path: PathLike) -> bool:
     """Does the content of a file say that it is a descriptor? No model begins like that.
 
     >>> import starguard
-    >>> starguard.sample("star", vertex_count=500).write("star.off")
+    >>> starguard.sample("star", vertices=500).write("star.off")
     >>> starguard.is_descriptor("star.off")
     False
     """
@@ -291,7 +297,7 @@ def match(a: Comparable, b: Comparable, kind: str = "star", *, threads: int | No
     "shape-dna" or "d2".
 
     >>> import starguard
-    >>> star, room = (starguard.sample(name, vertex_count=500) for name in ("star", "l-room"))
+    >>> star, room = (starguard.sample(name, vertices=500) for name in ("star", "l-room"))
     >>> starguard.match(star, star, "d2"), starguard.match(star, room, "d2") > 0.1
     (0.0, True)
     """
@@ -309,8 +315,8 @@ def distances(signatures: Sequence[Signature], *, threads: int | None = None,
     """All distances between signatures of one kind: a symmetric matrix.
 
     >>> import starguard
-    >>> rooms = [starguard.sample("l-room", vertex_count=n) for n in (500, 700)]
-    >>> models = rooms + [starguard.sample("star", vertex_count=500)]
+    >>> rooms = [starguard.sample("l-room", vertices=n) for n in (500, 700)]
+    >>> models = rooms + [starguard.sample("star", vertices=500)]
     >>> m = starguard.distances([starguard.signature(model, "d2") for model in models])
     >>> m.shape, bool(m[0, 1] < m[0, 2])
     ((3, 3), True)

@@ -3,24 +3,29 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of, words
+from ._choice import choose
 from ._fields import fill
 from ._library import ffi, lib, text
+from ._options import Options, takes
 from ._session import Session
 from ._types import Array, PathLike, Progress
 from .solid import as_solid
-from .visibility import ENGINES, FACE_RULES, TARGETS, set_view
 
-_METHODS = words(lib.starg_guard_options_fields(), "method")
-_ALL_CANDIDATES = words(lib.starg_guard_options_fields(), "candidates")
-_CANDIDATES = {word: value for word, value in _ALL_CANDIDATES.items()
-               if value != lib.STARG_CANDIDATES_GIVEN}
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import GuardOptions
+
+_OPTIONS = Options("starg_guard_options", old={
+    "candidate_count": "count", "engine": "visibility", "face_rule": "faces"})
+_CANDIDATES = {word: number for number, word in enumerate(_OPTIONS.fields["candidates"].words)
+               if number != lib.STARG_CANDIDATES_GIVEN}
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,14 +113,14 @@ class Guards:
                                             np.uint32),
             curve_faces=_arrays.view(keeper, g.curve_faces, (count,), np.float64),
             curve_area=_arrays.view(keeper, g.curve_area, (count,), np.float64),
-            options=_options_dict(g.options))
+            options=_OPTIONS.read(ffi.addressof(g, "options")))
 
     @classmethod
     def read(cls, path: PathLike) -> Guards:
         """Reads GUARDS.json (docs/formats.md).
 
         >>> import starguard
-        >>> room = starguard.sample("l-room", vertex_count=500)
+        >>> room = starguard.sample("l-room", vertices=500)
         >>> starguard.guard(room).write("guards.json")
         >>> starguard.Guards.read("guards.json")
         Guards(1, lower_bound=1, coverage_area=1)
@@ -141,62 +146,34 @@ class Guards:
                      _arrays.path(name) if name is not None else ffi.NULL, _arrays.path(path))
 
 
-def _options_dict(options: Any) -> dict[str, Any]:
-    view = options.visibility
-    names = ("candidate_count", "coverage", "max_guards", "redundancy", "clearance", "max_nodes",
-             "coarsest", "step", "significance", "refine", "refine_lines")
-    return {"method": word_of(options.method, _METHODS),
-            "candidates": word_of(options.candidates, _ALL_CANDIDATES),
-            **{name: getattr(options, name) for name in names},
-            "engine": word_of(view.engine, ENGINES), "target": word_of(view.target, TARGETS),
-            "face_rule": word_of(view.face_rule, FACE_RULES), "range": view.range, "cone": view.cone}
-
-
-def guard(model: Any, *, method: str | None = None, candidates: str | ArrayLike | None = None,
-          candidate_count: int | None = None, coverage: float | None = None,
-          max_guards: int | None = None, redundancy: int | None = None,
-          clearance: float | None = None, engine: str | None = None, target: str | None = None,
-          face_rule: str | None = None, range: float | None = None, cone: float | None = None,
-          max_nodes: int | None = None, coarsest: int | None = None, step: int | None = None,
-          significance: float | None = None, refine: bool | None = None,
-          refine_lines: int | None = None, threads: int | None = None, seed: int | None = None,
-          time_limit: float | None = None, progress: Progress | None = None) -> Guards:
+@takes(_OPTIONS)
+def guard(model: Any, *, candidates: str | ArrayLike | None = None, threads: int | None = None,
+          seed: int | None = None, time_limit: float | None = None,
+          progress: Progress | None = None, **options: Unpack[GuardOptions]) -> Guards:
     """Places guards that together see the whole boundary, as few as can be found.
 
-    `method` "pilp" (default) goes from coarse to fine and then refines; "ilp" finds the fewest of
-    the candidates and proves it; "greedy" is fastest. `candidates` tells where guards may stand:
-    "skeleton" (default), "medial", "interior", or points of shape (n, 3). `coverage` below 1 asks
-    for a fraction of the area only, `max_guards` for the most area that so many see, `redundancy`
-    for faces seen by so many, `clearance` for a distance from the walls, `range` and `cone` for
-    guards like cameras. The rest is in include/starguard/guard.h. Faces that nothing can see are no
-    error: they are listed in `uncovered`.
+    `candidates` tells where guards may stand: on the curve "skeleton" (default), on the "medial"
+    axis, on a lattice in the "interior", or at points of shape (n, 3). Faces that nothing can see
+    are no error: they are listed in `uncovered`.
 
     >>> import starguard
-    >>> guards = starguard.guard(starguard.sample("l-room", vertex_count=500))
+    >>> guards = starguard.guard(starguard.sample("l-room", vertices=500))
     >>> len(guards), guards.lower_bound, guards.optimal, guards.positions.shape
     (1, 1, True, (1, 3))
     """
     solid = as_solid(model)
     session = Session(threads, seed)
-    options = ffi.new("starg_guard_options *")
-    lib.starg_guard_options_default(options)
-    if method is not None:
-        options.method = choose("method", method, _METHODS)
+    wanted = _OPTIONS.make(options)
     if isinstance(candidates, str):
-        options.candidates = choose("candidates", candidates, _CANDIDATES)
+        wanted.pointer.candidates = choose("candidates", candidates, _CANDIDATES)
     elif candidates is not None:
         places = _arrays.points(candidates, "candidates")
-        pointer = _arrays.pointer("double[]", places)
-        options.candidates = lib.STARG_CANDIDATES_GIVEN
-        options.points = pointer
-        options.point_count = len(places)
-    give(options, candidate_count=candidate_count, coverage=coverage, max_guards=max_guards,
-         redundancy=redundancy, clearance=clearance, max_nodes=max_nodes, coarsest=coarsest,
-         step=step, significance=significance, refine=refine, refine_lines=refine_lines)
-    set_view(options.visibility, engine=engine, target=target, face_rule=face_rule,
-             range=range, cone=cone)
+        points = _arrays.pointer("double[]", places)
+        wanted.pointer.candidates = lib.STARG_CANDIDATES_GIVEN
+        wanted.pointer.points = points
+        wanted.pointer.point_count = len(places)
     handle = session.make("starg_guards", lib.starg_guards_free, lib.starg_guard, session.context,
-                          solid._handle, options, shared=True, progress=progress,
+                          solid._handle, wanted.pointer, shared=True, progress=progress,
                           time_limit=time_limit)
     return Guards._of(handle, solid.mesh.file)
 
@@ -212,7 +189,7 @@ def candidate_points(model: Any, source: str = "skeleton", count: int = 1000, *,
     """Points where guards may stand, of shape (n, 3): "skeleton", "medial" or "interior".
 
     >>> import starguard
-    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> room = starguard.sample("l-room", vertices=500)
     >>> starguard.candidate_points(room, "interior", 50).shape[1]
     3
     """

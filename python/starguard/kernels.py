@@ -39,7 +39,7 @@ def kernel(model: Any, *, trust_closed: bool = False, threads: int | None = None
     """Finds the kernel of a closed, outward oriented mesh; both verdicts are exact proofs.
 
     >>> import starguard
-    >>> room = starguard.kernel(starguard.sample("l-room", vertex_count=500))
+    >>> room = starguard.kernel(starguard.sample("l-room", vertices=500))
     >>> room.star, room.verdict
     (True, 'interior')
     """

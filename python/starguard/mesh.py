@@ -9,19 +9,24 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give
+from ._choice import choose
 from ._fields import fill
 from ._library import ffi, lib, text
+from ._options import Options, takes
 from ._session import Session
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import RepairOptions
     from .solid import Solid
 
 #: What stands in a vertex map for a vertex of no face.
 NO_VERTEX = 2**32 - 1
 
+_REPAIR = Options("starg_repair_options", old={"max_rounds": "rounds"})
 _FORMATS = {"auto": lib.STARG_MESH_AUTO, "off": lib.STARG_MESH_OFF, "obj": lib.STARG_MESH_OBJ,
             "ply": lib.STARG_MESH_PLY_BINARY, "ply-ascii": lib.STARG_MESH_PLY_ASCII,
             "stl": lib.STARG_MESH_STL_BINARY, "stl-ascii": lib.STARG_MESH_STL_ASCII}
@@ -87,7 +92,7 @@ class Mesh:
         """Reads OFF, OBJ, PLY or STL; the content tells which. "-" is standard input.
 
         >>> import starguard
-        >>> starguard.sample("l-room", vertex_count=500).write("room.off")
+        >>> starguard.sample("l-room", vertices=500).write("room.off")
         >>> starguard.Mesh.read("room.off")
         Mesh(506 vertices, 1008 faces)
         """
@@ -114,7 +119,7 @@ class Mesh:
         "ply-ascii", "stl" or "stl-ascii". `face_colors` is (m, 3), 0 to 255; PLY and OFF keep it.
 
         >>> import starguard
-        >>> mesh = starguard.sample("l-room", vertex_count=500)
+        >>> mesh = starguard.sample("l-room", vertices=500)
         >>> mesh.write("room.ply", face_colors=[[200, 30, 30]] * len(mesh.faces))
         """
         session = Session()
@@ -171,11 +176,11 @@ class Mesh:
                               session.context, self._handle, shared=True, progress=progress)
         return Check._of(handle, handle, len(self.faces))
 
-    def repair(self, *, merge_distance: float | None = None, max_hole_edges: int | None = None,
-               max_rounds: int | None = None,
-               progress: Progress | None = None) -> tuple[Mesh, RepairReport]:
-        """Mends what can be mended: the new mesh, and what was done. `merge_distance` is a fraction
-        of the bounding box's diagonal. Raises MeshError when the result would still not be usable.
+    @takes(_REPAIR)
+    def repair(self, *, progress: Progress | None = None,
+               **options: Unpack[RepairOptions]) -> tuple[Mesh, RepairReport]:
+        """Mends what can be mended: the new mesh, and what was done. Raises MeshError when the
+        result would still not be usable.
 
         >>> import starguard
         >>> open_mesh = starguard.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -185,15 +190,12 @@ class Mesh:
         (Mesh(4 vertices, 4 faces), 1)
         """
         session = Session()
-        options = ffi.new("starg_repair_options *")
-        lib.starg_repair_options_default(options)
-        give(options, merge_distance=merge_distance, max_hole_edges=max_hole_edges,
-             max_rounds=max_rounds)
+        wanted = _REPAIR.make(options)
         report = ffi.new("starg_repair_report *")
         out = ffi.new("starg_mesh **")
         try:
-            session.call(lib.starg_mesh_repair, session.context, self._handle, options, out, report,
-                         progress=progress)
+            session.call(lib.starg_mesh_repair, session.context, self._handle, wanted.pointer, out,
+                         report, progress=progress)
         finally:
             handle = session.own(out[0], lib.starg_mesh_free) if out[0] else None
         return Mesh._of(handle), fill(RepairReport, report)
@@ -205,7 +207,7 @@ class Mesh:
         that it has become there (or NO_VERTEX).
 
         >>> import starguard
-        >>> mesh, vertex_map = starguard.sample("dog", vertex_count=1000).simplify(300)
+        >>> mesh, vertex_map = starguard.sample("dog", vertices=1000).simplify(300)
         >>> len(mesh.vertices), vertex_map.max()
         (300, 299)
         """

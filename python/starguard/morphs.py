@@ -3,22 +3,28 @@ from __future__ import annotations
 
 import threading
 from dataclasses import dataclass, field
-from typing import Any, Sequence
+from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of, words
+from ._choice import word_of
 from ._fields import fill
 from ._library import ffi, lib
+from ._options import Options, takes
 from ._session import Session
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .mesh import Mesh, as_mesh
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import MorphOptions
+
+_OPTIONS = Options("starg_morph_options")
 _MAP_KINDS = {"same": lib.STARG_MAP_SAME, "sphere": lib.STARG_MAP_SPHERE, "given": lib.STARG_MAP_GIVEN}
-_METHODS = words(lib.starg_morph_options_fields(), "method")
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +81,7 @@ def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *
     """Maps A onto B. `landmarks` are pairs of vertices (k, 2), of A and of B, or a file of them.
 
     >>> import starguard
-    >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
     >>> poses = starguard.map_surface(a, b)
     >>> poses.kind, bool((poses.images() == b.vertices).all())
     ('same', True)
@@ -100,7 +106,7 @@ def read_landmarks(path: PathLike, a: Any, b: Any) -> Array:
     """Reads landmarks: a pair a line, two vertex numbers or six coordinates. Shape (k, 2).
 
     >>> import pathlib, starguard
-    >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
     >>> _ = pathlib.Path("marks.txt").write_text("0 0\\n17 17\\n")
     >>> starguard.read_landmarks("marks.txt", a, b).tolist()
     [[0, 0], [17, 17]]
@@ -133,16 +139,16 @@ class FrameMeasures:
     area_drift: float
 
 
+@takes(_OPTIONS)
 class Morph:
     """The way from A to another shape of the same faces, ready for any moment. Several threads may
     share one: one of them works with it at a time.
 
     `target` is where A's vertices go: a SurfaceMap, positions (n, 3), or a model B, onto which A is
-    then mapped. `method` is "star" (pieces about corresponding guards), "arap" (as rigid as
-    possible), "linear" or "spherical".
+    then mapped.
 
     >>> import starguard
-    >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
     >>> morph = starguard.Morph(a, b)
     >>> morph.frame(0.5)
     Mesh(500 vertices, 996 faces)
@@ -150,20 +156,17 @@ class Morph:
     0
     """
 
-    def __init__(self, a: Any, target: Any, *, method: str = "star", candidates: int | None = None,
-                 threads: int | None = None, seed: int | None = None,
-                 time_limit: float | None = None, progress: Progress | None = None) -> None:
+    def __init__(self, a: Any, target: Any, *, threads: int | None = None, seed: int | None = None,
+                 time_limit: float | None = None, progress: Progress | None = None,
+                 **options: Unpack[MorphOptions]) -> None:
         self.mesh: Mesh = as_mesh(a)  #: A
         images = self._images(target, threads=threads, seed=seed, progress=progress)
         self._session = Session(threads, seed)
         self._lock = threading.Lock()
-        options = ffi.new("starg_morph_options *")
-        lib.starg_morph_options_default(options)
-        options.method = choose("method", method, _METHODS)
-        give(options, candidates=candidates)
+        wanted = _OPTIONS.make(options)
         self._handle = self._session.make(
             "starg_morph", lib.starg_morph_free, lib.starg_morph_create, self._session.context,
-            self.mesh._handle, _arrays.pointer("double[]", images), options, progress=progress,
+            self.mesh._handle, _arrays.pointer("double[]", images), wanted.pointer, progress=progress,
             time_limit=time_limit)
         m, count = self._handle, lib.starg_morph_guard_count(self._handle)
         #: Guards of A and their counterparts, (k, 3) each; none for other methods than star and
@@ -217,7 +220,7 @@ class Morph:
         """Writes a .glb that plays the morph.
 
         >>> import starguard
-        >>> a, b = (starguard.sample("dog", pose=pose, vertex_count=500) for pose in (0, 1))
+        >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
         >>> starguard.Morph(a, b, method="linear").write_animation("dog.glb", frames=5)
         """
         moments = np.linspace(0, 1, frames)
@@ -229,7 +232,7 @@ def write_animation(path: PathLike, model: Any, frames: Sequence[ArrayLike],
     """Writes a .glb of a mesh whose vertices move: frames of shape (n, 3), in equal steps.
 
     >>> import starguard
-    >>> star = starguard.sample("star", vertex_count=500)
+    >>> star = starguard.sample("star", vertices=500)
     >>> starguard.write_animation("grow.glb", star, [star.vertices, 2 * star.vertices])
     """
     mesh = as_mesh(model)
@@ -247,7 +250,7 @@ def read_animation(path: PathLike) -> list[Mesh]:
     """Reads the frames of such a file: meshes of the same faces.
 
     >>> import starguard
-    >>> star = starguard.sample("star", vertex_count=500)
+    >>> star = starguard.sample("star", vertices=500)
     >>> starguard.write_animation("grow.glb", star, [star.vertices, 2 * star.vertices])
     >>> len(starguard.read_animation("grow.glb"))
     2
@@ -260,7 +263,7 @@ def animation_from_bytes(data: bytes, name: str = "memory") -> list[Mesh]:
     """The same from the bytes of such a file; `name` stands in messages.
 
     >>> import pathlib, starguard
-    >>> star = starguard.sample("star", vertex_count=500)
+    >>> star = starguard.sample("star", vertices=500)
     >>> starguard.write_animation("grow.glb", star, [star.vertices, 2 * star.vertices])
     >>> len(starguard.animation_from_bytes(pathlib.Path("grow.glb").read_bytes()))
     2

@@ -47,7 +47,7 @@ def write_picture(path: PathLike, model: Any, *, size: tuple[int, int] | None = 
     is the axis that points up, `point_radius` a fraction of the diagonal.
 
     >>> import starguard
-    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> room = starguard.sample("l-room", vertices=500)
     >>> starguard.write_picture("room.png", room, points=starguard.guard(room).positions,
     ...                         size=(320, 240))
     """
@@ -68,7 +68,7 @@ def picture(model: Any, *, size: tuple[int, int] | None = None, azimuth: float |
     """The same picture as the bytes of a PNG, for example to be shown in a notebook.
 
     >>> import starguard
-    >>> starguard.picture(starguard.sample("star", vertex_count=500), size=(160, 120))[1:4]
+    >>> starguard.picture(starguard.sample("star", vertices=500), size=(160, 120))[1:4]
     b'PNG'
     """
     mesh = as_mesh(model)
@@ -93,7 +93,7 @@ def write_picture_sheet(path: PathLike, models: Sequence[Sequence[Any]], *,
     """Draws rows of meshes side by side into one PNG; `size` is that of one of them.
 
     >>> import starguard
-    >>> poses = [starguard.sample("dog", pose=pose, vertex_count=500) for pose in range(3)]
+    >>> poses = [starguard.sample("dog", pose=pose, vertices=500) for pose in range(3)]
     >>> starguard.write_picture_sheet("dogs.png", [poses], size=(200, 150))
     """
     meshes = [[as_mesh(model) for model in row] for row in models]

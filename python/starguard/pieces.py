@@ -2,23 +2,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of, words
 from ._fields import fill
 from ._library import ffi, lib, text
+from ._options import Options, takes
 from ._session import Session, logger
 from ._types import Array, PathLike, Progress
 from .errors import MeshError
 from .guards import name_of
 from .mesh import Mesh
-from .tetra import TetMesh, TetraReport, as_shape, set_tetra
+from .tetra import TetMesh, TetraReport, as_shape
 
-MODES = words(lib.starg_decompose_options_fields(), "mode")
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import DecomposeOptions
+
+OPTIONS = Options("starg_decompose_options")
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +71,7 @@ class Decomposition:
         """The closed outward surface of each piece.
 
         >>> import starguard
-        >>> room = starguard.sample("l-room", vertex_count=500)
+        >>> room = starguard.sample("l-room", vertices=500)
         >>> [piece.check().usable for piece in starguard.decompose(room, time_limit=5).surfaces()]
         [True]
         """
@@ -92,7 +97,7 @@ class Decomposition:
         """Reads PIECES.vtk and PIECES.json (docs/formats.md) back.
 
         >>> import starguard
-        >>> room = starguard.sample("l-room", vertex_count=500)
+        >>> room = starguard.sample("l-room", vertices=500)
         >>> made = starguard.decompose(room, time_limit=5)
         >>> made.write("pieces.vtk"), made.write_report("pieces.json")
         (None, None)
@@ -119,7 +124,7 @@ class Decomposition:
         """Writes PIECES.vtk (docs/formats.md).
 
         >>> import starguard
-        >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
+        >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
         >>> pieces.write("pieces.vtk")
         >>> pieces.write_report("pieces.json")
         """
@@ -142,49 +147,36 @@ class Decomposition:
                      _arrays.path(path))
 
 
-def decompose(model: Any, *, mode: str | None = None, guards: ArrayLike | None = None,
-              max_pieces: int | None = None, effort: int | None = None,
-              fill: bool | None = None,
-              generator: str | None = None, density: float | None = None,
-              target: int | None = None, tetgen: PathLike | None = None,
-              tetgen_limit: float | None = None, threads: int | None = None,
+@takes(OPTIONS)
+def decompose(model: Any, *, guards: ArrayLike | None = None, threads: int | None = None,
               seed: int | None = None, time_limit: float | None = None,
-              progress: Progress | None = None) -> Decomposition:
+              progress: Progress | None = None,
+              **options: Unpack[DecomposeOptions]) -> Decomposition:
     """Cuts a solid into few pieces that each one guard sees as a whole.
 
-    With `mode` "strict" (default) every piece is proven to be star-shaped; "paper" grows pieces
-    from guards, as the paper does. The model is what `as_mesh` takes, or a TetMesh; a surface with
-    holes is filled with what it winds around, with a notice, if that is near the surface or `fill`
-    is true. `guards` (n, 3) are points to grow from or to try first. The search stops after `effort`
-    trials, or by default after a fixed amount of work (some 15 seconds), which gives the same result
-    everywhere. With `time_limit` and no `effort` it goes on until then, with the best that it has.
-    The options of `tetrahedralize` tell how the solid is filled.
+    The model is what `as_mesh` takes, or a TetMesh; a surface with holes is filled with what it
+    winds around, with a notice, if that is near the surface or `fill` is true. `guards` (n, 3) are
+    points to grow from or to try first. The search stops after `effort` trials, or by default after
+    a fixed amount of work (some 15 seconds), which gives the same result everywhere. With
+    `time_limit` and no `effort` it goes on until then, with the best that it has.
 
     >>> import starguard
-    >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
+    >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
     >>> pieces, pieces.guards.shape, bool(pieces.pieces["star"].all())
     (Decomposition(1 pieces, 1 proven star-shaped), (1, 3), True)
     """
     shape = as_shape(model)
     session = Session(threads, seed)
-    options = ffi.new("starg_decompose_options *")
-    lib.starg_decompose_options_default(options)
-    fallback = options.tetra.density
-    keep = set_tetra(ffi.addressof(options, "tetra"), generator,
-                     fallback if density is None else density, target, tetgen, tetgen_limit)
-    if mode is not None:
-        options.mode = choose("mode", mode, MODES)
-    give(options, max_pieces=max_pieces, effort=effort, fill=fill)
+    wanted = OPTIONS.make(options)
     if guards is not None:
         places = _arrays.points(guards, "guards")
-        pointer = _arrays.pointer("double[]", places)
-        options.guards = pointer
-        options.guard_count = len(places)
+        points = _arrays.pointer("double[]", places)
+        wanted.pointer.guards = points
+        wanted.pointer.guard_count = len(places)
     function, handle = _subject(shape)
     made = session.make("starg_decomposition", lib.starg_decomposition_free, function,
-                        session.context, handle, options, shared=True, progress=progress,
+                        session.context, handle, wanted.pointer, shared=True, progress=progress,
                         time_limit=time_limit)
-    del keep
     return _of(made, shape.file)
 
 
@@ -205,7 +197,8 @@ def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
 def _of(d: Any, file: PathLike | None = None) -> Decomposition:
     mesh = TetMesh._of(d.mesh, owner=d)
     return fill(Decomposition, d, _handle=d, file=text(d.file) if d.file else name_of(file),
-                mode=word_of(d.mode, MODES), tetra=TetraReport._of(d.tetra), mesh=mesh,
+                mode=OPTIONS.word("mode", d.mode),
+                tetra=TetraReport._of(d.tetra), mesh=mesh,
                 labels=_arrays.view(d, d.labels, (len(mesh.tetrahedra),), np.int32),
                 pieces=_arrays.records(d, d.pieces, d.piece_count),
                 contacts=_arrays.records(d, d.contacts, d.contact_count))

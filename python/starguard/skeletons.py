@@ -2,18 +2,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _arrays
-from ._choice import choose, give
+from ._choice import choose
 from ._fields import fill
 from ._library import ffi, lib
+from ._options import Options, takes
 from ._session import Session
 from ._types import Array, PathLike, Progress
 from .solid import as_solid
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import SkeletonOptions
+
+_OPTIONS = Options("starg_skeleton_options", old={"node_count": "nodes"})
 _FORMATS = {"auto": lib.STARG_SKELETON_AUTO, "obj": lib.STARG_SKELETON_OBJ,
             "cg": lib.STARG_SKELETON_CG, "vtk": lib.STARG_SKELETON_VTK}
 
@@ -59,8 +66,8 @@ class Skeleton:
         """Reads what `write` has written; the content tells the format.
 
         >>> import starguard
-        >>> torus = starguard.sample("torus", vertex_count=500)
-        >>> starguard.skeleton(torus, node_count=50).write("torus.cg")
+        >>> torus = starguard.sample("torus", vertices=500)
+        >>> starguard.skeleton(torus, nodes=50).write("torus.cg")
         >>> starguard.Skeleton.read("torus.cg").loops
         1
         """
@@ -82,28 +89,27 @@ class Skeleton:
         """Writes the graph as "obj", "cg" or "vtk", by the name's ending or by `format`.
 
         >>> import starguard
-        >>> starguard.skeleton(starguard.sample("dog", vertex_count=500)).write("dog.cg")
+        >>> starguard.skeleton(starguard.sample("dog", vertices=500)).write("dog.cg")
         """
         session = Session()
         session.call(lib.starg_skeleton_write, session.context, self._handle, _arrays.path(path),
                      choose("format", format, _FORMATS))
 
 
-def skeleton(model: Any, *, node_count: int | None = None, prune: float | None = None,
-             threads: int | None = None, seed: int | None = None, time_limit: float | None = None,
-             progress: Progress | None = None) -> Skeleton:
-    """Finds the curve skeleton, of about 1,000 nodes unless told otherwise.
+@takes(_OPTIONS)
+def skeleton(model: Any, *, threads: int | None = None, seed: int | None = None,
+             time_limit: float | None = None, progress: Progress | None = None,
+             **options: Unpack[SkeletonOptions]) -> Skeleton:
+    """Finds the curve skeleton.
 
     >>> import starguard
-    >>> s = starguard.skeleton(starguard.sample("torus", vertex_count=500), node_count=50)
+    >>> s = starguard.skeleton(starguard.sample("torus", vertices=500), nodes=50)
     >>> s.loops, s.ends, s.homotopic
     (1, 0, True)
     """
     solid = as_solid(model)
     session = Session(threads, seed)
-    options = ffi.new("starg_skeleton_options *")
-    lib.starg_skeleton_options_default(options)
-    give(options, node_count=node_count, prune=prune)
+    wanted = _OPTIONS.make(options)
     return Skeleton._of(session.make(
         "starg_skeleton", lib.starg_skeleton_free, lib.starg_skeleton_create, session.context,
-        solid._handle, options, shared=True, progress=progress, time_limit=time_limit))
+        solid._handle, wanted.pointer, shared=True, progress=progress, time_limit=time_limit))

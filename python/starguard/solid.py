@@ -21,7 +21,7 @@ class Solid:
     Raises MeshError for a mesh that is open, not manifold or not oriented, with the elements.
 
     >>> import starguard
-    >>> solid = starguard.Solid(starguard.sample("l-room", vertex_count=500))
+    >>> solid = starguard.Solid(starguard.sample("l-room", vertices=500))
     >>> solid
     Solid(506 vertices, 1008 faces)
     >>> solid.contains([[0.5, 0.5, 0.5], [-1, 0, 0]])
@@ -57,7 +57,7 @@ class Solid:
         """Distance of each point from the surface.
 
         >>> import starguard
-        >>> starguard.Solid(starguard.sample("l-room", vertex_count=500)).distance([0, 0, 0])
+        >>> starguard.Solid(starguard.sample("l-room", vertices=500)).distance([0, 0, 0])
         array([0.])
         """
         rows = _arrays.points(points, "points")

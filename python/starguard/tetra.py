@@ -3,24 +3,29 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, word_of, words
 from ._fields import fill
 from ._library import ffi, lib
+from ._options import Options, takes
 from ._session import Session
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError, MeshError
 from .mesh import Mesh, as_mesh
 
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import TetraOptions
+
 #: What stands for a neighbour beyond the boundary.
 NO_NEIGHBOUR = 2**32 - 1
 
-GENERATORS = words(lib.starg_tetra_options_fields(), "generator")
+_OPTIONS = Options("starg_tetra_options")
 _HEAD = 1 << 16  # bytes of a file that tell what it holds
 
 
@@ -41,7 +46,7 @@ class TetraReport:
 
     @classmethod
     def _of(cls, report: Any) -> TetraReport:
-        return fill(cls, report, generator=word_of(report.generator, GENERATORS))
+        return fill(cls, report, generator=_OPTIONS.word("generator", report.generator))
 
 
 class TetMesh:
@@ -171,56 +176,38 @@ class TetMesh:
         return mesh, _arrays.view(owner, numbers[0], (len(mesh.vertices),), np.uint32)
 
 
-def tetrahedralize(model: Any, *, generator: str | None = None, density: float | None = None,
-                   target: int | None = None, tetgen: PathLike | None = None,
-                   tetgen_limit: float | None = None, threads: int | None = None,
-                   time_limit: float | None = None, progress: Progress | None = None) -> TetMesh:
+@takes(_OPTIONS)
+def tetrahedralize(model: Any, *, threads: int | None = None, time_limit: float | None = None,
+                   progress: Progress | None = None, **options: Unpack[TetraOptions]) -> TetMesh:
     """Fills a solid with tetrahedra, or what a mesh with holes winds around.
 
-    `generator` is "tetgen" (the program, which keeps the surface), "stuffing", or "auto".
-    `density` is tetrahedra per vertex of the surface, `target` their number.
-
     >>> import starguard
-    >>> tets = starguard.tetrahedralize(starguard.sample("l-room", vertex_count=500),
+    >>> tets = starguard.tetrahedralize(starguard.sample("l-room", vertices=500),
     ...                                 generator="stuffing")
     >>> tets.report.generator, tets.report.surface_kept
     ('stuffing', False)
     """
     mesh = as_mesh(model)
     session = Session(threads)
-    options = ffi.new("starg_tetra_options *")
-    keep = set_tetra(options, generator, density, target, tetgen, tetgen_limit)
+    wanted = _OPTIONS.make(options)
     report = ffi.new("starg_tetra_report *")
     function, handle = lib.starg_tetmesh_from_solid, None
     try:
         handle = mesh.solid._handle
     except MeshError:  # holes: what the surface winds around is filled
-        if generator == "tetgen":
+        if wanted.pointer.generator == lib.STARG_TETRA_TETGEN:
             raise
         function, handle = lib.starg_tetmesh_from_open_mesh, mesh._handle
     made = session.make("starg_tetmesh", lib.starg_tetmesh_free, function, session.context, handle,
-                        options, report, progress=progress, time_limit=time_limit)
-    del keep
+                        wanted.pointer, report, progress=progress, time_limit=time_limit)
     return TetMesh._of(made, report=TetraReport._of(report))
-
-
-def set_tetra(options: Any, generator: str | None, density: float | None, target: int | None,
-              tetgen: PathLike | None, tetgen_limit: float | None) -> Any:
-    """Fills starg_tetra_options; what comes back must live as long."""
-    lib.starg_tetra_options_default(options)
-    if generator is not None:
-        options.generator = choose("generator", generator, GENERATORS)
-    give(options, density=density, target=target, tetgen_limit=tetgen_limit)
-    program = ffi.NULL if tetgen is None else ffi.new("char[]", _arrays.path(tetgen))
-    options.tetgen = program
-    return program
 
 
 def is_tetrahedral(path: PathLike) -> bool:
     """Does the content of a file (for TetGen's, the name) say that it holds tetrahedra?
 
     >>> import starguard
-    >>> starguard.sample("l-room", vertex_count=500).write("room.off")
+    >>> starguard.sample("l-room", vertices=500).write("room.off")
     >>> starguard.is_tetrahedral("room.off")
     False
     """

@@ -8,14 +8,13 @@ from typing import Any, Union
 import numpy as np
 
 from . import _arrays
-from ._choice import word_of
 from ._fields import fill
 from ._library import ffi, lib, text
 from ._session import Session
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .guards import Guards
-from .pieces import MODES, Decomposition
+from .pieces import OPTIONS, Decomposition
 from .tetra import TetMesh, as_shape
 
 
@@ -83,7 +82,7 @@ class PiecesReport:
     @classmethod
     def _of(cls, r: Any, owner: Any = None) -> PiecesReport:
         keeper = r if owner is None else owner
-        return fill(cls, r, _handle=r, _owner=keeper, mode=word_of(r.mode, MODES),
+        return fill(cls, r, _handle=r, _owner=keeper, mode=OPTIONS.word("mode", r.mode),
                     pieces=_arrays.records(keeper, r.pieces, r.piece_count),
                     contacts=_arrays.records(keeper, r.contacts, r.contact_count))
 
@@ -108,7 +107,7 @@ def read_result(path: PathLike) -> Guards | PiecesMesh | PiecesReport:
     """Reads GUARDS.json, PIECES.vtk or PIECES.json; the content tells which.
 
     >>> import starguard
-    >>> pieces = starguard.decompose(starguard.sample("l-room", vertex_count=500), time_limit=5)
+    >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
     >>> pieces.write_report("pieces.json")
     >>> starguard.read_result("pieces.json").strictly_star
     1
@@ -130,7 +129,7 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     PIECES.json are checked together.
 
     >>> import starguard
-    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> room = starguard.sample("l-room", vertices=500)
     >>> verdict = starguard.verify(room, starguard.guard(room), starguard.decompose(room, time_limit=5))
     >>> verdict.passed, all(claim.holds for claim in verdict.claims)
     (True, True)

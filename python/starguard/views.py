@@ -25,7 +25,7 @@ _FORMATS = {"auto": lib.STARG_SCENE_AUTO, "glb": lib.STARG_SCENE_GLB, "vtu": lib
 
 def _seen(mesh: Mesh, guards: Guards) -> Bits:
     """What every guard sees, by the options that they were placed with."""
-    names = ("face_rule", "range", "cone")
+    names = ("faces", "range", "cone")
     return visible(mesh, guards.positions, directions=guards.directions,
                    **{name: guards.options[name] for name in names})
 
@@ -63,7 +63,7 @@ def write_scene(path: PathLike, model: Any = None, *, guards: Guards | None = No
     browsers), "vtu" (ParaView), "ply" (MeshLab) or "obj" (docs/formats.md).
 
     >>> import starguard
-    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> room = starguard.sample("l-room", vertices=500)
     >>> starguard.write_scene("room.glb", room, guards=starguard.guard(room),
     ...                       pieces=starguard.decompose(room, time_limit=5))
     """
@@ -95,7 +95,7 @@ def write_page(path: PathLike, model: Any = None, *, title: str | None = None,
     `distances` those between them.
 
     >>> import starguard
-    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> room = starguard.sample("l-room", vertices=500)
     >>> if starguard.page_available():
     ...     starguard.write_page("room.html", room, guards=starguard.guard(room))
     """

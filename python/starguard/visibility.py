@@ -1,23 +1,25 @@
 """What points inside a solid see, as rows of bits."""
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose, give, words
 from ._library import ffi, lib
+from ._options import Options, takes
 from ._session import Session
 from ._types import Array, Progress
 from .errors import ArgumentError
 from .solid import as_solid
 
-_FIELDS = lib.starg_visibility_options_fields()
-ENGINES = words(_FIELDS, "engine")
-TARGETS = words(_FIELDS, "target")
-FACE_RULES = words(_FIELDS, "faces")
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import VisibleOptions
+
+_OPTIONS = Options("starg_visibility_options", old={"face_rule": "faces"})
 
 
 class Bits:
@@ -96,31 +98,16 @@ def _fill(handle: Any, packed: Array) -> None:
         ffi.memmove(ffi.cast("uint64_t *", lib.starg_bits_row(handle, 0)), words, words.nbytes)
 
 
-def set_view(options: Any, *, engine: str | None, target: str | None,
-             face_rule: str | None, range: float | None, cone: float | None) -> None:
-    """Fills starg_visibility_options."""
-    if engine is not None:
-        options.engine = choose("engine", engine, ENGINES)
-    if target is not None:
-        options.target = choose("target", target, TARGETS)
-    if face_rule is not None:
-        options.face_rule = choose("face_rule", face_rule, FACE_RULES)
-    give(options, range=range, cone=cone)
-
-
-def visible(model: Any, points: ArrayLike, *, engine: str | None = None, target: str | None = None,
-            face_rule: str | None = None, range: float | None = None, cone: float | None = None,
-            directions: ArrayLike | None = None, threads: int | None = None,
-            time_limit: float | None = None, progress: Progress | None = None) -> Bits:
+@takes(_OPTIONS)
+def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = None,
+            threads: int | None = None, time_limit: float | None = None,
+            progress: Progress | None = None, **options: Unpack[VisibleOptions]) -> Bits:
     """Which faces (or, with target="vertices", vertices) of a solid each point sees, exactly.
 
-    A point that is not inside sees nothing. `face_rule` "whole" asks that every point of a face is
-    seen, not its corners only. `range` limits the distance, `cone` the full opening angle in
-    degrees about the `directions` (one for each point). Engines ("grid", "bvh", "sweep",
-    "contours", "fastest") give the same bits.
+    A point that is not inside sees nothing. A `cone` needs `directions`, one for each point.
 
     >>> import starguard
-    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> room = starguard.sample("l-room", vertices=500)
     >>> seen = starguard.visible(room, [[0.5, 0.5, 0.5], [-1, 0, 0]])
     >>> seen.shape, bool(seen[1].any())
     ((2, 1008), False)
@@ -128,21 +115,18 @@ def visible(model: Any, points: ArrayLike, *, engine: str | None = None, target:
     solid = as_solid(model)
     rows = _arrays.points(points, "points")
     session = Session(threads)
-    options = ffi.new("starg_visibility_options *")
-    lib.starg_visibility_options_default(options)
-    set_view(options, engine=engine, target=target, face_rule=face_rule, range=range, cone=cone)
-    looks = None
+    wanted = _OPTIONS.make(options)
     if directions is not None:
         looks = _arrays.points(directions, "directions")
         if len(looks) != len(rows):
             raise ArgumentError(f"there are {len(rows)} points and {len(looks)} directions")
-        looks = _arrays.pointer("double[]", looks)
-        options.directions = looks
-    elif options.cone < 360:
+        pointer = _arrays.pointer("double[]", looks)
+        wanted.pointer.directions = pointer
+    elif wanted.pointer.cone < 360:
         raise ArgumentError("a cone needs directions, one for each point")
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility, session.context,
-                             solid._handle, _arrays.pointer("double[]", rows), len(rows), options,
-                             progress=progress, time_limit=time_limit))
+                             solid._handle, _arrays.pointer("double[]", rows), len(rows),
+                             wanted.pointer, progress=progress, time_limit=time_limit))
 
 
 def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
@@ -155,7 +139,7 @@ def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
     fewer the smaller the box.
 
     >>> import starguard
-    >>> room = starguard.sample("l-room", vertex_count=500)
+    >>> room = starguard.sample("l-room", vertices=500)
     >>> box = starguard.visible_from_box(room, [[0.4, 0.4, 0.4, 0.6, 0.6, 0.6]])
     >>> point = starguard.visible(room, [[0.5, 0.5, 0.5]])
     >>> bool((point[0] <= box[0]).all())
@@ -164,12 +148,10 @@ def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
     solid = as_solid(model)
     rows = _arrays.points(boxes, "boxes", 6)
     session = Session(threads)
-    options = ffi.new("starg_visibility_options *")
-    lib.starg_visibility_options_default(options)
-    set_view(options, engine=None, target=target, face_rule=None, range=range, cone=None)
+    wanted = _OPTIONS.make({"target": target, "range": range})
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility_region,
                              session.context, solid._handle, _arrays.pointer("double[]", rows),
-                             len(rows), options, progress=progress, time_limit=time_limit))
+                             len(rows), wanted.pointer, progress=progress, time_limit=time_limit))
 
 
 def cone_cosine(degrees: float) -> float:

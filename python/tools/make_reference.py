@@ -1,8 +1,6 @@
-"""Writes the reference of docs/python.md, all below its marker, from the docstrings of the package.
+"""Writes the reference of the Python package from its docstrings. The package must be importable.
 
-    make_reference.py docs/python.md
-
-The package must be importable; tests/python/test_docs.py checks that the document is up to date.
+    make_reference.py OUTPUT.md
 """
 import inspect
 import re
@@ -11,7 +9,12 @@ import textwrap
 
 import starguard
 
-MARKER = "<!-- Made by python/tools/make_reference.py of the docstrings: do not edit below. -->\n"
+HEAD = """# Python reference
+
+Made from the docstrings of the package (`help(starguard.guard)` prints the same). What all calls
+share is in [python.md](python.md).
+
+"""
 
 SECTIONS = {
     "Meshes and solids": ["mesh", "solid", "catalogue"],
@@ -107,7 +110,7 @@ def entry(name, value):
 
 def reference():
     """The whole reference."""
-    parts = []
+    parts = [HEAD]
     for title, modules in SECTIONS.items():
         parts.append(f"## {title}\n")
         names = [name for name in starguard.__all__ if getattr(getattr(starguard, name), "__module__", "")
@@ -118,16 +121,10 @@ def reference():
     return "\n".join(parts)
 
 
-def updated(document):
-    """The document with its reference made anew."""
-    return document[:document.index(MARKER) + len(MARKER)] + "\n" + reference()
-
-
 def main(path):
-    with open(path, encoding="utf-8") as file:
-        document = file.read()
+    text = reference()
     with open(path, "w", encoding="utf-8") as file:
-        file.write(updated(document))
+        file.write(text)
 
 
 if __name__ == "__main__":

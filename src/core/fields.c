@@ -97,7 +97,7 @@ static void list_words(const starg_field *f, char *text, size_t size) {
         used += (size_t)snprintf(text + used, size - used, "%s%s", i > 0 ? ", " : "", f->words[i]);
 }
 
-void field_expectation(const starg_field *field, char *text, size_t size) {
+void starg_field_expectation(const starg_field *field, char *text, size_t size) {
     const starg_field *f = field;
     bool unlimited = f->kind == STARG_FIELD_COUNT ? f->most >= UINT32_MAX : f->high >= 1e100;
     if (f->kind == STARG_FIELD_FLAG)
@@ -148,7 +148,7 @@ static starg_status check_field(starg_context *context, const char *stage, const
     if (field_fits(f, record) || (real ? value == f->standard : number == f->initial))
         return STARG_OK;
     spell_name(f, name, sizeof name);
-    field_expectation(f, expected, sizeof expected);
+    starg_field_expectation(f, expected, sizeof expected);
     if (real)
         return starg_fail(context, STARG_ERROR_ARGUMENT, stage, "the %s is %g; it must be %s", name,
                           value, expected);

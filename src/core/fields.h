@@ -15,9 +15,6 @@
 /* Is a COUNT, CHOICE, FLAG or REAL within its range, or what null stands for? */
 bool field_fits(const starg_field *field, const void *record);
 
-/* What a member must be, for messages: "above 0 and at most 1". */
-void field_expectation(const starg_field *field, char *text, size_t size);
-
 /* Are all members that the record has within their ranges? Errors: ARGUMENT. */
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
                           const void *record) STARG_PRIVATE(fields_check);

@@ -279,7 +279,7 @@ static starg_status reject(const reader *r, const starg_field *f, const char *ex
 
 static starg_status reject_value(const reader *r, const starg_field *f) {
     char text[256];
-    field_expectation(f, text, sizeof text);
+    starg_field_expectation(f, text, sizeof text);
     if (f->flags & STARG_FIELD_NULLABLE)
         strncat(text, ", or null", sizeof text - strlen(text) - 1);
     return reject(r, f, text);

@@ -9,6 +9,7 @@ import time
 import unittest
 
 PROGRAM = os.environ.get("STARGUARD", "build/starguard")
+BUILD = os.environ.get("STARGUARD_BUILD", os.path.dirname(PROGRAM))  # has what is made while building
 SHARED = os.environ.get("STARGUARD_SHARED", "../shared")
 SANITIZE = os.environ.get("STARGUARD_SANITIZE")
 # Limits on processor time grow with it: programs under a sanitizer, or that count lines, are several times

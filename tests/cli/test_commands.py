@@ -383,7 +383,7 @@ class Verify(support.Case):
 
 
 class Documentation(support.Case):
-    """Every key that is printed or written is in docs/formats.md."""
+    """Every key that is printed or written is in docs/formats.md or docs/fields.md."""
 
     def keys(self, value):
         if isinstance(value, list):
@@ -394,9 +394,11 @@ class Documentation(support.Case):
         return (set(value) | set().union(*map(self.keys, value.values()))) - stages
 
     def test_keys(self):
-        with open(os.path.join(os.path.dirname(__file__), "../../docs/formats.md"),
-                  encoding="utf-8") as file:
-            words = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]*)`", file.read()))))
+        words = set()
+        for page in [os.path.join(os.path.dirname(__file__), "../../docs/formats.md"),
+                     os.path.join(support.BUILD, "docs/fields.md")]:
+            with open(page, encoding="utf-8") as file:
+                words |= set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]*)`", file.read()))))
         room = self.sample("l-room")
         self.write("open.off", OPEN)
         look = ["visible", room, "--from", "0,0,0", "--target"]

@@ -1,4 +1,5 @@
-"""Results and reports are what docs/schema says, by a validator that we did not write.
+"""Results and reports are what the schemas say, those of docs/schema and those that the build makes of
+the field tables, by a validator that we did not write.
 
 The schemas leave room for keys of later versions, as readers have to. Here that room is closed, so
 that a key which no schema tells of fails the test. Every document that passes is then spoilt in every
@@ -16,12 +17,17 @@ try:
 except ImportError:
     jsonschema = None
 
-FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "docs", "schema")
+FOLDERS = [os.path.join(folder, "docs", "schema") for folder in (
+    os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."),
+    support.BUILD)]
 MIXIN = "mixin"  # the $comment of a schema that others add keys to
 
 
 def load(name):
-    with open(os.path.join(FOLDER, f"{name}.schema.json"), encoding="utf-8") as file:
+    found = [path for folder in FOLDERS
+             if os.path.exists(path := os.path.join(folder, f"{name}.schema.json"))]
+    assert len(found) == 1, f"{name}: {found}"
+    with open(found[0], encoding="utf-8") as file:
         return json.load(file)
 
 
@@ -56,7 +62,7 @@ def at(value, path):
 
 
 def names():
-    files = glob.glob(os.path.join(FOLDER, "*.schema.json"))
+    files = [file for folder in FOLDERS for file in glob.glob(os.path.join(folder, "*.schema.json"))]
     return {os.path.basename(file)[:-len(".schema.json")] for file in files}
 
 

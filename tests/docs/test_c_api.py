@@ -1,4 +1,4 @@
-"""docs/c-api.md is what the headers say, and leaves no function out."""
+"""The C reference that is made of the headers leaves no function out."""
 import os
 import re
 import subprocess
@@ -9,11 +9,6 @@ SOURCE = os.environ.get("STARGUARD_SOURCE", os.path.join(os.path.dirname(__file_
 
 
 class Reference(unittest.TestCase):
-    def test_current(self):
-        run = subprocess.run([os.path.join(SOURCE, "scripts", "c-api.py"), "--check"],
-                             capture_output=True, text=True, check=False)
-        self.assertEqual(run.returncode, 0, run.stderr)
-
     def test_complete(self):
         """By the compiler's list of declarations, which the script knows nothing of."""
         with tempfile.NamedTemporaryFile() as listing:
@@ -24,9 +19,11 @@ class Reference(unittest.TestCase):
                      if "include/starguard/" in line]
         names = {re.search(r"\b(\w+) \(", line.split("*/", 1)[1]).group(1) for line in lines}
         self.assertGreater(len(names), 100)
-        with open(f"{SOURCE}/docs/c-api.md", encoding="utf-8") as file:
-            told = set(re.findall(r"\b(starg_\w+)\(", file.read()))
-        self.assertEqual(names - told, set())
+        with tempfile.NamedTemporaryFile() as page:
+            subprocess.run([os.path.join(SOURCE, "scripts", "c-api.py"), page.name], check=True)
+            text = page.read().decode()
+        self.assertEqual(names - set(re.findall(r"\b(starg_\w+)\(", text)), set())
+        self.assertTrue(text.startswith("# C reference\n"))
 
     def test_readme(self):
         """The program of the README compiles."""

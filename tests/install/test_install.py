@@ -149,6 +149,16 @@ class Installed(unittest.TestCase):
         names = [command["name"].replace(" ", "-") for command in table["commands"]]
         self.assertEqual(pages, {f"starguard-{name}.1" for name in names} | {"starguard.1"})
 
+    def test_made_documentation(self):
+        """Pages and schemas that the build makes stand among the others."""
+        docs = os.path.join(self.prefix, "share", "doc", "starguard", "docs")
+        for page in ["README.md", "formats.md", "fields.md", "c-api.md"]:
+            with open(os.path.join(docs, page), encoding="utf-8") as file:
+                self.assertTrue(file.read().startswith("# "), page)
+        for schema in ["common", "guards", "report-guard", "error"]:
+            with open(os.path.join(docs, "schema", f"{schema}.schema.json"), encoding="utf-8") as file:
+                self.assertEqual(json.load(file)["$id"], f"{schema}.schema.json")
+
     def test_version(self):
         version = self.run_command("pkg-config", "--modversion", "starguard").strip()
         self.assertEqual(self.run_command(self.program, "--version"), f"starguard {version}\n")

@@ -68,13 +68,13 @@ class Into(Case):
     def test_numbers_of_numpy(self):
         mesh = starguard.Mesh(VERTICES, FACES)
         guards = starguard.guard(mesh, threads=np.int64(1), seed=np.uint64(2**64 - 1),
-                                 candidate_count=np.int32(10), coverage=np.float32(0.5),
+                                 count=np.int32(10), coverage=np.float32(0.5),
                                  max_guards=np.uint8(1), refine=np.bool_(False))
         self.assertEqual(guards.options["max_guards"], 1)
         self.assertIs(guards.options["refine"], False)
 
     def test_a_single_point(self):
-        room = starguard.sample("l-room", vertex_count=500)
+        room = starguard.sample("l-room", vertices=500)
         self.assertEqual(starguard.visible(room, [0.5, 0.5, 0.5]).shape[0], 1)
         self.fails(starguard.ArgumentError, "points must have the shape", starguard.visible, room,
                    [1.0, 2.0])
@@ -98,7 +98,7 @@ class Into(Case):
 
 class Out(Case):
     def test_read_only_views_of_one_memory(self):
-        mesh = starguard.sample("l-room", vertex_count=500)
+        mesh = starguard.sample("l-room", vertices=500)
         again = starguard.Solid(mesh).mesh
         for array, kind in ((mesh.vertices, np.float64), (mesh.faces, np.uint32)):
             self.assertEqual((array.dtype, array.ndim, array.shape[1]), (kind, 2, 3))
@@ -114,29 +114,29 @@ class Out(Case):
     def test_arrays_keep_their_owner(self):
         kept, wanted = [], []
         for pose in range(3):
-            mesh = starguard.sample("dog", pose=pose, vertex_count=500)
+            mesh = starguard.sample("dog", pose=pose, vertices=500)
             kept.append(mesh.vertices[10:20])
             wanted.append(mesh.vertices[10:20].copy())
             del mesh
-        pieces = starguard.decompose(starguard.sample("star", vertex_count=500), effort=30)
+        pieces = starguard.decompose(starguard.sample("star", vertices=500), effort=30)
         tets, guards = pieces.mesh.tetrahedra[:5], pieces.guards
         expected = tets.copy(), guards.copy()
         del pieces
         gc.collect()
-        churn = [starguard.sample("star", vertex_count=600) for _ in range(20)]
+        churn = [starguard.sample("star", vertices=600) for _ in range(20)]
         for array, copy in zip(kept, wanted):
             self.assertTrue((array == copy).all())
         self.assertTrue((tets == expected[0]).all() and (guards == expected[1]).all())
         self.assertEqual(len(churn), 20)
 
     def test_a_solid_keeps_its_mesh(self):
-        mesh = starguard.sample("star", vertex_count=500).solid.mesh
+        mesh = starguard.sample("star", vertices=500).solid.mesh
         gc.collect()
         self.assertGreater(mesh.volume, 0)
         self.assertGreater(float(mesh.vertices.max()), 0)
 
     def test_structured_arrays(self):
-        pieces = starguard.decompose(starguard.sample("gallery", vertex_count=1000), effort=30)
+        pieces = starguard.decompose(starguard.sample("gallery", vertices=1000), effort=30)
         self.assertGreater(len(pieces), 1)
         records = pieces.pieces
         self.assertEqual(records.dtype.names, ("guard", "radius", "tetrahedra", "volume", "star"))
@@ -180,7 +180,7 @@ class Out(Case):
         self.fails(starguard.ArgumentError, "two dimensions", starguard.Bits.of, [True])
 
     def test_pickles(self):
-        mesh = starguard.sample("star", vertex_count=500)
+        mesh = starguard.sample("star", vertices=500)
         again = pickle.loads(pickle.dumps(mesh))
         self.assertTrue((again.vertices == mesh.vertices).all() and (again.faces == mesh.faces).all())
         tets = starguard.TetMesh([*VERTICES, [1, 1, 1]], [[0, 1, 2, 3], [1, 2, 3, 4]], [4, 5])
@@ -213,7 +213,7 @@ class Conventions(Case):
             self.skipTest("meshio is not installed")
         mesh = meshio.Mesh(np.array(VERTICES, float), [("triangle", np.array(FACES))])
         self.assertTrue(starguard.as_mesh(mesh).check().usable)
-        ours = starguard.sample("star", vertex_count=500)
+        ours = starguard.sample("star", vertices=500)
         meshio.write("star.vtk", meshio.Mesh(ours.vertices, [("triangle", ours.faces)]))
         back = starguard.as_mesh(meshio.read("star.vtk"))
         self.assertTrue((back.vertices == ours.vertices).all() and (back.faces == ours.faces).all())

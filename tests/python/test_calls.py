@@ -14,7 +14,7 @@ import starguard
 from support import FACES, SLOWNESS, VERTICES, Case, main
 
 
-DOG = starguard.sample("dog", vertex_count=2000)
+DOG = starguard.sample("dog", vertices=2000)
 
 
 def long_work(**options):
@@ -30,7 +30,7 @@ class Progress(Case):
             seen.append((stage, fraction))
             threads.add(threading.get_ident())
 
-        starguard.guard(starguard.sample("dog", vertex_count=1000), progress=note)
+        starguard.guard(starguard.sample("dog", vertices=1000), progress=note)
         self.assertGreater(len({stage for stage, _ in seen}), 3)
         self.assertTrue(all(stage and 0 <= fraction <= 1 for stage, fraction in seen))
         self.assertEqual(threads, {threading.get_ident()})
@@ -42,7 +42,7 @@ class Progress(Case):
 
     def test_none_and_others_go_on(self):
         for answer in (None, True, 0, ""):
-            room = starguard.guard(starguard.sample("l-room", vertex_count=500),
+            room = starguard.guard(starguard.sample("l-room", vertices=500),
                                    progress=lambda *_, answer=answer: answer)
             self.assertEqual(len(room), 1)
 
@@ -67,7 +67,7 @@ class Progress(Case):
 
     def test_it_may_call_the_library(self):
         inner = []
-        starguard.guard(starguard.sample("l-room", vertex_count=500),
+        starguard.guard(starguard.sample("l-room", vertices=500),
                         progress=lambda *_: inner.append(starguard.Mesh(VERTICES, FACES).volume))
         self.assertTrue(inner and all(abs(volume - 1 / 6) < 1e-12 for volume in inner))
 
@@ -113,7 +113,7 @@ class Interruption(Case):
         self.assertLess(self.interrupt(shielded), 5 * SLOWNESS)
 
     def test_objects_with_a_context_of_their_own_go_on(self):
-        mesh = starguard.sample("dog", vertex_count=1000)
+        mesh = starguard.sample("dog", vertices=1000)
         for i in range(12):
             mesh.__class__(mesh.vertices + i, mesh.faces).write(f"{i}.off")
         with starguard.Database.create("shapes.db") as shapes:
@@ -149,7 +149,7 @@ class Interruption(Case):
 
     def test_a_script_ends_as_scripts_do(self):
         script = ("import starguard, sys\nprint('go', flush=True)\n"
-                  "starguard.decompose(starguard.sample('dog', vertex_count=2000), time_limit=100)\n")
+                  "starguard.decompose(starguard.sample('dog', vertices=2000), time_limit=100)\n")
         with subprocess.Popen([sys.executable, "-B", "-c", script], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE) as process:
             process.stdout.readline()
@@ -162,7 +162,7 @@ class Interruption(Case):
 
 class Threads(Case):
     def test_two_calls_at_once_give_the_same(self):
-        models = [starguard.sample("gallery", vertex_count=n) for n in (500, 600)]
+        models = [starguard.sample("gallery", vertices=n) for n in (500, 600)]
         alone = [starguard.guard(model, threads=1).positions.tolist() for model in models]
         together = [None, None]
 
@@ -178,7 +178,7 @@ class Threads(Case):
         self.assertEqual(together, alone)
 
     def test_one_model_for_many_threads(self):
-        solid = starguard.Solid(starguard.sample("gallery", vertex_count=1000))
+        solid = starguard.Solid(starguard.sample("gallery", vertices=1000))
         points = starguard.candidate_points(solid, "interior", 40)
         wanted = np.asarray(starguard.visible(solid, points))
         morph = starguard.Morph((VERTICES, FACES), [[2 * x for x in row] for row in VERTICES],
@@ -208,7 +208,7 @@ class Threads(Case):
         def off_the_main_thread():
             limit = 1
             while counts[0] <= 50 and limit <= 64:
-                starguard.decompose(starguard.sample("dog", vertex_count=1000), effort=2**60,
+                starguard.decompose(starguard.sample("dog", vertices=1000), effort=2**60,
                                     time_limit=limit, threads=1)
                 limit *= 2
 
@@ -221,7 +221,7 @@ class Threads(Case):
         self.assertGreater(counts[0], 50)
 
     def test_seed_and_thread_count(self):
-        model = starguard.sample("gallery", vertex_count=500)
+        model = starguard.sample("gallery", vertices=500)
         files = []
         for threads in (1, 2, 3):
             starguard.guard(model, threads=threads, seed=5).write("g.json")
@@ -253,7 +253,7 @@ class Time(Case):
             self.assertIsNone(inspect.signature(call).parameters["time_limit"].default)
 
     def test_a_limit_that_strikes_is_told(self):
-        model = starguard.sample("dog", vertex_count=2000)
+        model = starguard.sample("dog", vertices=2000)
         limit, pieces = 1, None
         while pieces is None:
             begun = time.process_time()

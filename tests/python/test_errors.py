@@ -62,7 +62,7 @@ class Errors(Case):
                         {"clearance": -1}, {"range": -1}, {"cone": 0}, {"threads": -1},
                         {"threads": 1025}, {"seed": -1}, {"seed": 2**64}, {"time_limit": 0},
                         {"time_limit": np.nan}, {"candidates": [[0, 0]]}, {"candidates": "here"},
-                        {"method": 3}, {"engine": "eyes"}, {"coverage": "all"}):
+                        {"method": 3}, {"visibility": "eyes"}, {"refine": 2}, {"step": 0}, {"coverage": "all"}):
             with self.subTest(options=options):
                 self.fails(starguard.ArgumentError, "", starguard.guard, mesh, **options)
         self.fails(starguard.ArgumentError, "", starguard.sample, "unicorn")
@@ -109,7 +109,7 @@ class Errors(Case):
 
 class Cases(Case):
     def test_bad_mixtures(self):
-        room = starguard.sample("l-room", vertex_count=500)
+        room = starguard.sample("l-room", vertices=500)
         self.fails(starguard.ArgumentError, "2 points and 1 directions", starguard.visible, room,
                    [[0.5] * 3] * 2, cone=90, directions=[1, 0, 0])
         self.fails(starguard.ArgumentError, "directions", starguard.visible, room, [0.5] * 3, cone=90)

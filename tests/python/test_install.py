@@ -38,7 +38,7 @@ class Install(Case):
         self.assertIn(f"starguard-{starguard.__version__}.dist-info", os.listdir("site"))
         blocks = example()
         self.assertEqual(len(blocks), 1)
-        starguard.sample("l-room", vertex_count=500).write("model.off")
+        starguard.sample("l-room", vertices=500).write("model.off")
         told = subprocess.run([sys.executable, "-B", "-c", "import starguard; print(starguard.__file__)\n"
                                + blocks[0]], check=True, env=environment, capture_output=True,
                               text=True).stdout.splitlines()

@@ -23,17 +23,17 @@ def resident():
         return int(file.read().split()[1]) * 4096
 
 
-ROOM = starguard.sample("l-room", vertex_count=500)
+ROOM = starguard.sample("l-room", vertices=500)
 
 
 def use_everything():
     """Makes an object of every kind, and an error."""
     solid = starguard.Solid(ROOM)
-    guards = starguard.guard(solid, candidates="interior", candidate_count=20, method="greedy")
+    guards = starguard.guard(solid, candidates="interior", count=20, method="greedy")
     seen = starguard.visible(solid, guards.positions)
     starguard.cover(seen, prices=True, method="lp")
     starguard.kernel(solid)
-    starguard.skeleton(solid, node_count=20)
+    starguard.skeleton(solid, nodes=20)
     pieces = starguard.decompose((VERTICES, FACES), generator="stuffing", effort=30)
     pieces.surfaces()
     starguard.TetMesh(VERTICES, [[0, 1, 2, 3]]).surface()
@@ -87,12 +87,12 @@ class Leaks(Case):
         """The collector takes objects apart in no order; none may need another that is gone."""
         before = live()
         for _ in range(50):
-            holder = {"mesh": starguard.sample("star", vertex_count=500)}
+            holder = {"mesh": starguard.sample("star", vertices=500)}
             holder["solid"] = holder["mesh"].solid
             holder["inner"] = holder["solid"].mesh
             holder["view"] = holder["inner"].vertices[3:]
             holder["guards"] = starguard.guard(holder["inner"], method="greedy",
-                                               candidates="interior", candidate_count=5)
+                                               candidates="interior", count=5)
             holder["self"] = holder
             del holder
         self.assertEqual(live(), before)

@@ -15,7 +15,7 @@ class Same(Case):
     def test_samples(self):
         for name, pose in (("horse", 0), ("dog", 3), ("knot", 0)):
             self.cli("sample", name, "--pose", pose, "--vertices", 700, "-o", "a.ply", "--quiet")
-            starguard.sample(name, pose=pose, vertex_count=700).write("b.ply")
+            starguard.sample(name, pose=pose, vertices=700).write("b.ply")
             self.assertEqual(self.read("a.ply"), self.read("b.ply"))
         told = json.loads(self.cli("sample", "--list", "--json"))["samples"]
         self.assertEqual([(s["name"], s["description"], s["poses"]) for s in told],
@@ -34,7 +34,7 @@ class Same(Case):
                                 {"cone": 120, "max_guards": 4})):
             with self.subTest(words=words):
                 self.cli("guard", model, "-o", "a.json", "--quiet", "--count", 200, *words)
-                found = starguard.guard(model, candidate_count=200, **options)
+                found = starguard.guard(model, count=200, **options)
                 found.write("b.json")
                 self.assertEqual(self.read("a.json"), self.read("b.json"))
                 told = json.loads(self.read("a.json"))
@@ -61,14 +61,14 @@ class Same(Case):
     def test_skeleton(self):
         model = self.model("torus", 500)
         self.cli("skeleton", model, "-o", "a.vtk", "--nodes", 60, "--quiet")
-        starguard.skeleton(model, node_count=60).write("b.vtk")
+        starguard.skeleton(model, nodes=60).write("b.vtk")
         self.assertEqual(self.read("a.vtk"), self.read("b.vtk"))
 
     def test_visible_and_kernel(self):
         model = self.model()
         told = json.loads(self.cli("visible", model, "--from", "1,1,1", "--from", "3,1,1", "--faces",
                                    "whole", "--json"))
-        seen = starguard.visible(model, [[1, 1, 1], [3, 1, 1]], face_rule="whole")
+        seen = starguard.visible(model, [[1, 1, 1], [3, 1, 1]], faces="whole")
         self.assertEqual([seen.indices(i).tolist() for i in range(2)],
                          [point["faces"] for point in told["points"]])
         self.assertEqual(starguard.Solid(model).contains([[1, 1, 1], [3, 1, 1]]).tolist(),

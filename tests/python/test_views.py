@@ -11,11 +11,11 @@ from support import FACES, VERTICES, Case, main
 class Views(Case):
     def setUp(self):
         super().setUp()
-        starguard.sample("gallery", vertex_count=800).write("m.off")
+        starguard.sample("gallery", vertices=800).write("m.off")
         self.model = starguard.Mesh.read("m.off")
         self.guards = starguard.guard(self.model)
         self.pieces = starguard.decompose(self.model, effort=20)
-        self.skeleton = starguard.skeleton(self.model, node_count=40)
+        self.skeleton = starguard.skeleton(self.model, nodes=40)
 
     def test_the_same_as_the_command(self):
         self.guards.write("g.json")

@@ -1,0 +1,201 @@
+"""Options of calls: keyword arguments, range checks and docstrings, all of the library's field tables
+(starguard/fields.h). A new row there is a new keyword here."""
+from __future__ import annotations
+
+import inspect
+import math
+import operator
+import re
+import textwrap
+import warnings
+from typing import Any, Callable, Iterator, Mapping, TypeVar
+
+from . import _arrays
+from ._library import ffi, lib, text
+from .errors import ArgumentError
+
+T = TypeVar("T")
+_TYPES = {lib.STARG_FIELD_FLAG: "bool", lib.STARG_FIELD_COUNT: "int", lib.STARG_FIELD_REAL: "float",
+          lib.STARG_FIELD_CHOICE: "str", lib.STARG_FIELD_TEXT: "PathLike"}
+_TEXT_SIZE = 512
+
+
+class Field:
+    """A row of a table."""
+
+    def __init__(self, row: Any) -> None:
+        self._row, self.kind = row, row.kind
+        #: That of the command line, with _ for -; a flag without "no".
+        name = text(row.option) or text(row.key)
+        self._cleared = self.kind == lib.STARG_FIELD_FLAG and name.startswith("no-")
+        if self._cleared:
+            name = name[3:]
+        self.name = name.replace("-", "_")
+        self.words: list[str] = []
+        while self.kind == lib.STARG_FIELD_CHOICE and row.words[len(self.words)]:
+            self.words.append(text(row.words[len(self.words)]))
+
+    def _at(self, struct: Any, kind: str) -> Any:
+        return ffi.cast(kind, ffi.cast("char *", struct) + self._row.offset)
+
+    def _text(self, function: Any) -> str:
+        buffer = ffi.new("char[]", _TEXT_SIZE)
+        function(self._row, buffer, _TEXT_SIZE)
+        return text(buffer)
+
+    def _wrong(self, value: Any) -> ArgumentError:
+        what = ("a file name" if self.kind == lib.STARG_FIELD_TEXT
+                else self._text(lib.starg_field_expectation))
+        return ArgumentError(f"the {self.name.replace('_', ' ')} is {value!r}; it must be {what}")
+
+    def get(self, struct: Any) -> Any:
+        """The value as a caller would give it; None for what no number stands for."""
+        if self.kind == lib.STARG_FIELD_REAL:
+            return self._at(struct, "double *")[0]
+        if self.kind == lib.STARG_FIELD_TEXT:
+            return text(self._at(struct, "char **")[0]) or None
+        value = lib.starg_field_count(self._row, struct)
+        if self.kind == lib.STARG_FIELD_FLAG:
+            return bool(value)
+        if self.kind == lib.STARG_FIELD_CHOICE:
+            return self.words[value]
+        return value if self._row.least <= value <= self._row.most else None
+
+    def set(self, struct: Any, value: Any) -> Any:
+        """Sets it; what comes back must live as long as the struct."""
+        fits, keep = False, None
+        try:
+            if self.kind == lib.STARG_FIELD_REAL:
+                number = math.nan if isinstance(value, (str, bytes)) else float(value)
+                fits = (lib.starg_field_set_real(self._row, struct, number)
+                        or number == self._row.standard)  # beyond the range, and there already
+            elif self.kind == lib.STARG_FIELD_TEXT:
+                keep = ffi.new("char[]", _arrays.path(value))
+                self._at(struct, "char **")[0] = keep
+                fits = True
+            elif self.kind == lib.STARG_FIELD_CHOICE:
+                fits = lib.starg_field_set_count(self._row, struct, self.words.index(value))
+            elif self.kind == lib.STARG_FIELD_FLAG:
+                fits = (value in (True, False)
+                        and lib.starg_field_set_count(self._row, struct, bool(value)))
+            else:
+                fits = lib.starg_field_set_count(self._row, struct, operator.index(value))
+        except (TypeError, ValueError, OverflowError) as error:
+            raise self._wrong(value) from error
+        if not fits:
+            raise self._wrong(value)
+        return keep
+
+    def explain(self) -> str:
+        """A line for a docstring: what it may be, means, and is by default."""
+        values = self._text(lib.starg_field_expectation)
+        if self.kind == lib.STARG_FIELD_CHOICE:
+            values = ", ".join(f'"{word}"' for word in self.words)
+        elif self.kind == lib.STARG_FIELD_TEXT:
+            values = "a file name"
+        elif self.kind == lib.STARG_FIELD_FLAG:
+            values = f"True or False, by default {bool(self._row.initial)}"
+        else:
+            values = f"{text(self._row.value)}: {values}"
+        said = re.sub(r"--([a-z-]+)", lambda m: m.group(1).replace("-", "_"), text(self._row.help))
+        return (f"- `{self.name}` ({values}): {'if False: ' * self._cleared}{said} "
+                f"{self._text(lib.starg_field_default_text)}").rstrip()
+
+
+class Struct:
+    """A filled options struct, and what it points to."""
+
+    def __init__(self, pointer: Any, keep: list[Any]) -> None:
+        self.pointer, self._keep = pointer, keep
+
+
+class Options:
+    """The options of a call, those of a struct. `old` has names of the last version with those that
+    they have now."""
+
+    def __init__(self, kind: str, old: Mapping[str, str] = {}) -> None:
+        self._kind, self._old = kind, dict(old)
+        table = getattr(lib, f"{kind}_fields")()
+        fields = [Field(table.fields + i) for i in range(table.count)]
+        self.fields = {field.name: field for field in fields if field.kind in _TYPES}
+
+    def __iter__(self) -> Iterator[Field]:
+        return iter(self.fields.values())
+
+    def _renamed(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        values = {}
+        for name, value in given.items():
+            now = self._old.get(name, name)
+            if now not in self.fields:
+                raise TypeError(f"there is no option {name!r}")
+            if now in values:
+                raise TypeError(f"{now!r} is given twice, once by its old name")
+            if now != name:
+                warnings.warn(f"{name}= is now called {now}=; the old name goes with the next version",
+                              DeprecationWarning, stacklevel=4)
+            values[now] = value
+        return values
+
+    def make(self, given: Mapping[str, Any]) -> Struct:
+        """The struct with its defaults, but for what is given and not None. Called by the public
+        function itself, whose caller a warning is about."""
+        pointer = ffi.new(f"{self._kind} *")
+        getattr(lib, f"{self._kind}_default")(pointer)
+        keep = [self.fields[name].set(pointer, value)
+                for name, value in self._renamed(given).items() if value is not None]
+        return Struct(pointer, keep)
+
+    def read(self, struct: Any) -> dict[str, Any]:
+        """All options of a struct, by name."""
+        values = {field.name: field.get(struct) for field in self}
+        return _Values(values, self._old)
+
+    def word(self, name: str, number: int) -> str:
+        """The word for the number of an enum."""
+        return self.fields[name].words[number]
+
+
+class _Values(dict[str, Any]):
+    """Options by name, or by an old name."""
+
+    def __init__(self, values: Mapping[str, Any], old: Mapping[str, str]) -> None:
+        super().__init__(values)
+        self._old = old
+
+    def __missing__(self, name: str) -> Any:
+        if name not in self._old:
+            raise KeyError(name)
+        warnings.warn(f"{name!r} is now called {self._old[name]!r}", DeprecationWarning, stacklevel=2)
+        return self[self._old[name]]
+
+
+# ---- what help() shows ----
+
+
+def _explained(doc: str | None, fields: list[Field]) -> str:
+    """A docstring with a list of options before its example."""
+    told, example, rest = inspect.cleandoc(doc or "").partition(">>> ")
+    lines = [textwrap.fill(field.explain(), 96, subsequent_indent="  ", break_on_hyphens=False)
+             for field in fields]
+    return "\n".join([told.rstrip(), "", "Options (None is the default):", "", *lines,
+                      "", example + rest]).rstrip()
+
+
+def takes(options: Options) -> Callable[[T], T]:
+    """Of a function with `**options`, or a class: its signature and its docstring name them all, but
+    for those that it has as parameters and explains itself."""
+
+    def decorate(thing: T) -> T:
+        function: Any = thing.__init__ if inspect.isclass(thing) else thing
+        signature = inspect.signature(function)
+        own = {name: p for name, p in signature.parameters.items() if p.kind != p.VAR_KEYWORD}
+        fields = [field for field in options if field.name not in own]
+        thing.__doc__ = _explained(thing.__doc__, fields)
+        made = [inspect.Parameter(field.name, inspect.Parameter.KEYWORD_ONLY, default=None,
+                                  annotation=f"{_TYPES[field.kind]} | None") for field in fields]
+        before = [p for p in own.values() if p.kind != p.KEYWORD_ONLY]
+        after = [p for p in own.values() if p.kind == p.KEYWORD_ONLY]
+        function.__signature__ = signature.replace(parameters=before + made + after)
+        return thing
+
+    return decorate

@@ -1,0 +1,46 @@
+/* What is made from the field tables (starguard/fields.h) when the project is built: JSON Schemas,
+ * the page fields.md, and the types of Python's keyword arguments. */
+#ifndef STARGUARD_TOOLS_FIELDS_H
+#define STARGUARD_TOOLS_FIELDS_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "starguard/fields.h"
+
+/* A JSON file, and the report that has its keys and some of its own. */
+typedef struct document {
+    const char *name, *title; /* "guards", "GUARDS.json" */
+    const char *command;      /* writes the file, and the report with --json */
+    const starg_fields *fields;
+    const starg_fields *report; /* the report's own keys */
+} document;
+extern const document documents[];
+extern const size_t document_count;
+
+/* The options of a call. */
+typedef struct call {
+    const char *title, *keywords; /* "guard", "GuardOptions" */
+    const starg_fields *(*fields)(void);
+    const char *without; /* a name whose argument has a type that no table knows */
+} call;
+extern const call calls[];
+extern const size_t call_count;
+
+enum { NAME_SIZE = 64 };
+
+/* The name of an option in Python: "max_guards". */
+void keyword_name(const starg_field *field, char name[NAME_SIZE]);
+
+/* Has every record the member? */
+bool is_required(const starg_field *field);
+
+/* Is it a flag whose option, and help, are about clearing it? */
+bool is_cleared(const starg_field *field);
+
+/* False when a file cannot be written. */
+bool write_schemas(const char *folder);
+bool write_page(const char *path);
+bool write_keywords(const char *path);
+
+#endif
