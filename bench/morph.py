@@ -7,7 +7,7 @@ usage: morph.py STARGUARD [--shared FOLDER] [--frames N] [--samples-only] [--onl
 Pairs are the samples in two poses, and where the shared data is there poses of it, and different
 animals by the landmarks in bench/landmarks; for these the map's time and distortion come first on
 standard error. Told are pairs of faces that intersect at both ends, which are no fault of a method, on
-the way (summed over the frames between) and at t = 0.5, folded faces, and the largest and mean drift
+the way (summed over the frames between) and at t = 0.5, flipped faces, and the largest and mean drift
 of the volume.
 """
 import argparse
@@ -80,7 +80,7 @@ def measure(arguments, folder, words, method):
             "intersections": sum(f["intersections"] for f in between),
             "half": between[len(between) // 2]["intersections"],
             "ends": [report["frames"][i]["intersections"] for i in (0, -1)],
-            "folded": sum(f["inverted"] for f in between),
+            "flipped": sum(f["inverted"] for f in between),
             "drift": max(drifts), "mean": sum(drifts) / len(drifts)}
 
 
@@ -97,7 +97,7 @@ def main():
         parser.error("--frames must be odd and 3 or more, so that t = 0.5 is one of them")
     methods = arguments.methods.split(",")
     rows = []
-    print("| pair | method | guards | ends | intersections | at t = 0.5 | folded | volume drift | "
+    print("| pair | method | guards | ends | intersections | at t = 0.5 | flipped | volume drift | "
           "mean |")
     print("|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
@@ -109,13 +109,13 @@ def main():
                 rows.append((method, row))
                 print(f"| {name} | {method} | {row['guards'] or ''} | {row['ends'][0]}, "
                       f"{row['ends'][1]} | {row['intersections']} | {row['half']} | "
-                      f"{row['folded']} | {100 * row['drift']:.2f} % | {100 * row['mean']:.2f} % |",
+                      f"{row['flipped']} | {100 * row['drift']:.2f} % | {100 * row['mean']:.2f} % |",
                       flush=True)
     for method in methods:
         own = [row for m, row in rows if m == method]
         means = {key: sum(row[key] for row in own) / len(own) for key in own[0] if key != "ends"}
         print(f"| mean | {method} |  |  | {means['intersections']:.1f} | {means['half']:.1f} | "
-              f"{means['folded']:.1f} | {100 * means['drift']:.2f} % | {100 * means['mean']:.2f} % |")
+              f"{means['flipped']:.1f} | {100 * means['drift']:.2f} % | {100 * means['mean']:.2f} % |")
 
 
 if __name__ == "__main__":

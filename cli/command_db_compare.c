@@ -5,7 +5,7 @@
 #include "commands.h"
 #include "csv.h"
 #include "database.h"
-#include "endings.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/picture.h"
@@ -38,8 +38,8 @@ static starg_status prepare_matrix(cli_session *session, void *data) {
     if (v->output == NULL && v->picture == NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "name an output: -o FILE.csv, --picture FILE.png, or both");
-    CLI_TRY(cli_announce_with_ending(session, "-o", v->output, ".csv"));
-    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
     return status;
 }
@@ -120,8 +120,8 @@ static const cli_option evaluate_options[] = {
 static starg_status prepare_evaluate(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
-    CLI_TRY(cli_announce_with_ending(session, "-o", v->output, ".csv"));
-    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".svg"));
+    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".svg"));
 done:
     return status;
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
@@ -283,7 +283,7 @@ static starg_status announce_files(cli_session *session, const values *v) {
         return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o PIECES.vtk");
     CLI_TRY(cli_announce(session, v->output));
     CLI_TRY(cli_announce(session, v->report));
-    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     CLI_TRY(cli_announce_folder(session, v->surfaces));
 done:
     return status;

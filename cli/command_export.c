@@ -1,7 +1,7 @@
 /* starguard export: a model with its results in one file for other programs. */
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "report.h"
 #include "show.h"
 #include "starguard/scene.h"
@@ -13,7 +13,7 @@ typedef struct values {
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj",
-                      "Where to write, by the name's ending (docs/formats.md); '-' writes .glb to "
+                      "Where to write, by the file extension (docs/formats.md); '-' writes .glb to "
                       "standard output."),
     CLI_INPUT_OPTION("model", model, "FILE",
                      "The model that results are about. By default the one that they name, from "
@@ -22,13 +22,13 @@ static const cli_option options[] = {
 
 static starg_status choose_format(cli_session *session, const char *name,
                                   starg_scene_format *format) {
-    static const cli_ending known[] = {{".glb", STARG_SCENE_GLB},
-                                       {".vtu", STARG_SCENE_VTU},
-                                       {".ply", STARG_SCENE_PLY},
-                                       {".obj", STARG_SCENE_OBJ}};
+    static const cli_extension known[] = {{".glb", STARG_SCENE_GLB},
+                                          {".vtu", STARG_SCENE_VTU},
+                                          {".ply", STARG_SCENE_PLY},
+                                          {".obj", STARG_SCENE_OBJ}};
     int found;
-    starg_status status = cli_format_by_ending(session, name, known, sizeof known / sizeof *known,
-                                               STARG_SCENE_GLB, &found);
+    starg_status status = cli_format_by_extension(
+        session, name, known, sizeof known / sizeof *known, STARG_SCENE_GLB, &found);
     *format = (starg_scene_format)found;
     return status;
 }

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
@@ -182,8 +182,8 @@ static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
-    CLI_TRY(cli_announce_with_ending(session, "--marks", v->marks, ".ply"));
-    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     if (v->candidates != NULL)
         CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
 done:

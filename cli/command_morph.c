@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/animation.h"
@@ -111,8 +111,8 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--guards: the method %s has no guards; take star or spherical",
                         method_word(v));
-    CLI_TRY(cli_announce_with_ending(session, "--glb", v->glb, ".glb"));
-    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "--glb", v->glb, ".glb"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
         return cli_fail(session, STARG_ERROR_ARGUMENT, "--glb takes at most %d frames",
                         STARG_ANIMATION_FRAMES);
@@ -462,7 +462,7 @@ static void say_morph(cli_session *session, const values *v, const starg_morph *
                 found->pieces[0]->piece_count);
     cli_say(session, "intersecting  %zu pairs of faces, at most %zu in a frame\n",
             sum->intersections, sum->most_intersections);
-    cli_say(session, "folded        %zu faces\n", sum->inverted);
+    cli_say(session, "flipped       %zu faces\n", sum->inverted);
     cli_say(session, "volume drift  at most %.3g %%\n", 100 * sum->drift);
 }
 

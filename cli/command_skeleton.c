@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/picture.h"
@@ -18,7 +18,7 @@ typedef struct values {
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION(
         "FILE.obj|.cg|.vtk",
-        "Where to write the skeleton, by the name's ending: OBJ lines, a curve graph, or VTK "
+        "Where to write the skeleton, by the file extension: OBJ lines, a curve graph, or VTK "
         "with radii (docs/formats.md); '-' writes VTK to standard output."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Draw the model half transparent with its skeleton."),
@@ -26,11 +26,11 @@ static const cli_option options[] = {
 
 static starg_status choose_format(cli_session *session, const char *name,
                                   starg_skeleton_format *format) {
-    static const cli_ending known[] = {
+    static const cli_extension known[] = {
         {".obj", STARG_SKELETON_OBJ}, {".cg", STARG_SKELETON_CG}, {".vtk", STARG_SKELETON_VTK}};
     int found;
-    starg_status status = cli_format_by_ending(session, name, known, sizeof known / sizeof *known,
-                                               STARG_SKELETON_VTK, &found);
+    starg_status status = cli_format_by_extension(
+        session, name, known, sizeof known / sizeof *known, STARG_SKELETON_VTK, &found);
     *format = (starg_skeleton_format)found;
     return status;
 }
@@ -40,7 +40,7 @@ static starg_status prepare(cli_session *session, void *data) {
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "FILE.obj, .cg or .vtk"));
     CLI_TRY(choose_format(session, v->output, &v->format));
-    CLI_TRY(cli_announce_with_ending(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
     return status;
 }

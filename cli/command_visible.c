@@ -2,7 +2,7 @@
 #include <stdlib.h>
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
@@ -146,7 +146,7 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--from and --box do not go together: what points see is exact, what boxes "
                         "see is not");
-    return cli_announce_with_ending(session, "-o", v->output, ".ply");
+    return cli_announce_with_extension(session, "-o", v->output, ".ply");
 }
 
 /* Boxes by opposite corners become boxes by lower and upper ones. */

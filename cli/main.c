@@ -58,7 +58,7 @@ static int reject_option(const char *word) {
     return reject("option", word, near.best);
 }
 
-/* The command that the words of `help` name; NULL for the program. False with a complaint. */
+/* The command that the words of `help` name; NULL for the program. False with an error. */
 static bool find_topic(int argc, char **argv, const cli_command **command, int *result) {
     *command = argc > 0 ? cli_command_find(cli_commands, argv[0]) : NULL;
     if (argc == 2 && *command != NULL && (*command)->members != NULL) {
@@ -130,13 +130,13 @@ static bool wants_json(int argc, char **argv) {
 }
 
 static starg_status parse(cli_session *session, const cli_group *groups, int argc, char **argv) {
-    cli_complaint complaint;
+    cli_parse_error error;
     bool json = wants_json(argc, argv);
-    int operands = cli_options_parse(groups, CLI_GROUPS, argc, argv, &complaint);
+    int operands = cli_options_parse(groups, CLI_GROUPS, argc, argv, &error);
     if (operands < 0) {
         if (json)
             cli_report_begin(session);
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "%s", complaint.text);
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "%s", error.text);
     }
     session->operands = argv;
     session->operand_count = (size_t)operands;

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "report.h"
 #include "starguard/picture.h"
 
@@ -154,13 +154,13 @@ done:
 }
 
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format) {
-    static const cli_ending known[] = {{".off", STARG_MESH_OFF},
-                                       {".obj", STARG_MESH_OBJ},
-                                       {".ply", STARG_MESH_PLY_BINARY},
-                                       {".stl", STARG_MESH_STL_BINARY}};
+    static const cli_extension known[] = {{".off", STARG_MESH_OFF},
+                                          {".obj", STARG_MESH_OBJ},
+                                          {".ply", STARG_MESH_PLY_BINARY},
+                                          {".stl", STARG_MESH_STL_BINARY}};
     int found;
-    starg_status status = cli_format_by_ending(session, name, known, sizeof known / sizeof *known,
-                                               STARG_MESH_OFF, &found);
+    starg_status status = cli_format_by_extension(
+        session, name, known, sizeof known / sizeof *known, STARG_MESH_OFF, &found);
     *format = (starg_mesh_format)found;
     return status;
 }

@@ -20,7 +20,7 @@ starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh *
 starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
                                 starg_descriptor **descriptor);
 
-/* The format for an output mesh by its name's ending; OFF for "-". Errors: ARGUMENT. */
+/* The format for an output mesh by its file extension; OFF for "-". Errors: ARGUMENT. */
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);
 
 /* Writes a mesh with face colours (or NULL) to an announced output. */

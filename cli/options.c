@@ -15,7 +15,7 @@ typedef struct parser {
     size_t group_count;
     int argc, next;
     char **argv;
-    cli_complaint *complaint;
+    cli_parse_error *error;
 } parser;
 
 /* An option as the user wrote it. */
@@ -25,10 +25,10 @@ typedef struct match {
     char shown[64]; /* "--name" or "-n" */
 } match;
 
-__attribute__((format(printf, 2, 3))) static bool complain(parser *p, const char *format, ...) {
+__attribute__((format(printf, 2, 3))) static bool fail_parse(parser *p, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(p->complaint->text, sizeof p->complaint->text, format, arguments);
+    vsnprintf(p->error->text, sizeof p->error->text, format, arguments);
     va_end(arguments);
     return false;
 }
@@ -41,10 +41,10 @@ static bool set_count(parser *p, const match *m, const char *word) {
     if (cli_number_count(word, &value) && starg_field_set_count(o, m->group->values, value))
         return true;
     if (o->most == UINT64_MAX)
-        return complain(p, "%s takes a whole number of at least %llu, not '%.100s'", m->shown,
-                        (unsigned long long)o->least, word);
-    return complain(p, "%s takes a whole number from %llu to %llu, not '%.100s'", m->shown,
-                    (unsigned long long)o->least, (unsigned long long)o->most, word);
+        return fail_parse(p, "%s takes a whole number of at least %llu, not '%.100s'", m->shown,
+                          (unsigned long long)o->least, word);
+    return fail_parse(p, "%s takes a whole number from %llu to %llu, not '%.100s'", m->shown,
+                      (unsigned long long)o->least, (unsigned long long)o->most, word);
 }
 
 static bool set_real(parser *p, const match *m, const char *word) {
@@ -52,9 +52,9 @@ static bool set_real(parser *p, const match *m, const char *word) {
     double value;
     if (cli_number_real(word, &value) && starg_field_set_real(o, m->group->values, value))
         return true;
-    return complain(p, "%s takes a number %s %g and at most %g, not '%.100s'", m->shown,
-                    (o->flags & STARG_FIELD_ABOVE) ? "above" : "of at least", o->low, o->high,
-                    word);
+    return fail_parse(p, "%s takes a number %s %g and at most %g, not '%.100s'", m->shown,
+                      (o->flags & STARG_FIELD_ABOVE) ? "above" : "of at least", o->low, o->high,
+                      word);
 }
 
 static bool set_choice(parser *p, const match *m, const char *word) {
@@ -73,21 +73,21 @@ static bool set_choice(parser *p, const match *m, const char *word) {
             used = sizeof list - 1;
     }
     if (near.best != NULL)
-        return complain(p, "%s takes %s, not '%.100s'; did you mean '%s'?", m->shown, list, word,
-                        near.best);
-    return complain(p, "%s takes %s, not '%.100s'", m->shown, list, word);
+        return fail_parse(p, "%s takes %s, not '%.100s'; did you mean '%s'?", m->shown, list, word,
+                          near.best);
+    return fail_parse(p, "%s takes %s, not '%.100s'", m->shown, list, word);
 }
 
 static bool add_place(parser *p, const match *m, const char *word, starg_places *points) {
     size_t width = m->option->length;
     double place[6];
     if (!cli_number_list(word, place, (int)width))
-        return complain(p, "%s takes a %s (%s numbers, no spaces), not '%.100s'", m->shown,
-                        width == 3 ? "point as X,Y,Z" : "box as X0,Y0,Z0,X1,Y1,Z1",
-                        width == 3 ? "three" : "six", word);
+        return fail_parse(p, "%s takes a %s (%s numbers, no spaces), not '%.100s'", m->shown,
+                          width == 3 ? "point as X,Y,Z" : "box as X0,Y0,Z0,X1,Y1,Z1",
+                          width == 3 ? "three" : "six", word);
     double *grown = realloc(points->values, (points->count + 1) * width * sizeof *place);
     if (grown == NULL)
-        return complain(p, "%s: out of memory", m->shown);
+        return fail_parse(p, "%s: out of memory", m->shown);
     memcpy(grown + width * points->count, place, width * sizeof *place);
     points->values = grown;
     points->count++;
@@ -115,7 +115,7 @@ static bool set_value(parser *p, const match *m, const char *word) {
         return add_place(p, m, word, variable);
     default:
         *(const char **)variable = word;
-        return *word != '\0' || complain(p, "%s takes a name, not an empty word", m->shown);
+        return *word != '\0' || fail_parse(p, "%s takes a name, not an empty word", m->shown);
     }
 }
 
@@ -141,8 +141,8 @@ static bool find_long(parser *p, const char *name, size_t size, match *m) {
         }
     }
     if (near.best != NULL)
-        return complain(p, "unknown option '--%s'; did you mean '--%s'?", word, near.best);
-    return complain(p, "unknown option '--%.*s'", (int)(size < 100 ? size : 100), name);
+        return fail_parse(p, "unknown option '--%s'; did you mean '--%s'?", word, near.best);
+    return fail_parse(p, "unknown option '--%.*s'", (int)(size < 100 ? size : 100), name);
 }
 
 static bool find_short(parser *p, char letter, match *m) {
@@ -156,14 +156,14 @@ static bool find_short(parser *p, char letter, match *m) {
             return true;
         }
     }
-    return complain(p, "unknown option '-%c'", letter);
+    return fail_parse(p, "unknown option '-%c'", letter);
 }
 
 /* The next word as a value. One that looks like an option is more likely a value forgotten;
  * "--name=--value" says that it is meant. */
 static bool next_value(parser *p, const match *m, const char **word) {
     if (p->next == p->argc || strncmp(p->argv[p->next], "--", 2) == 0)
-        return complain(p, "%s needs a value: %s %s", m->shown, m->shown, m->option->value);
+        return fail_parse(p, "%s needs a value: %s %s", m->shown, m->shown, m->option->value);
     *word = p->argv[p->next++];
     return true;
 }
@@ -175,7 +175,7 @@ static bool parse_long(parser *p, const char *text) {
     if (!find_long(p, text, size, &m))
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && equals != NULL)
-        return complain(p, "%s takes no value", m.shown);
+        return fail_parse(p, "%s takes no value", m.shown);
     if (m.option->kind != STARG_FIELD_FLAG) {
         word = equals != NULL ? equals + 1 : NULL;
         if (word == NULL && !next_value(p, &m, &word))
@@ -191,7 +191,7 @@ static bool parse_short(parser *p, const char *text) {
     if (!find_short(p, *text, &m))
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && text[1] != '\0')
-        return complain(p, "unknown option '-%.100s'", text);
+        return fail_parse(p, "unknown option '-%.100s'", text);
     if (m.option->kind != STARG_FIELD_FLAG) {
         word = text + 1;
         if (*word == '\0' && !next_value(p, &m, &word))
@@ -201,12 +201,9 @@ static bool parse_short(parser *p, const char *text) {
 }
 
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
-                      cli_complaint *complaint) {
-    parser p = {.groups = groups,
-                .group_count = group_count,
-                .argc = argc,
-                .argv = argv,
-                .complaint = complaint};
+                      cli_parse_error *error) {
+    parser p = {
+        .groups = groups, .group_count = group_count, .argc = argc, .argv = argv, .error = error};
     int operands = 0;
     bool options_end = false;
     while (p.next < argc) {

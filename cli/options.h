@@ -60,15 +60,15 @@ typedef struct cli_group {
 } cli_group;
 
 /* Why parsing failed: one line for the user. */
-typedef struct cli_complaint {
+typedef struct cli_parse_error {
     char text[512];
-} cli_complaint;
+} cli_parse_error;
 
 /* Parses `argc` words. Options and operands may mix; "--" ends the options. Options are taken by
  * their whole name. Operands are moved to the front of argv, their number is returned; -1 with a
- * complaint on the first error. Later occurrences of an option replace earlier ones. */
+ * message on the first error. Later occurrences of an option replace earlier ones. */
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
-                      cli_complaint *complaint);
+                      cli_parse_error *error);
 
 /* Sets the defaults of a group. */
 void cli_options_default(const cli_group *group);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "commands.h"
-#include "endings.h"
+#include "extensions.h"
 #include "ranks.h"
 #include "report.h"
 #include "terminal.h"
@@ -110,9 +110,9 @@ static starg_status fail_output(cli_session *session) {
 
 /* TetGen's tetrahedra are read from two files, of which either may be named. */
 static bool add_pair(cli_session *session, const char *name) {
-    const char *other = cli_has_ending(name, ".node")  ? ".ele"
-                        : cli_has_ending(name, ".ele") ? ".node"
-                                                       : NULL;
+    const char *other = cli_has_extension(name, ".node")  ? ".ele"
+                        : cli_has_extension(name, ".ele") ? ".node"
+                                                          : NULL;
     char path[PATH_MAX];
     if (other == NULL || strlen(name) + strlen(other) >= sizeof path)
         return true;

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "endings.h"
+#include "extensions.h"
 #include "model.h"
 #include "starguard/animation.h"
 
@@ -49,9 +49,9 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
         return KIND_SKELETON;
     if (*first == '{')
         return KIND_RESULT;
-    if (cli_has_ending(name, ".csv"))
+    if (cli_has_extension(name, ".csv"))
         return KIND_TABLE;
-    return cli_has_ending(name, ".obj") && is_curve(file) ? KIND_SKELETON : KIND_MODEL;
+    return cli_has_extension(name, ".obj") && is_curve(file) ? KIND_SKELETON : KIND_MODEL;
 }
 
 /* What cannot be opened is left to a reader, which says why. */

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 /* What went wrong, and with which vertices, faces or lines. */
-static void complain(const starg_context *context) {
+static void print_error(const starg_context *context) {
     const starg_error *error = starg_context_error(context);
     fprintf(stderr, "%s: %s\n", error->stage, error->message);
     for (size_t i = 0; i < error->index_count; i++)
@@ -46,7 +46,7 @@ int main(int argc, char **argv) {
     result = 0;
 done:
     if (result != 0)
-        complain(context);
+        print_error(context);
     starg_guards_free(context, guards);
     starg_solid_free(solid);
     starg_mesh_free(mesh);

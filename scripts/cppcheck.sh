@@ -8,4 +8,4 @@ command -v cppcheck >/dev/null || {
 }
 cppcheck --enable=warning,performance,portability --inline-suppr --quiet --std=c11 -j "$(nproc)" \
     -Iinclude -Isrc --suppress=missingIncludeSystem --error-exitcode=1 src cli tools
-echo "cppcheck: nothing to complain of"
+echo "cppcheck: no findings"

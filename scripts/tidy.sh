@@ -1,6 +1,6 @@
 #!/bin/sh
 # clang-tidy over what a build compiles of the library and the command line. Usage: tidy.sh BUILD
-# But for the visibility stages for instruction sets, which are one source: the plain form stands for all.
+# But for the visibility stages for instruction sets, which are one source: the plain variant stands for all.
 set -eu
 cd "$(dirname "$0")/.."
 log="$1/tidy.log"
@@ -11,4 +11,4 @@ if ! sources "$1" | tr '\n' '\0' | xargs -0 -P "$(nproc)" -n 6 clang-tidy -p "$1
     grep -E 'warning:|error:' "$log" >&2
     exit 1
 fi
-echo "tidy: nothing to complain of"
+echo "tidy: no findings"

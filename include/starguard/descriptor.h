@@ -56,9 +56,10 @@ typedef struct starg_descriptor {
     /* The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area,
      * ascending. */
     double surface_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
-    /* Where the boundary vibrates: row k holds quantiles, over the surface, of how strong
-     * vibrations of about the k-th energy are at a point, 1 on average. Rows ascend. */
-    double waves[STARG_DESCRIPTOR_ENERGIES][STARG_DESCRIPTOR_SPREAD];
+    /* Wave kernel signature, where the boundary vibrates: row k holds quantiles, over the surface,
+     * of how strong vibrations of about the k-th energy are at a point, 1 on average. Rows ascend.
+     */
+    double wave_kernel[STARG_DESCRIPTOR_ENERGIES][STARG_DESCRIPTOR_SPREAD];
 } starg_descriptor;
 
 enum {

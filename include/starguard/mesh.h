@@ -49,7 +49,7 @@ typedef enum starg_mesh_format {
 } starg_mesh_format;
 
 /* Reads a mesh; path "-" is standard input. The content tells the format, and only if it does not
- * the name's ending. Polygons are cut into triangles in place (the faces that result keep the
+ * the file extension. Polygons are cut into triangles in place (the faces that result keep the
  * file's order): by the fan about the first corner, or by clipping ears where that fan does not do
  * (then of at most 4,096 corners). STL corners at exactly equal positions become one vertex. Faces
  * with repeated corners are kept. Normals, colours and materials are ignored, and no other file is
@@ -73,9 +73,9 @@ STARG_API void starg_mesh_write_options_default(starg_mesh_write_options *option
 
 /* Writes a mesh; path "-" is standard output, for which a format must be named. A file appears
  * whole or not at all. Reals are written with 17 significant digits (binary STL holds single
- * precision only, by its definition). By name, .ply and .stl become binary.
- * `options` may be NULL. Errors: ARGUMENT (name has no known ending), RANGE (a coordinate beyond
- * single precision, binary STL only), WRITE, MEMORY, CANCELLED. */
+ * precision only, by its definition). By name, .ply and .stl become binary. `options` may be NULL.
+ * Errors: ARGUMENT (no known file extension), RANGE (a coordinate beyond single precision, binary
+ * STL only), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh,
                                         const char *path, const starg_mesh_write_options *options);
 

@@ -154,7 +154,7 @@ STARG_API starg_status starg_morph_solids(const starg_morph *morph, starg_decomp
 /* What a frame is like. */
 typedef struct starg_frame_measures {
     size_t intersections; /* pairs of faces that pass through one another             */
-    size_t inverted;      /* faces folded over: against the sum of their neighbours'
+    size_t inverted;      /* faces flipped over: against the sum of their neighbours'
                              normals, which at neither end they are                   */
     size_t collapsed;     /* faces of less than a millionth of their area at the ends */
     double volume, area;

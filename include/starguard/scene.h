@@ -36,7 +36,7 @@ typedef enum starg_scene_format {
  * A file appears whole or not at all; the same input gives the same bytes. With pieces, whose
  * surfaces hold the model's, the model stands in VTU only. Coordinates are doubles, in GLB single
  * precision about the middle of all.
- * Errors: ARGUMENT (name has no known ending; nothing to write; parts that do not fit one another:
+ * Errors: ARGUMENT (no known file extension; nothing to write; parts that do not fit one another:
  * which), RANGE (GLB: a coordinate beyond single precision), MESH (GLB: over 4 GiB), WRITE, MEMORY,
  * CANCELLED. */
 STARG_API starg_status starg_scene_write(starg_context *context, const starg_scene *scene,

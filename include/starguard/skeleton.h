@@ -61,7 +61,7 @@ typedef enum starg_skeleton_format {
 } starg_skeleton_format;
 
 /* Writes a skeleton; path "-" is standard output, for which a format must be named. A file appears
- * whole or not at all. Errors: ARGUMENT (name has no known ending), WRITE, MEMORY, CANCELLED. */
+ * whole or not at all. Errors: ARGUMENT (no known file extension), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_skeleton_write(starg_context *context, const starg_skeleton *skeleton,
                                             const char *path, starg_skeleton_format format);
 

@@ -115,7 +115,7 @@ class Mesh:
 
     def write(self, path: PathLike, *, format: str = "auto",
               face_colors: ArrayLike | None = None) -> None:
-        """Writes OFF, OBJ, PLY or STL, by the name's ending or by `format`: "off", "obj", "ply",
+        """Writes OFF, OBJ, PLY or STL, by the file extension or by `format`: "off", "obj", "ply",
         "ply-ascii", "stl" or "stl-ascii". `face_colors` is (m, 3), 0 to 255; PLY and OFF keep it.
 
         >>> import starguard

@@ -128,7 +128,7 @@ class FrameMeasures:
 
     #: Pairs of faces that pass through one another.
     intersections: int
-    #: Faces folded over.
+    #: Faces flipped over.
     inverted: int
     #: Faces of less than a millionth of their area at the ends.
     collapsed: int

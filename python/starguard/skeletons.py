@@ -86,7 +86,7 @@ class Skeleton:
             _arrays.path(name), shared=True))
 
     def write(self, path: PathLike, *, format: str = "auto") -> None:
-        """Writes the graph as "obj", "cg" or "vtk", by the name's ending or by `format`.
+        """Writes the graph as "obj", "cg" or "vtk", by the file extension or by `format`.
 
         >>> import starguard
         >>> starguard.skeleton(starguard.sample("dog", vertices=500)).write("dog.cg")

@@ -59,7 +59,7 @@ def _fill(target: Any, model: Any, guards: Guards | None,
 def write_scene(path: PathLike, model: Any = None, *, guards: Guards | None = None,
                 pieces: Decomposition | PiecesMesh | None = None, report: PiecesReport | None = None,
                 skeleton: Skeleton | None = None, format: str = "auto") -> None:
-    """Writes a model and results in one file, by the name's ending or by `format`: "glb" (Blender,
+    """Writes a model and results in one file, by the file extension or by `format`: "glb" (Blender,
     browsers), "vtu" (ParaView), "ply" (MeshLab) or "obj" (docs/formats.md).
 
     >>> import starguard

@@ -1,81 +1,81 @@
 /* A loop hands out its items one by one from an atomic counter: items here are whole visibility
  * rows or the like, so that the counter never dominates. The calling thread works like the others,
- * unless it has to deal with other processes (core/share.c). */
+ * unless it has to deal with other processes (core/distribute.c). */
 #include "core/parallel.h"
 
-#include "core/team.h"
+#include "core/worker_group.h"
 
-void team_fail(team *crew, size_t item, starg_status status) {
-    atomic_store(&crew->stop, true);
-    mtx_lock(&crew->lock);
-    if (crew->failed_status == STARG_OK || item < crew->failed_item) {
-        crew->failed_item = item;
-        crew->failed_status = status;
+void worker_group_fail(worker_group *group, size_t item, starg_status status) {
+    atomic_store(&group->stop, true);
+    mtx_lock(&group->lock);
+    if (group->failed_status == STARG_OK || item < group->failed_item) {
+        group->failed_item = item;
+        group->failed_status = status;
     }
-    mtx_unlock(&crew->lock);
+    mtx_unlock(&group->lock);
 }
 
-bool team_must_stop(team *crew, size_t item) {
-    if (atomic_load(&crew->stop))
+bool worker_group_must_stop(worker_group *group, size_t item) {
+    if (atomic_load(&group->stop))
         return true;
-    if (atomic_load(&crew->context->cancelled))
-        team_fail(crew, item, STARG_ERROR_CANCELLED);
-    else if (starg_time_has_failed(crew->context))
-        team_fail(crew, item, STARG_ERROR_TIME);
-    return atomic_load(&crew->stop);
+    if (atomic_load(&group->context->cancelled))
+        worker_group_fail(group, item, STARG_ERROR_CANCELLED);
+    else if (starg_time_has_failed(group->context))
+        worker_group_fail(group, item, STARG_ERROR_TIME);
+    return atomic_load(&group->stop);
 }
 
-void team_finish(team *crew, size_t first, size_t count) {
-    for (size_t i = first; crew->is_finished != NULL && i < first + count; i++)
-        atomic_store(&crew->is_finished[i], 1);
-    atomic_fetch_add(&crew->finished, count);
+void worker_group_finish(worker_group *group, size_t first, size_t count) {
+    for (size_t i = first; group->is_finished != NULL && i < first + count; i++)
+        atomic_store(&group->is_finished[i], 1);
+    atomic_fetch_add(&group->finished, count);
 }
 
-static void advance(team *crew) {
-    const starg_parallel_loop *loop = crew->loop;
-    size_t reached = crew->advanced;
-    while (reached < loop->count && atomic_load(&crew->is_finished[reached]))
+static void advance(worker_group *group) {
+    const starg_parallel_loop *loop = group->loop;
+    size_t reached = group->advanced;
+    while (reached < loop->count && atomic_load(&group->is_finished[reached]))
         reached++;
-    if (reached == crew->advanced || crew->calling_status != STARG_OK)
+    if (reached == group->advanced || group->calling_status != STARG_OK)
         return;
-    crew->advanced = reached;
-    crew->calling_status = loop->advance(crew->context, loop->shared, reached);
-    if (crew->calling_status != STARG_OK)
-        atomic_store(&crew->stop, true);
+    group->advanced = reached;
+    group->calling_status = loop->advance(group->context, loop->shared, reached);
+    if (group->calling_status != STARG_OK)
+        atomic_store(&group->stop, true);
 }
 
-void team_report(team *crew) {
-    const starg_parallel_loop *loop = crew->loop;
+void worker_group_report(worker_group *group) {
+    const starg_parallel_loop *loop = group->loop;
     if (loop->advance != NULL)
-        advance(crew);
+        advance(group);
     if (!loop->silent)
-        starg_progress_step(crew->context, atomic_load(&crew->finished), loop->count);
+        starg_progress_step(group->context, atomic_load(&group->finished), loop->count);
 }
 
-static void work(team *crew, bool calling) {
-    const starg_parallel_loop *loop = crew->loop;
+static void work(worker_group *group, bool calling) {
+    const starg_parallel_loop *loop = group->loop;
     void *scratch = NULL;
     if (loop->make_scratch != NULL) {
-        starg_status status = loop->make_scratch(crew->context, loop->shared, &scratch);
+        starg_status status = loop->make_scratch(group->context, loop->shared, &scratch);
         if (status != STARG_OK) {
-            team_fail(crew, 0, status);
+            worker_group_fail(group, 0, status);
             return;
         }
     }
     for (;;) {
-        size_t item = atomic_fetch_add(&crew->next, 1);
-        if (item >= loop->count || team_must_stop(crew, item))
+        size_t item = atomic_fetch_add(&group->next, 1);
+        if (item >= loop->count || worker_group_must_stop(group, item))
             break;
-        starg_status status = loop->item(crew->context, loop->shared, scratch, item);
+        starg_status status = loop->item(group->context, loop->shared, scratch, item);
         if (status == STARG_OK)
-            team_finish(crew, item, 1);
+            worker_group_finish(group, item, 1);
         else
-            team_fail(crew, item, status);
+            worker_group_fail(group, item, status);
         if (calling)
-            team_report(crew);
+            worker_group_report(group);
     }
     if (loop->free_scratch != NULL)
-        loop->free_scratch(crew->context, scratch);
+        loop->free_scratch(group->context, scratch);
 }
 
 static int helper_main(void *argument) {
@@ -99,21 +99,21 @@ static starg_status explain(starg_context *context, const char *stage, starg_sta
 }
 
 /* How many threads to start besides the calling one. */
-static size_t count_threads(const team *crew, bool shared) {
-    size_t threads = (size_t)crew->context->threads - !shared, count = crew->loop->count;
+static size_t count_threads(const worker_group *group, bool shared) {
+    size_t threads = (size_t)group->context->threads - !shared, count = group->loop->count;
     size_t most = shared || count == 0 ? count : count - 1;
     return threads < most ? threads : most;
 }
 
-static starg_status prepare(team *crew, size_t helpers, thrd_t **threads) {
+static starg_status prepare(worker_group *group, size_t helpers, thrd_t **threads) {
     starg_status status = STARG_OK;
-    starg_context *context = crew->context;
-    const char *stage = crew->loop->stage;
+    starg_context *context = group->context;
+    const char *stage = group->loop->stage;
     if (helpers > 0)
         STARG_NEW(context, stage, *threads, helpers);
-    if (crew->loop->advance != NULL)
-        STARG_NEW_ZERO(context, stage, crew->is_finished, crew->loop->count);
-    if (mtx_init(&crew->lock, mtx_plain) != thrd_success)
+    if (group->loop->advance != NULL)
+        STARG_NEW_ZERO(context, stage, group->is_finished, group->loop->count);
+    if (mtx_init(&group->lock, mtx_plain) != thrd_success)
         status = starg_fail_memory(context, stage);
 done:
     return status;
@@ -121,35 +121,35 @@ done:
 
 starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop) {
     starg_status status = STARG_OK;
-    team crew = {.context = context, .loop = loop};
+    worker_group group = {.context = context, .loop = loop};
     bool shared = loop->remote != NULL && context->ranks != NULL && loop->count > 1;
-    size_t helpers = count_threads(&crew, shared), started = 0;
+    size_t helpers = count_threads(&group, shared), started = 0;
     thrd_t *threads = NULL;
     if (!loop->silent)
         starg_progress_begin_part(context, loop->stage, loop->share);
-    STARG_TRY(prepare(&crew, helpers, &threads));
+    STARG_TRY(prepare(&group, helpers, &threads));
 
     /* A thread that cannot be started is no failure: the others do its share. */
-    while (started < helpers && thrd_create(&threads[started], helper_main, &crew) == thrd_success)
+    while (started < helpers && thrd_create(&threads[started], helper_main, &group) == thrd_success)
         started++;
     if (shared)
-        team_share(&crew);
+        worker_group_distribute(&group);
     else
-        work(&crew, true);
+        work(&group, true);
     for (size_t i = 0; i < started; i++)
         thrd_join(threads[i], NULL);
     if (loop->advance != NULL)
-        advance(&crew);
+        advance(&group);
 
-    mtx_destroy(&crew.lock);
-    status = crew.calling_status;
+    mtx_destroy(&group.lock);
+    status = group.calling_status;
     if (status == STARG_OK)
-        status = explain(context, loop->stage, crew.failed_status);
+        status = explain(context, loop->stage, group.failed_status);
 done:
     if (!loop->silent)
         starg_progress_end(context);
     starg_release(context, threads);
-    starg_release(context, crew.is_finished);
+    starg_release(context, group.is_finished);
     return status;
 }
 

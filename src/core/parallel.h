@@ -11,7 +11,7 @@
 typedef starg_status starg_parallel_item(starg_context *context, void *shared, void *scratch,
                                          size_t item);
 
-/* How other processes work on items of a loop (core/share.c). */
+/* How other processes work on items of a loop (core/distribute.c). */
 typedef struct starg_parallel_remote {
     ranks_work_kind work;
     const starg_bytes *job; /* what they have to know of all items                         */

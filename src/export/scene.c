@@ -170,12 +170,12 @@ double scene_ball_radius(const scene_job *job) {
 /* ---- writing ---- */
 
 static starg_scene_format format_of(const char *path) {
-    static const char *const endings[] = {[STARG_SCENE_GLB] = ".glb",
-                                          [STARG_SCENE_VTU] = ".vtu",
-                                          [STARG_SCENE_PLY] = ".ply",
-                                          [STARG_SCENE_OBJ] = ".obj"};
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        if (endings[i] != NULL && starg_has_ending(path, endings[i]))
+    static const char *const extensions[] = {[STARG_SCENE_GLB] = ".glb",
+                                             [STARG_SCENE_VTU] = ".vtu",
+                                             [STARG_SCENE_PLY] = ".ply",
+                                             [STARG_SCENE_OBJ] = ".obj"};
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++)
+        if (extensions[i] != NULL && starg_has_extension(path, extensions[i]))
             return (starg_scene_format)i;
     return STARG_SCENE_AUTO;
 }

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "guard/samples.h"
+#include "guard/proxy.h"
 #include "skeleton/medial.h"
 #include "starguard/skeleton.h"
 
@@ -36,7 +36,7 @@ static starg_status medial_candidates(starg_context *context, const candidate_sh
     medial_ball *balls = NULL;
     double *scratch = NULL;
     size_t count = 0, chosen = 0;
-    STARG_TRY(medial_balls(context, shape->samples, shape->clearance, &balls, &count));
+    STARG_TRY(medial_balls(context, shape->proxy, shape->clearance, &balls, &count));
     STARG_NEW(context, STAGE, scratch, count);
     STARG_TRY(medial_thin(context, balls, count, wanted, scratch, &chosen));
     for (size_t i = 0; i < chosen; i++)
@@ -54,7 +54,7 @@ static starg_status skeletal_candidates(starg_context *context, const candidate_
     starg_skeleton_options options;
     starg_skeleton_options_default(&options);
     options.node_count = wanted;
-    starg_status status = starg_skeleton_create(context, shape->samples, &options, &skeleton);
+    starg_status status = starg_skeleton_create(context, shape->proxy, &options, &skeleton);
     if (status == STARG_ERROR_MESH) {
         starg_log(context, STARG_LOG_NOTICE,
                   "there is no curve skeleton (%s): candidates are taken from the medial axis",
@@ -173,19 +173,19 @@ starg_status starg_candidate_points(starg_context *context, const starg_solid *s
                                     double **points, size_t *count) {
     starg_status status = STARG_OK;
     candidate_points found = {0};
-    starg_solid *samples = NULL;
+    starg_solid *proxy = NULL;
     *points = NULL;
     *count = 0;
     STARG_TRY(candidates_check(context, source, wanted, clearance));
-    if (samples_wanted(solid))
-        STARG_TRY(samples_make(context, solid, &samples));
-    const candidate_shape shape = {solid, samples ? samples : solid, clearance};
+    if (proxy_wanted(solid))
+        STARG_TRY(proxy_make(context, solid, &proxy));
+    const candidate_shape shape = {solid, proxy ? proxy : solid, clearance};
     STARG_TRY(candidates_find(context, &shape, source, wanted, &found));
     *points = found.data.data;
     *count = found.data.count / 3;
     found.data.data = NULL;
 done:
-    starg_solid_free(samples);
+    starg_solid_free(proxy);
     candidates_free(context, &found);
     return status;
 }

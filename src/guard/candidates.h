@@ -31,9 +31,8 @@ bool candidates_allowed(const starg_solid *solid, const double p[3], double clea
 
 /* What candidates are of. */
 typedef struct candidate_shape {
-    const starg_solid *solid;   /* what they must be inside of                               */
-    const starg_solid *samples; /* what medial axis and skeleton are taken from: the solid or
-                                   a simpler version (guard/samples.h)                       */
+    const starg_solid *solid; /* what they must be inside of                               */
+    const starg_solid *proxy; /* source of medial axis and skeleton: the solid or its proxy */
     double clearance;
 } candidate_shape;
 
@@ -45,18 +44,18 @@ starg_status candidates_check(starg_context *context, starg_candidates source, s
 starg_status candidates_find(starg_context *context, const candidate_shape *shape,
                              starg_candidates source, size_t wanted, candidate_points *points);
 
-/* Adds candidates for faces that no candidate sees (guard/complete.c): `unseen` marks the faces
- * (by index) for which points are wanted. The points that are appended see at least one of them
- * each; a face stays unseen only if none of the points tried sees it. Does at most a bounded
- * number of faces per call: `pending` tells whether there are more to try. */
-typedef struct completion {
+/* Adds candidates for faces that no candidate sees (guard/augment.c): `unseen` marks the faces (by
+ * index) for which points are wanted. The points that are appended see at least one of them each; a
+ * face stays unseen only if none of the points tried sees it. Does at most a bounded number of
+ * faces per call: `pending` tells whether there are more to try. */
+typedef struct augmentation {
     const starg_solid *solid;
     const starg_visibility_options *visibility;
     double clearance;
     uint8_t *tried; /* per face: points were looked for already */
-} completion;
+} augmentation;
 
-starg_status complete_candidates(starg_context *context, const completion *completion,
-                                 const uint8_t *unseen, candidate_points *points, bool *pending);
+starg_status augment_candidates(starg_context *context, const augmentation *augmentation,
+                                const uint8_t *unseen, candidate_points *points, bool *pending);
 
 #endif

@@ -1,8 +1,8 @@
 /* Guarding a solid [YL11, section 3]: candidates, what they see, the fewest that see everything.
  *
  * Stages: levels of detail; candidate points, of a large model from one of the levels
- * (guard/samples.c); their visibility rows; more candidates until every face that can be seen is
- * seen by one (guard/complete.c); the choice, by one cover problem or from coarse to fine
+ * (guard/proxy.c); their visibility rows; more candidates until every face that can be seen is seen
+ * by one (guard/augment.c); the choice, by one cover problem or from coarse to fine
  * (guard/progressive.c); candidates added where they pay (guard/refine.c); what the chosen guards
  * see (guard/measure.c).
  *
@@ -13,7 +13,7 @@
 #include <math.h>
 
 #include "core/fields.h"
-#include "guard/samples.h"
+#include "guard/proxy.h"
 #include "guard/stages.h"
 
 static const char STAGE[] = "guard";
@@ -22,7 +22,7 @@ static void set_defaults(starg_guard_options *o, size_t vertices) {
     if (o->max_nodes == STARG_DEFAULT_NODES)
         o->max_nodes = o->method == STARG_GUARD_PILP ? 30 : 100000;
     if (o->step == STARG_DEFAULT_STEP)
-        o->step = samples_step(vertices, o->coarsest);
+        o->step = proxy_step(vertices, o->coarsest);
 }
 
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
@@ -59,11 +59,11 @@ done:
     return status;
 }
 
-static bool needs_samples(const guard_problem *problem) {
-    return problem->options->candidates != STARG_CANDIDATES_GIVEN && samples_wanted(problem->solid);
+static bool needs_proxy(const guard_problem *problem) {
+    return problem->options->candidates != STARG_CANDIDATES_GIVEN && proxy_wanted(problem->solid);
 }
 
-/* Levels of detail, for the method or as samples. Without the time to make them there is the model
+/* Levels of detail, for the method or as proxy. Without the time to make them there is the model
  * alone. */
 static starg_status make_levels(const guard_problem *problem, guard_detail *out) {
     const starg_guard_options *options = problem->options;
@@ -77,11 +77,11 @@ static starg_status make_levels(const guard_problem *problem, guard_detail *out)
 
 static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
     starg_status status = STARG_OK;
-    bool samples = needs_samples(problem);
-    if (problem->options->method == STARG_GUARD_PILP || samples)
+    bool proxy = needs_proxy(problem);
+    if (problem->options->method == STARG_GUARD_PILP || proxy)
         STARG_TRY(make_levels(problem, out));
-    if (samples && out->levels != NULL)
-        STARG_TRY(samples_of_levels(problem->context, out->levels, &out->samples));
+    if (proxy && out->levels != NULL)
+        STARG_TRY(proxy_of_levels(problem->context, out->levels, &out->proxy));
 done:
     return status;
 }
@@ -96,7 +96,7 @@ static starg_status find_first(const guard_problem *problem, const guard_detail 
                            out);
 }
 
-/* The candidates before completion, and what they see. */
+/* The candidates before augmentation, and what they see. */
 static starg_status find_candidates(const guard_problem *problem, const guard_detail *detail,
                                     guard_pool *out) {
     starg_status status = STARG_OK;
@@ -122,7 +122,7 @@ static starg_status find_pool(const guard_problem *problem, const guard_detail *
                               guard_pool *out) {
     starg_status status = STARG_OK;
     STARG_TRY(find_candidates(problem, detail, out));
-    STARG_TRY(pool_complete(out, &problem->weights));
+    STARG_TRY(pool_augment(out, &problem->weights));
     if (pool_count(out) == 0)
         status =
             fail_without_candidates(problem->context, detail->time_limited || out->time_limited);
@@ -236,7 +236,7 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
 done:
-    starg_solid_free(detail.samples);
+    starg_solid_free(detail.proxy);
     starg_levels_free(problem->context, detail.levels);
     return status;
 }

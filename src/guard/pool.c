@@ -172,11 +172,11 @@ static bool sees_enough(const guard_pool *pool, const column_weights *weights) {
     return missing <= 0.5 * (1 - o->coverage) * (double)weights->total;
 }
 
-starg_status pool_complete(guard_pool *pool, const column_weights *weights) {
+starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
     starg_status status = STARG_OK;
     uint8_t *unseen = NULL;
     candidate_points found = {0};
-    completion all = {pool->solid, &pool->options->visibility, pool->options->clearance, NULL};
+    augmentation all = {pool->solid, &pool->options->visibility, pool->options->clearance, NULL};
     bool pending = pool->options->candidates != STARG_CANDIDATES_GIVEN;
     pool->first_count = pool_count(pool);
     STARG_NEW_ZERO(pool->context, STAGE, all.tried, pool->solid->mesh->face_count);
@@ -187,7 +187,7 @@ starg_status pool_complete(guard_pool *pool, const column_weights *weights) {
             break;
         mark_unseen(pool, unseen);
         found.data.count = found.directions.count = 0;
-        status = complete_candidates(pool->context, &all, unseen, &found, &pending);
+        status = augment_candidates(pool->context, &all, unseen, &found, &pending);
         if (status == STARG_ERROR_TIME) {
             status = STARG_OK;
             pool->time_limited = true;

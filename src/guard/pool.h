@@ -11,11 +11,11 @@ typedef struct guard_pool {
     const starg_solid *solid;
     const starg_guard_options *options; /* visibility, clearance, where guards may stand */
     candidate_points points;
-    size_t first_count;  /* candidates before completion, from pool_complete on */
+    size_t first_count;  /* candidates before augmentation, from pool_augment on */
     starg_bits *rows;    /* by candidate; columns are faces or vertices; NULL before the first */
     size_t columns;      /* of the rows */
     uint64_t *coverable; /* bits of the columns that some row holds */
-    bool curtailed;      /* completion ended before all faces were tried: enough can be seen */
+    bool curtailed;      /* augmentation ended before all faces were tried: enough can be seen */
     bool time_limited;   /* candidates were left out because the time was over */
 } guard_pool;
 
@@ -42,15 +42,15 @@ static inline const double *pool_direction(const guard_pool *pool, size_t candid
  * Errors: MEMORY, CANCELLED. */
 starg_status pool_add(guard_pool *pool, const candidate_points *points);
 
-/* The candidates from before completion, with the same indices, and what they see of another solid:
- * one level of detail. Rows that the time limit leaves unfinished are empty. Errors: MEMORY,
+/* The candidates from before augmentation, with the same indices, and what they see of another
+ * solid: one level of detail. Rows that the time limit leaves unfinished are empty. Errors: MEMORY,
  * CANCELLED. */
 starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out);
 
 /* Adds candidates for faces that none sees yet, until every face that can be seen is seen by one
- * (guard/complete.c), or, where a part of the area is enough, until what none sees is at most half
+ * (guard/augment.c), or, where a part of the area is enough, until what none sees is at most half
  * of what may be left; given candidates are left as they are. Errors: MEMORY, CANCELLED. */
-starg_status pool_complete(guard_pool *pool, const column_weights *weights);
+starg_status pool_augment(guard_pool *pool, const column_weights *weights);
 
 /* The weight of the columns that some candidate holds. */
 uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *weights);

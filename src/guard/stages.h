@@ -17,7 +17,7 @@ typedef struct guard_problem {
 /* Simpler versions of the solid. */
 typedef struct guard_detail {
     starg_levels *levels; /* NULL: none are wanted, or there was no time                       */
-    starg_solid *samples; /* what medial axis and skeleton are taken from; NULL: the solid     */
+    starg_solid *proxy;   /* what medial axis and skeleton are taken from; NULL: the solid     */
     bool time_limited;
 } guard_detail;
 
@@ -44,8 +44,8 @@ typedef struct guard_outcome {
 
 static inline candidate_shape guard_shape(const guard_problem *problem,
                                           const guard_detail *detail) {
-    const starg_solid *samples = detail->samples != NULL ? detail->samples : problem->solid;
-    return (candidate_shape){problem->solid, samples, problem->options->clearance};
+    const starg_solid *proxy = detail->proxy != NULL ? detail->proxy : problem->solid;
+    return (candidate_shape){problem->solid, proxy, problem->options->clearance};
 }
 
 /* A cover's rows as the chosen ones, with its bounds. Those that were chosen `before` keep their

@@ -169,7 +169,7 @@ static void describe(change *c) {
         c->corner[i][0] = star->a;
         c->corner[i][1] = halfedges_end(&s->mesh, star->kept[i]);
         c->corner[i][2] = halfedges_apex(&s->mesh, star->kept[i]);
-        c->face_box[i] = nearby_face_box(s, c->corner[i]);
+        c->face_box[i] = dynamic_bvh_face_box(s, c->corner[i]);
         extend(&c->box, surface_at(s, c->corner[i][1]));
     }
     find_axis(c);
@@ -288,23 +288,23 @@ static bool clear_of(void *user, uint32_t face) {
     const uint32_t *corner = surface_face(s, face);
     if (is_corner(c->star->a, corner) || is_corner(c->star->b, corner))
         return true;
-    bvh_box box = nearby_face_box(s, corner);
+    bvh_box box = dynamic_bvh_face_box(s, corner);
     for (size_t i = 0; i < c->star->count; i++)
-        if (nearby_boxes_meet(&box, &c->face_box[i]) &&
+        if (dynamic_bvh_boxes_meet(&box, &c->face_box[i]) &&
             faces_meet(s, c->corner[i], corner, c->axis))
             return false;
     return s->component[face] == s->component[c->star->halfedge / 3] ||
            !is_swept(c, surface_at(s, corner[0]));
 }
 
-bool collapse_keeps_embedding(mesh_surface *surface, const mesh_nearby *nearby,
+bool collapse_keeps_embedding(mesh_surface *surface, const dynamic_bvh *tree,
                               const collapse_star *star, const double position[3]) {
     change c = {.surface = surface, .star = star};
     double *a = surface->vertices + 3 * (size_t)star->a;
     vec3_copy(a, c.old);
     vec3_copy(position, a);
     describe(&c);
-    bool clear = star_is_embedded(&c) && nearby_query(nearby, &c.box, clear_of, &c);
+    bool clear = star_is_embedded(&c) && dynamic_bvh_query(tree, &c.box, clear_of, &c);
     vec3_copy(c.old, a);
     return clear;
 }

@@ -2,7 +2,7 @@
 #ifndef STARG_MESH_COLLAPSE_H
 #define STARG_MESH_COLLAPSE_H
 
-#include "mesh/nearby.h"
+#include "mesh/dynamic_bvh.h"
 #include "mesh/surface.h"
 
 /* Vertices of more edges are left alone: what a collapse costs grows with the square. */
@@ -29,7 +29,7 @@ bool collapse_keeps_shape(const mesh_surface *surface, const collapse_star *star
 /* With the end at `position`: the changed faces meet one another and all others in nothing but the
  * corners and edges that they share, and the surface sweeps over no other component. Exact. The
  * surface is the same afterwards. */
-bool collapse_keeps_embedding(mesh_surface *surface, const mesh_nearby *nearby,
+bool collapse_keeps_embedding(mesh_surface *surface, const dynamic_bvh *tree,
                               const collapse_star *star, const double position[3]);
 
 #endif

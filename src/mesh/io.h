@@ -108,8 +108,8 @@ void starg_stl_write_binary(FILE *stream, const starg_mesh *mesh, const uint8_t 
 /* The vertices and the faces of a mesh as lines of text, which OFF and PLY have in common. */
 void starg_write_lines(FILE *stream, const starg_mesh *mesh, const uint8_t *colors);
 
-/* True when `name` ends with `ending`, in any case. */
-bool starg_has_ending(const char *name, const char *ending);
+/* True when `name` ends with `extension`, in any case. */
+bool starg_has_extension(const char *name, const char *extension);
 
 /* Numbers are read and written with a point whatever locale the program has chosen: the calling
  * thread works in the "C" locale between enter and leave. Errors: MEMORY. */

@@ -7,7 +7,7 @@
 #include "mesh/io.h"
 
 static const struct format {
-    const char *ending;
+    const char *extension;
     bool (*matches)(const starg_source *source);
     starg_status (*read)(starg_mesh_builder *builder);
 } formats[] = {
@@ -19,9 +19,9 @@ static const struct format {
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
-bool starg_has_ending(const char *name, const char *ending) {
-    size_t length = strlen(name), tail = strlen(ending);
-    return length >= tail && strcasecmp(name + length - tail, ending) == 0;
+bool starg_has_extension(const char *name, const char *extension) {
+    size_t length = strlen(name), tail = strlen(extension);
+    return length >= tail && strcasecmp(name + length - tail, extension) == 0;
 }
 
 static starg_status detect(const starg_source *source, const char *name,
@@ -35,7 +35,7 @@ static starg_status detect(const starg_source *source, const char *name,
         }
     }
     for (int i = 0; i < FORMATS; i++) {
-        if (starg_has_ending(name, formats[i].ending)) {
+        if (starg_has_extension(name, formats[i].extension)) {
             *out = &formats[i];
             return STARG_OK;
         }

@@ -37,12 +37,12 @@ enum {
 typedef struct simplifier {
     starg_context *context;
     mesh_surface *surface;
-    mesh_nearby *nearby; /* NULL: intersections are allowed */
-    mesh_heap *queue;    /* of edges                        */
-    quadric *quadrics;   /* per vertex, about its position  */
-    uint8_t *attempt;    /* per edge: placements refused    */
-    size_t gain;         /* collapses in this round         */
-    size_t handled;      /* edges taken from the queue      */
+    dynamic_bvh *tree; /* NULL: intersections are allowed */
+    mesh_heap *queue;  /* of edges                        */
+    quadric *quadrics; /* per vertex, about its position  */
+    uint8_t *attempt;  /* per edge: placements refused    */
+    size_t gain;       /* collapses in this round         */
+    size_t handled;    /* edges taken from the queue      */
 } simplifier;
 
 /* ---- placements ----------------------------------------------------------------------------- */
@@ -162,11 +162,11 @@ static starg_status collapse(simplifier *s, const collapse_star *star, const dou
     surface_collapse(surface, h, position);
     for (size_t i = 0; i < star->count; i++) {
         enter(s, surface->edge[star->kept[i]], 0);
-        if (s->nearby != NULL)
-            nearby_update(s->nearby, star->kept[i] / 3);
+        if (s->tree != NULL)
+            dynamic_bvh_update(s->tree, star->kept[i] / 3);
     }
     s->gain++;
-    return s->nearby != NULL ? nearby_renew(s->nearby) : STARG_OK;
+    return s->tree != NULL ? dynamic_bvh_renew(s->tree) : STARG_OK;
 }
 
 static starg_status try_collapse(simplifier *s, uint32_t edge) {
@@ -176,7 +176,7 @@ static starg_status try_collapse(simplifier *s, uint32_t edge) {
         !place(s, edge, s->attempt[edge], &at))
         return STARG_OK;
     if (collapse_keeps_shape(s->surface, &star, at.position) &&
-        (s->nearby == NULL || collapse_keeps_embedding(s->surface, s->nearby, &star, at.position)))
+        (s->tree == NULL || collapse_keeps_embedding(s->surface, s->tree, &star, at.position)))
         return collapse(s, &star, at.position);
     enter(s, edge, s->attempt[edge] + 1);
     return STARG_OK;
@@ -231,7 +231,7 @@ static starg_status begin(simplifier *s, starg_context *context, const starg_mes
     STARG_NEW_ZERO(context, "simplify", s->quadrics, mesh->vertex_count);
     STARG_NEW(context, "simplify", s->attempt, s->surface->edge_count);
     if (options == NULL || !options->allow_intersections)
-        STARG_TRY(nearby_create(context, s->surface, &s->nearby));
+        STARG_TRY(dynamic_bvh_create(context, s->surface, &s->tree));
     make_quadrics(s);
     enter_all(s);
 done:
@@ -240,7 +240,7 @@ done:
 
 static void end(simplifier *s) {
     surface_free(s->surface);
-    nearby_free(s->nearby);
+    dynamic_bvh_free(s->tree);
     heap_free(s->queue);
     starg_release(s->context, s->quadrics);
     starg_release(s->context, s->attempt);

@@ -22,13 +22,13 @@ void starg_mesh_write_options_default(starg_mesh_write_options *options) {
 }
 
 static starg_mesh_format format_by_name(const char *path) {
-    if (starg_has_ending(path, ".off"))
+    if (starg_has_extension(path, ".off"))
         return STARG_MESH_OFF;
-    if (starg_has_ending(path, ".obj"))
+    if (starg_has_extension(path, ".obj"))
         return STARG_MESH_OBJ;
-    if (starg_has_ending(path, ".ply"))
+    if (starg_has_extension(path, ".ply"))
         return STARG_MESH_PLY_BINARY;
-    if (starg_has_ending(path, ".stl"))
+    if (starg_has_extension(path, ".stl"))
         return STARG_MESH_STL_BINARY;
     return STARG_MESH_AUTO;
 }

@@ -7,7 +7,7 @@
  * [Kabsch 1976]; landmarks count as much as all samples. The rotation wins under which the points
  * that lie on one another on the sphere are the nearest in space, in the mean of squares.
  *
- * Without landmarks, tips of limbs (tips.c) that are each other's nearest in space after the
+ * Without landmarks, extremities (extremities.c) that are each other's nearest in space after the
  * winning way are told as pairs.
  *
  * Cost: 24 x SAMPLES^2 distances and 24 x SAMPLES locations. */
@@ -21,7 +21,7 @@
 
 static const char STAGE[] = "align";
 enum { SAMPLES = 600, WAYS = 24 };
-static const double NEAR = 1.3; /* of the surface's size: tips farther apart are no pair */
+static const double NEAR = 1.3; /* of the surface's size: extremities farther apart are no pair */
 
 typedef struct axes {
     double center[3], frame[9]; /* columns: principal axes */
@@ -216,14 +216,14 @@ static bool take_nearest(double (*from)[3], size_t from_count, double (*to)[3], 
     return found;
 }
 
-/* Tips that are near to one another in space after the motion, the nearest first. */
-static starg_status pair_tips(const aligner *a, const motion *m, feature_pairs *out) {
+/* Extremities that are near to one another in space after the motion, the nearest first. */
+static starg_status pair_extremities(const aligner *a, const motion *m, feature_pairs *out) {
     starg_status status = STARG_OK;
-    tip_list from, to;
-    double moved[TIPS_MOST][3], places[TIPS_MOST][3];
+    extremity_list from, to;
+    double moved[EXTREMITIES_MOST][3], places[EXTREMITIES_MOST][3];
     size_t pair[2] = {0, 0};
-    STARG_TRY(tips_find(a->from, &from));
-    STARG_TRY(tips_find(a->to->sphere, &to));
+    STARG_TRY(extremities_find(a->from, &from));
+    STARG_TRY(extremities_find(a->to->sphere, &to));
     for (size_t i = 0; i < from.count; i++)
         move(m, a->from->mesh->vertices + 3 * (size_t)from.vertices[i], moved[i]);
     for (size_t i = 0; i < to.count; i++)
@@ -261,10 +261,10 @@ starg_status align_spheres(sphere *from, const locator *to, const landmark_list 
         }
     }
     if (landmarks->count == 0 && least < INFINITY) {
-        STARG_TRY(pair_tips(&a, &best_motion, features));
+        STARG_TRY(pair_extremities(&a, &best_motion, features));
         const landmark_list pairs = {features->from, features->to, features->count};
-        const aligner by_tips = {from, to, &pairs};
-        rotation_for(&by_tips, &best_motion, best);
+        const aligner by_extremities = {from, to, &pairs};
+        rotation_for(&by_extremities, &best_motion, best);
     }
     STARG_TRY(turn(from, best));
 done:

@@ -2,8 +2,8 @@
 #ifndef STARG_MORPH_ALIGN_H
 #define STARG_MORPH_ALIGN_H
 
+#include "morph/extremities.h"
 #include "morph/locate.h"
-#include "morph/tips.h"
 
 /* Vertices that shall meet: `from` of the first surface, `to` of the second. */
 typedef struct landmark_list {
@@ -11,14 +11,14 @@ typedef struct landmark_list {
     size_t count;
 } landmark_list;
 
-/* Ends of limbs that seem to correspond. */
+/* Extremities that seem to correspond. */
 typedef struct feature_pairs {
     size_t count;
-    uint32_t from[TIPS_MOST], to[TIPS_MOST];
+    uint32_t from[EXTREMITIES_MOST], to[EXTREMITIES_MOST];
 } feature_pairs;
 
-/* Turns the directions of `from`. Where no landmarks are given, `features` tells the tips of both
- * surfaces that are near to one another in space. Errors: MEMORY, CANCELLED. */
+/* Turns the directions of `from`. Where no landmarks are given, `features` tells the extremities of
+ * both surfaces that are near to one another in space. Errors: MEMORY, CANCELLED. */
 starg_status align_spheres(sphere *from, const locator *to, const landmark_list *landmarks,
                            feature_pairs *features);
 

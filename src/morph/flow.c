@@ -18,10 +18,10 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "morph/composition.h"
-#include "morph/entries.h"
+#include "morph/triplets.h"
 
 static const char STAGE[] = "map";
-enum { HALVINGS = 5, SWEEPS = 2, ENTRIES = 4 };
+enum { HALVINGS = 5, SWEEPS = 2, TRIPLETS = 4 };
 static const double PIN = 1e3, MASS = 1e-3; /* weights of staying, beside cotangents */
 static const double NEEDLE = 10;            /* roundness that a step may lead to     */
 
@@ -58,14 +58,14 @@ static double cotangent(const flow *f, const uint32_t corner[3], int at) {
 
 /* ---- system ---- */
 
-static matrix_entry *put_triangle(const flow *f, const uint32_t corner[3], matrix_entry *next) {
+static triplet *put_triangle(const flow *f, const uint32_t corner[3], triplet *next) {
     for (int k = 0; k < 3; k++) {
         double w = cotangent(f, corner, k);
         uint32_t p = f->slot[corner[(k + 1) % 3]], q = f->slot[corner[(k + 2) % 3]];
-        *next++ = (matrix_entry){p, p, w};
-        *next++ = (matrix_entry){q, q, w};
-        *next++ = (matrix_entry){p, q, -w};
-        *next++ = (matrix_entry){q, p, -w};
+        *next++ = (triplet){p, p, w};
+        *next++ = (triplet){q, q, w};
+        *next++ = (triplet){p, q, -w};
+        *next++ = (triplet){q, p, -w};
     }
     return next;
 }
@@ -74,21 +74,21 @@ static starg_status make_system(flow *f) {
     starg_status status = STARG_OK;
     const sphere *s = f->c->from;
     size_t triangles = 2 * f->count - 4; /* Euler, genus 0 */
-    matrix_entry *entries = NULL, *next;
+    triplet *triplets = NULL, *next;
     uint32_t corner[3];
-    STARG_NEW(s->context, STAGE, entries, 3 * ENTRIES * triangles + f->count);
-    next = entries;
+    STARG_NEW(s->context, STAGE, triplets, 3 * TRIPLETS * triangles + f->count);
+    next = triplets;
     for (uint32_t k = 0; k < f->count; k++) {
         uint32_t v = s->alive[k];
-        *next++ = (matrix_entry){k, k, weight_of_staying(f, v)};
+        *next++ = (triplet){k, k, weight_of_staying(f, v)};
         for (size_t i = 0; i < s->rings->of[v].count; i++)
             if (triangle_at(s, v, i, corner))
                 next = put_triangle(f, corner, next);
     }
     STARG_TRY(
-        entries_factorise(s->context, f->count, entries, (size_t)(next - entries), &f->system));
+        triplets_factorise(s->context, f->count, triplets, (size_t)(next - triplets), &f->system));
 done:
-    starg_release(s->context, entries);
+    starg_release(s->context, triplets);
     return status;
 }
 

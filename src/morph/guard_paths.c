@@ -1,6 +1,6 @@
 /* How the guards go from A to B: along the guarding graph.
  *
- * Guards whose pieces share an edge are neighbours. A spanning tree of short links (Prim) is rooted
+ * Guards whose pieces share an edge are neighbours. A spanning tree of short edges (Prim) is rooted
  * at the guard of the largest piece. Each guard's offset from its parent wants to turn with the
  * mean of the two pieces' rotations and to gain the rest of its change in proportion to t. Where
  * guards come to be is found together with the vertices (rigid.c), so that neither pulls the other
@@ -17,7 +17,7 @@
 #include "starguard/bits.h"
 
 static const char STAGE[] = "consistent guards";
-static const double APART = 1e3; /* added to the length of links between pieces that do not meet */
+static const double APART = 1e3; /* added to the length of edges between pieces that do not meet */
 
 static void add_pieces(starg_morph *m) {
     double total = 0;
@@ -53,13 +53,13 @@ done:
 }
 
 /* Offset and change of a guard from its parent. */
-static void link_guard(starg_morph *m, uint32_t guard, uint32_t parent) {
+static void attach_guard(starg_morph *m, uint32_t guard, uint32_t parent) {
     guard_path *own = &m->guard_paths[guard], *above = &m->guard_paths[parent];
     double local[9], whole[9], rotation[9], target[3];
     own->parent = parent;
     for (int k = 0; k < 3; k++)
-        own->link[k] = 0.5 * (own->rotation[k] + above->rotation[k]);
-    rotation_from_vector(own->link, local);
+        own->turn[k] = 0.5 * (own->rotation[k] + above->rotation[k]);
+    rotation_from_vector(own->turn, local);
     rotation_from_vector(m->turn, whole);
     matrix_multiply(whole, local, rotation);
     vec3_subtract(m->places[0] + 3 * (size_t)guard, m->places[0] + 3 * (size_t)parent, own->offset);
@@ -102,7 +102,7 @@ static starg_status grow_tree(starg_morph *m, const starg_bits *neighbours) {
             if (next == UINT32_MAX || least[i] < least[next])
                 next = i;
         }
-        link_guard(m, next, above[next]);
+        attach_guard(m, next, above[next]);
         last = next;
     }
 done:

@@ -273,12 +273,12 @@ static starg_status compose(sphere *from, const locator *to, const landmark_list
     starg_status status = STARG_OK;
     double *before = NULL;
     size_t size = 3 * from->mesh->vertex_count;
-    const landmark_list tips = {features->from, features->to, features->count};
+    const landmark_list extremities = {features->from, features->to, features->count};
     bool met = false;
     STARG_NEW(from->context, STAGE, before, size);
     memcpy(before, from->directions, size * sizeof *before);
-    if (tips.count > 0)
-        STARG_TRY(compose_spheres(from, to, &tips, &met));
+    if (extremities.count > 0)
+        STARG_TRY(compose_spheres(from, to, &extremities, &met));
     if (met)
         goto done;
     memcpy(from->directions, before, size * sizeof *before);

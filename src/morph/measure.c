@@ -17,8 +17,8 @@ static void normal_of(const double *positions, const uint32_t corner[3], double 
 }
 
 /* Is a face turned against the sum of its neighbours' normals? */
-static bool is_folded(const starg_mesh *mesh, const mesh_topology *topology,
-                      const double *positions, size_t face) {
+static bool is_flipped(const starg_mesh *mesh, const mesh_topology *topology,
+                       const double *positions, size_t face) {
     double own[3], sum[3] = {0}, other[3];
     normal_of(positions, mesh->faces + 3 * face, own);
     for (size_t h = 3 * face; h < 3 * face + 3; h++) {
@@ -43,9 +43,9 @@ static starg_status count_faces(const starg_morph *m, const double *scaled,
         normal_of(m->images, corner, last);
         double least = fmin(vec3_length(first), vec3_length(last));
         out->collapsed += least > 0 && vec3_length(own) <= COLLAPSED * least;
-        out->inverted += is_folded(m->mesh, topology, scaled, f) &&
-                         !is_folded(m->mesh, topology, m->mesh->vertices, f) &&
-                         !is_folded(m->mesh, topology, m->images, f);
+        out->inverted += is_flipped(m->mesh, topology, scaled, f) &&
+                         !is_flipped(m->mesh, topology, m->mesh->vertices, f) &&
+                         !is_flipped(m->mesh, topology, m->images, f);
     }
 done:
     topology_free(topology);

@@ -1,9 +1,9 @@
 /* Morphs: from A to the images of its vertices by one of several methods [YL11, section 5.2].
  *
  * Stages: check and scale both ends; for methods with guards, choose guards and pieces
- * (consistent.c); for the rigid ones, the paths of the faces (face_paths.c; folds.c for star) and
- * guards (guard_paths.c), the factorised system (rigid.c) and what it leaves (remainder.c). Every
- * frame is then independent of others.
+ * (consistent.c); for the rigid ones, the paths of the faces (face_paths.c; flipped_faces.c for
+ * star) and guards (guard_paths.c), the factorised system (rigid.c) and what it leaves
+ * (residual.c). Every frame is then independent of others.
  *
  * All work is done about the middle of each end's box, and in units of which closed ends have equal
  * volumes: what the whole grows by is no stretch of single faces. The unit goes such that its cube,
@@ -174,7 +174,7 @@ starg_status starg_morph_create(starg_context *context, const starg_mesh *a, con
     if (m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_ARAP)
         STARG_TRY(morph_prepare_faces(m));
     if (m->method == STARG_MORPH_STAR) {
-        STARG_TRY(morph_fill_folds(m));
+        STARG_TRY(morph_fill_flipped(m));
         STARG_TRY(morph_prepare_guards(m));
     }
     if (m->method == STARG_MORPH_STAR || m->method == STARG_MORPH_ARAP)
@@ -191,10 +191,10 @@ void starg_morph_free(starg_morph *m) {
     if (m == NULL)
         return;
     void *const blocks[] = {m->source,        m->target,    m->images,    m->faces,
-                            m->weights,       m->component, m->remainder, m->candidates[0],
+                            m->weights,       m->component, m->residual,  m->candidates[0],
                             m->candidates[1], m->guards[0], m->guards[1], m->places[0],
                             m->places[1],     m->pieces,    m->guarded,   m->guard_paths,
-                            m->folded,        m->late};
+                            m->flipped,       m->late};
     starg_mesh_free(m->mesh);
     sparse_free(m->system);
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)

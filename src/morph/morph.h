@@ -3,7 +3,7 @@
 #define STARG_MORPH_MORPH_H
 
 #include "mesh/mesh.h"
-#include "morph/entries.h"
+#include "morph/triplets.h"
 #include "starguard/morph.h"
 #include "starguard/solid.h"
 
@@ -25,7 +25,7 @@ typedef struct face_path {
 typedef struct guard_path {
     uint32_t parent;    /* itself for the root */
     double rotation[3]; /* of the piece, w */
-    double link[3];     /* of the offset: the mean of both pieces' */
+    double turn[3];     /* of the offset: the mean of both pieces' */
     double offset[3];   /* from the parent's place in A */
     double change[3];   /* what the offset gains on the way, in A's frame */
     double weight;      /* share of the area */
@@ -43,14 +43,14 @@ struct starg_morph {
     face_path *faces;        /* per face                                             */
     double *weights;         /* per face: cotangents at its corners, anchor's weight */
     uint8_t *loose;          /* per vertex: no face holds it                         */
-    size_t linked;           /* guards that are unknowns: all for star, else none    */
+    size_t tree_guards;      /* guards that are unknowns: all for star, else none    */
     size_t unknowns;         /* vertices, then guards                                */
     uint32_t *component;     /* per unknown a name of its connected part             */
     sparse_factors *system;
-    double *remainder; /* vertex_count x 3: what the least squares leave at 1  */
-    double *late;      /* the part of it that comes last; NULL: none           */
-    size_t fold_count; /* folded faces (star)                                  */
-    uint8_t *folded;   /* per face; NULL for other methods                     */
+    double *residual;     /* vertex_count x 3: what the least squares leave at 1  */
+    double *late;         /* the part of it that comes last; NULL: none           */
+    size_t flipped_count; /* flipped faces (star)                                  */
+    uint8_t *flipped;     /* per face; NULL for other methods                     */
 
     size_t guard_count, unguarded;
     size_t candidate_count, lower_bound; /* of the common problem */
@@ -74,14 +74,14 @@ double morph_size(const starg_morph *m, double t);
 /* Finds the whole's and the faces' paths (face_paths.c). */
 starg_status morph_prepare_faces(starg_morph *m);
 
-/* Finds the folded faces and gives them the paths of what is around them (folds.c). */
-starg_status morph_fill_folds(starg_morph *m);
+/* Finds the flipped faces and gives them the paths of what is around them (flipped_faces.c). */
+starg_status morph_fill_flipped(starg_morph *m);
 
-/* Parts the remainder of the least squares, and adds what has come in at t (remainder.c). */
-starg_status morph_part_remainder(starg_morph *m);
-void morph_add_remainder(const starg_morph *m, double t, double *out);
+/* Parts the residual of the least squares, and adds what has come in at t (residual.c). */
+starg_status morph_part_residual(starg_morph *m);
+void morph_add_residual(const starg_morph *m, double t, double *out);
 
-/* Factorises the system and finds the remainder; shapes at t, scaled (rigid.c). */
+/* Factorises the system and finds the residual; shapes at t, scaled (rigid.c). */
 starg_status morph_prepare_rigid(starg_morph *m);
 starg_status morph_frame_rigid(const starg_morph *m, double t, double *out);
 

@@ -2,15 +2,15 @@
  *
  * Energy: for each face with the wanted Jacobian A(t), its cotangents times the squared errors of
  * its three edges, which is the error of its Jacobian within its plane, weighted by area; with
- * guards, for faces that theirs see and that are not folded, also the error along the direction
+ * guards, for faces that theirs see and that are not flipped, also the error along the direction
  * from the guard to the face's middle c, weighted by the face's area over the square of that
  * distance: the middle less the guard shall be A(t) (c - g). Guards are unknowns as vertices are;
- * links of the guarding graph want their offsets (see guard_paths.c), each with the weight of one
+ * edges of the guarding graph want their offsets (see guard_paths.c), each with the weight of one
  * cotangent.
  *
  * The matrix does not depend on t: it is factorised once. It knows differences only; one unknown of
- * each connected part is held, and the part is then moved so that its mean goes straight.
- * What is missing to B at t = 1, the non-rigid part of [YL11], is added (remainder.c).
+ * each connected part is held, and the part is then moved so that its mean goes straight. What is
+ * missing to B at t = 1, the non-rigid part of [YL11], is added (residual.c).
  *
  * Cost of a frame: O(faces) and three solutions with the factor. */
 #include <math.h>
@@ -24,8 +24,8 @@
 
 static const char STAGE[] = "morph";
 static const double LEAST_AREA = 1e-10; /* of a face, to the square of its longest edge */
-static const double LINK = 1;           /* weight of a link of two guards */
-enum { FACE_ENTRIES = 3 * LINK_ENTRIES + 16 };
+static const double TREE_EDGE = 1;      /* weight of an edge of the tree of guards */
+enum { FACE_TRIPLETS = 3 * EDGE_TRIPLETS + 16 };
 
 /* ---- system ---- */
 
@@ -53,7 +53,7 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[FACE_WE
         return;
     for (int k = 0; k < 3; k++)
         weights[k] = -vec3_dot(e[(k + 1) % 3], e[(k + 2) % 3]) / (4 * area);
-    if (m->method != STARG_MORPH_STAR || !m->guarded[face] || m->folded[face])
+    if (m->method != STARG_MORPH_STAR || !m->guarded[face] || m->flipped[face])
         return;
     double middle[3];
     middle_of(m->mesh->vertices, corner, middle);
@@ -62,11 +62,11 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[FACE_WE
 }
 
 /* The quadratic form of w (x_0 / 3 + x_1 / 3 + x_2 / 3 - x_3)^2. */
-static matrix_entry *put_anchor(const uint32_t unknowns[4], double w, matrix_entry *next) {
+static triplet *put_anchor(const uint32_t unknowns[4], double w, triplet *next) {
     static const double factors[4] = {1.0 / 3, 1.0 / 3, 1.0 / 3, -1};
     for (int i = 0; i < 4; i++)
         for (int j = 0; j < 4; j++)
-            *next++ = (matrix_entry){unknowns[i], unknowns[j], w * factors[i] * factors[j]};
+            *next++ = (triplet){unknowns[i], unknowns[j], w * factors[i] * factors[j]};
     return next;
 }
 
@@ -75,11 +75,11 @@ static uint32_t guard_unknown(const starg_morph *m, uint32_t guard) {
     return (uint32_t)m->mesh->vertex_count + guard;
 }
 
-static matrix_entry *put_face(const starg_morph *m, size_t face, matrix_entry *next) {
+static triplet *put_face(const starg_morph *m, size_t face, triplet *next) {
     const uint32_t *corner = m->mesh->faces + 3 * face;
     const double *weights = m->weights + FACE_WEIGHTS * face;
     for (size_t k = 0; k < 3; k++)
-        next = entries_put_link(corner[(k + 1) % 3], corner[(k + 2) % 3], weights[k], next);
+        next = triplets_put_edge(corner[(k + 1) % 3], corner[(k + 2) % 3], weights[k], next);
     if (m->method != STARG_MORPH_STAR)
         return next;
     const uint32_t unknowns[4] = {corner[0], corner[1], corner[2],
@@ -87,22 +87,22 @@ static matrix_entry *put_face(const starg_morph *m, size_t face, matrix_entry *n
     return put_anchor(unknowns, weights[3], next);
 }
 
-static matrix_entry *put_guards(const starg_morph *m, matrix_entry *next) {
-    for (uint32_t i = 0; i < m->linked; i++)
+static triplet *put_guards(const starg_morph *m, triplet *next) {
+    for (uint32_t i = 0; i < m->tree_guards; i++)
         if (m->guard_paths[i].parent != i)
-            next = entries_put_link(guard_unknown(m, i), guard_unknown(m, m->guard_paths[i].parent),
-                                    LINK, next);
+            next = triplets_put_edge(guard_unknown(m, i),
+                                     guard_unknown(m, m->guard_paths[i].parent), TREE_EDGE, next);
     return next;
 }
 
 /* Parts are named by their least unknown; that one is held, and so is what no weight holds. */
-static starg_status name_parts(starg_morph *m, const matrix_entry *entries, size_t count) {
+static starg_status name_parts(starg_morph *m, const triplet *triplets, size_t count) {
     starg_status status = STARG_OK;
     STARG_NEW(m->context, STAGE, m->component, m->unknowns);
     sets_make(m->component, m->unknowns);
     for (size_t i = 0; i < count; i++)
-        if (entries[i].value != 0)
-            sets_join(m->component, entries[i].row, entries[i].column);
+        if (triplets[i].value != 0)
+            sets_join(m->component, triplets[i].row, triplets[i].column);
     for (uint32_t v = 0; v < m->unknowns; v++)
         m->component[v] = sets_find(m->component, v);
 done:
@@ -112,25 +112,25 @@ done:
 static starg_status make_system(starg_morph *m) {
     starg_status status = STARG_OK;
     size_t faces = m->mesh->face_count, most;
-    matrix_entry *entries = NULL, *next;
-    m->linked = m->method == STARG_MORPH_STAR ? m->guard_count : 0;
-    m->unknowns = m->mesh->vertex_count + m->linked;
-    most = FACE_ENTRIES * faces + LINK_ENTRIES * m->linked + m->unknowns;
+    triplet *triplets = NULL, *next;
+    m->tree_guards = m->method == STARG_MORPH_STAR ? m->guard_count : 0;
+    m->unknowns = m->mesh->vertex_count + m->tree_guards;
+    most = FACE_TRIPLETS * faces + EDGE_TRIPLETS * m->tree_guards + m->unknowns;
     STARG_NEW(m->context, STAGE, m->weights, FACE_WEIGHTS * faces);
-    STARG_NEW(m->context, STAGE, entries, most);
-    next = entries;
+    STARG_NEW(m->context, STAGE, triplets, most);
+    next = triplets;
     for (size_t f = 0; f < faces; f++) {
         weigh_face(m, f, m->weights + FACE_WEIGHTS * f);
         next = put_face(m, f, next);
     }
     next = put_guards(m, next);
-    STARG_TRY(name_parts(m, entries, (size_t)(next - entries)));
+    STARG_TRY(name_parts(m, triplets, (size_t)(next - triplets)));
     for (uint32_t v = 0; v < m->unknowns; v++)
-        *next++ = (matrix_entry){v, v, m->component[v] == v ? 1 : 0};
-    STARG_TRY(
-        entries_factorise(m->context, m->unknowns, entries, (size_t)(next - entries), &m->system));
+        *next++ = (triplet){v, v, m->component[v] == v ? 1 : 0};
+    STARG_TRY(triplets_factorise(m->context, m->unknowns, triplets, (size_t)(next - triplets),
+                                 &m->system));
 done:
-    starg_release(m->context, entries);
+    starg_release(m->context, triplets);
     return status;
 }
 
@@ -189,16 +189,16 @@ static void add_face(const starg_morph *m, size_t face, const double whole[9], d
 }
 
 static void add_guards(const starg_morph *m, const double whole[9], double t, const sides *s) {
-    for (uint32_t i = 0; i < m->linked; i++) {
+    for (uint32_t i = 0; i < m->tree_guards; i++) {
         const guard_path *own = &m->guard_paths[i];
         double turn[9], d[3];
         if (own->parent == i)
             continue;
-        turn_at(own->link, whole, t, turn);
+        turn_at(own->turn, whole, t, turn);
         vec3_along(own->offset, t, own->change, d);
         matrix_apply(turn, d, d);
-        add(s, guard_unknown(m, i), LINK, d);
-        add(s, guard_unknown(m, own->parent), -LINK, d);
+        add(s, guard_unknown(m, i), TREE_EDGE, d);
+        add(s, guard_unknown(m, own->parent), -TREE_EDGE, d);
     }
 }
 
@@ -252,11 +252,11 @@ starg_status morph_prepare_rigid(starg_morph *m) {
     starg_status status = STARG_OK;
     size_t size = 3 * m->mesh->vertex_count;
     STARG_TRY(make_system(m));
-    STARG_NEW(m->context, STAGE, m->remainder, size);
-    STARG_TRY(rigid_part(m, 1, m->remainder));
+    STARG_NEW(m->context, STAGE, m->residual, size);
+    STARG_TRY(rigid_part(m, 1, m->residual));
     for (size_t i = 0; i < size; i++)
-        m->remainder[i] = m->images[i] - m->remainder[i];
-    STARG_TRY(morph_part_remainder(m));
+        m->residual[i] = m->images[i] - m->residual[i];
+    STARG_TRY(morph_part_residual(m));
 done:
     return status;
 }
@@ -264,7 +264,7 @@ done:
 starg_status morph_frame_rigid(const starg_morph *m, double t, double *out) {
     starg_status status = STARG_OK;
     STARG_TRY(rigid_part(m, t, out));
-    morph_add_remainder(m, t, out);
+    morph_add_residual(m, t, out);
 done:
     return status;
 }

@@ -2,17 +2,17 @@
  * pieces, each star-shaped in both.
  *
  * Stages: both ends must bound a solid without meeting themselves; A is filled with tetrahedra that
- * keep its surface; the morph takes these to B (carry.c); the pieces are sets of tetrahedra that
- * are star-shaped in both places (star/strict/twins.c).
+ * keep its surface; the morph takes these to B (deform.c); the pieces are sets of tetrahedra that
+ * are star-shaped in both places (star/strict/compatible.c).
  *
  * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the surface
  * of either, so that they fill both without overlap. Cost: that of its stages. */
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
-#include "morph/carry.h"
+#include "morph/deform.h"
 #include "morph/morph.h"
-#include "star/strict/twins.h"
+#include "star/strict/compatible.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "consistent pieces";
@@ -69,7 +69,7 @@ done:
     return status;
 }
 
-static starg_status fill(const starg_morph *m, const starg_solid *solid, carried *c) {
+static starg_status fill(const starg_morph *m, const starg_solid *solid, deform_mesh *c) {
     starg_status status = STARG_OK;
     starg_tetra_options options;
     starg_tetmesh *mesh = NULL;
@@ -88,10 +88,10 @@ done:
     return status;
 }
 
-static starg_status take_along(const starg_morph *m, carried *c) {
+static starg_status take_along(const starg_morph *m, deform_mesh *c) {
     size_t inverted;
     double reached;
-    starg_status status = carry(m, c, &inverted, &reached);
+    starg_status status = deform(m, c, &inverted, &reached);
     if (status == STARG_OK && reached < 1)
         status = starg_fail(m->context, STARG_ERROR_MESH, STAGE,
                             "%zu of %zu tetrahedra turn over near t = %.3g and cannot be mended: "
@@ -102,7 +102,7 @@ static starg_status take_along(const starg_morph *m, carried *c) {
 }
 
 /* The tetrahedra in one of the two places. That they do not overlap is known. */
-static starg_status place(const carried *c, const double *places, starg_tetmesh **out) {
+static starg_status place(const deform_mesh *c, const double *places, starg_tetmesh **out) {
     starg_status status = STARG_OK;
     double *vertices = NULL;
     uint32_t *tetrahedra = NULL;
@@ -122,12 +122,12 @@ done:
 
 /* ---- pieces ---- */
 
-static starg_status cut(const starg_morph *m, const carried *c, starg_decomposition *out[2]) {
+static starg_status cut(const starg_morph *m, const deform_mesh *c, starg_decomposition *out[2]) {
     starg_status status = STARG_OK;
     starg_tetmesh *meshes[2] = {NULL, NULL};
     STARG_TRY(place(c, c->rest.data, &meshes[0]));
     STARG_TRY(place(c, c->now.data, &meshes[1]));
-    STARG_TRY(twins_decompose(m->context, meshes[0], meshes[1], out));
+    STARG_TRY(compatible_decompose(m->context, meshes[0], meshes[1], out));
     for (int end = 0; end < 2; end++) {
         out[end]->model_vertices = m->mesh->vertex_count;
         out[end]->model_faces = m->mesh->face_count;
@@ -142,7 +142,7 @@ done:
 
 starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2]) {
     starg_status status = STARG_OK;
-    carried c = {.context = m->context};
+    deform_mesh c = {.context = m->context};
     starg_solid *solid = NULL;
     uint32_t *surface = NULL;
     out[0] = out[1] = NULL;
@@ -155,7 +155,7 @@ starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2
     STARG_TRY(cut(m, &c, out));
 done:
     starg_time_end(m->context, former);
-    carried_free(&c);
+    deform_free(&c);
     starg_solid_free(solid);
     starg_release(m->context, surface);
     return status;

@@ -10,22 +10,22 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "morph/carry.h"
+#include "morph/deform.h"
 
 static const char STAGE[] = "split edges";
 
 #define NONE UINT32_MAX
 
-const int CARRIED_EDGES[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+const int DEFORM_EDGES[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
 
 /* ---- lists ---- */
 
 static int compare(const void *left, const void *right) {
-    const carried_edge a = *(const carried_edge *)left, b = *(const carried_edge *)right;
+    const deform_edge a = *(const deform_edge *)left, b = *(const deform_edge *)right;
     return (a > b) - (a < b);
 }
 
-static size_t find(const carried_edge *list, size_t count, carried_edge edge) {
+static size_t find(const deform_edge *list, size_t count, deform_edge edge) {
     size_t low = 0, high = count;
     while (low < high) {
         size_t middle = (low + high) / 2;
@@ -37,11 +37,11 @@ static size_t find(const carried_edge *list, size_t count, carried_edge edge) {
     return low < count && list[low] == edge ? low : count;
 }
 
-bool carried_edge_in(const carried_edge *list, size_t count, carried_edge edge) {
+bool deform_edge_in(const deform_edge *list, size_t count, deform_edge edge) {
     return find(list, count, edge) < count;
 }
 
-void carried_edges_sort(carried_edge *list, size_t *count) {
+void deform_edges_sort(deform_edge *list, size_t *count) {
     size_t kept = 0;
     if (*count == 0)
         return;
@@ -55,8 +55,8 @@ void carried_edges_sort(carried_edge *list, size_t *count) {
 /* ---- rounds ---- */
 
 typedef struct splitting {
-    carried *c;
-    const carried_edge *edges;
+    deform_mesh *c;
+    const deform_edge *edges;
     size_t count;
     uint32_t *about, *named; /* per edge: tetrahedra that have it, and that name it */
     uint32_t *middle;        /* per edge: its new vertex                            */
@@ -74,8 +74,8 @@ static uint32_t name_edge(const splitting *s, size_t t) {
     uint32_t best = NONE;
     double longest = -1;
     for (int e = 0; e < 6; e++) {
-        uint32_t a = corner[CARRIED_EDGES[e][0]], b = corner[CARRIED_EDGES[e][1]];
-        size_t i = find(s->edges, s->count, carried_edge_of(a, b));
+        uint32_t a = corner[DEFORM_EDGES[e][0]], b = corner[DEFORM_EDGES[e][1]];
+        size_t i = find(s->edges, s->count, deform_edge_of(a, b));
         if (i == s->count || s->over[i])
             continue;
         double length = vec3_distance_squared(place(s, a), place(s, b));
@@ -104,14 +104,14 @@ static bool is_ready(const splitting *s, uint32_t edge) {
     return edge != NONE && !s->over[edge] && s->named[edge] == s->about[edge];
 }
 
-static void middle_of(const double *places, carried_edge edge, double out[3]) {
+static void middle_of(const double *places, deform_edge edge, double out[3]) {
     const double *a = places + 3 * (size_t)(edge >> 32), *b = places + 3 * (size_t)(uint32_t)edge;
     for (int k = 0; k < 3; k++)
         out[k] = 0.5 * a[k] + 0.5 * b[k];
 }
 
 /* Are both parts of a tetrahedron positive in A? */
-static bool parts_are_positive(const splitting *s, size_t t, carried_edge edge) {
+static bool parts_are_positive(const splitting *s, size_t t, deform_edge edge) {
     const uint32_t *corner = s->c->tetrahedra.data + 4 * t;
     double middle[3];
     middle_of(s->c->rest.data, edge, middle);
@@ -183,7 +183,7 @@ done:
     return status;
 }
 
-starg_status carried_split(carried *c, const carried_edge *edges, size_t count) {
+starg_status deform_split(deform_mesh *c, const deform_edge *edges, size_t count) {
     starg_status status = STARG_OK;
     splitting s = {.c = c, .edges = edges, .count = count};
     bool any = count > 0;

@@ -1,9 +1,9 @@
 /* Adding models to a database.
  *
  * Stages: the contents that are stored whole; then the files are described
- * (shape/database_files.c), in parallel and by other processes too if there are any (core/share.c),
- * and stored in their order, a few in one transaction, as soon as they and all before them are
- * described.
+ * (shape/database_files.c), in parallel and by other processes too if there are any
+ * (core/distribute.c), and stored in their order, a few in one transaction, as soon as they and all
+ * before them are described.
  *
  * Descriptions are made outside of transactions: a database is locked for milliseconds only, and
  * two processes that add at once take turns. Contents that another process stored meanwhile, or

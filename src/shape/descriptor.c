@@ -3,9 +3,8 @@
  * Stages: the model at a standard level of detail (level.c); a strict star decomposition of it
  * within a budget of trials; its guards with the volumes of their pieces; an edge for each two
  * pieces that touch, with the centroid of what they share; from each guard the distance to the
- * boundary in directions that cover the sphere evenly; the spectrum of the boundary
- * (vibrations.c) and where it vibrates (waves.c), which unlike all else do not depend on where
- * guards came to stand.
+ * boundary in directions that cover the sphere evenly; the spectrum of the boundary (vibrations.c)
+ * and where it vibrates (wks.c), which unlike all else do not depend on where guards came to stand.
  *
  * The paper's graph follows the curve skeleton on which its guards lie. Here guards lie anywhere in
  * the kernels of their pieces and the edges are the contacts of pieces, so that the graph has a

@@ -117,7 +117,7 @@ static const starg_field FILE_ROWS[] = {
      .help = "The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area."},
     {.key = "waves",
      .kind = STARG_FIELD_NUMBERS,
-     RESULT(waves),
+     RESULT(wks),
      .length = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
      .high = DBL_MAX,
      .help = "Row by row: quantiles, over the surface, of how strong vibrations of about an energy "

@@ -6,13 +6,13 @@
  * of a kind that differ in proportions, the area is no measure of the scale;
  * - views: what is seen from points spread over the pieces (views.c), in units of the cube root of
  *   the shape's volume;
- * - waves: where the surface vibrates (waves.c), as logarithms.
+ * - wave kernel signature: where the surface vibrates (wks.c), as logarithms.
  *
  * Spectra differ by the mean difference of their eigenvalues, each divided by its place, because
- * they grow in proportion to it (Weyl's law). Rows of views and waves are quantiles, so that their
- * mean difference is the cost of transporting distributions into each other. Each part is divided
- * by what it is on average between two shapes, and the mean of the three is the distance. That is a
- * weighted L1 norm of a difference, and so a metric.
+ * they grow in proportion to it (Weyl's law). Rows of views and of the wave kernel signature are
+ * quantiles, so that their mean difference is the cost of transporting distributions into each
+ * other. Each part is divided by what it is on average between two shapes, and the mean of the
+ * three is the distance. That is a weighted L1 norm of a difference, and so a metric.
  *
  * Cost: a few additions for each number. */
 #include <math.h>
@@ -25,17 +25,17 @@ static const char STAGE[] = "star distance";
 enum {
     EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES,
     VIEWS_COUNT = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
-    WAVES_COUNT = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
-    VIEWS = EIGENVALUES, /* where views begin, and waves */
-    WAVES = VIEWS + VIEWS_COUNT,
-    NUMBERS = WAVES + WAVES_COUNT
+    WKS_COUNT = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
+    VIEWS = EIGENVALUES, /* where views begin, and the wave kernel signature */
+    WKS = VIEWS + VIEWS_COUNT,
+    NUMBERS = WKS + WKS_COUNT
 };
 
 static const double FAINT = 0.05;    /* vibrations below that are about as weak; 1 is average */
 static const double LARGEST = 1e100; /* number that is taken for one */
 
 /* Mean differences between two models of the TOSCA set. */
-static const double SPECTRUM_UNIT = 0.078, VIEWS_UNIT = 0.041, WAVES_UNIT = 0.18;
+static const double SPECTRUM_UNIT = 0.078, VIEWS_UNIT = 0.041, WKS_UNIT = 0.18;
 
 /* The cube root of the volume. Relative to the largest, so that volumes of any shape that has
  * coordinates can be summed. */
@@ -65,9 +65,9 @@ static starg_status derive(starg_context *context, const starg_descriptor *d, do
     put_spectrum(d->surface_spectrum, all);
     for (size_t i = 0; i < VIEWS_COUNT; i++)
         all[VIEWS + i] = d->views[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] / unit;
-    for (size_t i = 0; i < WAVES_COUNT; i++)
-        all[WAVES + i] =
-            log(d->waves[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] + FAINT);
+    for (size_t i = 0; i < WKS_COUNT; i++)
+        all[WKS + i] =
+            log(d->wave_kernel[i / STARG_DESCRIPTOR_SPREAD][i % STARG_DESCRIPTOR_SPREAD] + FAINT);
     *numbers = all;
     *count = NUMBERS;
 done:
@@ -105,7 +105,7 @@ static starg_status compare(starg_context *context, const double *a, size_t a_co
     (void)context, (void)a_count, (void)b_count;
     *out = (compare_spectra(a, b) / SPECTRUM_UNIT +
             compare_quantiles(a + VIEWS, b + VIEWS, VIEWS_COUNT) / VIEWS_UNIT +
-            compare_quantiles(a + WAVES, b + WAVES, WAVES_COUNT) / WAVES_UNIT) /
+            compare_quantiles(a + WKS, b + WKS, WKS_COUNT) / WKS_UNIT) /
            3;
     return STARG_OK;
 }

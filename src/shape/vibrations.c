@@ -4,7 +4,7 @@
  * happens to come out, nor with noise on its surface: Shape-DNA [RWP06].
  *
  * Stages: the boundary; the smallest eigenvalues of its Laplacian and their eigenfunctions
- * (spectrum.c); what waves.c makes of both.
+ * (spectrum.c); what wks.c makes of both.
  *
  * Invariants: eigenvalues are times the area, so that units do not count. Cost: that of spectrum.c.
  */
@@ -15,7 +15,7 @@
 
 #include "core/memory.h"
 #include "shape/spectrum.h"
-#include "shape/waves.h"
+#include "shape/wks.h"
 
 static const char STAGE[] = "vibrations";
 
@@ -29,7 +29,7 @@ static void keep_behind_zero(double *eigenvalues, double *out) {
 }
 
 static starg_status take_surface(starg_context *context, const starg_mesh *surface, double *out,
-                                 double *waves) {
+                                 double *wks) {
     starg_status status = STARG_OK;
     laplacian l = {0};
     double eigenvalues[EIGENVALUES + 1], *functions = NULL;
@@ -37,7 +37,7 @@ static starg_status take_surface(starg_context *context, const starg_mesh *surfa
     STARG_NEW(context, STAGE, functions, (EIGENVALUES + 1) * l.count);
     STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, eigenvalues, functions));
     keep_behind_zero(eigenvalues, out);
-    STARG_TRY(waves_measure(context, &l, eigenvalues, functions, waves));
+    STARG_TRY(wks_measure(context, &l, eigenvalues, functions, wks));
 done:
     starg_release(context, functions);
     laplacian_free(context, &l);
@@ -51,7 +51,7 @@ starg_status vibrations_measure(starg_context *context, const starg_tetmesh *mes
     if (surface == NULL)
         STARG_TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
     STARG_TRY(take_surface(context, surface != NULL ? surface : boundary, out->surface_spectrum,
-                           &out->waves[0][0]));
+                           &out->wave_kernel[0][0]));
 done:
     starg_mesh_free(boundary);
     return status;

@@ -16,8 +16,8 @@
 #include "skeleton/curve.h"
 #include "skeleton/erosion.h"
 #include "skeleton/graph.h"
+#include "skeleton/graph_repair.h"
 #include "skeleton/label.h"
-#include "skeleton/mend.h"
 #include "skeleton/prune.h"
 #include "skeleton/samples.h"
 
@@ -148,12 +148,13 @@ static starg_status mend(starg_context *context, const starg_solid *solid, attem
     memset(a->node_left, true, a->complex->node_count * sizeof *a->node_left);
     if (a->parts > parts) {
         a->mends += a->parts - parts;
-        STARG_TRY(mend_parts(context, a->complex, a->eroded.link_left, a->node_left, parts));
+        STARG_TRY(
+            graph_repair_parts(context, a->complex, a->eroded.link_left, a->node_left, parts));
         STARG_TRY(count_attempt(context, a));
     }
     if (a->loops > loops && a->loops - loops <= MAX_MENDS) {
         a->mends += a->loops - loops;
-        STARG_TRY(mend_loops(context, a->complex, a->eroded.link_left, a->loops - loops));
+        STARG_TRY(graph_repair_loops(context, a->complex, a->eroded.link_left, a->loops - loops));
     }
 done:
     return status;

@@ -9,11 +9,11 @@
 static const char STAGE[] = "skeleton file";
 
 static starg_skeleton_format format_of(const char *path) {
-    if (starg_has_ending(path, ".obj"))
+    if (starg_has_extension(path, ".obj"))
         return STARG_SKELETON_OBJ;
-    if (starg_has_ending(path, ".cg"))
+    if (starg_has_extension(path, ".cg"))
         return STARG_SKELETON_CG;
-    if (starg_has_ending(path, ".vtk"))
+    if (starg_has_extension(path, ".vtk"))
         return STARG_SKELETON_VTK;
     return STARG_SKELETON_AUTO;
 }

@@ -21,7 +21,7 @@ static const struct format *detect(const starg_source *source) {
 }
 
 static bool is_tetgen(const char *name) {
-    return starg_has_ending(name, ".node") || starg_has_ending(name, ".ele");
+    return starg_has_extension(name, ".node") || starg_has_extension(name, ".ele");
 }
 
 bool starg_tetmesh_recognized(const void *bytes, size_t size, const char *name) {
@@ -77,14 +77,14 @@ starg_status starg_tetmesh_read_memory(starg_context *context, const void *bytes
     return read_source(&source, NULL, out);
 }
 
-/* The name with another ending, in a block of the context. */
-static starg_status with_ending(starg_context *context, const char *path, const char *ending,
-                                char **out) {
+/* The name with another extension, in a block of the context. */
+static starg_status with_extension(starg_context *context, const char *path, const char *extension,
+                                   char **out) {
     starg_status status = STARG_OK;
-    size_t stem = (size_t)(strrchr(path, '.') - path), tail = strlen(ending);
+    size_t stem = (size_t)(strrchr(path, '.') - path), tail = strlen(extension);
     STARG_NEW(context, STARG_MESH_FILE, *out, stem + tail + 1);
     memcpy(*out, path, stem);
-    memcpy(*out + stem, ending, tail + 1);
+    memcpy(*out + stem, extension, tail + 1);
 done:
     return status;
 }
@@ -93,8 +93,8 @@ static starg_status read_pair(starg_context *context, const char *path, starg_te
     starg_status status = STARG_OK;
     char *names[2] = {NULL}, *bytes[2] = {NULL}, shown[2][256];
     size_t size[2];
-    STARG_TRY(with_ending(context, path, ".node", &names[0]));
-    STARG_TRY(with_ending(context, path, ".ele", &names[1]));
+    STARG_TRY(with_extension(context, path, ".node", &names[0]));
+    STARG_TRY(with_extension(context, path, ".ele", &names[1]));
     for (int i = 0; i < 2; i++) {
         STARG_TRY(starg_file_read(context, STARG_MESH_FILE, names[i], &bytes[i], &size[i]));
         show_name(names[i], shown[i], sizeof shown[i]);

@@ -3,13 +3,13 @@
  * (verify/nearness.c), and volumes are not compared. */
 #include <math.h>
 
-#include "verify/hearing.h"
+#include "verify/context.h"
 
 static const double TOLERANCE = 1e-9; /* relative */
 
 /* ---- the boundary ---- */
 
-static void claim_on_model(const verify_hearing *own, const verify_match *match) {
+static void claim_on_model(const verify_context *own, const verify_match *match) {
     size_t count = own->pieces->outer->face_count;
     static const char claim[] = "the boundary lies on the model's surface and looks its way";
     if (match->off > 0)
@@ -24,7 +24,7 @@ static void claim_on_model(const verify_hearing *own, const verify_match *match)
                      claim, match->equal, count - match->equal);
 }
 
-static void claim_covered(const verify_hearing *own, const verify_match *match) {
+static void claim_covered(const verify_context *own, const verify_match *match) {
     int scale = own->pieces->scale;
     if (match->uneven == 0)
         verify_claim(own->verdict, true,
@@ -38,7 +38,7 @@ static void claim_covered(const verify_hearing *own, const verify_match *match) 
                      ldexp(match->shell_area, -2 * scale), ldexp(match->shell_covered, -2 * scale));
 }
 
-static void claim_near(const verify_hearing *own, const verify_nearness *nearness) {
+static void claim_near(const verify_context *own, const verify_nearness *nearness) {
     const starg_pieces_report *report = own->report;
     double rounding = verify_rounding(own->model);
     double limit = report->distance;
@@ -59,7 +59,7 @@ static void claim_near(const verify_hearing *own, const verify_nearness *nearnes
                  limit, nearness->from.farthest, nearness->from.points, nearness->from.face);
 }
 
-static void claim_simple(const verify_hearing *own, const verify_nearness *nearness) {
+static void claim_simple(const verify_context *own, const verify_nearness *nearness) {
     if (nearness->crossings == 0)
         verify_claim(own->verdict, true, "no two faces of the boundary pass through one another");
     else
@@ -82,7 +82,7 @@ static void claim_simple(const verify_hearing *own, const verify_nearness *nearn
 
 /* ---- volume ---- */
 
-static void claim_volume(const verify_hearing *own) {
+static void claim_volume(const verify_context *own) {
     const verify_surface *model = own->model;
     int scale = own->pieces->scale;
     verify_volume tetrahedra = {0}, solid = {0};
@@ -106,7 +106,7 @@ static void claim_volume(const verify_hearing *own) {
 
 /* ---- all of it ---- */
 
-static starg_status claim_nearness(const verify_hearing *own) {
+static starg_status claim_nearness(const verify_context *own) {
     verify_nearness nearness;
     starg_status status = verify_measure_boundary(own->pieces, own->model, &nearness);
     if (status != STARG_OK)
@@ -116,7 +116,7 @@ static starg_status claim_nearness(const verify_hearing *own) {
     return STARG_OK;
 }
 
-static starg_status claim_match(const verify_hearing *own) {
+static starg_status claim_match(const verify_context *own) {
     verify_match match;
     starg_status status = verify_match_boundary(own->pieces, own->model, &match);
     if (status != STARG_OK)
@@ -127,7 +127,7 @@ static starg_status claim_match(const verify_hearing *own) {
     return STARG_OK;
 }
 
-starg_status verify_claim_boundary(const verify_hearing *own) {
+starg_status verify_claim_boundary(const verify_context *own) {
     bool approximated = own->report != NULL && own->report->approximated;
     return approximated ? claim_nearness(own) : claim_match(own);
 }

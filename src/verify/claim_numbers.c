@@ -3,17 +3,17 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/hearing.h"
+#include "verify/context.h"
 
 static const char STAGE[] = "verify";
 
-static void claim_size(const verify_hearing *own) {
+static void claim_size(const verify_context *own) {
     verify_claim(own->verdict, own->report->tetrahedra == own->mesh->count,
                  "there are %zu tetrahedra (the file holds %zu)", own->report->tetrahedra,
                  own->mesh->count);
 }
 
-static void claim_counts(const verify_hearing *own) {
+static void claim_counts(const verify_context *own) {
     const starg_pieces_report *report = own->report;
     size_t bad = 0, first = 0;
     for (size_t p = report->piece_count; p-- > 0;)
@@ -32,7 +32,7 @@ static void claim_counts(const verify_hearing *own) {
                      own->pieces->sizes[first]);
 }
 
-static starg_status claim_volumes(const verify_hearing *own) {
+static starg_status claim_volumes(const verify_context *own) {
     starg_status status = STARG_OK;
     const starg_pieces_report *report = own->report;
     verify_volume *volumes = NULL;
@@ -60,7 +60,7 @@ done:
     return status;
 }
 
-static starg_status claim_contacts(const verify_hearing *own) {
+static starg_status claim_contacts(const verify_context *own) {
     starg_status status = STARG_OK;
     verify_contacts contacts;
     STARG_TRY(verify_compare_contacts(own->pieces, own->report, &contacts));
@@ -77,7 +77,7 @@ done:
     return status;
 }
 
-starg_status verify_claim_numbers(const verify_hearing *own) {
+starg_status verify_claim_numbers(const verify_context *own) {
     starg_status status = STARG_OK;
     claim_size(own);
     if (!own->pieces->labels.good)

@@ -3,14 +3,14 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/hearing.h"
+#include "verify/context.h"
 
 static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* of fractions */
 
 /* ---- star-shapedness ---- */
 
-static void tell_failed_proof(const verify_hearing *own, const verify_certificate *failed,
+static void tell_failed_proof(const verify_context *own, const verify_certificate *failed,
                               const char *claim, size_t bad, size_t first) {
     if (failed->proof == VERIFY_BEHIND)
         verify_claim(own->verdict, false,
@@ -25,7 +25,7 @@ static void tell_failed_proof(const verify_hearing *own, const verify_certificat
                      claim, bad, first, failed->winding);
 }
 
-static void claim_star(const verify_hearing *own, const verify_certificate *certificates) {
+static void claim_star(const verify_context *own, const verify_certificate *certificates) {
     static const char claim[] = "pieces called star-shaped are so about their guards";
     const starg_pieces_report *report = own->report;
     size_t bad = 0, first = 0, called = 0, proven = 0;
@@ -65,7 +65,7 @@ static bool agrees(const verify_seen *seen, double claimed) {
     return fabs(found - share) <= 5 * sqrt(fmax(share * (1 - share), 0) / drawn) + 5 / drawn;
 }
 
-static starg_status claim_seen(const verify_hearing *own, const verify_certificate *certificates) {
+static starg_status claim_seen(const verify_context *own, const verify_certificate *certificates) {
     starg_status status = STARG_OK;
     verify_seen seen;
     STARG_TRY(verify_find_seen(own->pieces, own->report, certificates, &seen));
@@ -84,7 +84,7 @@ done:
 
 /* ---- all of it ---- */
 
-starg_status verify_claim_stars(const verify_hearing *own) {
+starg_status verify_claim_stars(const verify_context *own) {
     starg_status status = STARG_OK;
     verify_certificate *certificates = NULL;
     if (!own->pieces->labels.good)

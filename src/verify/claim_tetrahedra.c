@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "core/memory.h"
-#include "verify/hearing.h"
+#include "verify/context.h"
 #include "verify/sets.h"
 #include "verify/signs.h"
 
@@ -13,7 +13,7 @@ enum { CANCEL_STEP = 1 << 16 };
 
 /* ---- words for elements ---- */
 
-verify_words verify_facet_words(const verify_hearing *own, uint32_t facet) {
+verify_words verify_facet_words(const verify_context *own, uint32_t facet) {
     verify_words name;
     uint32_t v[3];
     verify_facet_corners(own->mesh->tetrahedra, facet, v);
@@ -22,13 +22,13 @@ verify_words verify_facet_words(const verify_hearing *own, uint32_t facet) {
     return name;
 }
 
-verify_words verify_outer_words(const verify_hearing *own, size_t face) {
+verify_words verify_outer_words(const verify_context *own, size_t face) {
     return verify_facet_words(own, own->pieces->outer_facets[face]);
 }
 
 /* ---- tetrahedra ---- */
 
-static starg_status claim_positive(const verify_hearing *own) {
+static starg_status claim_positive(const verify_context *own) {
     starg_status status = STARG_OK;
     const starg_pieces_mesh *mesh = own->mesh;
     size_t bad = 0, first = 0;
@@ -52,7 +52,7 @@ done:
     return status;
 }
 
-static void claim_conforming(const verify_hearing *own) {
+static void claim_conforming(const verify_context *own) {
     static const char claim[] = "each triangle has one tetrahedron, or two on opposite sides";
     const verify_misuse *third = &own->pieces->facets->third;
     const verify_misuse *same = &own->pieces->facets->same_side;
@@ -67,7 +67,7 @@ static void claim_conforming(const verify_hearing *own) {
         verify_claim(own->verdict, true, "%s", claim);
 }
 
-static void claim_labels(const verify_hearing *own) {
+static void claim_labels(const verify_context *own) {
     const verify_labels *labels = &own->pieces->labels;
     size_t count = own->pieces->piece_count;
     if (labels->tetrahedron != VERIFY_NONE)
@@ -85,7 +85,7 @@ static void claim_labels(const verify_hearing *own) {
 
 /* ---- pieces ---- */
 
-static void join_mates(const verify_hearing *own, uint32_t *parent) {
+static void join_mates(const verify_context *own, uint32_t *parent) {
     const uint32_t *mate = own->pieces->facets->mate;
     for (uint32_t t = 0; t < own->mesh->count; t++)
         parent[t] = t;
@@ -96,7 +96,7 @@ static void join_mates(const verify_hearing *own, uint32_t *parent) {
     }
 }
 
-static starg_status claim_connected(const verify_hearing *own) {
+static starg_status claim_connected(const verify_context *own) {
     starg_status status = STARG_OK;
     static const char claim[] = "each piece is connected through faces";
     uint32_t *parent = NULL, *first = NULL, bad = VERIFY_NONE;
@@ -130,7 +130,7 @@ done:
 
 /* ---- all of it ---- */
 
-starg_status verify_claim_tetrahedra(const verify_hearing *own) {
+starg_status verify_claim_tetrahedra(const verify_context *own) {
     starg_status status = STARG_OK;
     STARG_TRY(claim_positive(own));
     claim_conforming(own);

@@ -18,7 +18,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/hearing.h"
+#include "verify/context.h"
 
 static const char STAGE[] = "verify";
 
@@ -67,7 +67,7 @@ static starg_status verify_against(starg_context *context, const verify_surface 
                                    const starg_pieces_mesh *mesh, const starg_pieces_report *report,
                                    starg_verdict **out) {
     starg_status status = STARG_OK;
-    verify_hearing own = {.context = context, .mesh = mesh, .report = report, .model = model};
+    verify_context own = {.context = context, .mesh = mesh, .report = report, .model = model};
     STARG_TRY(check_arrays(context, mesh, report));
     STARG_TRY(verify_pieces_create(context, mesh, report, &own.pieces));
     STARG_TRY(verify_verdict_create(context, &own.verdict));

@@ -4,8 +4,8 @@
  * certain that no point of c in the free space sees them. Never wrong about "hidden"; a target that
  * stays "open" may be hidden all the same. What a point sees is defined in docs/visibility.md.
  *
- * Three notions are kept apart: the *blockers*, triangles with their neighbours and a tree of
- * boxes; the *free space*, the side of the blockers to which their inner sides turn; and the
+ * Three notions are front-facing apart: the *blockers*, triangles with their neighbours and a tree
+ * of boxes; the *free space*, the side of the blockers to which their inner sides turn; and the
  * *targets*. Today a solid's boundary gives all of them.
  *
  * Reasons for which a target is hidden (proofs stand in the files):

@@ -7,9 +7,9 @@
  * outer one, every segment from v to a point p of c inside the solid is outside near v, so that it
  * meets the boundary between v and p: p does not see v.
  *
- * D and an arc (the directions of a triangle v a b) are kept apart by a plane through v that has c
- * strictly on one side, and a and b on the other or in it, one of the shaft's sides with a and b
- * strictly outside, or the plane of the triangle itself with c strictly on one side.
+ * D and an arc (the directions of a triangle v a b) are front-facing apart by a plane through v
+ * that has c strictly on one side, and a and b on the other or in it, one of the shaft's sides with
+ * a and b strictly outside, or the plane of the triangle itself with c strictly on one side.
  *
  * On which side one direction d of D lies (that to the centre): if no triangle around v has d on
  * its inner side, d is outside, because the first arc that one meets from an inner direction has it

@@ -2,32 +2,36 @@
  * quantitative invisibility [A. Appel, The notion of quantitative invisibility and the machine
  * rendering of solids, ACM 1967], made exact.
  *
- * Let p lie strictly inside a solid with an embedded boundary M. A face is kept if p lies strictly
- * on its inner side; K is the union of the kept faces; a contour is an edge between a kept face and
- * one that is not. For x on M let N(x) be the number of points of K before x, on the open segment
- * from p to x. By the proof in scene.h, p sees the vertex v exactly if N(v) = 0.
+ * Let p lie strictly inside a solid with an embedded boundary M. A face is front-facing if p lies
+ * strictly on its inner side; K is the union of the front-facing faces; a contour is an edge
+ * between a front-facing face and one that is not. For x on M let N(x) be the number of points of K
+ * before x, on the open segment from p to x. By the proof in scene.h, p sees the vertex v exactly
+ * if N(v) = 0.
  *
  * How N changes along an edge of M, from w to v, not on one line with p:
  * - Between the ends. A point of K before x off the contours stays when x moves a little: there K
  *   is a surface that the directions from p map one to one (about a vertex because a simple closed
- *   curve on a sphere winds about a point once at most). Points of K near x lie on the two faces
- *   of the edge, by embedding, and their planes hold neither p nor points before x if kept.
- *   So N changes only where a contour passes before x. Where the contour (a, b) crosses the plane
- *   of p, w, v there, N grows by one towards the side of its kept face, and falls away from it.
- * - At an end w. Next to w come those points of K that converge to w: on kept faces (w, a, b) off
- *   the edge, in whose wedge, seen from p, the edge starts, and before it. With all faces at w
- *   kept, or none, there are no such points; otherwise they are counted.
- * So N follows from one vertex of each shell along edges ("links") that form a tree. The first is
- * counted by the tree of boxes. Vertices without kept faces are hidden; only those links are
- * followed that lead to the others, and of the trees one that has short links and few that start
- * on contours, where points of K would have to be counted (visibility/contours_forest.h).
+ *   curve on a sphere winds about a point once at most). Points of K near x lie on the two faces of
+ *   the edge, by embedding, and their planes hold neither p nor points before x if front-facing. So
+ *   N changes only where a contour passes before x. Where the contour (a, b) crosses the plane of
+ *   p, w, v there, N grows by one towards the side of its front-facing face, and falls away from
+ *   it.
+ * - At an end w. Next to w come those points of K that converge to w: on front-facing faces (w, a,
+ *   b) off the edge, in whose wedge, seen from p, the edge starts, and before it. With all faces at
+ *   w front-facing, or none, there are no such points; otherwise they are counted.
+ * So N follows from one vertex of each shell along the edges of a tree. The first is counted by the
+ * tree of boxes. Vertices without front-facing faces are hidden; only those tree edges are followed
+ * that lead to the others, and of the trees one that has short tree edges and few that start on
+ * contours, where points of K would have to be counted (visibility/contours_forest.h).
  *
- * With det(x, y, z) for vectors relative to p, the contour (a, b), its kept face on the left:
- * - it crosses the link from w to v if det(w, v, a) and det(a, b, v) have one sign and det(w, v, b)
- *   and det(a, b, w) the other (else their planes cross on opposite sides of p, or not between the
- *   ends). It lies before the link if orient3d(v, a, b, w) has the sign of det(w, v, b). The step
- *   is the sign of det(a, b, v).
- * - kept faces count at w if det(w, v, a) < 0, det(w, v, b) > 0 and v lies beyond their plane.
+ * With det(x, y, z) for vectors relative to p, the contour (a, b), its front-facing face on the
+ * left:
+ * - it crosses the tree edge from w to v if det(w, v, a) and det(a, b, v) have one sign and det(w,
+ *   v, b) and det(a, b, w) the other (else their planes cross on opposite sides of p, or not
+ *   between the ends). It lies before the tree edge if orient3d(v, a, b, w) has the sign of det(w,
+ *   v, b). The step is the sign of det(a, b, v).
+ * - front-facing faces count at w if det(w, v, a) < 0, det(w, v, b) > 0 and v lies beyond their
+ *   plane.
  * Signs that floating point does not decide are decided exactly. If one of them is 0 where that
  * matters, p is in a special position (a contour behind or before a vertex, or an edge in a plane
  * with p), and the grid answers for p; likewise if the boundary is not embedded, or tables would
@@ -35,16 +39,16 @@
  *
  * Stages for a point p:
  *   1. find the contours;
- *   2. choose the links;
+ *   2. choose the tree edges;
  *   3. project all vertices to the faces of a cube about p; sort the contours' projections into
  *      rows of cells there by counting;
- *   4. follow each link: compare it with the contours in the cells that it touches, in single
+ *   4. follow each tree edge: compare it with the contours in the cells that it touches, in single
  *      precision with an error bound first; count at ends that lie on contours;
  *   5. sum along the trees.
  * Cells only choose what is compared, with a margin above the rounding of the projection.
  *
- * Cost per point: O(n), plus the pairs of links and contours in common cells; contours are few on
- * smooth fine meshes, O(sqrt(n)). Memory per thread: 250 bytes a vertex, the grid included. */
+ * Cost per point: O(n), plus the pairs of tree edges and contours in common cells; contours are few
+ * on smooth fine meshes, O(sqrt(n)). Memory per thread: 250 bytes a vertex, the grid included. */
 #include "visibility/contours.h"
 
 #include <stdlib.h>
@@ -61,7 +65,7 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_release(context, s->grade);
     starg_release(context, s->followed);
     starg_release(context, s->parent);
-    starg_release(context, s->links);
+    starg_release(context, s->tree_edges);
     starg_release(context, s->contours);
     starg_release(context, s->contour_edges);
     starg_release(context, s->rows);
@@ -103,7 +107,7 @@ static bool make_tables(const visibility_scene *scene, contours_scratch *s) {
     s->grade = starg_allocate(context, n, sizeof *s->grade);
     s->followed = starg_allocate(context, n, sizeof *s->followed);
     s->parent = starg_allocate(context, n, sizeof *s->parent);
-    s->links = starg_allocate(context, n + 1, sizeof *s->links);
+    s->tree_edges = starg_allocate(context, n + 1, sizeof *s->tree_edges);
     s->contours = starg_allocate(context, s->contour_limit, sizeof *s->contours);
     s->contour_edges = starg_allocate(context, s->contour_limit, sizeof *s->contour_edges);
     s->rows = starg_allocate(context, s->row_limit, sizeof *s->rows);
@@ -111,8 +115,9 @@ static bool make_tables(const visibility_scene *scene, contours_scratch *s) {
     s->pieces = starg_allocate(context, s->piece_limit, sizeof *s->pieces);
     s->layers = starg_allocate(context, n, sizeof *s->layers);
     return cube_make(context, n, &s->directions) && s->grade && s->followed && s->parent &&
-           s->links && s->contours && s->contour_edges && s->rows && s->cell_start && s->pieces &&
-           s->layers && make_piece_table(context, s->piece_limit + PIECE_PADDING, &s->sorted);
+           s->tree_edges && s->contours && s->contour_edges && s->rows && s->cell_start &&
+           s->pieces && s->layers &&
+           make_piece_table(context, s->piece_limit + PIECE_PADDING, &s->sorted);
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {
@@ -121,19 +126,19 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     if (s == NULL)
         return STARG_ERROR_MEMORY;
     starg_status status = visibility_grid.make_scratch(scene, &s->grid);
-    if (status == STARG_OK && scene->net != NULL && !make_tables(scene, s))
+    if (status == STARG_OK && scene->adjacency != NULL && !make_tables(scene, s))
         status = STARG_ERROR_MEMORY;
     if (status != STARG_OK) {
         free_scratch(scene, s);
         return status;
     }
-    s->form = contours_choose_form(FORM_WIDEST);
+    s->variant = contours_choose_variant(ISA_WIDEST);
     *scratch = s;
     return STARG_OK;
 }
 
-const contours_form *contours_choose_form(visibility_form wanted) {
-    static const contours_form *const forms[] = {
+const contours_variant *contours_choose_variant(visibility_isa wanted) {
+    static const contours_variant *const variants[] = {
         &contours_plain,
 #if defined(__aarch64__)
         &contours_neon,
@@ -142,8 +147,8 @@ const contours_form *contours_choose_form(visibility_form wanted) {
         &contours_avx512,
 #endif
     };
-    wanted = form_resolve(wanted);
-    return form_is_supported(wanted) ? forms[wanted] : NULL;
+    wanted = isa_resolve(wanted);
+    return isa_is_supported(wanted) ? variants[wanted] : NULL;
 }
 
 typedef struct layer_query {
@@ -154,7 +159,8 @@ typedef struct layer_query {
     int32_t layers;
 } layer_query;
 
-/* Does the segment to q pass through the inside of a kept face? It may not touch its border. */
+/* Does the segment to q pass through the inside of a front-facing face? It may not touch its
+ * border. */
 static bool count_layer(void *user, size_t rank) {
     layer_query *query = user;
     const double *p = query->p, *q = query->q;
@@ -184,14 +190,14 @@ bool contours_count_layers(const visibility_scene *scene, const double p[3], con
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
                  const int8_t *side, uint8_t *visible) {
     contours_scratch *s = scratch;
-    s->decided = scene->net != NULL && s->form->run(scene, s, p, side, visible);
+    s->decided = scene->adjacency != NULL && s->variant->run(scene, s, p, side, visible);
     if (!s->decided)
         visibility_grid.find(scene, s->grid, p, side, visible);
 }
 
 static bool sees_plainly(const visibility_scene *scene, void *scratch, size_t rank) {
     contours_scratch *s = scratch;
-    return s->decided && !s->form->may_cover(scene, s, rank);
+    return s->decided && !s->variant->may_cover(scene, s, rank);
 }
 
 const visibility_engine visibility_contours = {make_scratch, free_scratch, find, sees_plainly};

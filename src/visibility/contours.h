@@ -3,26 +3,27 @@
 #ifndef STARG_VISIBILITY_CONTOURS_H
 #define STARG_VISIBILITY_CONTOURS_H
 
+#include "visibility/adjacency.h"
 #include "visibility/cube.h"
-#include "visibility/forms.h"
-#include "visibility/net.h"
+#include "visibility/isa.h"
 #include "visibility/scene.h"
 
-/* How good it is for a link to start at a vertex. */
+/* How good it is for a tree edge to start at a vertex. */
 typedef enum slot_grade {
-    SLOT_KEPT,  /* all faces about it are kept */
+    SLOT_FRONT, /* all faces about it are front-facing */
     SLOT_MIXED, /* it is on a contour: what lies there must be counted */
-    SLOT_LEFT   /* no face is kept; it is hidden, and its own link goes for nothing */
+    SLOT_BACK   /* no face is front-facing; it is hidden, and its own tree edge goes for nothing */
 } slot_grade;
 
 /* A row begins so many contours; tables of pieces are longer by what is compared at once. */
 enum { ROW_LOAD = 48, PIECE_PADDING = 16 };
 
-/* An edge between a kept face, in which it runs from a to b, and one that is not kept. */
+/* An edge between a front-facing face, in which it runs from a to b, and one that is not
+ * front-facing. */
 typedef struct contour {
-    double normal[3]; /* a x b, relative to p: positive on the kept face's side */
+    double normal[3]; /* a x b, relative to p: positive on the front-facing face's side */
     uint32_t a, b;
-    uint32_t tested_by; /* the last link that was compared with it */
+    uint32_t tested_by; /* the last tree edge that was compared with it */
 } contour;
 
 /* A row of cells: pieces of contours at nearly the same v, cut evenly by the lower end of u. */
@@ -41,7 +42,7 @@ typedef struct contour_piece {
 } contour_piece;
 
 /* A label is the number of the contour and marks. A plain piece is a whole contour on one cube
- * face, in few rows; when it meets a plain link, both meet first in a row where one of them
+ * face, in few rows; when it meets a plain tree edge, both meet first in a row where one of them
  * starts. */
 #define PIECE_COUNTS 0x80000000u /* is not plain, or starts in this row */
 #define PIECE_PLAIN  0x40000000u
@@ -56,15 +57,15 @@ typedef struct piece_table {
 /* Links are followed in blocks. From so many rows on a segment is followed from row to row. */
 enum { LINK_BLOCK = 256, CONTOUR_TALL = 8 };
 
-/* What the links of a block cover; by place in the block. */
-typedef struct link_boxes {
+/* What the tree edges of a block cover; by place in the block. */
+typedef struct tree_edge_boxes {
     float u_low[LINK_BLOCK], u_high[LINK_BLOCK], v_low[LINK_BLOCK], v_high[LINK_BLOCK];
     uint32_t row[LINK_BLOCK], last_row[LINK_BLOCK];
-    uint32_t plain[LINK_BLOCK]; /* a link on one cube face; else the rest means nothing */
-} link_boxes;
+    uint32_t plain[LINK_BLOCK]; /* a tree edge on one cube face; else the rest means nothing */
+} tree_edge_boxes;
 
 typedef struct row_visit {
-    uint32_t link, row, begin, end; /* place in the block; pieces from begin to end */
+    uint32_t tree_edge, row, begin, end; /* place in the block; pieces from begin to end */
     uint32_t others; /* all ones in the first row, where every piece counts; else 0 */
 } row_visit;
 
@@ -72,15 +73,15 @@ typedef struct encounter {
     uint32_t to, piece, among;
 } encounter;
 
-typedef struct link_block {
-    const uint32_t *to; /* the slots where the links end */
+typedef struct tree_edge_block {
+    const uint32_t *to; /* the slots where the tree edges end */
     uint32_t count;
     uint32_t visit_count, encounter_count, end_count;
-    link_boxes boxes;
+    tree_edge_boxes boxes;
     row_visit visits[CONTOUR_TALL * LINK_BLOCK + 1];
     encounter encounters[LINK_BLOCK];
-    uint32_t ends[2 * LINK_BLOCK][2]; /* a mixed vertex, and the other of the link */
-} link_block;
+    uint32_t ends[2 * LINK_BLOCK][2]; /* a mixed vertex, and the other of the tree edge */
+} tree_edge_block;
 
 struct contours_scratch;
 
@@ -89,30 +90,30 @@ struct contours_scratch;
 typedef bool contours_run(const visibility_scene *scene, struct contours_scratch *s,
                           const double p[3], const int8_t *side, uint8_t *visible);
 
-/* After the stages have said what is visible: may anything cover a part of the kept face, which has
- * its three corners visible? */
+/* After the stages have said what is visible: may anything cover a part of the front-facing face,
+ * which has its three corners visible? */
 typedef bool contours_face_test(const visibility_scene *scene, struct contours_scratch *s,
                                 size_t rank);
 
-typedef struct contours_form {
+typedef struct contours_variant {
     contours_run *run;
     contours_face_test *may_cover;
-} contours_form;
+} contours_variant;
 
 typedef struct contours_scratch {
-    const contours_form *form;
+    const contours_variant *variant;
     bool decided; /* the last point was by contours */
     const double *p;
     const int8_t *side; /* of that point */
     void *grid;         /* scratch of the grid, for points that contours do not decide */
     cube_directions directions;
-    uint8_t *grade;    /* by slot: a slot_grade */
-    uint8_t *followed; /* by slot: is its link followed? */
-    uint32_t *parent;  /* by slot: where its link comes from */
-    uint32_t *links;   /* the slots whose links are followed; one more than there are slots */
-    size_t link_count;
+    uint8_t *grade;       /* by slot: a slot_grade */
+    uint8_t *followed;    /* by slot: is its tree edge followed? */
+    uint32_t *parent;     /* by slot: where its tree edge comes from */
+    uint32_t *tree_edges; /* slots whose tree edges are followed, one more than slots */
+    size_t tree_edge_count;
     contour *contours;
-    uint32_t *contour_edges; /* numbers of the net's edges */
+    uint32_t *contour_edges; /* numbers of the adjacency's edges */
     size_t contour_count, contour_limit;
     uint32_t row_of_bin[CUBE_FACES * BINS]; /* by face of the cube, then by bin */
     contour_row *rows;
@@ -122,23 +123,23 @@ typedef struct contours_scratch {
     contour_piece *pieces; /* as they are found */
     size_t piece_count, piece_limit;
     piece_table sorted; /* by cell */
-    int32_t *layers;    /* by slot: kept layers before it, first relative to its parent */
-    link_block block;   /* the links that are being followed; too much for a small stack */
+    int32_t *layers;    /* by slot: front-facing layers before it, first relative to its parent */
+    tree_edge_block block; /* the tree edges that are being followed; too much for a small stack */
 } contours_scratch;
 
 /* The stages for several instruction sets. */
-extern const contours_form contours_plain;
+extern const contours_variant contours_plain;
 #if defined(__aarch64__)
-extern const contours_form contours_neon;
+extern const contours_variant contours_neon;
 #elif defined(__x86_64__)
-extern const contours_form contours_avx2, contours_avx512;
+extern const contours_variant contours_avx2, contours_avx512;
 #endif
 
-/* NULL where the processor does not have what the form needs. */
-const contours_form *contours_choose_form(visibility_form wanted);
+/* NULL where the processor does not have what the variant needs. */
+const contours_variant *contours_choose_variant(visibility_isa wanted);
 
-/* The number of kept layers before the vertex, found by the tree. False where the segment from p
- * meets an edge of the kept faces. */
+/* The number of front-facing layers before the vertex, found by the tree. False where the segment
+ * from p meets an edge of the front-facing faces. */
 bool contours_count_layers(const visibility_scene *scene, const double p[3], const int8_t *side,
                            uint32_t slot, int32_t *layers);
 

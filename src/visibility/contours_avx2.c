@@ -1,4 +1,4 @@
 /* The stages of the engine by contours for AVX2 with FMA. */
-#define CONTOURS_FORM contours_avx2
+#define CONTOURS_VARIANT contours_avx2
 #define LANES_AVX2
 #include "visibility/contours_stages.h"

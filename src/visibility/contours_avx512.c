@@ -1,4 +1,4 @@
 /* The stages of the engine by contours for AVX-512. */
-#define CONTOURS_FORM contours_avx512
+#define CONTOURS_VARIANT contours_avx512
 #define LANES_AVX512
 #include "visibility/contours_stages.h"

@@ -1,11 +1,12 @@
 /* Is a face visible as a whole? Part of the stages of visibility/contours.c; what is not plain here
  * is left to whole.c.
  *
- * Let f be a kept face whose three corners are visible. If no contour has a point before f, or at
- * f but for its corners and edges, then N, the number of kept layers before x, is the same for all
- * points x of f but its corners: it changes as along an edge (contours.c). Next to a corner without
- * contours it is that of the corner, 0. If all corners have contours, it is what is counted at one
- * of them, along an edge of f: the layers that converge there. So f is wholly visible if that is 0.
+ * Let f be a front-facing face whose three corners are visible. If no contour has a point before f,
+ * or at f but for its corners and edges, then N, the number of front-facing layers before x, is the
+ * same for all points x of f but its corners: it changes as along an edge (contours.c). Next to a
+ * corner without contours it is that of the corner, 0. If all corners have contours, it is what is
+ * counted at one of them, along an edge of f: the layers that converge there. So f is wholly
+ * visible if that is 0.
  *
  * Contours before f are looked for in the cells that f touches. A contour is not before f if its
  * greatest nearness is below the least of f; or if an edge of f has it on the outer side, a common
@@ -148,7 +149,7 @@ static bool may_cover(const visibility_scene *scene, contours_scratch *s, size_t
     if (!(s->grade[corner[0]] == SLOT_MIXED && s->grade[corner[1]] == SLOT_MIXED &&
           s->grade[corner[2]] == SLOT_MIXED))
         return false;
-    link l = {.scene = scene, .s = s, .p = s->p, .side = s->side};
+    tree_edge l = {.scene = scene, .s = s, .p = s->p, .side = s->side};
     cross(&s->directions, corner[0], corner[1], l.normal);
     return count_at_end(&l, corner[0], corner[1], l.normal) != 0 || l.special;
 }

@@ -1,13 +1,13 @@
 /* Stage 2 of the engine by contours (visibility/contours.c): which edges the count follows.
  * Included by the stages.
  *
- * Any neighbour that comes before a vertex in the net's order may be its parent: whatever is
+ * Any neighbour that comes before a vertex in the adjacency's order may be its parent: whatever is
  * chosen, no circle closes, and all paths lead to the root of the shell. Only what the vertices
- * with kept faces need for that is followed; the others are hidden anyway. */
+ * with front-facing faces need for that is followed; the others are hidden anyway. */
 
 /* The nearest of the best. */
 static void choose_parents(const visibility_scene *scene, contours_scratch *s) {
-    const uint32_t *choices = scene->net->parents;
+    const uint32_t *choices = scene->adjacency->parents;
     for (size_t slot = 0; slot < scene->vertex_count; slot++) {
         const uint32_t *choice = choices + CHOICES * slot;
         uint32_t best = choice[CHOICES - 1], grade = s->grade[best];
@@ -20,27 +20,27 @@ static void choose_parents(const visibility_scene *scene, contours_scratch *s) {
     }
 }
 
-/* Marks those that are kept or mixed, and what leads from them to their roots. */
+/* Marks those that are front or mixed, and what leads from them to their roots. */
 static void mark_followed(const visibility_scene *scene, contours_scratch *s) {
-    uint32_t *starts = s->links; /* those whose parents are left, for now */
+    uint32_t *starts = s->tree_edges; /* those whose parents are left, for now */
     size_t start_count = 0;
     for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
-        s->followed[slot] = s->grade[slot] != SLOT_LEFT;
+        s->followed[slot] = s->grade[slot] != SLOT_BACK;
         starts[start_count] = s->parent[slot];
-        start_count += s->followed[slot] & (s->grade[s->parent[slot]] == SLOT_LEFT);
+        start_count += s->followed[slot] & (s->grade[s->parent[slot]] == SLOT_BACK);
     }
     for (size_t i = 0; i < start_count; i++)
         for (uint32_t slot = starts[i]; !s->followed[slot]; slot = s->parent[slot])
             s->followed[slot] = true;
 }
 
-/* Stage 2: how each vertex with a kept face is reached. */
-static void choose_links(const visibility_scene *scene, contours_scratch *s) {
+/* Stage 2: how each vertex with a front-facing face is reached. */
+static void choose_tree_edges(const visibility_scene *scene, contours_scratch *s) {
     choose_parents(scene, s);
     mark_followed(scene, s);
-    s->link_count = 0;
+    s->tree_edge_count = 0;
     for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
-        s->links[s->link_count] = slot;
-        s->link_count += s->followed[slot];
+        s->tree_edges[s->tree_edge_count] = slot;
+        s->tree_edge_count += s->followed[slot];
     }
 }

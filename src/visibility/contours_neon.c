@@ -1,4 +1,4 @@
 /* The stages of the engine by contours for NEON. */
-#define CONTOURS_FORM contours_neon
+#define CONTOURS_VARIANT contours_neon
 #define LANES_NEON
 #include "visibility/contours_stages.h"

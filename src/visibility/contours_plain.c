@@ -1,4 +1,4 @@
 /* The stages of the engine by contours for any processor. */
-#define CONTOURS_FORM contours_plain
+#define CONTOURS_VARIANT contours_plain
 #define LANES_PLAIN
 #include "visibility/contours_stages.h"

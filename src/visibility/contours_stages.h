@@ -8,20 +8,20 @@
 #include "visibility/contours.h"
 #include "visibility/lanes.h"
 
-/* Stage 1: the edges that kept faces end at. */
+/* Stage 1: the edges that front-facing faces end at. */
 static bool find_contours(const visibility_scene *scene, const int8_t *side, contours_scratch *s) {
-    const visibility_net *net = scene->net;
+    const visibility_adjacency *adjacency = scene->adjacency;
     size_t count = 0;
-    for (size_t e = 0; e < net->edge_count; e++) {
+    for (size_t e = 0; e < adjacency->edge_count; e++) {
         s->contour_edges[count] = (uint32_t)e;
-        count += (side[net->edges[e].left] > 0) != (side[net->edges[e].right] > 0);
+        count += (side[adjacency->edges[e].left] > 0) != (side[adjacency->edges[e].right] > 0);
         if (count == s->contour_limit)
             return false;
     }
     for (size_t slot = 0; slot < scene->vertex_count; slot++)
-        s->grade[slot] = side[net->first_face[slot]] > 0 ? SLOT_KEPT : SLOT_LEFT;
+        s->grade[slot] = side[adjacency->first_face[slot]] > 0 ? SLOT_FRONT : SLOT_BACK;
     for (size_t i = 0; i < count; i++) {
-        const net_edge *edge = &net->edges[s->contour_edges[i]];
+        const adjacency_edge *edge = &adjacency->edges[s->contour_edges[i]];
         bool turn = side[edge->left] <= 0;
         uint32_t a = turn ? edge->b : edge->a, b = turn ? edge->a : edge->b;
         s->grade[a] = s->grade[b] = SLOT_MIXED;
@@ -53,7 +53,7 @@ static void measure_contours(contours_scratch *s) {
 /* These need what comes before. */
 #include "visibility/contours_forest.h"
 
-#include "visibility/contours_links.h"
+#include "visibility/contours_tree_edges.h"
 
 #include "visibility/contours_cover.h"
 
@@ -78,17 +78,17 @@ static bool find_base(const visibility_scene *scene, const double p[3], const in
 /* Stage 5: sums the steps from each root on, and sets them right by one vertex of the shell. */
 static bool sum_layers(const visibility_scene *scene, const double p[3], const int8_t *side,
                        contours_scratch *s, uint8_t *visible) {
-    const visibility_net *net = scene->net;
-    for (size_t shell = 0; shell < net->shell_count; shell++) {
-        const uint32_t *order = net->order + net->shell_start[shell];
-        size_t count = net->shell_start[shell + 1] - net->shell_start[shell];
+    const visibility_adjacency *adjacency = scene->adjacency;
+    for (size_t shell = 0; shell < adjacency->shell_count; shell++) {
+        const uint32_t *order = adjacency->order + adjacency->shell_start[shell];
+        size_t count = adjacency->shell_start[shell + 1] - adjacency->shell_start[shell];
         int32_t none = 0;
         for (size_t k = 1; k < count; k++)
             s->layers[order[k]] += s->layers[s->parent[order[k]]];
         if (s->followed[order[0]] && !find_base(scene, p, side, s, order, count, &none))
             return false;
         for (size_t k = 0; k < count; k++)
-            visible[order[k]] = (s->layers[order[k]] == none) & (s->grade[order[k]] != SLOT_LEFT);
+            visible[order[k]] = (s->layers[order[k]] == none) & (s->grade[order[k]] != SLOT_BACK);
     }
     return true;
 }
@@ -104,9 +104,9 @@ static bool run(const visibility_scene *scene, contours_scratch *s, const double
         return false; /* too small for the error bounds */
     cube_project(scene->vertex_count, &s->directions);
     measure_contours(s);
-    choose_links(scene, s);
-    return sort_contours(s) && follow_links(scene, p, side, s) &&
+    choose_tree_edges(scene, s);
+    return sort_contours(s) && follow_tree_edges(scene, p, side, s) &&
            sum_layers(scene, p, side, s, visible);
 }
 
-const contours_form CONTOURS_FORM = {run, may_cover};
+const contours_variant CONTOURS_VARIANT = {run, may_cover};

@@ -16,7 +16,7 @@
 #include "visibility/contours.h"
 
 /* Contours pay where there are fewer of them, for each vertex, than SLOPE times the share of the
- * faces that are kept, less an offset. */
+ * faces that are front-facing, less an offset. */
 static const double SLOPE = 2, OFFSET_WITH_LANES = 1.1, OFFSET_PLAIN = 1.5;
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {
@@ -27,31 +27,31 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     visibility_contours.free_scratch(scene, scratch);
 }
 
-static double share_of_kept_faces(const visibility_scene *scene, const int8_t *side) {
-    size_t kept = 0;
+static double share_of_front_faces(const visibility_scene *scene, const int8_t *side) {
+    size_t front_facing = 0;
     for (size_t rank = 0; rank < scene->face_count; rank++)
-        kept += side[rank] > 0;
-    return (double)kept / (double)scene->face_count;
+        front_facing += side[rank] > 0;
+    return (double)front_facing / (double)scene->face_count;
 }
 
 static double contours_per_vertex(const visibility_scene *scene, const int8_t *side) {
-    const visibility_net *net = scene->net;
-    size_t stride = 8 + net->edge_count / 4096, count = 0;
-    for (size_t e = 0; e < net->edge_count; e += stride)
-        count += (side[net->edges[e].left] > 0) != (side[net->edges[e].right] > 0);
+    const visibility_adjacency *adjacency = scene->adjacency;
+    size_t stride = 8 + adjacency->edge_count / 4096, count = 0;
+    for (size_t e = 0; e < adjacency->edge_count; e += stride)
+        count += (side[adjacency->edges[e].left] > 0) != (side[adjacency->edges[e].right] > 0);
     return (double)(stride * count) / (double)scene->vertex_count;
 }
 
 static bool contours_pay(const visibility_scene *scene, const contours_scratch *s,
                          const int8_t *side) {
-    double offset = s->form == &contours_plain ? OFFSET_PLAIN : OFFSET_WITH_LANES;
-    return contours_per_vertex(scene, side) < SLOPE * share_of_kept_faces(scene, side) - offset;
+    double offset = s->variant == &contours_plain ? OFFSET_PLAIN : OFFSET_WITH_LANES;
+    return contours_per_vertex(scene, side) < SLOPE * share_of_front_faces(scene, side) - offset;
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],
                  const int8_t *side, uint8_t *visible) {
     const contours_scratch *s = scratch;
-    if (scene->net != NULL && contours_pay(scene, s, side))
+    if (scene->adjacency != NULL && contours_pay(scene, s, side))
         visibility_contours.find(scene, scratch, p, side, visible);
     else
         visibility_grid.find(scene, s->grid, p, side, visible);

@@ -2,14 +2,14 @@
  * hides exactly those vertices behind it whose directions lie in its cone.
  *
  * Stages for a point p:
- *   1. keep the faces that have p on their inner side (all, if the boundary is not embedded; the
- *      proof is in scene.h); a vertex without a kept face is hidden;
+ *   1. take the front-facing faces, those that have p on their inner side (all, if the boundary is
+ *      not embedded; the proof is in scene.h); a vertex without a front-facing face is hidden;
  *   2. project the remaining vertices to the six faces of a cube about p, and sort them by
  *      counting into the cells of a grid there, row by row, so that the cells that a face touches
  *      in one row are one run of vertices;
- *   3. for each kept face, near chunks first (grid_faces.h): the vertices in the cells of its
- *      bounding box that are not hidden yet are tested against the planes through p and its edges,
- *      and its own. Faces that lie behind a single one are left out.
+ *   3. for each front-facing face, near chunks first (grid_faces.h): the vertices in the cells of
+ *      its bounding box that are not hidden yet are tested against the planes through p and its
+ *      edges, and its own. Faces that lie behind a single one are left out.
  *
  * Cells only choose what is tested; they are chosen with a margin above the rounding of the
  * projection. With A, B, C, V the corners and the vertex relative to p and D = det(A, B, C) > 0,
@@ -20,7 +20,7 @@
  * What a face hides strictly, all signs positive, is a convex set, so that it holds a face if it
  * holds its corners. A face within it may be left out: the first face on the way from p to a hidden
  * vertex has a point there that nothing comes before, and so is tested. Where limbs and folds lie
- * behind each other, two kept faces in three are left out.
+ * behind each other, two front-facing faces in three are left out.
  *
  * Cost per point: O(n) for sorting plus the pairs of faces and vertices in common cells, about
  * ten a face. Memory per thread: about a hundred bytes a vertex. */
@@ -42,7 +42,7 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     cube_free(context, &g->at);
     starg_release(context, g->in_use);
     starg_release(context, g->used);
-    starg_release(context, g->kept);
+    starg_release(context, g->front_facing);
     starg_release(context, g->place);
     starg_release(context, g->slot);
     starg_release(context, g->sx);
@@ -66,7 +66,7 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->cell_start = starg_allocate(context, 2 * n + g->row_limit + 1, sizeof *g->cell_start);
     g->in_use = starg_allocate(context, n, sizeof *g->in_use);
     g->used = starg_allocate(context, n + 1, sizeof *g->used);
-    g->kept = starg_allocate(context, scene->face_count + 1, sizeof *g->kept);
+    g->front_facing = starg_allocate(context, scene->face_count + 1, sizeof *g->front_facing);
     g->place = starg_allocate(context, n, sizeof *g->place);
     g->slot = starg_allocate(context, n, sizeof *g->slot);
     g->sx = starg_allocate_zero(context, n + LANES, sizeof *g->sx);
@@ -76,9 +76,9 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     g->hidden = starg_allocate(context, starg_bit_words(n) + 1, sizeof *g->hidden);
     g->chunks = starg_allocate(context, scene->face_count / CHUNK + 1, sizeof *g->chunks);
     if (cube_make(context, n, &g->at) && g->rows && g->cell_start && g->in_use && g->used &&
-        g->kept && g->place && g->slot && g->sx && g->sy && g->sz && g->hider && g->hidden &&
-        g->chunks) {
-        g->run = grid_choose_form(FORM_WIDEST);
+        g->front_facing && g->place && g->slot && g->sx && g->sy && g->sz && g->hider &&
+        g->hidden && g->chunks) {
+        g->run = grid_choose_variant(ISA_WIDEST);
         *scratch = g;
         return STARG_OK;
     }
@@ -86,8 +86,8 @@ static starg_status make_scratch(const visibility_scene *scene, void **scratch) 
     return STARG_ERROR_MEMORY;
 }
 
-grid_run *grid_choose_form(visibility_form wanted) {
-    static grid_run *const forms[] = {
+grid_run *grid_choose_variant(visibility_isa wanted) {
+    static grid_run *const variants[] = {
         grid_run_plain,
 #if defined(__aarch64__)
         grid_run_neon,
@@ -96,8 +96,8 @@ grid_run *grid_choose_form(visibility_form wanted) {
         grid_run_avx512,
 #endif
     };
-    wanted = form_resolve(wanted);
-    return form_is_supported(wanted) ? forms[wanted] : NULL;
+    wanted = isa_resolve(wanted);
+    return isa_is_supported(wanted) ? variants[wanted] : NULL;
 }
 
 static void find(const visibility_scene *scene, void *scratch, const double p[3],

@@ -4,7 +4,7 @@
 #define STARG_VISIBILITY_GRID_H
 
 #include "visibility/cube.h"
-#include "visibility/forms.h"
+#include "visibility/isa.h"
 #include "visibility/scene.h"
 
 enum { CHUNK = 128, LANES = 8 };
@@ -38,11 +38,11 @@ typedef struct grid_scratch {
     size_t row_limit;
     uint32_t *cell_start; /* two cells a vertex and one a row, and the end */
     cube_directions at;
-    uint8_t *in_use; /* slot has a kept face */
+    uint8_t *in_use; /* slot has a front-facing face */
     uint32_t *used;  /* the slots in use */
     size_t used_count;
-    uint32_t *kept; /* ranks of the kept faces, chunk by chunk, near ones first */
-    size_t kept_count;
+    uint32_t *front_facing; /* ranks of the front-facing faces, chunk by chunk, near ones first */
+    size_t front_facing_count;
     /* Vertices in use, by cell. */
     uint32_t *place;      /* slot -> position; any value for others */
     uint32_t *slot;       /* position -> slot */
@@ -64,7 +64,7 @@ grid_run grid_run_neon;
 grid_run grid_run_avx2, grid_run_avx512;
 #endif
 
-/* NULL where the processor does not have what the form needs. */
-grid_run *grid_choose_form(visibility_form wanted);
+/* NULL where the processor does not have what the variant needs. */
+grid_run *grid_choose_variant(visibility_isa wanted);
 
 #endif

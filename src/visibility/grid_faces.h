@@ -1,7 +1,7 @@
-/* Stage 3 of the direction grid (visibility/grid.c): what each kept face hides. Included by the
- * stages. Faces are taken a block at a time and one step after the other, so that the compiler can
- * take several faces at once and the processor need not wait for one before it turns to the next.
- */
+/* Stage 3 of the direction grid (visibility/grid.c): what each front-facing face hides. Included by
+ * the stages. Faces are taken a block at a time and one step after the other, so that the compiler
+ * can take several faces at once and the processor need not wait for one before it turns to the
+ * next. */
 
 /* Positions that are tested at once: what can be cut out of the bits of `hidden` in one piece. */
 enum { BLOCK = 64, RUN = 56 };
@@ -40,8 +40,8 @@ static size_t fill_block(const visibility_scene *scene, const int8_t *side, cons
                          size_t first, face_block *block) {
     uint32_t count = 0;
     size_t i = first;
-    for (; i < g->kept_count && count < BLOCK; i++) {
-        uint32_t rank = g->kept[i];
+    for (; i < g->front_facing_count && count < BLOCK; i++) {
+        uint32_t rank = g->front_facing[i];
         const uint32_t *corner = scene->corners + 3 * (size_t)rank;
         block->rank[count] = rank;
         block->side[count] = side[rank];
@@ -323,7 +323,7 @@ static void test_faces(const visibility_scene *scene, const double p[3], const i
     face_block block;
     for (size_t slot = 0; slot < scene->vertex_count; slot++)
         g->hider[slot] = SCENE_NONE;
-    for (size_t done = 0; done < g->kept_count;) {
+    for (size_t done = 0; done < g->front_facing_count;) {
         done += fill_block(scene, side, g, done, &block);
         test_block(scene, p, g, &block);
     }

@@ -106,15 +106,15 @@ static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
 /* Stage 1: lists the faces that can block first, and the vertices that they use. */
 static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_scratch *g) {
     size_t chunk_count = order_chunks(scene, g);
-    g->kept_count = g->used_count = 0;
+    g->front_facing_count = g->used_count = 0;
     memset(g->in_use, 0, scene->vertex_count);
     for (size_t c = 0; c < chunk_count; c++) {
         size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
         for (; rank < end && rank < scene->face_count; rank++) {
             uint8_t keep = !scene->cull || side[rank] > 0;
             const uint32_t *corner = scene->corners + 3 * rank;
-            g->kept[g->kept_count] = (uint32_t)rank;
-            g->kept_count += keep;
+            g->front_facing[g->front_facing_count] = (uint32_t)rank;
+            g->front_facing_count += keep;
             g->in_use[corner[0]] |= keep;
             g->in_use[corner[1]] |= keep;
             g->in_use[corner[2]] |= keep;

@@ -6,7 +6,7 @@
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "visibility/net.h"
+#include "visibility/adjacency.h"
 #include "visibility/sides.h"
 
 /* Vertices get their slots in the order in which the faces, taken leaf by leaf, name them. */
@@ -59,7 +59,7 @@ static void compute_planes(visibility_scene *scene) {
 }
 
 static sides_run *choose_sides(void) {
-    static sides_run *const forms[] = {
+    static sides_run *const variants[] = {
         sides_run_plain,
 #if defined(__aarch64__)
         sides_run_neon,
@@ -68,7 +68,7 @@ static sides_run *choose_sides(void) {
         sides_run_avx512,
 #endif
     };
-    return forms[form_resolve(FORM_WIDEST)];
+    return variants[isa_resolve(ISA_WIDEST)];
 }
 
 starg_status scene_create(starg_context *context, const starg_solid *solid,
@@ -108,7 +108,7 @@ void scene_free(visibility_scene *scene) {
     if (scene == NULL)
         return;
     starg_context *context = scene->context;
-    net_free(scene->net);
+    adjacency_free(scene->adjacency);
     starg_release(context, scene->vertex_of);
     starg_release(context, scene->slot_of);
     starg_release(context, scene->x);
@@ -122,8 +122,8 @@ void scene_free(visibility_scene *scene) {
     starg_release(context, scene);
 }
 
-starg_status scene_add_net(visibility_scene *scene) {
-    return scene->cull ? net_create(scene->context, scene, &scene->net) : STARG_OK;
+starg_status scene_add_adjacency(visibility_scene *scene) {
+    return scene->cull ? adjacency_create(scene->context, scene, &scene->adjacency) : STARG_OK;
 }
 
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side) {

@@ -46,15 +46,15 @@ typedef struct visibility_scene {
     double side_bound; /* larger than the rounding error of that expression for p in the box */
     sides_run *find_sides;
 
-    struct visibility_net *net; /* made for the engine by contours where `cull` holds, else NULL */
+    struct visibility_adjacency *adjacency; /* for the engine by contours if `cull` */
 } visibility_scene;
 
 /* Errors: MEMORY. */
 starg_status scene_create(starg_context *context, const starg_solid *solid, visibility_scene **out);
 void scene_free(visibility_scene *scene);
 
-/* Makes the net, if the boundary is embedded. Errors: MEMORY. */
-starg_status scene_add_net(visibility_scene *scene);
+/* Makes the adjacency, if the boundary is embedded. Errors: MEMORY. */
+starg_status scene_add_adjacency(visibility_scene *scene);
 
 /* side[rank] = 1 where p lies strictly on the inner side of the face, -1 outer, 0 in its plane. */
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side);

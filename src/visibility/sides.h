@@ -2,7 +2,7 @@
 #ifndef STARG_VISIBILITY_SIDES_H
 #define STARG_VISIBILITY_SIDES_H
 
-#include "visibility/forms.h"
+#include "visibility/isa.h"
 #include "visibility/scene.h"
 
 sides_run sides_run_plain;

@@ -192,7 +192,7 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
     starg_status status = scene_create(context, solid, out);
     if (status == STARG_OK && options->engine >= STARG_VISIBILITY_CONTOURS &&
         count > 1) /* one does not pay for it */
-        status = scene_add_net(*out);
+        status = scene_add_adjacency(*out);
     return status;
 }
 

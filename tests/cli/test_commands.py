@@ -24,10 +24,10 @@ class Sample(support.Case):
         self.assertGreaterEqual(sum(entry["poses"] >= 5 for entry in listed["samples"]), 6)
 
     def test_formats(self):
-        for ending, first in [("off", b"OFF"), ("obj", b"v "), ("ply", b"ply"), ("stl", b"")]:
-            self.run_text("sample", "torus", "--vertices", "600", "-o", f"t.{ending}")
-            self.assertTrue(self.read(f"t.{ending}").startswith(first), ending)
-            self.assertTrue(self.run_json("check", f"t.{ending}")["usable"])
+        for extension, first in [("off", b"OFF"), ("obj", b"v "), ("ply", b"ply"), ("stl", b"")]:
+            self.run_text("sample", "torus", "--vertices", "600", "-o", f"t.{extension}")
+            self.assertTrue(self.read(f"t.{extension}").startswith(first), extension)
+            self.assertTrue(self.run_json("check", f"t.{extension}")["usable"])
 
     def test_poses_share_faces(self):
         def faces(pose):
@@ -134,7 +134,7 @@ class Skeleton(support.Case):
     def test_formats(self):
         torus = self.sample("torus")
         for ending in ("obj", "cg"):
-            name = "s." + ending
+            name = "s." + extension
             report = self.run_json("skeleton", torus, "-o", name, "--nodes", "60")
             nodes, edges = self.graph(name)
             self.assertEqual((nodes, len(edges)), (report["nodes"], report["edges"]))

@@ -38,7 +38,7 @@ class Full(Writing):
                     os.remove(self.path(outputs[-1]))
 
     def test_device(self):
-        """A device that is full, under a name with the right ending; other outputs do not change."""
+        """A device that is full, under a name with the right extension; other outputs do not change."""
         for name, words, outputs in self.commands():
             with self.subTest(command=name):
                 if name == "morph":

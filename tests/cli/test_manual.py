@@ -47,7 +47,7 @@ class Manual(support.Case):
                 self.assertIn(f"\\fBstarguard\\-{command['name']}\\fR(1)", whole)
 
     def test_pages_are_clean(self):
-        """man and mandoc find nothing to complain of (but that there is no date)."""
+        """man and mandoc report nothing (but that there is no date)."""
         self.need("man")
         for command in [None] + self.table["commands"]:
             words = command["name"].split() if command else []

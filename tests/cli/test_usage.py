@@ -156,7 +156,7 @@ class Mistakes(support.Case):
 
     def test_endings(self):
         self.usage_error("sample", "horse", "-o", "h.xyz", says=".off, .obj, .ply or .stl")
-        self.usage_error("repair", "m.off", "-o", "noending", says=".off, .obj, .ply or .stl")
+        self.usage_error("repair", "m.off", "-o", "noextension", says=".off, .obj, .ply or .stl")
         self.usage_error("check", "m.off", "--marks", "marks.png", says=".ply")
         self.usage_error("visible", "m.off", "--from", "0,0,0", "-o", "v.off", says=".ply")
         self.usage_error("guard", "m.off", "-o", "g.json", "--picture", "p.jpg", says=".png")

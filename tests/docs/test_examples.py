@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import unittest
 
-from cupboard import PROGRAM, Cupboard
+from fixtures import PROGRAM, Fixtures
 
 TABLE = json.loads(subprocess.run([PROGRAM, "help", "--json"], check=True,
                                   capture_output=True).stdout)
@@ -30,8 +30,8 @@ BEFORE = {
 class Examples(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.cupboard = Cupboard()
-        cls.addClassCleanup(cls.cupboard.close)
+        cls.fixtures = Fixtures()
+        cls.addClassCleanup(cls.fixtures.close)
 
     def run_examples(self, command):
         text = command["examples"]
@@ -39,12 +39,12 @@ class Examples(unittest.TestCase):
         own = [line for line in lines if f"starguard {command['name']}" in line]
         self.assertGreaterEqual(len(lines), 2, "too few examples")
         self.assertGreaterEqual(len(own), 1, "no example of the command itself")
-        folder = self.cupboard.use(command["name"], *BEFORE.get(command["name"], []))
+        folder = self.fixtures.use(command["name"], *BEFORE.get(command["name"], []))
         for line in lines:
             if "| jq" in line and shutil.which("jq") is None:
                 print(f"skipped, no jq: {line}")
                 continue
-            self.cupboard.shell(folder, line)
+            self.fixtures.shell(folder, line)
 
     def test_comments(self):
         """Examples are commands with a line before the first that says what is done."""

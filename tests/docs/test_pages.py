@@ -1,7 +1,7 @@
 """Every command of the documentation is run, page by page, and every link leads somewhere.
 
 A block marked `sh` is run, all blocks of a page in one folder in their order (it holds models under the
-names that the pages use, see cupboard.py). In a block marked `console`, lines that begin with "$ " are
+names that the pages use, see fixtures.py). In a block marked `console`, lines that begin with "$ " are
 run, and the lines below have to be among what comes out, in their order. A block that cannot be run
 here has a comment <!-- not run: REASON --> before it."""
 import glob
@@ -10,7 +10,7 @@ import re
 import shutil
 import unittest
 
-from cupboard import PROGRAM, SOURCE, Cupboard
+from fixtures import PROGRAM, SOURCE, Fixtures
 
 # Pages that the build makes stand among those of docs/ when they are installed.
 BUILD = os.environ.get("STARGUARD_BUILD", os.path.dirname(PROGRAM))
@@ -45,26 +45,26 @@ def headings(page):
 class Pages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.cupboard = Cupboard()
-        cls.addClassCleanup(cls.cupboard.close)
+        cls.fixtures = Fixtures()
+        cls.addClassCleanup(cls.fixtures.close)
 
     def run_console(self, folder, text):
         for part in re.split(r"^\$ ", text, flags=re.M)[1:]:
             command, *expected = part.rstrip("\n").split("\n")
-            output = self.cupboard.shell(folder, command + " 2>&1").split("\n")
+            output = self.fixtures.shell(folder, command + " 2>&1").split("\n")
             for line in expected:
                 self.assertIn(line, output, command)
                 output = output[output.index(line) + 1:]
 
     def run_page(self, page, blocks):
-        folder = self.cupboard.use(page.replace("/", "_"))
+        folder = self.fixtures.use(page.replace("/", "_"))
         for reason, language, text in blocks:
             if re.search(r"[|$] jq ", text) and shutil.which("jq") is None:
                 reason = "no jq"
             if reason:
                 print(f"skipped in {page}, {reason}: {text.split(chr(10))[0]}")
             elif language == "sh":
-                self.cupboard.shell(folder, text)
+                self.fixtures.shell(folder, text)
             else:
                 self.run_console(folder, text)
 

@@ -1,4 +1,4 @@
-/* Any bytes given to the mesh readers, under a name that ends with FUZZ_NAME's ending: no crash, a
+/* Any bytes given to the mesh readers, under a name that has FUZZ_NAME's extension: no crash, a
  * sound mesh or an error that says something, all memory returned, and never much more of it taken
  * than the input is long. */
 #include <math.h>

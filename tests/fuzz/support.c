@@ -258,13 +258,13 @@ starg_mesh *fuzz_mesh(starg_context *context, const shape *s) {
 
 /* ---- files ---- */
 
-enum { ENDINGS = 8 };
+enum { EXTENSIONS = 8 };
 
 static char folder[64];
 static struct {
-    const char *ending;
+    const char *extension;
     char path[96];
-} paths[ENDINGS];
+} paths[EXTENSIONS];
 static int path_count;
 
 static void remove_folder(void) {
@@ -273,7 +273,7 @@ static void remove_folder(void) {
     rmdir(folder);
 }
 
-const char *fuzz_path(const char *ending) {
+const char *fuzz_path(const char *extension) {
     if (path_count == 0) {
         bool in_memory = access("/dev/shm", W_OK) == 0;
         snprintf(folder, sizeof folder, "%s/starguard-fuzz-XXXXXX",
@@ -281,16 +281,16 @@ const char *fuzz_path(const char *ending) {
         fuzz_require(mkdtemp(folder) != NULL && atexit(remove_folder) == 0, "a folder can be made");
     }
     for (int i = 0; i < path_count; i++)
-        if (strcmp(paths[i].ending, ending) == 0)
+        if (strcmp(paths[i].extension, extension) == 0)
             return paths[i].path;
-    fuzz_require(path_count < ENDINGS, "there are few endings");
-    paths[path_count].ending = ending;
-    snprintf(paths[path_count].path, sizeof paths[0].path, "%s/input%s", folder, ending);
+    fuzz_require(path_count < EXTENSIONS, "there are few endings");
+    paths[path_count].extension = extension;
+    snprintf(paths[path_count].path, sizeof paths[0].path, "%s/input%s", folder, extension);
     return paths[path_count++].path;
 }
 
-const char *fuzz_file(const char *ending, const void *bytes, size_t size) {
-    const char *path = fuzz_path(ending);
+const char *fuzz_file(const char *extension, const void *bytes, size_t size) {
+    const char *path = fuzz_path(extension);
     int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     fuzz_require(file >= 0 && (size == 0 || write(file, bytes, size) == (ssize_t)size),
                  "a file can be written");

@@ -62,11 +62,11 @@ starg_mesh *fuzz_mesh(starg_context *context, const shape *s);
 
 /* ---- files ---- */
 
-/* A path of this process's own with the given ending, in a folder that is removed in the end;
- * valid until the next call with the same ending. At most eight endings. */
-const char *fuzz_path(const char *ending);
+/* A path of this process's own with the given extension, in a folder that is removed in the end;
+ * valid until the next call with the same extension. At most eight extensions. */
+const char *fuzz_path(const char *extension);
 
 /* The same, of a file that holds these bytes. */
-const char *fuzz_file(const char *ending, const void *bytes, size_t size);
+const char *fuzz_file(const char *extension, const void *bytes, size_t size);
 
 #endif

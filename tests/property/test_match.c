@@ -13,7 +13,7 @@
 enum {
     STAR_SPECTRUM = 40,
     STAR_VIEWS = 128,
-    STAR_WAVES = 192,
+    STAR_WKS = 192,
     STAR = 360,
     PAPER_HEAD = 2,
     PAPER_GUARD = 68
@@ -46,7 +46,7 @@ static double star_by_definition(const starg_signature *a, const starg_signature
         else if (i < STAR_SPECTRUM + STAR_VIEWS)
             sum += difference / (0.041 * STAR_VIEWS);
         else
-            sum += difference / (0.18 * STAR_WAVES);
+            sum += difference / (0.18 * STAR_WKS);
     }
     return sum / 3;
 }

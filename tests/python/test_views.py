@@ -23,15 +23,15 @@ class Views(Case):
         self.pieces.write_report("p.json")
         self.skeleton.write("s.vtk")
         for ending in ("glb", "vtu", "ply", "obj"):
-            self.cli("export", "g.json", "p.vtk", "p.json", "s.vtk", "-o", f"a.{ending}", "--quiet")
-            starguard.write_scene(f"b.{ending}", self.model, guards=self.guards, pieces=self.pieces,
+            self.cli("export", "g.json", "p.vtk", "p.json", "s.vtk", "-o", f"a.{extension}", "--quiet")
+            starguard.write_scene(f"b.{extension}", self.model, guards=self.guards, pieces=self.pieces,
                                   skeleton=self.skeleton)
-            self.assertEqual(self.read(f"a.{ending}"), self.read(f"b.{ending}"), ending)
+            self.assertEqual(self.read(f"a.{extension}"), self.read(f"b.{extension}"), extension)
             starguard.write_scene("c", self.model, guards=starguard.read_result("g.json"),
                                   pieces=starguard.read_result("p.vtk"),
                                   report=starguard.read_result("p.json"),
-                                  skeleton=starguard.Skeleton.read("s.vtk"), format=ending)
-            self.assertEqual(self.read("c"), self.read(f"b.{ending}"), ending)
+                                  skeleton=starguard.Skeleton.read("s.vtk"), format=extension)
+            self.assertEqual(self.read("c"), self.read(f"b.{extension}"), extension)
 
     def test_pages(self):
         if not starguard.page_available():
@@ -67,13 +67,13 @@ class Views(Case):
 
     def test_skeletons(self):
         for ending in ("obj", "cg", "vtk"):
-            self.skeleton.write(f"s.{ending}")
-            again = starguard.Skeleton.read(f"s.{ending}")
+            self.skeleton.write(f"s.{extension}")
+            again = starguard.Skeleton.read(f"s.{extension}")
             self.assertTrue((again.positions == self.skeleton.positions).all())
             self.assertTrue((again.edges == self.skeleton.edges).all())
             self.assertEqual(again.loops, self.skeleton.loops)
             self.assertEqual(again.vertex_nodes.shape, (0,))
-            if ending == "vtk":
+            if extension == "vtk":
                 self.assertTrue((again.radii == self.skeleton.radii).all())
             else:
                 self.assertIsNone(again.radii)

@@ -149,7 +149,7 @@ typedef struct tally {
     size_t allocations, attempts, failed;
 } tally;
 
-static void complain(const manner *how, size_t n, const char *what) {
+static void report_failure(const manner *how, size_t n, const char *what) {
     print_error("%s (%s), %d threads, allocation %zu%s: %s\n", turn.name, turn.variant,
                 how->threads, n, how->for_good ? " and all later ones" : "", what);
     fail();
@@ -160,10 +160,10 @@ static void check_failure(const manner *how, size_t n, const starg_context *cont
     const starg_error *error = starg_context_error(context);
     if (status != STARG_ERROR_MEMORY) {
         print_error("status %d: %s\n", (int)status, error->message);
-        complain(how, n, "not the status for memory");
+        report_failure(how, n, "not the status for memory");
     }
     if (error->status != STARG_ERROR_MEMORY || error->message[0] == '\0' || error->stage[0] == '\0')
-        complain(how, n, "no message about memory");
+        report_failure(how, n, "no message about memory");
 }
 
 /* Lets the n-th allocation fail; false when the call succeeded without so many. */
@@ -185,7 +185,7 @@ static bool attempt(const manner *how, size_t n, tally *sum) {
     bool reached = atomic_load(&memory.failed) > 0;
     size_t left = starg_context_live_blocks(context);
     if (context->progress.depth != 0)
-        complain(how, n, "a stage has not ended");
+        report_failure(how, n, "a stage has not ended");
     sum->allocations = atomic_load(&memory.asked);
     sum->attempts++;
     sum->failed += status != STARG_OK;
@@ -195,12 +195,12 @@ static bool attempt(const manner *how, size_t n, tally *sum) {
     if (status != STARG_OK)
         check_failure(how, n, context, status);
     else if (reached)
-        complain(how, n, "success although memory has failed");
+        report_failure(how, n, "success although memory has failed");
     starg_context_free(context);
     if (left != 0 || atomic_load(&memory.blocks) != 0 || atomic_load(&memory.bytes) != 0)
-        complain(how, n, "memory is still in use");
+        report_failure(how, n, "memory is still in use");
     if (clear_folder() != 0 && status != STARG_OK)
-        complain(how, n, "an output was left behind");
+        report_failure(how, n, "an output was left behind");
     return reached;
 }
 

@@ -90,10 +90,10 @@ FILE *test_tables(const char *data) {
 }
 
 static bool is_surface(const char *name) {
-    static const char *const endings[] = {".off", ".obj", ".ply", ".stl", ".STL"};
+    static const char *const extensions[] = {".off", ".obj", ".ply", ".stl", ".STL"};
     const char *dot = strrchr(name, '.');
-    for (size_t i = 0; dot != NULL && i < sizeof endings / sizeof *endings; i++)
-        if (strcmp(dot, endings[i]) == 0)
+    for (size_t i = 0; dot != NULL && i < sizeof extensions / sizeof *extensions; i++)
+        if (strcmp(dot, extensions[i]) == 0)
             return true;
     return false;
 }

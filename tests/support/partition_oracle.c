@@ -6,7 +6,7 @@
 
 #include "exact_oracle.h"
 #include "geometry/delaunay.h"
-#include "star/strict/claim.h"
+#include "star/strict/region_growing.h"
 #include "support.h"
 #include "tetrahedra.h"
 
@@ -310,19 +310,19 @@ partition random_hull(starg_context *context, uint64_t seed, size_t points) {
     return p;
 }
 
-partition claimed_sample(starg_context *context, const char *name, size_t target) {
+partition grown_sample(starg_context *context, const char *name, size_t target) {
     starg_tetmesh *mesh = sample_tetmesh(context, name, target);
-    claims claimed;
+    grown_regions grown;
     partition p;
-    test_ok(context, claim_all(context, mesh, NULL, 0, &claimed));
-    test_ok(context, partition_create(context, mesh, claimed.labels, claimed.guards.data,
-                                      claimed.count, &p));
-    claims_free(context, &claimed);
+    test_ok(context, grow_regions(context, mesh, NULL, 0, &grown));
+    test_ok(context,
+            partition_create(context, mesh, grown.labels, grown.guards.data, grown.count, &p));
+    grown_regions_free(context, &grown);
     starg_tetmesh_free(mesh);
     return p;
 }
 
-partition random_crumbs(starg_context *context, uint64_t seed, size_t points) {
+partition random_cells(starg_context *context, uint64_t seed, size_t points) {
     starg_tetmesh *mesh = random_tetmesh(context, seed, points, false, 1);
     uint32_t *labels = calloc(mesh->count, sizeof *labels);
     double *guards = calloc(3 * mesh->count, sizeof *guards);

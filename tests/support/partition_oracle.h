@@ -33,11 +33,12 @@ partition partition_oracle_copy(const partition *from);
 /* The hull of random points as one piece, with a guard in it. */
 partition random_hull(starg_context *context, uint64_t seed, size_t points);
 
-/* A procedural sample of about so many tetrahedra, claimed (star/strict/claim.h). */
-partition claimed_sample(starg_context *context, const char *name, size_t target);
+/* A procedural sample of about so many tetrahedra, grown into regions
+ * (star/strict/region_growing.h). */
+partition grown_sample(starg_context *context, const char *name, size_t target);
 
 /* Delaunay tetrahedra of random points (at most 100), with holes, each a piece of its own. */
-partition random_crumbs(starg_context *context, uint64_t seed, size_t points);
+partition random_cells(starg_context *context, uint64_t seed, size_t points);
 
 /* A plane that has vertices of a piece on either side. */
 partition_plane random_plane_across(const partition *p, uint32_t number, starg_rng *rng);

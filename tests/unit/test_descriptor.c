@@ -158,7 +158,7 @@ static void views_and_spectra_of_a_ball(void **state) {
      * energies of the fifth one is cut off within the sixth. */
     for (size_t e = 0; e < STARG_DESCRIPTOR_ENERGIES - 4; e++)
         for (size_t i = 0; i < STARG_DESCRIPTOR_SPREAD; i++)
-            assert_true(fabs(d->waves[e][i] - 1) < 0.05);
+            assert_true(fabs(d->wave_kernel[e][i] - 1) < 0.05);
     starg_descriptor_free(context, d);
     starg_mesh_free(mesh);
     test_context_free(context);
@@ -262,7 +262,7 @@ static void there_and_back(void **state) {
     assert_int_equal(back->effort, 1);
     assert_memory_equal(back->views, d->views, sizeof d->views);
     assert_memory_equal(back->surface_spectrum, d->surface_spectrum, sizeof d->surface_spectrum);
-    assert_memory_equal(back->waves, d->waves, sizeof d->waves);
+    assert_memory_equal(back->wave_kernel, d->wave_kernel, sizeof d->wave_kernel);
     assert_memory_equal(back->guards, d->guards, d->guard_count * sizeof *d->guards);
     assert_memory_equal(back->distances, d->distances,
                         d->guard_count * d->direction_count * sizeof *d->distances);
@@ -298,7 +298,7 @@ static void older_files(void **state) {
     test_ok(context,
             starg_descriptor_read_memory(context, third, strlen(third), "old.json", &back));
     assert_memory_equal(back->surface_spectrum, d->surface_spectrum, sizeof d->surface_spectrum);
-    assert_memory_equal(back->waves, d->waves, sizeof d->waves);
+    assert_memory_equal(back->wave_kernel, d->wave_kernel, sizeof d->wave_kernel);
     starg_descriptor_free(context, back);
     test_ok(context, starg_descriptor_read_memory(context, text, size, "new.json", &back));
     char *second = text_of(context, back, &again);

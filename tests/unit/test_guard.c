@@ -184,17 +184,17 @@ static void test_file(void **state) {
 
 /* The nodes of a skeleton are points, whichever format it is written in. */
 static void test_skeletons_are_points(void **state) {
-    static const char *const endings[] = {"obj", "cg", "vtk"};
+    static const char *const extensions[] = {"obj", "cg", "vtk"};
     (void)state;
     starg_context *context = test_context(1);
     starg_solid *solid = test_sample(context, "star", 700);
     starg_skeleton *skeleton = NULL;
     test_ok(context, starg_skeleton_create(context, solid, NULL, &skeleton));
-    for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
+    for (size_t i = 0; i < sizeof extensions / sizeof *extensions; i++) {
         char path[64];
         double *points = NULL;
         size_t count = 0;
-        snprintf(path, sizeof path, "curve-%ld.%s", (long)getpid(), endings[i]);
+        snprintf(path, sizeof path, "curve-%ld.%s", (long)getpid(), extensions[i]);
         test_ok(context, starg_skeleton_write(context, skeleton, path, STARG_SKELETON_AUTO));
         test_ok(context, starg_points_read(context, path, &points, &count));
         assert_int_equal(count, skeleton->node_count);

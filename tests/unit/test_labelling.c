@@ -8,7 +8,7 @@
 
 enum { NODES_MOST = 8 };
 
-/* Every node with three links, never to itself; `labels` of them, or fewer here and there. */
+/* Every node with three edges, never to itself; `labels` of them, or fewer here and there. */
 static labelling random_problem(starg_context *context, starg_rng *rng, uint32_t nodes, int count) {
     labelling l = {.context = context};
     uint32_t ends[3 * NODES_MOST];
@@ -27,13 +27,13 @@ static labelling random_problem(starg_context *context, starg_rng *rng, uint32_t
             fine = fine && ends[i] != ends[i + 1];
     }
     for (uint32_t i = 0; i < 3 * nodes; i += 2) {
-        labelling_link link = {.nodes = {ends[i], ends[i + 1]}};
+        labelling_edge edge = {.nodes = {ends[i], ends[i + 1]}};
         for (int k = 0; k < count; k++) {
             uint64_t where = starg_rng_below(rng, 3);
             if (where < 2)
-                link.fits[where] |= (label_set)1 << k;
+                edge.fits[where] |= (label_set)1 << k;
         }
-        STARG_PUSH(context, "test", &l.links, link);
+        STARG_PUSH(context, "test", &l.edges, edge);
     }
     for (uint32_t i = 0; i < nodes; i++) {
         label_set set = 0;
@@ -55,10 +55,10 @@ static bool is_solution(const labelling *l, const label_set *chosen) {
         if (chosen[i] == 0 || (chosen[i] & (chosen[i] - 1)) != 0 ||
             (chosen[i] & l->given.data[i]) == 0)
             return false;
-    for (size_t i = 0; i < l->links.count; i++) {
-        const labelling_link *link = &l->links.data[i];
-        label_set a = chosen[link->nodes[0]], b = chosen[link->nodes[1]];
-        if (a != b && ((a & link->fits[0]) == 0 || (b & link->fits[1]) == 0))
+    for (size_t i = 0; i < l->edges.count; i++) {
+        const labelling_edge *edge = &l->edges.data[i];
+        label_set a = chosen[edge->nodes[0]], b = chosen[edge->nodes[1]];
+        if (a != b && ((a & edge->fits[0]) == 0 || (b & edge->fits[1]) == 0))
             return false;
     }
     return true;
@@ -133,10 +133,10 @@ static void test_follows(void **state) {
     labelling l = {.context = context};
     bool found;
     for (uint32_t i = 0; i < 6; i++) {
-        const labelling_link next = {.nodes = {i, (i + 1) % 6}}, across = {.nodes = {i, i + 3}};
-        STARG_PUSH(context, "test", &l.links, next);
+        const labelling_edge next = {.nodes = {i, (i + 1) % 6}}, across = {.nodes = {i, i + 3}};
+        STARG_PUSH(context, "test", &l.edges, next);
         if (i < 3)
-            STARG_PUSH(context, "test", &l.links, across);
+            STARG_PUSH(context, "test", &l.edges, across);
         STARG_PUSH(context, "test", &l.given, i == 4 ? 4u : 7u);
     }
     test_ok(context, labelling_prepare(&l));

@@ -1,4 +1,4 @@
-/* Partitions through what is done to them: built, joined, sliced, tidied up, cut to a plan. After
+/* Partitions through what is done to them: built, joined, sliced, merged, cut to a plan. After
  * every step the whole of it is checked by brute force (partition_oracle.h). */
 #include "support.h"
 
@@ -10,8 +10,8 @@
 #include "partition_oracle.h"
 #include "star/strict/apply.h"
 #include "star/strict/improve.h"
+#include "star/strict/merge_coplanar.h"
 #include "star/strict/slice.h"
-#include "star/strict/tidy.h"
 #include "tetrahedra.h"
 
 enum { CUTS_MOST = 8 };
@@ -90,7 +90,7 @@ static void test_create(void **state) {
 static void test_gather(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    partition p = claimed_sample(context, "torus", 1500);
+    partition p = grown_sample(context, "torus", 1500);
     partition_oracle_check_guards(&p);
     for (uint32_t i = 0; i < p.pieces.count; i++) {
         partition_triangles triangles = {0};
@@ -118,7 +118,7 @@ static void test_certify(void **state) {
     starg_context *context = test_context(1);
     size_t certified = 0, others = 0;
     for (uint64_t seed = 0; seed < 8; seed++) {
-        partition p = random_crumbs(context, seed, 5 + (size_t)seed);
+        partition p = random_cells(context, seed, 5 + (size_t)seed);
         partition_triangles triangles = {0};
         uint32_t all[200];
         for (uint32_t i = 0; i < p.pieces.count; i++)
@@ -252,7 +252,7 @@ static void test_slices_of_samples(void **state) {
     static const char *const names[] = {"horse", "knot", "plate", "shell", "gallery"};
     starg_context *context = test_context(1);
     for (uint64_t i = 0; i < sizeof names / sizeof *names; i++) {
-        partition p = claimed_sample(context, names[i], 1500);
+        partition p = grown_sample(context, names[i], 1500);
         slice_often(&p, i, 30, 22);
         /* as one piece, of which planes cut many loops at once */
         uint32_t *all = calloc(p.pieces.count, sizeof *all);
@@ -289,7 +289,7 @@ static void test_slices_through_edges(void **state) {
     size_t done = 0, through = 0;
     for (uint64_t i = 0; i < 9; i++) {
         starg_rng rng = starg_rng_make(i, 75, 0);
-        partition first = i < 3 ? claimed_sample(context, names[i], 1500)
+        partition first = i < 3 ? grown_sample(context, names[i], 1500)
                                 : random_hull(context, i, 8 + 4 * (size_t)i);
         partition p = partition_oracle_copy(&first), next;
         for (int turn = 0; turn < 40; turn++) {
@@ -427,7 +427,7 @@ static void test_edge_contact(void **state) {
 static void test_join(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    partition p = random_crumbs(context, 9, 20);
+    partition p = random_cells(context, 9, 20);
     starg_rng rng = starg_rng_make(1, 75, 0);
     double whole = volume_of_all(&p);
     while (p.pieces.count > 1) {
@@ -453,7 +453,7 @@ static void test_join(void **state) {
     test_context_free(context);
 }
 
-/* ---- tidying up ---- */
+/* ---- coplanar merge ---- */
 
 /* Every piece of a convex solid is convex: the mean of its corners is in its kernel. */
 static void place_guards(partition *p) {
@@ -509,7 +509,7 @@ static void check_same_pieces(const partition *a, const partition *b, starg_rng 
     }
 }
 
-/* Cut after cut is taken back and tidied up: no more is left than if it had never been. */
+/* Cut after cut is taken back and merged: no more is left than if it had never been. */
 static void undo_all(starg_context *context, uint64_t seed, size_t cuts) {
     starg_rng rng = starg_rng_make(seed, 77, 0);
     uint32_t lows[CUTS_MOST];
@@ -519,12 +519,12 @@ static void undo_all(starg_context *context, uint64_t seed, size_t cuts) {
     for (size_t left = cuts + 1; left-- > 0;) {
         partition fresh = sliced_hull(context, seed, left, lows);
         partition before = partition_oracle_copy(&p);
-        test_ok(context, tidy(&p));
+        test_ok(context, merge_coplanar(&p));
         partition_oracle_check_guards(&p);
         partition_oracle_check_surface(&first, &p);
         check_same_pieces(&before, &p, &rng, 20);
         check_same_pieces(&fresh, &p, &rng, 20);
-        test_ok(context, tidy(&fresh));
+        test_ok(context, merge_coplanar(&fresh));
         assert_int_equal(p.facets.count, fresh.facets.count);
         assert_int_equal(p.points.count, fresh.points.count);
         partition_free(&before);
@@ -539,7 +539,7 @@ static void undo_all(starg_context *context, uint64_t seed, size_t cuts) {
     partition_free(&p);
 }
 
-static void test_tidy_undoes_cuts(void **state) {
+static void test_merge_undoes_cuts(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     for (uint64_t seed = 0; seed < 30; seed++)
@@ -548,15 +548,15 @@ static void test_tidy_undoes_cuts(void **state) {
 }
 
 /* Once is enough. */
-static void test_tidy_twice(void **state) {
+static void test_merge_twice(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     for (uint64_t seed = 0; seed < 20; seed++) {
         uint32_t lows[CUTS_MOST];
         partition p = sliced_hull(context, seed, CUTS_MOST, lows), once;
-        test_ok(context, tidy(&p));
+        test_ok(context, merge_coplanar(&p));
         once = partition_oracle_copy(&p);
-        test_ok(context, tidy(&p));
+        test_ok(context, merge_coplanar(&p));
         assert_int_equal(p.facets.count, once.facets.count);
         assert_int_equal(p.points.count, once.points.count);
         partition_free(&once);
@@ -566,7 +566,7 @@ static void test_tidy_twice(void **state) {
 }
 
 /* A guard that does not see its piece: nothing is changed. */
-static void test_tidy_refuses(void **state) {
+static void test_merge_refuses(void **state) {
     (void)state;
     starg_context *context = test_context(1);
     uint32_t lows[CUTS_MOST];
@@ -574,36 +574,36 @@ static void test_tidy_refuses(void **state) {
     undo_cut(&p, lows);
     p.pieces.data[0].guard[0] += 100;
     partition before = partition_oracle_copy(&p);
-    test_ok(context, tidy(&p));
+    test_ok(context, merge_coplanar(&p));
     assert_true(partition_oracle_same(&before, &p));
     partition_free(&before);
     /* with its own guard something would have been */
     place_guards(&p);
     size_t facets = p.facets.count;
-    test_ok(context, tidy(&p));
+    test_ok(context, merge_coplanar(&p));
     assert_true(p.facets.count < facets);
     partition_free(&p);
     test_context_free(context);
 }
 
 /* Partitions as the search leaves them. */
-static void test_tidy_after_search(void **state) {
+static void test_merge_after_search(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    uint64_t joins = 0, recuts = 0, moves = 0;
+    uint64_t joins = 0, repartitions = 0, moves = 0;
     for (uint64_t seed = 0; seed < 8; seed++) {
         starg_rng rng = starg_rng_make(seed, 78, 0);
-        partition first = random_crumbs(context, seed, 30);
+        partition first = random_cells(context, seed, 30);
         partition p = partition_oracle_copy(&first);
         const improve_options options = {.trials = 320, .work = UINT64_MAX, .enough = 1};
         improve_report report;
         test_ok(context, improve(&p, &options, &report));
-        assert_int_equal(p.pieces.count,
-                         first.pieces.count - report.joins - report.recuts - report.dissolved);
-        joins += report.joins, recuts += report.recuts, moves += report.moves;
+        assert_int_equal(p.pieces.count, first.pieces.count - report.joins - report.repartitions -
+                                             report.eliminated);
+        joins += report.joins, repartitions += report.repartitions, moves += report.moves;
         partition_oracle_check_guards(&p);
         partition before = partition_oracle_copy(&p);
-        test_ok(context, tidy(&p));
+        test_ok(context, merge_coplanar(&p));
         partition_oracle_check_guards(&p);
         partition_oracle_check_surface(&first, &p);
         check_same_pieces(&before, &p, &rng, 20);
@@ -612,7 +612,7 @@ static void test_tidy_after_search(void **state) {
         partition_free(&first);
         partition_free(&p);
     }
-    assert_true(joins > 100 && recuts > 0 && moves > 0);
+    assert_true(joins > 100 && repartitions > 0 && moves > 0);
     test_context_free(context);
 }
 
@@ -624,7 +624,7 @@ static void test_search_ends_by_work(void **state) {
     starg_context *contexts[2];
     for (int i = 0; i < 2; i++) {
         contexts[i] = test_context(1 + i);
-        done[i] = random_crumbs(contexts[i], 3, 30);
+        done[i] = random_cells(contexts[i], 3, 30);
         const improve_options options = {.trials = UINT64_MAX, .work = 2000000, .enough = 1};
         test_ok(contexts[i], improve(&done[i], &options, &report[i]));
         assert_true(report[i].work >= options.work && report[i].trials > 0);
@@ -634,7 +634,7 @@ static void test_search_ends_by_work(void **state) {
     assert_int_equal(report[0].trials, report[1].trials);
     assert_true(partition_oracle_same(&done[0], &done[1]));
     const improve_options twice = {.trials = UINT64_MAX, .work = 20000000, .enough = 1};
-    partition more = random_crumbs(contexts[0], 3, 30);
+    partition more = random_cells(contexts[0], 3, 30);
     test_ok(contexts[0], improve(&more, &twice, &report[1]));
     assert_true(report[1].trials > report[0].trials);
     partition_free(&more);
@@ -708,11 +708,11 @@ static void test_plans(void **state) {
     size_t done[2] = {0}, refused = 0, uneven = 0;
     for (uint64_t n = 0; n < 8; n++) {
         starg_rng rng = starg_rng_make(n, 79, 0);
-        partition first = random_crumbs(context, n, 25);
+        partition first = random_cells(context, n, 25);
         partition p = partition_oracle_copy(&first);
         for (int trial = 0; trial < 60 && p.pieces.count > 2; trial++) {
             uint32_t pieces[APPLY_MOST];
-            recut_plan plan = {.cuts = 0};
+            repartition_plan plan = {.cuts = 0};
             apply_effect effect;
             size_t count = choose(&p, &rng, pieces);
             if (count < 2)
@@ -724,9 +724,10 @@ static void test_plans(void **state) {
                 for (int i = 0; i < plan.cuts; i++)
                     plan.planes[i] = random_plane_across(&p, pieces[i], &rng);
             } else {
-                const recut_options options = {1e-5, 24, 16, same};
+                const repartition_options options = {1e-5, 24, 16, same};
                 test_ok(context, region_gather(&p, pieces, count, &scratch, &r));
-                test_ok(context, recut_find(&r, parts, &options, &rng, &scratch, &plan, &found));
+                test_ok(context,
+                        repartition_find(&r, parts, &options, &rng, &scratch, &plan, &found));
             }
             if (!found)
                 continue;
@@ -796,13 +797,13 @@ static void test_near_guards(void **state) {
     size_t done = 0;
     for (uint64_t seed = 0; seed < 12; seed++) {
         starg_rng rng = starg_rng_make(seed, 86, 0);
-        partition p = random_crumbs(context, seed, 10);
+        partition p = random_cells(context, seed, 10);
         for (int trial = 0; trial < 20; trial++) {
             uint32_t pieces[APPLY_MOST];
             apply_effect effect;
             choose(&p, &rng, pieces);
-            const recut_plan plan = {.cuts = 1,
-                                     .planes = {random_plane_across(&p, pieces[0], &rng)}};
+            const repartition_plan plan = {.cuts = 1,
+                                           .planes = {random_plane_across(&p, pieces[0], &rng)}};
             for (uint32_t i = 0; i < p.pieces.count; i++)
                 move_guard(&p, i, &rng);
             test_ok(context, apply_plan(&p, pieces, 2, &plan, 4e-6, -1, &scratch, &effect));
@@ -824,7 +825,7 @@ static void test_joins(void **state) {
     region_scratch scratch = {.context = context};
     size_t joined = 0, refused = 0;
     for (uint64_t n = 0; n < 6; n++) {
-        partition p = random_crumbs(context, n, 20 + 4 * (size_t)n);
+        partition p = random_cells(context, n, 20 + 4 * (size_t)n);
         for (size_t i = 0; i < p.facets.count; i++) {
             uint32_t a = p.facets.data[i].side[i % 2], b = p.facets.data[i].side[1 - i % 2];
             bool done = true;
@@ -863,13 +864,13 @@ static bool run_rationed(size_t ration) {
     starg_rng rng = starg_rng_make(1, 80, 0);
     uint32_t pieces[APPLY_MOST];
     size_t count = choose(&p, &rng, pieces);
-    const recut_plan plan = {.cuts = 1, .planes = {random_plane_across(&p, pieces[0], &rng)}};
+    const repartition_plan plan = {.cuts = 1, .planes = {random_plane_across(&p, pieces[0], &rng)}};
     apply_effect effect = {.done = false};
     bool done = false;
     left = ration;
     starg_status status = apply_plan(&p, pieces, count, &plan, 4e-6, -1, &scratch, &effect);
     if (status == STARG_OK)
-        status = tidy(&p);
+        status = merge_coplanar(&p);
     if (status == STARG_OK)
         status = apply_join(&p, 0, 1, 4e-6, &scratch, &done);
     left = SIZE_MAX;
@@ -900,10 +901,10 @@ int main(void) {
         cmocka_unit_test(test_refused_planes),
         cmocka_unit_test(test_edge_contact),
         cmocka_unit_test(test_join),
-        cmocka_unit_test(test_tidy_undoes_cuts),
-        cmocka_unit_test(test_tidy_twice),
-        cmocka_unit_test(test_tidy_refuses),
-        cmocka_unit_test(test_tidy_after_search),
+        cmocka_unit_test(test_merge_undoes_cuts),
+        cmocka_unit_test(test_merge_twice),
+        cmocka_unit_test(test_merge_refuses),
+        cmocka_unit_test(test_merge_after_search),
         cmocka_unit_test(test_search_ends_by_work),
         cmocka_unit_test(test_plans),
         cmocka_unit_test(test_near_guards),

@@ -68,9 +68,9 @@ static setting make(uint64_t seed) {
     s.scratch.context = s.context;
     static const char *const names[] = {"human", "gallery", "knot"};
     if (seed % 4 == 3)
-        s.p = claimed_sample(s.context, names[seed / 4 % 3], 1500);
+        s.p = grown_sample(s.context, names[seed / 4 % 3], 1500);
     else
-        s.p = random_crumbs(s.context, seed, 30);
+        s.p = random_cells(s.context, seed, 30);
     return s;
 }
 

@@ -245,10 +245,10 @@ static void test_shape_is_kept(void **state) {
     shape s = lens();
     starg_mesh *mesh = test_mesh_of(context, &s);
     mesh_surface *surface;
-    mesh_nearby *nearby;
+    dynamic_bvh *tree;
     collapse_star star;
     test_ok(context, surface_create(context, mesh, &surface));
-    test_ok(context, nearby_create(context, surface, &nearby));
+    test_ok(context, dynamic_bvh_create(context, surface, &tree));
     assert_true(collapse_gather(surface, halfedge_between(surface, 7, 8), &star));
     assert_int_equal(star.count, 6);
     static const struct {
@@ -264,10 +264,10 @@ static void test_shape_is_kept(void **state) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         assert_int_equal(collapse_keeps_shape(surface, &star, cases[i].position), cases[i].shape);
-        assert_int_equal(collapse_keeps_embedding(surface, nearby, &star, cases[i].position),
+        assert_int_equal(collapse_keeps_embedding(surface, tree, &star, cases[i].position),
                          cases[i].embedding);
     }
-    nearby_free(nearby);
+    dynamic_bvh_free(tree);
     surface_free(surface);
     starg_mesh_free(mesh);
     shape_free(&s);
@@ -300,9 +300,9 @@ static void compare_embedding(starg_context *context, shape *s, uint64_t seed, s
                               size_t *kept, size_t *broken) {
     starg_mesh *mesh = test_mesh_of(context, s);
     mesh_surface *surface;
-    mesh_nearby *nearby;
+    dynamic_bvh *tree;
     test_ok(context, surface_create(context, mesh, &surface));
-    test_ok(context, nearby_create(context, surface, &nearby));
+    test_ok(context, dynamic_bvh_create(context, surface, &tree));
     for (size_t trial = 0; trial < trials; trial++) {
         starg_rng rng = starg_rng_make(seed, 4, trial);
         collapse_star star;
@@ -320,12 +320,12 @@ static void compare_embedding(starg_context *context, shape *s, uint64_t seed, s
         starg_mesh *result = collapsed(context, surface, &star, p);
         starg_check *check = check_of(context, result);
         assert_true(check->closed && check->manifold && check->oriented);
-        assert_int_equal(collapse_keeps_embedding(surface, nearby, &star, p), check->embedded);
+        assert_int_equal(collapse_keeps_embedding(surface, tree, &star, p), check->embedded);
         *(check->embedded ? kept : broken) += 1;
         starg_check_free(context, check);
         starg_mesh_free(result);
     }
-    nearby_free(nearby);
+    dynamic_bvh_free(tree);
     surface_free(surface);
     starg_mesh_free(mesh);
     shape_free(s);

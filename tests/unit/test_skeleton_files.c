@@ -17,7 +17,7 @@ static starg_status read_text(starg_context *context, const char *text, starg_sk
 
 static void round_trips(void **state) {
     (void)state;
-    static const char *const endings[] = {"obj", "cg", "vtk"};
+    static const char *const extensions[] = {"obj", "cg", "vtk"};
     static const char *const models[] = {"octopus", "torus", "plate", "sphere"};
     starg_context *context = test_context(1);
     for (size_t m = 0; m < 4; m++) {
@@ -27,7 +27,7 @@ static void round_trips(void **state) {
         for (size_t i = 0; i < 3; i++) {
             char path[64];
             starg_skeleton *read = NULL;
-            snprintf(path, sizeof path, "/tmp/test_skeleton_%ld.%s", (long)getpid(), endings[i]);
+            snprintf(path, sizeof path, "/tmp/test_skeleton_%ld.%s", (long)getpid(), extensions[i]);
             test_ok(context, starg_skeleton_write(context, made, path, STARG_SKELETON_AUTO));
             test_ok(context, starg_skeleton_read(context, path, &read));
             unlink(path);

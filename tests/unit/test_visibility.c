@@ -1,4 +1,4 @@
-/* All engines, and all forms of the grid, against visibility by definition (the oracle). */
+/* All engines, and all ISA variants of the grid, against visibility by definition (the oracle). */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -194,7 +194,7 @@ static void test_lattice_boxes(void **state) {
 }
 
 /* A sample, its scene, and what is needed to ask for single points. */
-typedef struct form_case {
+typedef struct isa_case {
     starg_context *context;
     starg_mesh *mesh;
     starg_solid *solid;
@@ -203,15 +203,15 @@ typedef struct form_case {
     size_t count;
     int8_t *side;
     uint8_t *plain, *wide;
-} form_case;
+} isa_case;
 
-static void make_form_case(const char *name, form_case *c) {
-    *c = (form_case){.context = test_context(1)};
+static void make_isa_case(const char *name, isa_case *c) {
+    *c = (isa_case){.context = test_context(1)};
     c->mesh = test_sample_mesh(c->context, name, 3000);
     test_ok(c->context, starg_solid_create(c->context, c->mesh, &c->solid));
     test_ok(c->context, scene_create(c->context, c->solid, &c->scene));
-    test_ok(c->context, scene_add_net(c->scene));
-    assert_non_null(c->scene->net);
+    test_ok(c->context, scene_add_adjacency(c->scene));
+    assert_non_null(c->scene->adjacency);
     c->count = pick_points(c->solid, 20, 9, c->points);
     assert_true(c->count > 0);
     c->side = malloc(c->scene->face_count);
@@ -220,7 +220,7 @@ static void make_form_case(const char *name, form_case *c) {
     assert_true(c->side && c->plain && c->wide);
 }
 
-static void free_form_case(form_case *c) {
+static void free_isa_case(isa_case *c) {
     free(c->side);
     free(c->plain);
     free(c->wide);
@@ -231,36 +231,36 @@ static void free_form_case(form_case *c) {
 }
 
 /* The stages for each instruction set that the processor has: the same bits. */
-static void test_grid_forms(void **state) {
+static void test_grid_isa(void **state) {
     (void)state;
-    form_case c;
+    isa_case c;
     void *scratch = NULL;
-    make_form_case(starg_sample_at(0)->name, &c);
+    make_isa_case(starg_sample_at(0)->name, &c);
     assert_int_equal(visibility_grid.make_scratch(c.scene, &scratch), STARG_OK);
     grid_scratch *grid = scratch;
     for (size_t i = 0; i < c.count; i++) {
         scene_sides(c.scene, c.points + 3 * i, c.side);
-        for (int form = FORM_PLAIN; form <= FORM_WIDEST; form++) {
-            grid->run = grid_choose_form((visibility_form)form);
+        for (int isa = ISA_PLAIN; isa <= ISA_WIDEST; isa++) {
+            grid->run = grid_choose_variant((visibility_isa)isa);
             if (grid->run == NULL)
                 continue;
-            uint8_t *out = form == FORM_PLAIN ? c.plain : c.wide;
+            uint8_t *out = isa == ISA_PLAIN ? c.plain : c.wide;
             visibility_grid.find(c.scene, scratch, c.points + 3 * i, c.side, out);
-            if (form != FORM_PLAIN)
+            if (isa != ISA_PLAIN)
                 assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
         }
     }
     visibility_grid.free_scratch(c.scene, scratch);
-    free_form_case(&c);
+    free_isa_case(&c);
 }
 
 /* Likewise; and the contours decide for themselves, without the grid, but for special points. */
-static void test_contours_forms(void **state) {
+static void test_contours_isa(void **state) {
     (void)state;
-    form_case c;
+    isa_case c;
     void *scratch = NULL;
     size_t decided = 0;
-    make_form_case(starg_sample_at(0)->name, &c);
+    make_isa_case(starg_sample_at(0)->name, &c);
     assert_int_equal(visibility_contours.make_scratch(c.scene, &scratch), STARG_OK);
     contours_scratch *s = scratch;
     for (size_t i = 0; i < c.count; i++) {
@@ -271,8 +271,8 @@ static void test_contours_forms(void **state) {
         decided += answers;
         if (answers)
             assert_memory_equal(c.plain, c.wide, c.scene->vertex_count);
-        for (int form = FORM_PLAIN + 1; form <= FORM_WIDEST; form++) {
-            const contours_form *chosen = contours_choose_form((visibility_form)form);
+        for (int isa = ISA_PLAIN + 1; isa <= ISA_WIDEST; isa++) {
+            const contours_variant *chosen = contours_choose_variant((visibility_isa)isa);
             if (chosen == NULL)
                 continue;
             assert_int_equal(chosen->run(c.scene, s, p, c.side, c.wide), answers);
@@ -282,7 +282,7 @@ static void test_contours_forms(void **state) {
     }
     assert_true(2 * decided >= c.count);
     visibility_contours.free_scratch(c.scene, scratch);
-    free_form_case(&c);
+    free_isa_case(&c);
 }
 
 /* Each engine is chosen for some points of the samples, and either gives the same bits. */
@@ -290,9 +290,9 @@ static void test_fastest(void **state) {
     (void)state;
     size_t by_contours = 0, count = 0;
     for (size_t i = 0; i < starg_sample_count(); i++) {
-        form_case c;
+        isa_case c;
         void *scratch = NULL;
-        make_form_case(starg_sample_at(i)->name, &c);
+        make_isa_case(starg_sample_at(i)->name, &c);
         assert_int_equal(visibility_fastest.make_scratch(c.scene, &scratch), STARG_OK);
         contours_scratch *s = scratch;
         for (size_t k = 0; k < c.count; k++) {
@@ -306,7 +306,7 @@ static void test_fastest(void **state) {
         }
         count += c.count;
         visibility_fastest.free_scratch(c.scene, scratch);
-        free_form_case(&c);
+        free_isa_case(&c);
     }
     assert_in_range(by_contours, 1, count - 1);
 }
@@ -349,9 +349,9 @@ static void test_arguments(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples),        cmocka_unit_test(test_shared),
-        cmocka_unit_test(test_lattice_boxes),  cmocka_unit_test(test_grid_forms),
-        cmocka_unit_test(test_contours_forms), cmocka_unit_test(test_fastest),
+        cmocka_unit_test(test_samples),       cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_lattice_boxes), cmocka_unit_test(test_grid_isa),
+        cmocka_unit_test(test_contours_isa),  cmocka_unit_test(test_fastest),
         cmocka_unit_test(test_arguments)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

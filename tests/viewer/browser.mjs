@@ -31,7 +31,7 @@ export async function openBrowser() {
     });
 }
 
-/** Opens a page, waits until it is ready, and keeps all that it complains of or asks for. */
+/** Opens a page, waits until it is ready, and keeps all its errors and requests. */
 export async function openPage(browser, file, options = {}) {
     const context = await browser.newContext({
         viewport: { width: 1000, height: 700 },
@@ -39,12 +39,12 @@ export async function openPage(browser, file, options = {}) {
     });
     const page = await context.newPage();
     page.setDefaultTimeout(0); // a busy machine takes as long as it takes
-    const watched = { complaints: [], requests: [], dialogs: 0 };
+    const watched = { errors: [], requests: [], dialogs: 0 };
     const address = pathToFileURL(file).href;
     page.on("console", (message) =>
-        watched.complaints.push(`${message.type()}: ${message.text()}`),
+        watched.errors.push(`${message.type()}: ${message.text()}`),
     );
-    page.on("pageerror", (error) => watched.complaints.push(String(error)));
+    page.on("pageerror", (error) => watched.errors.push(String(error)));
     page.on("request", (request) => {
         if (request.url() !== address && !request.url().startsWith("data:"))
             watched.requests.push(request.url());

@@ -86,7 +86,7 @@ async function look(name, options, work) {
     const { page, watched, close } = await openPage(browser, fileOf(name), options);
     try {
         await work(page);
-        assert.deepEqual(watched, { complaints: [], requests: [], dialogs: 0 });
+        assert.deepEqual(watched, { errors: [], requests: [], dialogs: 0 });
     } finally {
         await close();
     }
@@ -403,7 +403,7 @@ test("the page's policy keeps other scripts and the network out", async () => {
         return [window.intruder === true, answer];
     });
     assert.deepEqual(reached, [false, "refused"]);
-    assert.ok(watched.complaints.some((text) => text.includes("Content Security Policy")));
+    assert.ok(watched.errors.some((text) => text.includes("Content Security Policy")));
     await close();
 });
 

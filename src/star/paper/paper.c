@@ -5,9 +5,9 @@
  *
  * Stages: guards (given, or those of section 3); what they see of the vertices of tetrahedra, and
  * how tetrahedra depend on each other (view.c, dependency.c, cost.c); growth, strict and then
- * relaxed (growth.c); guards for what is left (rest.c); smoothing of the borders between pieces
- * (smooth.c). Then it is told how many pieces are star-shaped in fact, which the paper does not
- * say.
+ * relaxed (growth.c); guards for what is left (uncoloured.c); smoothing of the borders between
+ * pieces (smooth.c). Then it is told how many pieces are star-shaped in fact, which the paper does
+ * not say.
  *
  * Invariants: every tetrahedron has a colour in the end, every colour a tetrahedron; guards are
  * strictly inside the solid. The same for any number of threads. Cost: O(K n log n) for K guards.
@@ -21,8 +21,8 @@
 #include "star/decomposition.h"
 #include "star/paper/component.h"
 #include "star/paper/growth.h"
-#include "star/paper/rest.h"
 #include "star/paper/smooth.h"
+#include "star/paper/uncoloured.h"
 #include "starguard/guard.h"
 
 /* ---- state ---- */
@@ -126,8 +126,8 @@ done:
     return status;
 }
 
-/* Crumbs between the regions. */
-static starg_status take_crumbs(paper_state *s, const paper_front *front) {
+/* Small components between the regions. */
+static starg_status take_small_components(paper_state *s, const paper_front *front) {
     starg_status status = STARG_OK;
     component_search c;
     STARG_TRY(component_create(s, &c));
@@ -135,7 +135,7 @@ static starg_status take_crumbs(paper_state *s, const paper_front *front) {
         if (s->labels[t] >= 0 || c.tet_mark[t] > 0)
             continue;
         component_find(s, &c, (uint32_t)t);
-        if (c.found.count <= PAPER_CRUMB)
+        if (c.found.count <= PAPER_SMALL_COMPONENT)
             growth_relaxed(s, front, c.found.tetrahedra, c.found.count, PAPER_LEAST_SEEN);
     }
 done:
@@ -154,7 +154,7 @@ static starg_status grow_from_guards(paper_state *s, size_t max_pieces) {
     const paper_front front = {guards, count, 0};
     growth_strict(s, &front);
     growth_relaxed(s, &front, all.tetrahedra, all.count, 4);
-    STARG_TRY(take_crumbs(s, &front));
+    STARG_TRY(take_small_components(s, &front));
     if (max_pieces > 0 && count >= max_pieces)
         growth_relaxed(s, &front, all.tetrahedra, all.count, 0);
 done:
@@ -211,7 +211,7 @@ starg_status paper_decompose(starg_context *context, const starg_tetmesh *mesh,
     else
         STARG_TRY(place_guards(&s, options->max_pieces, &time_limited));
     STARG_TRY(grow_from_guards(&s, options->max_pieces));
-    STARG_TRY(rest_colour(&s, options->max_pieces, &time_limited));
+    STARG_TRY(uncoloured_regrow(&s, options->max_pieces, &time_limited));
     STARG_TRY(drop_empty_pieces(&s));
     STARG_TRY(smooth_borders(&s));
     STARG_TRY(finish(&s, out));

@@ -9,9 +9,10 @@
 #define PAPER_STAGE "growth"
 #define PAPER_NONE  UINT32_MAX
 
-/* Of what growth leaves, crumbs of no more tetrahedra than PAPER_CRUMB are given to a region whose
- * guard sees PAPER_LEAST_SEEN of their vertices (the paper accepts two to three). */
-enum { PAPER_LEAST_SEEN = 2, PAPER_CRUMB = 24 };
+/* Of what growth leaves, small components of no more tetrahedra than PAPER_SMALL_COMPONENT are
+ * given to a region whose guard sees PAPER_LEAST_SEEN of their vertices (the paper accepts two to
+ * three). */
+enum { PAPER_LEAST_SEEN = 2, PAPER_SMALL_COMPONENT = 24 };
 
 /* The tetrahedra around each vertex, ascending: those of v are at[first[v]] to at[first[v + 1]]. */
 typedef struct tet_rings {

@@ -50,8 +50,8 @@ static void drop_pieces(change *c, const uint32_t *unused, size_t count) {
 
 /* ---- cuts ---- */
 
-static starg_status cut(change *c, const uint32_t *pieces, size_t count, const recut_plan *plan,
-                        bool *done) {
+static starg_status cut(change *c, const uint32_t *pieces, size_t count,
+                        const repartition_plan *plan, bool *done) {
     starg_status status = STARG_OK;
     *done = true;
     partition_join(c->p, pieces, count);
@@ -146,9 +146,9 @@ static void swap(partition *p, partition *other) {
     *other = before;
 }
 
-starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, const recut_plan *plan,
-                        double margin, double least, region_scratch *scratch,
-                        apply_effect *effect) {
+starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
+                        const repartition_plan *plan, double margin, double least,
+                        region_scratch *scratch, apply_effect *effect) {
     starg_status status = STARG_OK;
     partition copy = {.context = p->context};
     change c = {.p = &copy,

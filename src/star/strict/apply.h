@@ -3,9 +3,9 @@
 #define STARG_STAR_STRICT_APPLY_H
 
 #include "star/strict/fan.h"
-#include "star/strict/recut.h"
+#include "star/strict/repartition.h"
 
-enum { APPLY_MOST = RECUT_PARTS_MOST };
+enum { APPLY_MOST = REPARTITION_PARTS_MOST };
 
 /* A piece that has got another number. */
 typedef struct apply_move {
@@ -23,8 +23,9 @@ typedef struct apply_effect {
  * of squares of the new pieces is not above `least`, the partition is as it was. Guards of the new
  * pieces are the centres of their kernels, at least `margin` (unit coordinates) inside. The index
  * is built again. Errors: MEMORY. */
-starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count, const recut_plan *plan,
-                        double margin, double least, region_scratch *scratch, apply_effect *effect);
+starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
+                        const repartition_plan *plan, double margin, double least,
+                        region_scratch *scratch, apply_effect *effect);
 
 /* Shares out pieces as planned; proofs, `margin` and index as above. Errors: MEMORY. */
 starg_status apply_fan(partition *p, const fan_plan *plan, double margin, region_scratch *scratch,

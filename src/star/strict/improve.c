@@ -4,10 +4,10 @@
  *
  * Method: large neighbourhood search. First every two neighbours whose union is star-shaped are
  * joined, small pieces first. Then trials: some neighbouring pieces at random, their union to be
- * cut flat into one piece less (star/strict/recut.c), or dissolved into the pieces around
- * (star/strict/dissolve.c). Now and then a trial is a move instead: as many pieces as before, which
- * are kept when large pieces get larger and small ones smaller, so that the small ones vanish in
- * the end.
+ * cut flat into one piece less (star/strict/repartition.c), or shared out among the pieces around
+ * (star/strict/eliminate.c). Now and then a trial is a move instead: as many pieces as before,
+ * which are kept when large pieces get larger and small ones smaller, so that the small ones vanish
+ * in the end.
  *
  * Invariants: trials come in batches that look at the same partition, each with random numbers of
  * its own, and are carried out in their order unless an earlier one of the batch has changed a
@@ -20,8 +20,8 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "star/strict/apply.h"
-#include "star/strict/dissolve.h"
-#include "star/strict/tidy.h"
+#include "star/strict/eliminate.h"
+#include "star/strict/merge_coplanar.h"
 
 enum {
     BATCH = 16,
@@ -32,14 +32,14 @@ enum {
 
 /* Of guards to planes, in unit coordinates; the diagonal is at least 1/2. Searches ask for more
  * than proofs do, for they are rounded. */
-static const double MARGIN = 4e-6, RECUT_MARGIN = 1e-5, DISSOLVE_MARGIN = 5e-6;
+static const double MARGIN = 4e-6, REPARTITION_MARGIN = 1e-5, ELIMINATE_MARGIN = 5e-6;
 
 typedef struct trial {
     uint32_t pieces[UNION_MOST];
     size_t count, parts; /* pieces before and after */
-    bool dissolves;
-    recut_plan plan; /* if it does not */
-    fan_plan fan;    /* if it does     */
+    bool eliminates;
+    repartition_plan plan; /* if it does not */
+    fan_plan fan;          /* if it does     */
     bool found;
     uint64_t work;
 } trial;
@@ -49,10 +49,10 @@ typedef STARG_ARRAY(uint32_t) numbers;
 typedef struct improver {
     partition *p;
     improve_report *report;
-    double began;     /* clock */
-    uint64_t offset;  /* number of the first trial */
-    uint64_t stalled; /* trials since the last success */
-    size_t crowded;   /* facets from which on it is time to tidy up */
+    double began;      /* clock */
+    uint64_t offset;   /* number of the first trial */
+    uint64_t stalled;  /* trials since the last success */
+    size_t merge_from; /* facets from which on it is time to merge */
     trial trials[BATCH];
     region_scratch scratch; /* of the calling thread */
     /* neighbours of piece i: neighbours[first[i]] to neighbours[first[i + 1] - 1] */
@@ -171,8 +171,8 @@ done:
     return status;
 }
 
-static starg_status try_recut(const improver *m, starg_rng *rng, region_scratch *scratch,
-                              trial *t) {
+static starg_status try_repartition(const improver *m, starg_rng *rng, region_scratch *scratch,
+                                    trial *t) {
     starg_status status = STARG_OK;
     static const size_t sizes[8] = {2, 2, 3, 3, 3, 4, 4, 5};
     region r = {.vertices = {0}};
@@ -183,10 +183,10 @@ static starg_status try_recut(const improver *m, starg_rng *rng, region_scratch 
     t->parts = move ? 2 : t->count - 1;
     if (move)
         t->count = 2;
-    const recut_options options = {
-        .margin = RECUT_MARGIN, .directions = 24, .steps = 16, .anywhere = move};
+    const repartition_options options = {
+        .margin = REPARTITION_MARGIN, .directions = 24, .steps = 16, .anywhere = move};
     STARG_TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
-    STARG_TRY(recut_find(&r, (int)t->parts, &options, rng, scratch, &t->plan, &t->found));
+    STARG_TRY(repartition_find(&r, (int)t->parts, &options, rng, scratch, &t->plan, &t->found));
     if (move && t->found)
         STARG_TRY(is_uneven(m, &r, t, &t->found));
 done:
@@ -210,21 +210,21 @@ done:
     return status;
 }
 
-static starg_status try_dissolve(const improver *m, starg_rng *rng, region_scratch *scratch,
-                                 trial *t) {
+static starg_status try_eliminate(const improver *m, starg_rng *rng, region_scratch *scratch,
+                                  trial *t) {
     starg_status status = STARG_OK;
     numbers around = {0};
     choose_union(m, rng, starg_rng_below(rng, 4) == 0 ? 2 : 1, t);
-    t->dissolves = true;
+    t->eliminates = true;
     t->parts = t->count == 1 ? starg_rng_below(rng, 2) : 1;
     STARG_TRY(gather_around(m, t, &around));
-    const dissolve_task task = {.pieces = t->pieces,
-                                .piece_count = t->count,
-                                .kept = t->parts,
-                                .neighbours = around.data,
-                                .neighbour_count = around.count,
-                                .margin = DISSOLVE_MARGIN};
-    STARG_TRY(dissolve_find(m->p, &task, rng, scratch, &t->fan, &t->found));
+    const eliminate_task task = {.pieces = t->pieces,
+                                 .piece_count = t->count,
+                                 .kept = t->parts,
+                                 .neighbours = around.data,
+                                 .neighbour_count = around.count,
+                                 .margin = ELIMINATE_MARGIN};
+    STARG_TRY(eliminate_find(m->p, &task, rng, scratch, &t->fan, &t->found));
 done:
     STARG_ARRAY_FREE(m->p->context, &around);
     return status;
@@ -237,8 +237,8 @@ static starg_status run_trial(starg_context *context, void *shared, void *scratc
     region_scratch *own = scratch;
     uint64_t before = own->work;
     *t = (trial){.found = false};
-    starg_status status =
-        starg_rng_below(&rng, 2) == 0 ? try_recut(m, &rng, own, t) : try_dissolve(m, &rng, own, t);
+    starg_status status = starg_rng_below(&rng, 2) == 0 ? try_repartition(m, &rng, own, t)
+                                                        : try_eliminate(m, &rng, own, t);
     t->work = own->work - before;
     return status;
 }
@@ -250,7 +250,7 @@ static bool saves(const trial *t) {
 static starg_status carry_out(improver *m, const trial *t, apply_effect *effect) {
     starg_status status = STARG_OK;
     double least = saves(t) ? -1 : sum_of_squares(m->p, t->pieces, t->count);
-    if (t->dissolves)
+    if (t->eliminates)
         STARG_TRY(apply_fan(m->p, &t->fan, MARGIN, &m->scratch, effect));
     else
         STARG_TRY(
@@ -259,10 +259,10 @@ static starg_status carry_out(improver *m, const trial *t, apply_effect *effect)
         m->report->refused++;
     else if (!saves(t))
         m->report->moves++;
-    else if (t->dissolves)
-        m->report->dissolved += t->count - t->parts, m->stalled = 0;
+    else if (t->eliminates)
+        m->report->eliminated += t->count - t->parts, m->stalled = 0;
     else
-        m->report->recuts++, m->stalled = 0;
+        m->report->repartitions++, m->stalled = 0;
 done:
     return status;
 }
@@ -279,7 +279,7 @@ static bool have_common(const trial *t, const uint32_t *pieces, size_t count) {
 static void follow(improver *m, size_t count, const trial *done, const apply_effect *effect) {
     for (size_t i = 0; i < count; i++) {
         trial *t = &m->trials[i];
-        if (t->dissolves || have_common(t, done->pieces, done->count) ||
+        if (t->eliminates || have_common(t, done->pieces, done->count) ||
             have_common(t, done->fan.takers, done->fan.taker_count))
             t->found = false;
     }
@@ -290,11 +290,11 @@ static void follow(improver *m, size_t count, const trial *done, const apply_eff
                     m->trials[i].pieces[n] = effect->moves[k].to;
 }
 
-static starg_status tidy_if_crowded(improver *m) {
-    if (m->p->facets.count <= m->crowded)
+static starg_status merge_if_crowded(improver *m) {
+    if (m->p->facets.count <= m->merge_from)
         return STARG_OK;
-    starg_status status = tidy(m->p);
-    m->crowded = m->p->facets.count + m->p->facets.count / 8;
+    starg_status status = merge_coplanar(m->p);
+    m->merge_from = m->p->facets.count + m->p->facets.count / 8;
     return status;
 }
 
@@ -315,7 +315,7 @@ static starg_status carry_out_batch(improver *m, size_t count) {
             any = any || effect.done;
         }
     if (any) {
-        STARG_TRY(tidy_if_crowded(m));
+        STARG_TRY(merge_if_crowded(m));
         STARG_TRY(find_contacts(m));
     }
 done:
@@ -402,11 +402,11 @@ starg_status improve(partition *p, const improve_options *options, improve_repor
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
-    STARG_TRY(tidy(p));
+    STARG_TRY(merge_coplanar(p));
     STARG_TRY(find_contacts(&m));
-    m.crowded = p->facets.count + p->facets.count / 8;
+    m.merge_from = p->facets.count + p->facets.count / 8;
     STARG_TRY(search(&m, options));
-    STARG_TRY(tidy(p));
+    STARG_TRY(merge_coplanar(p));
     STARG_TRY(apply_centers(p, &m.scratch));
 done:
     starg_progress_end(p->context);

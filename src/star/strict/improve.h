@@ -12,7 +12,7 @@ typedef struct improve_options {
 } improve_options;
 
 typedef struct improve_report {
-    uint64_t trials, work, joins, recuts, dissolved, moves, refused;
+    uint64_t trials, work, joins, repartitions, eliminated, moves, refused;
     bool time_limited;
 } improve_report;
 

@@ -1,10 +1,10 @@
-/* Labels for nodes such that those across a link go together.
+/* Labels for nodes such that those across an edge go together.
  *
- * Problem: every node is to get one of the labels given for it, so that across each link the labels
+ * Problem: every node is to get one of the labels given for it, so that across each edge the labels
  * are the same or each fits at its end: a constraint satisfaction problem with binary constraints.
- * Few links between different labels are better than many.
+ * Few edges between different labels are better than many.
  *
- * Stages: labels that no label across a link goes with are struck out, until nothing changes (arc
+ * Stages: labels that no label across an edge goes with are struck out, until nothing changes (arc
  * consistency, AC-3 [Mackworth 1977]); then nodes next to a settled one get its label, and where
  * there is none, one with the fewest labels left gets one of them; what follows is struck out after
  * each. A choice that leaves some node without a label is taken back once and struck out itself.
@@ -20,15 +20,15 @@
 
 enum { DEGREE = 3 };
 
-static const uint32_t NO_LINK = UINT32_MAX;
+static const uint32_t NO_EDGE = UINT32_MAX;
 
 #define LABELLING_STAGE "decompose"
 
 void labelling_free(labelling *l) {
     STARG_ARRAY_FREE(l->context, &l->given);
-    STARG_ARRAY_FREE(l->context, &l->links);
+    STARG_ARRAY_FREE(l->context, &l->edges);
     STARG_ARRAY_FREE(l->context, &l->left);
-    STARG_ARRAY_FREE(l->context, &l->links_of);
+    STARG_ARRAY_FREE(l->context, &l->edges_of);
     STARG_ARRAY_FREE(l->context, &l->queue);
     STARG_ARRAY_FREE(l->context, &l->changed);
     *l = (labelling){.context = l->context};
@@ -36,15 +36,15 @@ void labelling_free(labelling *l) {
 
 starg_status labelling_prepare(labelling *l) {
     starg_status status = STARG_OK;
-    l->left.count = l->links_of.count = 0;
+    l->left.count = l->edges_of.count = 0;
     for (size_t i = 0; i < l->given.count; i++)
         STARG_PUSH(l->context, LABELLING_STAGE, &l->left, l->given.data[i]);
     for (size_t i = 0; i < DEGREE * l->given.count; i++)
-        STARG_PUSH(l->context, LABELLING_STAGE, &l->links_of, NO_LINK);
-    for (uint32_t i = 0; i < l->links.count; i++)
+        STARG_PUSH(l->context, LABELLING_STAGE, &l->edges_of, NO_EDGE);
+    for (uint32_t i = 0; i < l->edges.count; i++)
         for (int end = 0; end < 2; end++) {
-            uint32_t *slot = &l->links_of.data[DEGREE * (size_t)l->links.data[i].nodes[end]];
-            while (*slot != NO_LINK)
+            uint32_t *slot = &l->edges_of.data[DEGREE * (size_t)l->edges.data[i].nodes[end]];
+            while (*slot != NO_EDGE)
                 slot++;
             *slot = i;
         }
@@ -75,10 +75,10 @@ done:
     return status;
 }
 
-/* Those of the node at an end of a link that go with something at the other end. */
-static label_set supported(const labelling *l, const labelling_link *link, int end) {
-    label_set here = l->left.data[link->nodes[end]], there = l->left.data[link->nodes[1 - end]];
-    return here & (there | ((there & link->fits[1 - end]) != 0 ? link->fits[end] : 0));
+/* Those of the node at an end of an edge that go with something at the other end. */
+static label_set supported(const labelling *l, const labelling_edge *edge, int end) {
+    label_set here = l->left.data[edge->nodes[end]], there = l->left.data[edge->nodes[1 - end]];
+    return here & (there | ((there & edge->fits[1 - end]) != 0 ? edge->fits[end] : 0));
 }
 
 /* Until nothing changes; *fine is false when a node is left without a label. */
@@ -88,14 +88,14 @@ static starg_status strike_out(labelling *l, bool *fine) {
     while (l->queue.count > 0 && *fine) {
         uint32_t from = l->queue.data[--l->queue.count];
         for (int k = 0; k < DEGREE && *fine; k++) {
-            const labelling_link *link =
-                &l->links.data[l->links_of.data[DEGREE * from + (uint32_t)k]];
-            int end = link->nodes[0] == from ? 1 : 0;
-            label_set set = supported(l, link, end);
-            if (set == l->left.data[link->nodes[end]])
+            const labelling_edge *edge =
+                &l->edges.data[l->edges_of.data[DEGREE * from + (uint32_t)k]];
+            int end = edge->nodes[0] == from ? 1 : 0;
+            label_set set = supported(l, edge, end);
+            if (set == l->left.data[edge->nodes[end]])
                 continue;
             *fine = set != 0;
-            STARG_TRY(set_labels(l, link->nodes[end], set));
+            STARG_TRY(set_labels(l, edge->nodes[end], set));
         }
     }
     l->queue.count = 0;
@@ -134,11 +134,11 @@ static void find_ranked(labelling *l) {
             l->ranked |= (label_set)1 << k;
 }
 
-/* The label of a settled node across a link, if it can be had; otherwise none. */
+/* The label of a settled node across an edge, if it can be had; otherwise none. */
 static label_set label_nearby(const labelling *l, uint32_t node) {
     for (int k = 0; k < DEGREE; k++) {
-        const labelling_link *link = &l->links.data[l->links_of.data[DEGREE * node + (uint32_t)k]];
-        label_set there = l->left.data[link->nodes[link->nodes[0] == node ? 1 : 0]];
+        const labelling_edge *edge = &l->edges.data[l->edges_of.data[DEGREE * node + (uint32_t)k]];
+        label_set there = l->left.data[edge->nodes[edge->nodes[0] == node ? 1 : 0]];
         if (is_single(there) && (there & l->left.data[node] & l->ranked) != 0)
             return there;
     }

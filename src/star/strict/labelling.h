@@ -1,4 +1,4 @@
-/* Labels for nodes such that those across a link go together. */
+/* Labels for nodes such that those across an edge go together. */
 #ifndef STARG_STAR_STRICT_LABELLING_H
 #define STARG_STAR_STRICT_LABELLING_H
 
@@ -12,24 +12,24 @@ enum { LABELLING_MOST = 32 };
 
 /* Different labels may be at its two ends if each is one of those that fit there. No label fits at
  * both ends. */
-typedef struct labelling_link {
+typedef struct labelling_edge {
     uint32_t nodes[2];
     label_set fits[2];
-} labelling_link;
+} labelling_edge;
 
-/* Every node has three links. The lists are filled by the caller, then labelling_prepare is called;
+/* Every node has three edges. The lists are filled by the caller, then labelling_prepare is called;
  * the fits and `given` may change between solutions. */
 typedef struct labelling {
     starg_context *context;
     STARG_ARRAY(label_set) given; /* of each node: those it may have */
-    STARG_ARRAY(labelling_link) links;
+    STARG_ARRAY(labelling_edge) edges;
     /* Where nothing else decides, a high rank is preferred; labels of rank 0 are for nodes that no
      * other is left for. */
     double ranks[LABELLING_MOST];
 
     STARG_ARRAY(label_set) left;    /* of each node; of a solution: exactly one */
     label_set ranked;               /* those with a rank above 0 */
-    STARG_ARRAY(uint32_t) links_of; /* node x 3 */
+    STARG_ARRAY(uint32_t) edges_of; /* node x 3 */
     STARG_ARRAY(uint32_t) queue;
     STARG_ARRAY(uint32_t) changed; /* nodes and what they had before, to go back */
 } labelling;

@@ -50,9 +50,9 @@ typedef struct slicer {
     double *height; /* per vertex: above the plane; 0: on it, or not a vertex of the piece */
     size_t old_vertices;
     STARG_ARRAY(crossing) crossings;
-    STARG_ARRAY(uint64_t) brinks; /* edges on the plane of facets above it, ascending */
-    bool broken;                  /* a loop goes on in two ways */
-    uint32_t *table;              /* 1 + crossing by edge; open addressing */
+    STARG_ARRAY(uint64_t) on_plane_edges; /* edges on the plane of facets above it, ascending */
+    bool broken;                          /* a loop goes on in two ways */
+    uint32_t *table;                      /* 1 + crossing by edge; open addressing */
     size_t table_size;
     cap_indices corners, starts, triangles;
 } slicer;
@@ -309,40 +309,41 @@ static uint64_t edge_key(const facet *f, int k) {
     return a < b ? a << 32 | b : b << 32 | a;
 }
 
-static starg_status find_brinks(slicer *s) {
+static starg_status find_on_plane_edges(slicer *s) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < s->p->facets.count; i++) {
         const facet *f = &s->p->facets.data[i];
         int k = side_of_piece(s, f) < 0 ? -1 : edge_on_plane(s, f);
         if (k >= 0 && corners_above(s, f) > 0)
-            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->brinks, edge_key(f, k));
+            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->on_plane_edges, edge_key(f, k));
     }
-    if (s->brinks.count > 1)
-        qsort(s->brinks.data, s->brinks.count, sizeof *s->brinks.data, compare_edges);
+    if (s->on_plane_edges.count > 1)
+        qsort(s->on_plane_edges.data, s->on_plane_edges.count, sizeof *s->on_plane_edges.data,
+              compare_edges);
 done:
     return status;
 }
 
 /* Edges where a facet below the plane meets one above are segments of the cap. Where both are on
  * one side the surface touches the plane: perhaps inside of the cap, which would pinch it. */
-static starg_status link_brinks(slicer *s) {
+static starg_status link_on_plane_edges(slicer *s) {
     starg_status status = STARG_OK;
     size_t linked = 0;
-    STARG_TRY(find_brinks(s));
+    STARG_TRY(find_on_plane_edges(s));
     for (size_t i = 0; i < s->p->facets.count; i++) {
         const facet *f = &s->p->facets.data[i];
         int k = side_of_piece(s, f) < 0 ? -1 : edge_on_plane(s, f);
         if (k < 0 || corners_below(s, f) == 0)
             continue;
         uint64_t key = edge_key(f, k);
-        s->broken =
-            s->broken || s->brinks.count == 0 ||
-            bsearch(&key, s->brinks.data, s->brinks.count, sizeof key, compare_edges) == NULL;
+        s->broken = s->broken || s->on_plane_edges.count == 0 ||
+                    bsearch(&key, s->on_plane_edges.data, s->on_plane_edges.count, sizeof key,
+                            compare_edges) == NULL;
         uint32_t a = f->corners[k], b = f->corners[(k + 1) % 3];
         link_crossings(s, f, find_crossing(s, a, a), find_crossing(s, b, b));
         linked++;
     }
-    s->broken = s->broken || linked != s->brinks.count;
+    s->broken = s->broken || linked != s->on_plane_edges.count;
 done:
     return status;
 }
@@ -417,7 +418,7 @@ starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
         s.table_size *= 2;
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, s.table, s.table_size);
     STARG_TRY(find_crossings(&s));
-    STARG_TRY(link_brinks(&s));
+    STARG_TRY(link_on_plane_edges(&s));
     STARG_TRY(split_facets(&s));
     hand_over(&s);
     STARG_TRY(add_cap(&s, done));
@@ -425,7 +426,7 @@ done:
     starg_release(p->context, s.height);
     starg_release(p->context, s.table);
     STARG_ARRAY_FREE(p->context, &s.crossings);
-    STARG_ARRAY_FREE(p->context, &s.brinks);
+    STARG_ARRAY_FREE(p->context, &s.on_plane_edges);
     STARG_ARRAY_FREE(p->context, &s.corners);
     STARG_ARRAY_FREE(p->context, &s.starts);
     STARG_ARRAY_FREE(p->context, &s.triangles);

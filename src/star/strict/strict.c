@@ -1,28 +1,29 @@
 /* Strict star decomposition: few pieces, each proven to be star-shaped.
  *
  * Stages: two starts, each with its neighbours joined where that can be done, and the better one is
- * taken: the tetrahedra claimed by guards, set after set (claim.c), which always succeeds, and only
- * the surfaces of the sets go on (partition.c); and the whole surface cut by planes until every
- * part is star-shaped (bisect.c), as a rule with fewer pieces by far. Then unions of neighbours are
- * cut again into fewer pieces, every step with an exact certificate (improve.c), until nothing is
- * found any more; then the same from the other start and from more by planes, and the best result
- * is kept. At the end each piece is made of tetrahedra about its guard (cone.c).
+ * taken: regions of tetrahedra grown about guards, one after another (region_growing.c), which
+ * always succeeds, and only the surfaces of the regions go on (partition.c); and the whole surface
+ * cut by planes until every part is star-shaped (bsp_start.c), as a rule with fewer pieces by far.
+ * Then unions of neighbours are cut again into fewer pieces, every step with an exact certificate
+ * (improve.c), until nothing is found any more; then the same from the other start and from more
+ * BSP starts, and the best result is kept. At the end each piece is made of tetrahedra about its
+ * guard (cone.c).
  *
  * Starts are compared in docs/decomposition.md. */
 #include "star/strict/strict.h"
 
 #include "star/decomposition.h"
-#include "star/strict/bisect.h"
-#include "star/strict/claim.h"
+#include "star/strict/bsp_start.h"
 #include "star/strict/cone.h"
 #include "star/strict/improve.h"
+#include "star/strict/region_growing.h"
 
 enum {
     SEARCHES = 6,
     IDLE_MOST = 2, /* searches in a row that bring nothing: then no more */
-    LOOKS_LEAST = 100,
-    LOOKS_EACH = 20, /* for each piece by claims; starts by planes that are done take 1 to 17 */
-    LOOKS_MOST = 1500
+    EVALUATIONS_LEAST = 100,
+    EVALUATIONS_EACH = 20, /* for each grown region; BSP starts that are done take 1 to 17 */
+    EVALUATIONS_MOST = 1500
 };
 
 /* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
@@ -59,35 +60,35 @@ done:
 
 /* ---- starts ---- */
 
-static starg_status start_by_claims(const starg_tetmesh *mesh,
-                                    const starg_decompose_options *options, partition *p) {
+static starg_status start_by_region_growing(const starg_tetmesh *mesh,
+                                            const starg_decompose_options *options, partition *p) {
     starg_status status = STARG_OK;
     starg_context *context = p->context;
-    claims start = {.count = 0};
-    STARG_TRY(claim_all(context, mesh, options->guards, options->guard_count, &start));
+    grown_regions start = {.count = 0};
+    STARG_TRY(grow_regions(context, mesh, options->guards, options->guard_count, &start));
     STARG_TRY(partition_create(context, mesh, start.labels, start.guards.data, start.count, p));
     STARG_TRY(improve_join(p));
 done:
-    claims_free(context, &start);
+    grown_regions_free(context, &start);
     return status;
 }
 
-/* How long a start by planes is worth while, where claims have made so many pieces. */
-static size_t looks_for(size_t pieces) {
-    size_t looks = LOOKS_LEAST + LOOKS_EACH * pieces;
-    return looks < LOOKS_MOST ? looks : LOOKS_MOST;
+/* How many evaluations a BSP start is worth, where region growing has made so many pieces. */
+static size_t evaluation_budget(size_t pieces) {
+    size_t budget = EVALUATIONS_LEAST + EVALUATIONS_EACH * pieces;
+    return budget < EVALUATIONS_MOST ? budget : EVALUATIONS_MOST;
 }
 
 /* All in one piece, then cut. */
-static starg_status start_by_planes(const starg_tetmesh *mesh, uint64_t stream, size_t looks,
-                                    partition *p, bool *done) {
+static starg_status start_by_bsp(const starg_tetmesh *mesh, uint64_t stream, size_t budget,
+                                 partition *p, bool *done) {
     starg_status status = STARG_OK;
     static const double nowhere[3] = {0, 0, 0};
     uint32_t *labels = NULL;
     *done = false;
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(mesh));
     STARG_TRY(partition_create(p->context, mesh, labels, nowhere, 1, p));
-    STARG_TRY(bisect(p, stream, looks, done));
+    STARG_TRY(bsp_start(p, stream, budget, done));
     if (*done)
         STARG_TRY(improve_join(p));
 done:
@@ -104,16 +105,16 @@ static void keep_better(partition *p, partition *other) {
 }
 
 /* Both starts, the better one first; `other` is without pieces where one will do. Guards that were
- * given are what the claims begin with. */
+ * given are what region growing begins with. */
 static starg_status begin(const starg_tetmesh *mesh, const starg_decompose_options *options,
-                          partition *p, partition *other, size_t *looks) {
+                          partition *p, partition *other, size_t *budget) {
     starg_status status = STARG_OK;
     bool done;
-    STARG_TRY(start_by_claims(mesh, options, p));
-    *looks = looks_for(p->pieces.count);
+    STARG_TRY(start_by_region_growing(mesh, options, p));
+    *budget = evaluation_budget(p->pieces.count);
     if (options->guard_count > 0 || p->pieces.count < 2 || starg_time_is_over(p->context))
         goto done;
-    STARG_TRY(start_by_planes(mesh, 0, *looks, other, &done));
+    STARG_TRY(start_by_bsp(mesh, 0, *budget, other, &done));
     if (done)
         keep_better(p, other);
     else
@@ -128,7 +129,7 @@ typedef struct searches {
     const starg_tetmesh *mesh;
     uint64_t trials_left, work_left;
     size_t enough;
-    size_t looks;   /* of a start by planes */
+    size_t budget;  /* of a BSP start */
     uint64_t count; /* searches so far */
     int idle;       /* of them, since the last that was better */
     bool time_limited;
@@ -154,12 +155,12 @@ static bool may_search_again(const searches *s, const partition *p) {
            !s->time_limited && p->pieces.count > (s->enough > 2 ? s->enough : 2);
 }
 
-/* From the other start, or one more by planes; the better result stays. */
+/* From the other start, or one more BSP start; the better result stays. */
 static starg_status search_again(searches *s, partition *p, partition *other) {
     starg_status status = STARG_OK;
     bool done = other->pieces.count > 0;
     if (!done)
-        STARG_TRY(start_by_planes(s->mesh, s->count, s->looks, other, &done));
+        STARG_TRY(start_by_bsp(s->mesh, s->count, s->budget, other, &done));
     if (done) {
         STARG_TRY(run_search(s, other));
         s->idle = other->pieces.count < p->pieces.count ? 0 : s->idle + 1;
@@ -183,7 +184,7 @@ starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
                       options->effort > 0 || context->deadline.at > 0 ? UINT64_MAX : WORK_MOST,
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
-    STARG_TRY(begin(mesh, options, &p, &other, &s.looks));
+    STARG_TRY(begin(mesh, options, &p, &other, &s.budget));
     STARG_TRY(run_search(&s, &p));
     while (options->guard_count == 0 && may_search_again(&s, &p))
         STARG_TRY(search_again(&s, &p, &other));

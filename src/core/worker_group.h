@@ -1,0 +1,36 @@
+/* Worker group of a parallel loop: what the threads that work on it share. */
+#ifndef STARG_CORE_WORKER_GROUP_H
+#define STARG_CORE_WORKER_GROUP_H
+
+#include <threads.h>
+
+#include "core/parallel.h"
+
+typedef struct worker_group {
+    starg_context *context;
+    const starg_parallel_loop *loop;
+    atomic_size_t next, finished;
+    atomic_bool stop;
+    atomic_uchar *is_finished; /* by item; NULL unless somebody wants to know */
+    size_t advanced;           /* items that `advance` has been told of       */
+    mtx_t lock;                /* guards the two below                        */
+    size_t failed_item;
+    starg_status failed_status;
+    starg_status calling_status; /* failure of the calling thread's own, with its detail set */
+} worker_group;
+
+void worker_group_fail(worker_group *group, size_t item, starg_status status);
+
+/* Is it in vain to begin with the item? Notes why. */
+bool worker_group_must_stop(worker_group *group, size_t item);
+
+/* Counts items as finished. */
+void worker_group_finish(worker_group *group, size_t first, size_t count);
+
+/* What the calling thread does between items: tells how far the loop is. */
+void worker_group_report(worker_group *group);
+
+/* The calling thread's part in a loop that is shared with other processes (core/distribute.c). */
+void worker_group_distribute(worker_group *group);
+
+#endif

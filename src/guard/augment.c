@@ -1,0 +1,172 @@
+/* Candidates for faces that no candidate sees yet.
+ *
+ * The paper adds the invisible vertices themselves as candidates [YL11, section 3.2]; a guard must
+ * lie inside, and one deep inside sees more. In an embedded boundary every face with area is seen
+ * from all points close enough above its middle: the cone over it gets flat, and no other face
+ * comes into a flat enough cone. So, for each face: along the inward normal from its centroid and
+ * along directions that lean away from it, the depths of a falling geometric series are tried
+ * until the face is seen. The deepest point of the normal and the deepest point of all directions
+ * become candidates. Thin crevices end at depths near the rounding of the coordinates; faces that
+ * are not even seen from there stay unseen; with a cone of view, which looks at the centroid, so do
+ * those that fill more than the cone from wherever they are seen.
+ *
+ * Cost: O(log n) for each of at most DIRECTIONS x DEPTHS points a face; parallel over the faces. */
+#include <math.h>
+
+#include "core/parallel.h"
+#include "geometry/vec3.h"
+#include "guard/candidates.h"
+#include "visibility/scene.h"
+
+enum { BATCH = 512, DIRECTIONS = 13, DEPTHS = 72 };
+
+static const char STAGE[] = "augmentation";
+static const double SHRINK = 0.7; /* 0.7^72 = 7e-12 of the diagonal */
+
+typedef struct found_point {
+    double p[2][3], direction[2][3];
+    int count;
+} found_point;
+
+typedef struct augmentation_job {
+    const augmentation *all;
+    visibility_scene *scene;
+    uint32_t *rank_of; /* face -> rank */
+    uint32_t *faces;   /* of this batch */
+    found_point *found;
+} augmentation_job;
+
+static void look_at(const double from[3], const double at[3], double direction[3]) {
+    vec3_subtract(at, from, direction);
+    double length = vec3_length(direction);
+    for (int k = 0; k < 3 && length > 0; k++)
+        direction[k] /= length;
+}
+
+/* May a guard stand at p, and does it see the face, looking at its centroid? */
+static bool is_good(const augmentation_job *job, const double p[3], const double centroid[3],
+                    size_t rank) {
+    starg_visibility_options options = *job->all->visibility;
+    double direction[3];
+    look_at(p, centroid, direction);
+    options.directions = direction;
+    return candidates_allowed(job->all->solid, p, job->all->clearance) &&
+           scene_sees_face(job->scene, p, rank, &options);
+}
+
+/* The depth, from `limit` (exclusive) down, at which a point along the direction sees the face. */
+static double deepest(const augmentation_job *job, size_t rank, const double from[3],
+                      const double direction[3], double limit, double p[3]) {
+    double depth = 0.5 * job->all->solid->check->diagonal;
+    for (int i = 0; i < DEPTHS && depth > limit; i++, depth *= SHRINK) {
+        vec3_along(from, depth, direction, p);
+        if (is_good(job, p, from, rank))
+            return depth;
+    }
+    return 0;
+}
+
+/* Direction 0 is the inward normal; the others lean 35 and 65 degrees to six sides of it. */
+static void lean(const double normal[3], const double side[2][3], int index, double out[3]) {
+    if (index == 0) {
+        vec3_copy(normal, out);
+        return;
+    }
+    int sector = (index - 1) / 2;
+    double tilt = index % 2 ? 0.61 : 1.13, turn = sector * 1.0471975511965976;
+    vec3_along((const double[3]){0, 0, 0}, cos(tilt), normal, out);
+    vec3_along(out, sin(tilt) * cos(turn), side[0], out);
+    vec3_along(out, sin(tilt) * sin(turn), side[1], out);
+}
+
+/* Centroid, and an orthonormal frame of the inward normal and two directions in the plane. */
+static bool make_frame(const visibility_scene *scene, size_t rank, double centroid[3],
+                       double normal[3], double side[2][3]) {
+    const double *a = scene_corner(scene, rank, 0), *b = scene_corner(scene, rank, 1);
+    const double *c = scene_corner(scene, rank, 2);
+    for (int k = 0; k < 3; k++)
+        centroid[k] = a[k] / 3 + b[k] / 3 + c[k] / 3;
+    vec3_triangle_normal(a, c, b, normal);
+    vec3_subtract(b, a, side[0]);
+    double length = vec3_length(normal), edge = vec3_length(side[0]);
+    if (!(length > 0 && edge > 0))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        normal[k] /= length;
+        side[0][k] /= edge;
+    }
+    vec3_cross(normal, side[0], side[1]);
+    return true;
+}
+
+static starg_status augment_face(starg_context *context, void *shared, void *scratch, size_t item) {
+    augmentation_job *job = shared;
+    found_point *found = &job->found[item];
+    size_t rank = job->rank_of[job->faces[item]];
+    double centroid[3], normal[3], side[2][3], best = 0;
+    (void)context;
+    (void)scratch;
+    found->count = 0;
+    if (!make_frame(job->scene, rank, centroid, normal, side))
+        return STARG_OK;
+    for (int d = 0; d < DIRECTIONS; d++) {
+        double direction[3], p[3];
+        lean(normal, (const double(*)[3])side, d, direction);
+        double depth = deepest(job, rank, centroid, direction, best, p);
+        if (depth <= best)
+            continue;
+        best = depth;
+        int slot = d > 0 && found->count > 0;
+        vec3_copy(p, found->p[slot]);
+        look_at(p, centroid, found->direction[slot]);
+        found->count = slot + 1;
+    }
+    return STARG_OK;
+}
+
+/* Picks the batch evenly from all unseen faces that were not tried. */
+static size_t pick_faces(const augmentation *all, const uint8_t *unseen, size_t face_count,
+                         uint32_t *faces) {
+    size_t waiting = 0, picked = 0, index = 0;
+    for (size_t f = 0; f < face_count; f++)
+        waiting += unseen[f] && !all->tried[f];
+    size_t take = waiting < BATCH ? waiting : BATCH;
+    for (size_t f = 0; f < face_count && picked < take; f++) {
+        if (!unseen[f] || all->tried[f])
+            continue;
+        if (index++ * take / waiting == picked) {
+            faces[picked++] = (uint32_t)f;
+            all->tried[f] = 1;
+        }
+    }
+    return picked;
+}
+
+starg_status augment_candidates(starg_context *context, const augmentation *all,
+                                const uint8_t *unseen, candidate_points *points, bool *pending) {
+    starg_status status = STARG_OK;
+    augmentation_job job = {.all = all};
+    size_t face_count = all->solid->mesh->face_count;
+    bool cone = all->visibility->cone < 360;
+    STARG_TRY(scene_create(context, all->solid, &job.scene));
+    STARG_NEW(context, STAGE, job.rank_of, face_count);
+    STARG_NEW(context, STAGE, job.faces, BATCH);
+    STARG_NEW(context, STAGE, job.found, BATCH);
+    for (size_t rank = 0; rank < face_count; rank++)
+        job.rank_of[job.scene->face_of[rank]] = (uint32_t)rank;
+    size_t count = pick_faces(all, unseen, face_count, job.faces);
+    starg_parallel_loop loop = {
+        .stage = STAGE, .count = count, .shared = &job, .item = augment_face};
+    STARG_TRY(starg_parallel_in_time(context, &loop));
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < job.found[i].count; k++)
+            STARG_TRY(candidates_push(context, points, job.found[i].p[k],
+                                      cone ? job.found[i].direction[k] : NULL));
+    *pending = count > 0;
+done:
+    scene_free(job.scene);
+    starg_release(context, job.rank_of);
+    starg_release(context, job.faces);
+    starg_release(context, job.found);
+    return status;
+}

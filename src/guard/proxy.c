@@ -1,0 +1,32 @@
+/* Proxy level: a large model takes its medial axis from a level of detail, the coarsest that has
+ * enough vertices: for some thousand points more tell nothing new. Cost: that of the levels. */
+#include "guard/proxy.h"
+
+enum { STEP = 10000, LARGE = 40000, MANY = 100000, ENOUGH = 25000, COARSEST = 5000 };
+
+size_t proxy_step(size_t vertices, size_t coarsest) {
+    return vertices > coarsest && vertices - coarsest > LARGE ? STARG_QUARTERS : STEP;
+}
+
+bool proxy_wanted(const starg_solid *solid) {
+    return solid->mesh->vertex_count > MANY;
+}
+
+starg_status proxy_of_levels(starg_context *context, const starg_levels *levels,
+                             starg_solid **out) {
+    size_t level = 0;
+    while (level + 1 < levels->count && levels->levels[level].mesh->vertex_count < ENOUGH)
+        level++;
+    return solid_make(context, levels->levels[level].mesh, out);
+}
+
+starg_status proxy_make(starg_context *context, const starg_solid *solid, starg_solid **out) {
+    starg_status status = STARG_OK;
+    starg_levels *levels = NULL;
+    size_t step = proxy_step(solid->mesh->vertex_count, COARSEST);
+    STARG_TRY(starg_mesh_levels(context, solid->mesh, COARSEST, step, NULL, &levels));
+    STARG_TRY(proxy_of_levels(context, levels, out));
+done:
+    starg_levels_free(context, levels);
+    return status;
+}

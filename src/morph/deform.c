@@ -1,0 +1,356 @@
+/* Mesh deformation: tetrahedra of A that go with a morph to B.
+ *
+ * Problem: A's surface moves to B's, on a way that is given; find places for the vertices inside,
+ * so that at the end every tetrahedron is positive. Then they fill B: their boundary is its
+ * surface.
+ *
+ * Stages, for a step of the way: the surface takes its places; vertices inside are displaced by the
+ * discrete harmonic extension of the surface's displacement (one sparse factor for all steps); then
+ * those of tetrahedra that are inverted or thin go one after the other to where they are farthest
+ * from the planes of the faces about them, a linear program [Freitag, Plassmann 2000], until none
+ * is inverted. If some stay so, the step is halved, until it is too short: then it cannot be done.
+ *
+ * Before the first step edges inside that have both ends on the surface are split (split.c): they
+ * leave no freedom where the surface bends. More room than that was never needed where the surface
+ * did not pass through itself on the way.
+ *
+ * Invariant: at every moment reached all tetrahedra are positive, exactly.
+ * Cost: for a step a frame, three solutions and some sweeps over the tetrahedra. */
+#include "morph/deform.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geometry/linear_program.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "morph/morph.h"
+#include "morph/triplets.h"
+#include "tetra/tetmesh.h"
+
+static const char STAGE[] = "deform tetrahedra";
+
+enum {
+    SWEEPS = 40,  /* over the vertices in question, in a step            */
+    PATIENCE = 4, /* sweeps without fewer inverted tetrahedra            */
+    ROW = 5       /* of a linear program: normal, factor of room, offset */
+};
+static const double LONGEST_STEP = 0x1p-3, SHORTEST_STEP = 0x1p-8;
+static const double THIN = 0.03; /* least height over longest edge that is left as it is */
+static const double FAR = 4;     /* how far a vertex may go, in units of its surroundings */
+
+/* What a step needs. */
+typedef struct walk {
+    const starg_morph *m;
+    deform_mesh *c;
+    size_t inner;            /* vertices behind the fixed ones */
+    uint32_t *first, *about; /* tetrahedra about inner vertex i: about[first[i]] and on */
+    sparse_factors *system;
+    double *frame;   /* the morph's */
+    double *next;    /* x 3 per vertex: places after the step */
+    double *sides;   /* inner + inner: a right-hand side, and room to solve it */
+    uint8_t *marked; /* per inner vertex */
+    STARG_ARRAY(double) rows;
+    STARG_ARRAY(uint32_t) order;
+} walk;
+
+static void walk_free(walk *w) {
+    starg_context *context = w->c->context;
+    void *const blocks[] = {w->first, w->about,  w->frame,     w->next,
+                            w->sides, w->marked, w->rows.data, w->order.data};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+        starg_release(context, blocks[i]);
+    sparse_free(w->system);
+}
+
+/* ---- tetrahedra ---- */
+
+static size_t tetrahedron_count(const deform_mesh *c) {
+    return c->tetrahedra.count / 4;
+}
+
+static const double *corner_of(const deform_mesh *c, const double *places, size_t t, int k) {
+    return places + 3 * (size_t)c->tetrahedra.data[4 * t + (size_t)k];
+}
+
+static bool is_positive(const deform_mesh *c, const double *places, size_t t) {
+    return orient3d(corner_of(c, places, t, 0), corner_of(c, places, t, 1),
+                    corner_of(c, places, t, 2), corner_of(c, places, t, 3)) < 0;
+}
+
+/* The least height of a positive tetrahedron over its longest edge is small. */
+static bool is_thin(const deform_mesh *c, const double *places, size_t t) {
+    double longest = 0, widest = 0, e[3][3];
+    for (int i = 0; i < 6; i++)
+        longest = fmax(longest, vec3_distance_squared(corner_of(c, places, t, DEFORM_EDGES[i][0]),
+                                                      corner_of(c, places, t, DEFORM_EDGES[i][1])));
+    for (int k = 0; k < 4; k++)
+        widest = fmax(widest, vec3_triangle_area(corner_of(c, places, t, TETMESH_FACE[k][0]),
+                                                 corner_of(c, places, t, TETMESH_FACE[k][1]),
+                                                 corner_of(c, places, t, TETMESH_FACE[k][2])));
+    for (int k = 0; k < 3; k++)
+        vec3_subtract(corner_of(c, places, t, k + 1), corner_of(c, places, t, 0), e[k]);
+    return vec3_triple(e[0], e[1], e[2]) < 2 * widest * THIN * sqrt(longest);
+}
+
+static starg_status list_about(walk *w) {
+    starg_status status = STARG_OK;
+    const deform_mesh *c = w->c;
+    STARG_NEW_ZERO(c->context, STAGE, w->first, w->inner + 2);
+    STARG_NEW(c->context, STAGE, w->about, c->tetrahedra.count);
+    for (size_t i = 0; i < c->tetrahedra.count; i++)
+        if (c->tetrahedra.data[i] >= c->fixed)
+            w->first[c->tetrahedra.data[i] - c->fixed + 2]++;
+    for (size_t v = 0; v < w->inner; v++)
+        w->first[v + 2] += w->first[v + 1];
+    for (size_t i = 0; i < c->tetrahedra.count; i++)
+        if (c->tetrahedra.data[i] >= c->fixed)
+            w->about[w->first[c->tetrahedra.data[i] - c->fixed + 1]++] = (uint32_t)(i / 4);
+done:
+    return status;
+}
+
+/* ---- displacement ---- */
+
+/* The graph's Laplacian: each edge counts once for each tetrahedron about it. */
+static starg_status make_system(walk *w) {
+    starg_status status = STARG_OK;
+    const deform_mesh *c = w->c;
+    size_t count = 0;
+    triplet *triplets = NULL;
+    STARG_NEW(c->context, STAGE, triplets, 24 * tetrahedron_count(c) + w->inner);
+    for (size_t t = 0; t < tetrahedron_count(c); t++)
+        for (int e = 0; e < 12; e++) {
+            size_t a = c->tetrahedra.data[4 * t + (size_t)DEFORM_EDGES[e / 2][e % 2]];
+            size_t b = c->tetrahedra.data[4 * t + (size_t)DEFORM_EDGES[e / 2][1 - e % 2]];
+            if (a < c->fixed)
+                continue;
+            uint32_t row = (uint32_t)(a - c->fixed);
+            triplets[count++] = (triplet){row, row, 1};
+            if (b >= c->fixed)
+                triplets[count++] = (triplet){row, (uint32_t)(b - c->fixed), -1};
+        }
+    for (uint32_t v = 0; v < w->inner; v++) /* what no tetrahedron has stays */
+        if (w->first[v] == w->first[v + 1])
+            triplets[count++] = (triplet){v, v, 1};
+    STARG_TRY(triplets_factorise(c->context, w->inner, triplets, count, &w->system));
+done:
+    starg_release(c->context, triplets);
+    return status;
+}
+
+static starg_status prepare(walk *w) {
+    starg_status status = STARG_OK;
+    const deform_mesh *c = w->c;
+    w->inner = c->rest.count / 3 - c->fixed;
+    STARG_NEW(c->context, STAGE, w->frame, 3 * w->m->mesh->vertex_count);
+    STARG_NEW(c->context, STAGE, w->next, c->rest.count);
+    STARG_NEW(c->context, STAGE, w->sides, 2 * w->inner);
+    STARG_NEW(c->context, STAGE, w->marked, w->inner);
+    STARG_TRY(list_about(w));
+    if (w->inner > 0)
+        STARG_TRY(make_system(w));
+done:
+    return status;
+}
+
+static void displace(walk *w, size_t axis) {
+    const deform_mesh *c = w->c;
+    const double *now = c->now.data;
+    memset(w->sides, 0, w->inner * sizeof *w->sides);
+    for (size_t i = 0; i < 12 * tetrahedron_count(c); i++) {
+        size_t t = i / 12, e = i % 12;
+        size_t a = c->tetrahedra.data[4 * t + (size_t)DEFORM_EDGES[e / 2][e % 2]];
+        size_t b = c->tetrahedra.data[4 * t + (size_t)DEFORM_EDGES[e / 2][1 - e % 2]];
+        if (a >= c->fixed && b < c->fixed)
+            w->sides[a - c->fixed] += w->next[3 * b + axis] - now[3 * b + axis];
+    }
+    sparse_solve(w->system, w->sides, w->sides + w->inner);
+    for (size_t v = 0; v < w->inner; v++)
+        w->next[3 * (c->fixed + v) + axis] = now[3 * (c->fixed + v) + axis] + w->sides[v];
+}
+
+static starg_status predict(walk *w, double t) {
+    starg_status status = STARG_OK;
+    const deform_mesh *c = w->c;
+    STARG_TRY(starg_morph_frame(w->m, t, w->frame));
+    for (size_t v = 0; v < c->fixed; v++)
+        vec3_copy(w->frame + 3 * (size_t)c->surface[v], w->next + 3 * v);
+    for (size_t axis = 0; axis < 3 && w->inner > 0; axis++)
+        displace(w, axis);
+done:
+    return status;
+}
+
+/* ---- mending ---- */
+
+/* The face opposite vertex v of tetrahedron t, seen from v's place: a row of the program, lengths
+ * over `unit`. A face without area bounds the room alone. */
+static void make_row(const walk *w, uint32_t v, size_t t, double unit, double row[ROW]) {
+    const deform_mesh *c = w->c;
+    int own = 0;
+    double normal[3], offset[3];
+    while (c->tetrahedra.data[4 * t + (size_t)own] != v)
+        own++;
+    const int *k = TETMESH_FACE[own];
+    const double *p = corner_of(c, w->next, t, k[0]);
+    vec3_triangle_normal(p, corner_of(c, w->next, t, k[1]), corner_of(c, w->next, t, k[2]), normal);
+    double length = vec3_length(normal);
+    vec3_subtract(p, w->next + 3 * (size_t)v, offset);
+    for (int i = 0; i < 3; i++)
+        row[i] = length > 0 ? normal[i] / length : 0;
+    row[3] = 1;
+    row[4] = length > 0 ? vec3_dot(row, offset) / unit : FAR;
+}
+
+static double longest_about(const walk *w, uint32_t v) {
+    double longest = 0;
+    size_t i = v - w->c->fixed;
+    for (uint32_t j = w->first[i]; j < w->first[i + 1]; j++)
+        for (int k = 0; k < 4; k++)
+            longest = fmax(longest, vec3_distance_squared(corner_of(w->c, w->next, w->about[j], k),
+                                                          w->next + 3 * (size_t)v));
+    return sqrt(longest);
+}
+
+/* Takes a vertex to where it is farthest from all planes about it, if that is better. */
+static starg_status relocate(walk *w, uint32_t v) {
+    starg_status status = STARG_OK;
+    size_t i = v - w->c->fixed, count = w->first[i + 1] - w->first[i];
+    double unit = longest_about(w, v), before = INFINITY;
+    linear_solution best;
+    w->rows.count = w->order.count = 0;
+    if (!(unit > 0))
+        return STARG_OK;
+    for (size_t j = 0; j < count; j++) {
+        double row[ROW];
+        make_row(w, v, w->about[w->first[i] + j], unit, row);
+        before = fmin(before, row[4]);
+        for (int k = 0; k < ROW; k++)
+            STARG_PUSH(w->c->context, STAGE, &w->rows, row[k]);
+        STARG_PUSH(w->c->context, STAGE, &w->order, 0);
+    }
+    const linear_program program = {.dimension = 4,
+                                    .rows = w->rows.data,
+                                    .count = count,
+                                    .objective = {0, 0, 0, 1},
+                                    .radius = FAR,
+                                    .seed = v};
+    linear_program_solve(&program, w->order.data, NULL, &best);
+    if (best.feasible && best.point[3] > before)
+        vec3_along(w->next + 3 * (size_t)v, unit, best.point, w->next + 3 * (size_t)v);
+done:
+    return status;
+}
+
+/* Marks the inner vertices of what is inverted or thin; how many are inverted. */
+static size_t examine(walk *w) {
+    const deform_mesh *c = w->c;
+    size_t inverted = 0;
+    memset(w->marked, 0, w->inner);
+    for (size_t t = 0; t < tetrahedron_count(c); t++) {
+        bool positive = is_positive(c, w->next, t);
+        inverted += !positive;
+        if (positive && !is_thin(c, w->next, t))
+            continue;
+        for (size_t k = 0; k < 4; k++)
+            if (c->tetrahedra.data[4 * t + k] >= c->fixed)
+                w->marked[c->tetrahedra.data[4 * t + k] - c->fixed] = 1;
+    }
+    return inverted;
+}
+
+static starg_status mend(walk *w, size_t *inverted) {
+    starg_status status = STARG_OK;
+    size_t least = SIZE_MAX;
+    int idle = 0;
+    *inverted = examine(w);
+    for (int sweep = 0; sweep < SWEEPS && idle < PATIENCE; sweep++) {
+        STARG_TRY(starg_check_cancel(w->c->context, STAGE));
+        for (size_t v = 0; v < w->inner; v++)
+            if (w->marked[v])
+                STARG_TRY(relocate(w, (uint32_t)(w->c->fixed + v)));
+        *inverted = examine(w);
+        if (*inverted == 0)
+            break;
+        idle = *inverted < least ? 0 : idle + 1;
+        least = *inverted < least ? *inverted : least;
+    }
+done:
+    return status;
+}
+
+/* ---- chords ---- */
+
+typedef STARG_ARRAY(deform_edge) edge_list;
+
+static starg_status find_surface_edges(const walk *w, edge_list *out) {
+    starg_status status = STARG_OK;
+    const starg_mesh *mesh = w->m->mesh;
+    uint32_t *own = NULL; /* of the mesh's vertices their numbers here */
+    STARG_NEW_ZERO(w->c->context, STAGE, own, mesh->vertex_count);
+    for (uint32_t v = 0; v < w->c->fixed; v++)
+        own[w->c->surface[v]] = v;
+    for (size_t f = 0; f < mesh->face_count; f++)
+        for (size_t k = 0; k < 3; k++)
+            STARG_PUSH(
+                w->c->context, STAGE, out,
+                deform_edge_of(own[mesh->faces[3 * f + k]], own[mesh->faces[3 * f + (k + 1) % 3]]));
+    deform_edges_sort(out->data, &out->count);
+done:
+    starg_release(w->c->context, own);
+    return status;
+}
+
+/* Edges inside that have both ends on the surface. */
+static starg_status find_chords(const walk *w, const edge_list *surface, edge_list *out) {
+    starg_status status = STARG_OK;
+    const deform_mesh *c = w->c;
+    for (size_t i = 0; i < 6 * tetrahedron_count(c); i++) {
+        uint32_t a = c->tetrahedra.data[4 * (i / 6) + (size_t)DEFORM_EDGES[i % 6][0]];
+        uint32_t b = c->tetrahedra.data[4 * (i / 6) + (size_t)DEFORM_EDGES[i % 6][1]];
+        deform_edge edge = deform_edge_of(a, b);
+        if (a < c->fixed && b < c->fixed && !deform_edge_in(surface->data, surface->count, edge))
+            STARG_PUSH(c->context, STAGE, out, edge);
+    }
+    deform_edges_sort(out->data, &out->count);
+done:
+    return status;
+}
+
+static starg_status split_chords(const walk *w) {
+    starg_status status = STARG_OK;
+    edge_list surface = {0}, chords = {0};
+    STARG_TRY(find_surface_edges(w, &surface));
+    STARG_TRY(find_chords(w, &surface, &chords));
+    STARG_TRY(deform_split(w->c, chords.data, chords.count));
+done:
+    STARG_ARRAY_FREE(w->c->context, &surface);
+    STARG_ARRAY_FREE(w->c->context, &chords);
+    return status;
+}
+
+/* ---- the way ---- */
+
+starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, double *reached) {
+    starg_status status = STARG_OK;
+    walk w = {.m = m, .c = c};
+    double step = LONGEST_STEP;
+    *reached = 0;
+    STARG_TRY(split_chords(&w));
+    STARG_TRY(prepare(&w));
+    while (*reached < 1 && step >= SHORTEST_STEP) {
+        STARG_TRY(predict(&w, fmin(1, *reached + step)));
+        STARG_TRY(mend(&w, inverted));
+        if (*inverted == 0) {
+            *reached = fmin(1, *reached + step);
+            memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);
+            step = fmin(LONGEST_STEP, 2 * step);
+        } else {
+            step /= 2;
+        }
+    }
+done:
+    walk_free(&w);
+    return status;
+}

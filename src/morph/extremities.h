@@ -1,0 +1,18 @@
+/* Extremities, the ends of a shape's limbs: features that tell which way round it stands. */
+#ifndef STARG_MORPH_EXTREMITIES_H
+#define STARG_MORPH_EXTREMITIES_H
+
+#include "morph/sphere.h"
+
+enum { EXTREMITIES_MOST = 16 };
+
+typedef struct extremity_list {
+    size_t count;
+    uint32_t vertices[EXTREMITIES_MOST];
+} extremity_list;
+
+/* Finds the extremities of a surface, the farthest from everything else first. Errors: MEMORY,
+ * CANCELLED. */
+starg_status extremities_find(const sphere *s, extremity_list *out);
+
+#endif

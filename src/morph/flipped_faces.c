@@ -1,0 +1,164 @@
+/* Faces that the map flips, and how they get from A to B nevertheless.
+ *
+ * Problem: where A's triangles are coarse for B's shape, B in A's connectivity passes through
+ * itself. Faces there turn and stretch as the fold happens to lie, each its own way, so that they
+ * pass through one another long before.
+ *
+ * Stages: faces that intersect others in B but not in A, and some rings about them, are called
+ * flipped; their rotation vectors and stretches become harmonic on the graph of faces, with the
+ * values of the faces around. So the least squares carry A's shape along with its surroundings
+ * there. What is then missing to B is part of the residual, and comes in last (residual.c).
+ *
+ * Cost: two checks of a surface and a sparse system of the flipped faces. */
+#include <string.h>
+
+#include "core/memory.h"
+#include "mesh/topology.h"
+#include "morph/morph.h"
+#include "starguard/check.h"
+
+static const char STAGE[] = "morph";
+enum {
+    RINGS = 2,  /* about what intersects */
+    PARTS = 12, /* numbers of a path: rotation and stretch */
+    FACE_TRIPLETS = 7
+};
+static const double OWN = 1e-6; /* weight of a face's own path: decides where nothing is around */
+
+#define NONE UINT32_MAX
+
+/* ---- which ---- */
+
+/* Gives what intersects at one end the value. */
+static starg_status mark(const starg_morph *m, const double *positions, uint8_t value) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    starg_check *check = NULL;
+    STARG_TRY(starg_mesh_create(m->context, positions, m->mesh->vertex_count, m->mesh->faces,
+                                m->mesh->face_count, &mesh));
+    STARG_TRY(starg_mesh_check(m->context, mesh, &check));
+    for (size_t f = 0; f < m->mesh->face_count; f++)
+        if (check->face_marks[f] == 1 + STARG_FINDING_SELF_INTERSECTION)
+            m->flipped[f] = value;
+done:
+    starg_check_free(m->context, check);
+    starg_mesh_free(mesh);
+    return status;
+}
+
+/* Adds the faces that share a vertex with a flipped one. */
+static starg_status widen(starg_morph *m) {
+    starg_status status = STARG_OK;
+    uint8_t *touched = NULL;
+    STARG_NEW_ZERO(m->context, STAGE, touched, m->mesh->vertex_count);
+    for (size_t i = 0; i < 3 * m->mesh->face_count; i++)
+        if (m->flipped[i / 3])
+            touched[m->mesh->faces[i]] = 1;
+    for (size_t i = 0; i < 3 * m->mesh->face_count; i++)
+        if (touched[m->mesh->faces[i]])
+            m->flipped[i / 3] = 1;
+done:
+    starg_release(m->context, touched);
+    return status;
+}
+
+/* Numbers the flipped faces. */
+static starg_status find_flipped(starg_morph *m, uint32_t **number, size_t *count) {
+    starg_status status = STARG_OK;
+    STARG_NEW_ZERO(m->context, STAGE, m->flipped, m->mesh->face_count);
+    STARG_NEW(m->context, STAGE, *number, m->mesh->face_count);
+    STARG_TRY(mark(m, m->images, 1));
+    STARG_TRY(mark(m, m->mesh->vertices, 0));
+    for (int ring = 0; ring < RINGS; ring++)
+        STARG_TRY(widen(m));
+    for (size_t f = 0; f < m->mesh->face_count; f++)
+        (*number)[f] = m->flipped[f] ? (uint32_t)(*count)++ : NONE;
+done:
+    return status;
+}
+
+/* ---- filling ---- */
+
+typedef struct filling {
+    starg_morph *m;
+    const mesh_topology *topology;
+    const uint32_t *number; /* per face, NONE for what is given */
+    size_t count;
+} filling;
+
+static double *part_of(const filling *f, size_t face, int part) {
+    face_path *path = &f->m->faces[face];
+    return part < 3 ? &path->rotation[part] : &path->stretch[part - 3];
+}
+
+static starg_status make_system(const filling *f, sparse_factors **out) {
+    starg_status status = STARG_OK;
+    triplet *triplets = NULL, *next;
+    STARG_NEW(f->m->context, STAGE, triplets, FACE_TRIPLETS * f->count);
+    next = triplets;
+    for (size_t h = 0; h < 3 * f->m->mesh->face_count; h++) {
+        uint32_t own = f->number[h / 3], twin = f->topology->twin[h];
+        if (own == NONE)
+            continue;
+        if (h % 3 == 0)
+            *next++ = (triplet){own, own, OWN};
+        if (twin == TOPOLOGY_NONE)
+            continue;
+        *next++ = (triplet){own, own, 1};
+        if (f->number[twin / 3] != NONE)
+            *next++ = (triplet){own, f->number[twin / 3], -1};
+    }
+    STARG_TRY(
+        triplets_factorise(f->m->context, f->count, triplets, (size_t)(next - triplets), out));
+done:
+    starg_release(f->m->context, triplets);
+    return status;
+}
+
+/* What is given around the flipped faces, and a little of their own. */
+static void sum_given(const filling *f, int part, double *sums) {
+    memset(sums, 0, f->count * sizeof *sums);
+    for (size_t h = 0; h < 3 * f->m->mesh->face_count; h++) {
+        uint32_t own = f->number[h / 3], twin = f->topology->twin[h];
+        if (own == NONE)
+            continue;
+        if (h % 3 == 0)
+            sums[own] += OWN * *part_of(f, h / 3, part);
+        if (twin != TOPOLOGY_NONE && f->number[twin / 3] == NONE)
+            sums[own] += *part_of(f, twin / 3, part);
+    }
+}
+
+static starg_status fill(const filling *f) {
+    starg_status status = STARG_OK;
+    double *values = NULL;
+    sparse_factors *system = NULL;
+    STARG_NEW(f->m->context, STAGE, values, 2 * f->count);
+    STARG_TRY(make_system(f, &system));
+    for (int part = 0; part < PARTS; part++) {
+        sum_given(f, part, values);
+        sparse_solve(system, values, values + f->count);
+        for (size_t face = 0; face < f->m->mesh->face_count; face++)
+            if (f->number[face] != NONE)
+                *part_of(f, face, part) = values[f->number[face]];
+    }
+done:
+    sparse_free(system);
+    starg_release(f->m->context, values);
+    return status;
+}
+
+starg_status morph_fill_flipped(starg_morph *m) {
+    starg_status status = STARG_OK;
+    mesh_topology *topology = NULL;
+    uint32_t *number = NULL;
+    STARG_TRY(find_flipped(m, &number, &m->flipped_count));
+    if (m->flipped_count == 0)
+        goto done;
+    STARG_TRY(topology_create(m->context, m->mesh, &topology));
+    STARG_TRY(fill(&(filling){m, topology, number, m->flipped_count}));
+done:
+    topology_free(topology);
+    starg_release(m->context, number);
+    return status;
+}

@@ -1,0 +1,42 @@
+/* Verification context of a decomposition: what it is checked against, and the claims that are
+ * checked. */
+#ifndef STARG_VERIFY_CONTEXT_H
+#define STARG_VERIFY_CONTEXT_H
+
+#include "verify/claims.h"
+#include "verify/measure.h"
+#include "verify/pieces.h"
+
+typedef struct verify_context {
+    starg_context *context;
+    const starg_pieces_mesh *mesh;
+    const starg_pieces_report *report; /* or NULL */
+    const verify_surface *model;
+    verify_pieces *pieces;
+    starg_verdict *verdict;
+} verify_context;
+
+/* What the tetrahedra are: positive, conforming, labelled, connected by piece. Errors: MEMORY,
+ * CANCELLED. */
+starg_status verify_claim_tetrahedra(const verify_context *own);
+
+/* The boundary and the volume are those of the model. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_boundary(const verify_context *own);
+
+/* The report's numbers. Without good labels nothing can be said about pieces. Errors: MEMORY,
+ * CANCELLED. */
+starg_status verify_claim_numbers(const verify_context *own);
+
+/* Star-shapedness, and what guards see; only with good labels. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_stars(const verify_context *own);
+
+/* ---- words for elements ---- */
+
+typedef struct verify_words {
+    char text[96];
+} verify_words;
+
+verify_words verify_facet_words(const verify_context *own, uint32_t facet);
+verify_words verify_outer_words(const verify_context *own, size_t face);
+
+#endif

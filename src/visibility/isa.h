@@ -1,0 +1,26 @@
+/* The stages of an engine are compiled once for each instruction set; which of them run is chosen
+ * when the program runs. All variants give the same bits: what floating point does not decide
+ * beyond its error bound is decided exactly. */
+#ifndef STARG_VISIBILITY_ISA_H
+#define STARG_VISIBILITY_ISA_H
+
+#include <stdbool.h>
+
+/* Those that can be compiled for the processor's kind stand in this order after the plain one. */
+typedef enum visibility_isa {
+    ISA_PLAIN,
+#if defined(__aarch64__)
+    ISA_NEON,
+#elif defined(__x86_64__)
+    ISA_AVX2,
+    ISA_AVX512,
+#endif
+    ISA_WIDEST
+} visibility_isa;
+
+/* The variant itself, or for ISA_WIDEST the best one that the processor has. */
+visibility_isa isa_resolve(visibility_isa wanted);
+
+bool isa_is_supported(visibility_isa isa);
+
+#endif

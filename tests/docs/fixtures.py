@@ -1,0 +1,155 @@
+"""A folder with every file that examples speak of, and commands run in it."""
+import os
+import shutil
+import subprocess
+import tempfile
+
+PROGRAM = os.path.abspath(os.environ.get("STARGUARD", "build/starguard"))
+SOURCE = os.environ.get("STARGUARD_SOURCE", os.path.join(os.path.dirname(__file__), "..", ".."))
+
+# A cube of five tetrahedra, Gmsh 2.
+CUBE = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+8
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+$EndNodes
+$Elements
+5
+1 4 2 1 1 1 2 4 5
+2 4 2 1 1 2 3 4 7
+3 4 2 1 1 2 5 6 7
+4 4 2 1 1 4 5 7 8
+5 4 2 1 1 2 4 5 7
+$EndElements
+"""
+
+
+class Fixtures:
+    """Made once; every user gets a copy."""
+
+    def __init__(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.template = os.path.join(self.scratch.name, "template")
+        os.makedirs(os.path.join(self.template, "models"))
+        os.makedirs(os.path.join(self.template, ".config/fish/completions"))
+        os.makedirs(os.path.join(self.scratch.name, "bin"))
+        os.symlink(PROGRAM, os.path.join(self.scratch.name, "bin", "starguard"))
+        self.fill()
+        self.has_viewer = self.makes_pages()
+
+    def close(self):
+        self.scratch.cleanup()
+
+    def starguard(self, *words):
+        subprocess.run([PROGRAM, *words, "--quiet"], cwd=self.template, check=True)
+
+    def makes_pages(self):
+        """Builds without npm have no viewer (docs/viewer.md)."""
+        run = subprocess.run([PROGRAM, "view", "model.off", "-o", "-"], cwd=self.template, check=False,
+                             capture_output=True)
+        return run.returncode != 3
+
+    def write(self, name, text):
+        with open(os.path.join(self.template, name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    def sample(self, name, *files, pose=0):
+        """Of 520 vertices: spectra are taken of a surface of 2,000 at least, so one of 500 is subdivided twice."""
+        for file in files:
+            self.starguard("sample", name, "--pose", str(pose), "--vertices", "520", "-o", file)
+
+    def fill(self):
+        self.sample("l-room", "model.off", "model.obj", "room.off", "room.obj", "scan.off")
+        self.sample("gallery", "hall.stl")
+        for animal in ["cat", "dog", "horse"]:
+            self.sample(animal, f"{animal}.off")
+        for name, pose in [("cat", 1), ("cat", 2), ("dog", 0)]:
+            self.sample(name, f"models/{name}_{pose}.off", pose=pose)
+        for pose in range(2):
+            self.sample("horse", f"horse_{pose}.off", pose=pose)
+        self.sample("octopus", "new.off")
+        self.open_surface("scan.off", ["scan.stl", "scan.ply"])
+        self.write("solid.msh", CUBE)
+        self.write("cat_dog.txt", self.landmarks("cat.off", "dog.off"))
+        self.write("places.txt", "1 1 1\n5 1 1\n1 1 5\n")
+        # Slow to make, and wanted more than once.
+        for animal in ["cat", "dog"]:
+            self.starguard("describe", f"{animal}.off", "-o", f"models/{animal}.json")
+        self.starguard("db", "create", "models/ready.db")
+        models = sorted(os.listdir(os.path.join(self.template, "models")))
+        self.starguard("db", "add", "models/ready.db",
+                       *[f"models/{name}" for name in models if name.endswith(".off")])
+
+    def numbers(self, name):
+        """The vertices of an OFF file."""
+        with open(os.path.join(self.template, name), encoding="ascii") as file:
+            lines = file.read().split("\n")
+        count = int(lines[1].split()[0])
+        return [tuple(map(float, line.split())) for line in lines[2:2 + count]]
+
+    def landmarks(self, a, b):
+        """The tips along the axes are each other's counterparts."""
+        pairs = {}
+        for axis in range(3):
+            for choose in (min, max):
+                tips = []
+                for name in (a, b):
+                    points = self.numbers(name)
+                    tips.append(points.index(choose(points, key=lambda p: p[axis])))
+                pairs[tips[0]] = tips[1]
+        return "".join(f"{i} {j}\n" for i, j in pairs.items())
+
+    def open_surface(self, name, files):
+        """A surface with a hole, in formats that scanners write."""
+        path = os.path.join(self.template, name)
+        with open(path, encoding="ascii") as file:
+            lines = file.read().split("\n")
+        vertices, faces, _ = map(int, lines[1].split())
+        lines[1] = f"{vertices} {faces - 1} 0"
+        del lines[1 + vertices + faces]
+        points = [line.split() for line in lines[2:2 + vertices]]
+        corners = [list(map(int, line.split()[1:])) for line in lines[2 + vertices:] if line]
+        for file in files:
+            if file.endswith(".ply"):
+                head = (f"ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty double x\n"
+                        f"property double y\nproperty double z\nelement face {len(corners)}\n"
+                        "property list uchar int vertex_indices\nend_header\n")
+                body = [" ".join(p) for p in points] + [f"3 {a} {b} {c}" for a, b, c in corners]
+                self.write(file, head + "\n".join(body) + "\n")
+            else:
+                facets = "".join(
+                    "facet normal 0 0 0\nouter loop\n" +
+                    "".join(f"vertex {' '.join(points[i])}\n" for i in face) +
+                    "endloop\nendfacet\n" for face in corners)
+                self.write(file, f"solid scan\n{facets}endsolid scan\n")
+        os.remove(path)
+
+    def use(self, name, *more):
+        """A copy of the template, with what the named commands leave in it."""
+        folder = os.path.join(self.scratch.name, name)
+        shutil.copytree(self.template, folder)
+        for command in more:
+            self.shell(folder, command)
+        return folder
+
+    def shell(self, folder, script):
+        """Runs lines of a shell; its output. Raises AssertionError when one fails."""
+        if not self.has_viewer and "starguard view" in script:
+            print("skipped, this build has no viewer: starguard view ...")
+            script = "\n".join(x for x in script.split("\n") if not x.startswith("starguard view"))
+        environment = dict(os.environ, HOME=folder, NO_COLOR="1",
+                           PATH=os.path.join(self.scratch.name, "bin") + ":" + os.environ["PATH"])
+        run = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=folder, env=environment,
+                             stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+        if run.returncode != 0:
+            raise AssertionError(f"{script}\nstatus {run.returncode}\n{run.stdout}{run.stderr}")
+        return run.stdout

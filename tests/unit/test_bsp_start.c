@@ -1,0 +1,336 @@
+/* Solids cut by planes until every part is star-shaped, and pieces parted into what is connected:
+ * against the definitions, by brute force and in rationals (partition_oracle.h). */
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "partition_oracle.h"
+#include "star/strict/bsp_start.h"
+#include "star/strict/separate.h"
+#include "star/strict/slice.h"
+#include "star/strict/split_plane.h"
+#include "tetrahedra.h"
+
+enum { EVALUATIONS = 1500 };
+
+/* All pieces in one. */
+static void join_everything(partition *p) {
+    uint32_t *all = calloc(p->pieces.count, sizeof *all);
+    assert_non_null(all);
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        all[i] = i;
+    partition_join(p, all, p->pieces.count);
+    p->pieces.count = 1;
+    free(all);
+    test_ok(p->context, partition_build_index(p));
+}
+
+static double volume_of_all(const partition *p) {
+    double sum = 0;
+    for (uint32_t i = 0; i < p->pieces.count; i++)
+        sum += partition_oracle_volume(p, i);
+    return sum;
+}
+
+/* ---- parts ---- */
+
+static bool share_edge(const facet *a, const facet *b) {
+    int shared = 0;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            shared += a->corners[i] == b->corners[k];
+    return shared >= 2;
+}
+
+/* The lowest facet that each facet of a piece hangs together with, by going over all pairs until
+ * nothing changes. */
+static uint32_t *find_parts(const partition *p) {
+    uint32_t *part = calloc(p->facets.count, sizeof *part);
+    bool changed = true;
+    assert_non_null(part);
+    for (size_t i = 0; i < p->facets.count; i++)
+        part[i] = (uint32_t)i;
+    while (changed) {
+        changed = false;
+        for (size_t i = 0; i < p->facets.count; i++)
+            for (size_t k = 0; k < p->facets.count; k++)
+                if (part[k] < part[i] && share_edge(&p->facets.data[i], &p->facets.data[k])) {
+                    part[i] = part[k];
+                    changed = true;
+                }
+    }
+    return part;
+}
+
+/* Boxes, six tetrahedra each, at given places of a grid; it is regular but for the width along x
+ * from 1 to 2. */
+static partition boxes(starg_context *context, const int (*places)[3], size_t count, double width) {
+    static const int steps[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+                                    {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+    enum { SIDE = 6, CUBES_MOST = 27 };
+    static const uint32_t stride[3] = {1, SIDE, SIDE * SIDE};
+    static double vertices[3 * SIDE * SIDE * SIDE];
+    static const double guard[3] = {0, 0, 0};
+    uint32_t tetrahedra[24 * CUBES_MOST], labels[6 * CUBES_MOST] = {0};
+    starg_tetmesh *mesh = NULL;
+    partition p;
+    for (size_t v = 0; v < SIDE * SIDE * SIDE; v++) {
+        for (size_t k = 0; k < 3; k++)
+            vertices[3 * v + k] = (double)(v / stride[k] % SIDE);
+        if (v % SIDE >= 2)
+            vertices[3 * v] += width - 1;
+    }
+    for (size_t t = 0; t < 6 * count; t++) {
+        const int *at = places[t / 6];
+        uint32_t corner = 0;
+        for (size_t k = 0; k < 3; k++)
+            corner += (uint32_t)at[k] * stride[k];
+        for (size_t k = 0; k < 4; k++) {
+            tetrahedra[4 * t + k] = corner;
+            corner += k < 3 ? stride[steps[t % 6][k]] : 0;
+        }
+    }
+    test_ok(context, starg_tetmesh_create(context, vertices, SIDE * SIDE * SIDE, tetrahedra,
+                                          6 * count, NULL, &mesh));
+    test_ok(context, partition_create(context, mesh, labels, guard, 1, &p));
+    starg_tetmesh_free(mesh);
+    return p;
+}
+
+static partition cubes(starg_context *context, const int (*places)[3], size_t count) {
+    return boxes(context, places, count, 1);
+}
+
+/* Random cubes of a grid: some touch in a vertex only, which is not enough. */
+static void test_parts(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t several = 0;
+    for (uint64_t seed = 0; seed < 20; seed++) {
+        starg_rng rng = starg_rng_make(seed, 76, 0);
+        int places[20][3];
+        size_t count = 0;
+        for (int i = 0; i < 27; i++)
+            if (count < 20 && starg_rng_below(&rng, 27) < 4 + seed) {
+                const int at[3] = {2 * (i % 3) - (i % 3 == 2), i / 3 % 3, 2 * (i / 9) - (i > 17)};
+                memcpy(places[count++], at, sizeof at);
+            }
+        if (count == 0)
+            continue;
+        partition p = cubes(context, (const int(*)[3])places, count);
+        double whole = volume_of_all(&p);
+        uint32_t *part = find_parts(&p);
+        test_ok(context, partition_separate(&p, 0));
+        partition_oracle_check(&p);
+        assert_true(fabs(volume_of_all(&p) - whole) < 1e-13);
+        for (size_t i = 0; i < p.facets.count; i++)
+            for (size_t k = 0; k < i; k++)
+                assert_int_equal(p.facets.data[i].side[0] == p.facets.data[k].side[0],
+                                 part[i] == part[k]);
+        several += p.pieces.count > 1;
+        free(part);
+        partition_free(&p);
+    }
+    assert_true(several > 3);
+    test_context_free(context);
+}
+
+/* A cavity's surface is not a piece. */
+static void test_cavity(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    int places[26][3];
+    size_t count = 0, others = 0;
+    for (int i = 0; i < 27; i++)
+        if (i != 13) {
+            const int at[3] = {i % 3, i / 3 % 3, i / 9};
+            memcpy(places[count++], at, sizeof at);
+        }
+    partition p = cubes(context, (const int(*)[3])places, count);
+    uint32_t *part = find_parts(&p);
+    for (size_t i = 0; i < p.facets.count; i++)
+        others += part[i] != part[0];
+    assert_true(others > 0);
+    test_ok(context, partition_separate(&p, 0));
+    assert_int_equal(p.pieces.count, 1);
+    free(part);
+    partition_free(&p);
+    test_context_free(context);
+}
+
+/* ---- cuts ---- */
+
+static void check_bisected(const partition *first, const partition *p) {
+    partition_oracle_check_guards(p);
+    partition_oracle_check_surface(first, p);
+    assert_true(fabs(volume_of_all(first) - volume_of_all(p)) < 1e-12);
+}
+
+/* Solids of which one can say how few pieces they need: that many are found. */
+static void test_cubes(void **state) {
+    (void)state;
+    static const int one[][3] = {{0, 0, 0}};
+    static const int corner[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    static const int trough[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {2, 1, 0}};
+    static const int apart[][3] = {{0, 0, 0}, {2, 0, 0}, {4, 4, 4}};
+    static const int touch[][3] = {{0, 0, 0}, {1, 1, 1}}; /* at a vertex */
+    static const int ring[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0},
+                                  {2, 1, 0}, {0, 2, 0}, {1, 2, 0}, {2, 2, 0}};
+    static const struct {
+        const int (*places)[3];
+        size_t count, least, most;
+    } solids[] = {{one, 1, 1, 1},   {corner, 4, 1, 1}, {trough, 5, 2, 2},
+                  {apart, 3, 3, 3}, {touch, 2, 2, 2},  {ring, 8, 2, 4}};
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof solids / sizeof *solids; i++) {
+        partition first = cubes(context, solids[i].places, solids[i].count);
+        partition p = partition_oracle_copy(&first);
+        bool done = false;
+        test_ok(context, bsp_start(&p, 0, EVALUATIONS, &done));
+        assert_true(done);
+        check_bisected(&first, &p);
+        assert_true(p.pieces.count >= solids[i].least && p.pieces.count <= solids[i].most);
+        partition_free(&p);
+        partition_free(&first);
+    }
+    test_context_free(context);
+}
+
+/* Does some edge have more than two facets of the only piece? */
+static bool touches_itself(const partition *p) {
+    for (size_t i = 0; i < p->facets.count; i++)
+        for (int k = 0; k < 3; k++) {
+            const uint32_t *c = p->facets.data[i].corners;
+            size_t facets = 0;
+            for (size_t n = 0; n < p->facets.count; n++) {
+                int shared = 0;
+                for (int m = 0; m < 3; m++)
+                    shared += p->facets.data[n].corners[m] == c[k] ||
+                              p->facets.data[n].corners[m] == c[(k + 1) % 3];
+                facets += shared == 2;
+            }
+            if (facets > 2)
+                return true;
+        }
+    return false;
+}
+
+/* The sample in one piece, before and after; surfaces that touch themselves cannot be cut there. */
+static bool bisect_sample(starg_context *context, const char *name, size_t target, partition *first,
+                          partition *after) {
+    bool done = false;
+    *first = grown_sample(context, name, target);
+    size_t regions = first->pieces.count;
+    join_everything(first);
+    bool touching = touches_itself(first), touches;
+    test_ok(context, partition_touches_itself(first, 0, &touches));
+    assert_int_equal(touches, touching);
+    *after = partition_oracle_copy(first);
+    test_ok(context, bsp_start(after, 0, EVALUATIONS, &done));
+    assert_true(done || touching);
+    if (done) {
+        check_bisected(first, after);
+        assert_true(after->pieces.count <= regions);
+    }
+    return done;
+}
+
+static bool check_sample(const char *name, size_t target) {
+    starg_context *one = test_context(1), *three = test_context(3);
+    partition first, after, first_again, after_again;
+    bool done = bisect_sample(one, name, target, &first, &after);
+    assert_int_equal(bisect_sample(three, name, target, &first_again, &after_again), done);
+    if (done)
+        assert_true(partition_oracle_same(&after, &after_again));
+    partition_free(&first_again);
+    partition_free(&after_again);
+    partition_free(&first);
+    partition_free(&after);
+    test_context_free(three);
+    test_context_free(one);
+    return done;
+}
+
+/* No more pieces than by region growing, and the same whatever the threads. */
+static void test_samples(void **state) {
+    (void)state;
+    static const char *const names[] = {"horse", "torus", "gallery", "shell", "sphere"};
+    size_t done = 0;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        done += check_sample(names[i], 2000);
+    assert_true(done >= 3);
+}
+
+/* Random tetrahedra with holes, needles among them: not always done, but then always right. */
+static void test_random_cells(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t finished = 0;
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        partition first = random_cells(context, seed, 6 + (size_t)seed / 2);
+        join_everything(&first);
+        partition p = partition_oracle_copy(&first);
+        bool done = false;
+        test_ok(context, bsp_start(&p, 0, EVALUATIONS, &done));
+        if (done)
+            check_bisected(&first, &p);
+        finished += done;
+        partition_free(&p);
+        partition_free(&first);
+    }
+    assert_true(finished > 2);
+    test_context_free(context);
+}
+
+/* A fin on a slab. Where it is thinner than the least room of a guard, there is no start by planes,
+ * but what they leave is in order. */
+static void test_fins(void **state) {
+    (void)state;
+    static const int fin[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}};
+    static const double widths[] = {1, 1e-6, 1e-9};
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
+        partition first = boxes(context, fin, 4, widths[i]), p = partition_oracle_copy(&first);
+        bool done = false;
+        test_ok(context, bsp_start(&p, 0, EVALUATIONS / 5, &done));
+        assert_int_equal(done, widths[i] > 2e-9);
+        if (done)
+            check_bisected(&first, &p);
+        partition_oracle_check(&p);
+        assert_true(fabs(volume_of_all(&first) - volume_of_all(&p)) < 1e-12);
+        partition_free(&p);
+        partition_free(&first);
+    }
+    test_context_free(context);
+}
+
+/* With too small an evaluation budget, or no time, there is no result. */
+static void test_limits(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    partition all = grown_sample(context, "horse", 2000);
+    join_everything(&all);
+    for (int limited = 0; limited < 3; limited++) {
+        partition p = partition_oracle_copy(&all);
+        bool done = limited > 0;
+        if (limited == 2)
+            starg_context_set_time_limit(context, 1e-9);
+        test_ok(context, bsp_start(&p, 0, limited == 1 ? 1 : EVALUATIONS, &done));
+        assert_int_equal(done, limited == 0);
+        partition_free(&p);
+    }
+    partition_free(&all);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_parts),        cmocka_unit_test(test_cavity),
+        cmocka_unit_test(test_cubes),        cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_random_cells), cmocka_unit_test(test_fins),
+        cmocka_unit_test(test_limits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,177 @@
+/* Pieces that are star-shaped in two places at once, against their definition in rationals. */
+#include "support.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/rng.h"
+#include "decomposition_oracle.h"
+#include "exact_oracle.h"
+#include "star/strict/compatible.h"
+#include "tetra/tetmesh.h"
+#include "tetrahedra.h"
+
+/* ---- images ---- */
+
+static double *copy_places(const starg_tetmesh *mesh) {
+    double *places = malloc(3 * mesh->vertex_count * sizeof *places);
+    assert_non_null(places);
+    memcpy(places, mesh->vertices, 3 * mesh->vertex_count * sizeof *places);
+    return places;
+}
+
+static starg_tetmesh *image_of(starg_context *context, const starg_tetmesh *mesh, double *places) {
+    starg_tetmesh *image;
+    test_ok(context, starg_tetmesh_create(context, places, mesh->vertex_count, mesh->tetrahedra,
+                                          mesh->count, NULL, &image));
+    assert_int_equal(starg_tetmesh_turned(image), 0);
+    free(places);
+    return image;
+}
+
+/* Sheared and stretched by powers of two: what is star-shaped stays so. */
+static starg_tetmesh *shear(starg_context *context, const starg_tetmesh *mesh) {
+    double *places = copy_places(mesh);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        places[3 * v] += 2 * places[3 * v + 1];
+        places[3 * v + 2] = 4 * places[3 * v + 2] - places[3 * v];
+    }
+    return image_of(context, mesh, places);
+}
+
+static bool all_positive(const starg_tetmesh *mesh, const double *places) {
+    for (size_t t = 0; t < mesh->count; t++) {
+        const double *p[4];
+        for (size_t k = 0; k < 4; k++)
+            p[k] = places + 3 * (size_t)mesh->tetrahedra[4 * t + k];
+        if (oracle_orient3d(p[0], p[1], p[2], p[3]) >= 0)
+            return false;
+    }
+    return true;
+}
+
+/* Vertices moved one by one wherever all tetrahedra stay positive. The random meshes have holes,
+ * into which tetrahedra may run: then less far. */
+static starg_tetmesh *shake(starg_context *context, const starg_tetmesh *mesh, uint64_t seed) {
+    starg_tetmesh *image = NULL;
+    for (double reach = 0.3; image == NULL; reach /= 2) {
+        double *places = copy_places(mesh);
+        starg_rng rng = starg_rng_make(seed, 0, 0);
+        for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+            double before = places[i];
+            places[i] += reach * (starg_rng_unit(&rng) - 0.5);
+            if (!all_positive(mesh, places))
+                places[i] = before;
+        }
+        starg_status status = starg_tetmesh_create(context, places, mesh->vertex_count,
+                                                   mesh->tetrahedra, mesh->count, NULL, &image);
+        if (status != STARG_OK)
+            assert_int_equal(status, STARG_ERROR_MESH);
+        free(places);
+    }
+    return image;
+}
+
+/* ---- checks ---- */
+
+static void check(const starg_tetmesh *mesh, const starg_tetmesh *image,
+                  starg_decomposition *const out[2]) {
+    const starg_tetmesh *const meshes[2] = {mesh, image};
+    assert_int_equal(out[0]->piece_count, out[1]->piece_count);
+    assert_memory_equal(out[0]->labels, out[1]->labels, mesh->count * sizeof *out[0]->labels);
+    for (int i = 0; i < 2; i++) {
+        decomposition_oracle_check(out[i]);
+        decomposition_oracle_check_connected(out[i]);
+        assert_int_equal(out[i]->strictly_star, out[i]->piece_count);
+        assert_memory_equal(out[i]->mesh->tetrahedra, mesh->tetrahedra,
+                            4 * mesh->count * sizeof *mesh->tetrahedra);
+        assert_memory_equal(out[i]->mesh->vertices, meshes[i]->vertices,
+                            3 * mesh->vertex_count * sizeof(double));
+    }
+}
+
+static void free_both(starg_context *context, starg_decomposition *out[2]) {
+    starg_decomposition_free(context, out[0]);
+    starg_decomposition_free(context, out[1]);
+}
+
+/* ---- tests ---- */
+
+static void test_random(void **state) {
+    (void)state;
+    starg_context *context = test_context(1), *many = test_context(3);
+    size_t pieces = 0, tetrahedra = 0;
+    for (uint64_t seed = 0; seed < 12; seed++) {
+        starg_tetmesh *mesh = random_tetmesh(context, seed, 8 + 3 * seed, false, 1);
+        starg_tetmesh *image = seed % 4 == 0 ? shear(context, mesh) : shake(context, mesh, seed);
+        starg_decomposition *one[2], *three[2];
+        test_ok(context, compatible_decompose(context, mesh, image, one));
+        test_ok(many, compatible_decompose(many, mesh, image, three));
+        check(mesh, image, one);
+        assert_int_equal(one[0]->piece_count, three[0]->piece_count);
+        for (int i = 0; i < 2; i++) {
+            assert_memory_equal(one[i]->labels, three[i]->labels,
+                                mesh->count * sizeof *one[i]->labels);
+            assert_memory_equal(one[i]->pieces, three[i]->pieces,
+                                one[i]->piece_count * sizeof *one[i]->pieces);
+        }
+        pieces += one[0]->piece_count;
+        tetrahedra += mesh->count;
+        free_both(context, one);
+        free_both(many, three);
+        starg_tetmesh_free(mesh);
+        starg_tetmesh_free(image);
+    }
+    assert_true(2 * pieces < tetrahedra);
+    test_context_free(context);
+    test_context_free(many);
+}
+
+/* A solid whose image is an affine copy needs no more pieces than alone; what is convex needs one.
+ */
+static void test_affine(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_tetmesh *mesh = sample_tetmesh(context, "sphere", 1500), *image = shear(context, mesh);
+    starg_decomposition *out[2];
+    test_ok(context, compatible_decompose(context, mesh, image, out));
+    check(mesh, image, out);
+    assert_int_equal(out[0]->piece_count, 1);
+    free_both(context, out);
+    starg_tetmesh_free(mesh);
+    starg_tetmesh_free(image);
+    test_context_free(context);
+}
+
+static void test_memory(void **state) {
+    (void)state;
+    starg_status status = STARG_ERROR_MEMORY;
+    size_t ration = 0;
+    for (; status != STARG_OK && ration < 20000; ration += 1 + ration / 20) {
+        size_t left = SIZE_MAX;
+        starg_context *context = test_scarce_context(1, &left);
+        starg_tetmesh *mesh = random_tetmesh(context, 5, 30, false, 1);
+        starg_tetmesh *image = shake(context, mesh, 5);
+        starg_decomposition *out[2];
+        left = ration;
+        status = compatible_decompose(context, mesh, image, out);
+        left = SIZE_MAX;
+        if (status != STARG_OK) {
+            assert_int_equal(status, STARG_ERROR_MEMORY);
+            assert_null(out[0]);
+            assert_null(out[1]);
+        }
+        free_both(context, out);
+        starg_tetmesh_free(mesh);
+        starg_tetmesh_free(image);
+        test_context_free(context);
+    }
+    assert_int_equal(status, STARG_OK);
+    assert_true(ration > 10);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_random), cmocka_unit_test(test_affine),
+                                       cmocka_unit_test(test_memory)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,52 @@
+/* Which level of detail the medial axis of a large model is taken from. */
+#include "guard/proxy.h"
+#include "models.h"
+
+enum { MESHES = 4 };
+
+/* The level that is chosen among some of the meshes, of which the last is the model. */
+static void expect_level(starg_context *context, starg_mesh *const meshes[MESHES],
+                         const size_t *some, size_t count, size_t wanted) {
+    starg_level entries[MESHES] = {{.mesh = NULL}};
+    starg_solid *chosen = NULL;
+    for (size_t i = 0; i < count; i++)
+        entries[i].mesh = meshes[some[i]];
+    const starg_levels levels = {.count = count, .levels = entries};
+    test_ok(context, proxy_of_levels(context, &levels, &chosen));
+    assert_true(test_same_mesh(starg_solid_mesh(chosen), meshes[some[wanted]]));
+    starg_solid_free(chosen);
+}
+
+/* The coarsest that has 25,000 vertices; the model itself where none has. */
+static void test_choice(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    static const size_t vertices[MESHES] = {5000, 24000, 26000, 40000};
+    starg_mesh *meshes[MESHES];
+    for (size_t i = 0; i < MESHES; i++)
+        meshes[i] = test_sample_mesh(context, "sphere", vertices[i]);
+    assert_true(starg_mesh_vertex_count(meshes[1]) < 25000);
+    assert_true(starg_mesh_vertex_count(meshes[2]) >= 25000);
+    expect_level(context, meshes, (const size_t[]){0}, 1, 0);
+    expect_level(context, meshes, (const size_t[]){0, 1}, 2, 1);
+    expect_level(context, meshes, (const size_t[]){0, 1, 2, 3}, 4, 2);
+    expect_level(context, meshes, (const size_t[]){2, 3}, 2, 0);
+    for (size_t i = 0; i < MESHES; i++)
+        starg_mesh_free(meshes[i]);
+    test_context_free(context);
+}
+
+static void test_step(void **state) {
+    (void)state;
+    assert_int_equal(proxy_step(3000, 5000), 10000);
+    assert_int_equal(proxy_step(45000, 5000), 10000);
+    assert_true(proxy_step(45001, 5000) == STARG_QUARTERS);
+    assert_true(proxy_step(1005000, 5000) == STARG_QUARTERS);
+    assert_int_equal(proxy_step(1005000, 1000000), 10000);
+    assert_int_equal(proxy_step(SIZE_MAX, SIZE_MAX), 10000);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_choice), cmocka_unit_test(test_step)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
