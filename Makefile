@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A thin front for CMake. `make demo` and `make check` do all the set-up on a fresh Debian machine.
 BUILD   ?= build
 JOBS    ?= $(shell nproc)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`pip install .`: CMake builds the library and puts the package together, setuptools packs it.
 
 All is built in a temporary folder, which is removed. STARGUARD_BUILD names a build folder of CMake to

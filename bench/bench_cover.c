@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Times the set cover on random caps of a sphere: rows are caps, columns are points.
  *
  *     bench_cover [ROWS [COLUMNS [SMALLEST [LARGEST [TARGET [REDUNDANCY [SECONDS]]]]]]]

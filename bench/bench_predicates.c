@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Nanoseconds per orient3d where the filter, the 128-bit step or the limbs decide. */
 #include <stdint.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility from boxes: how many (box, vertex) tests a second and core, and how much of what is
  * hidden is found, by the size of the boxes: a line of a table for each model and number of
  * halvings of the bounding box.

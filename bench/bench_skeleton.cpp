@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 // Curve skeletons against CGAL's mean curvature skeleton [Tagliasacchi, Alhashim, Olson, Zhang
 // 2012], when CGAL was found: nodes, ends, joints, loops, seconds, one thread.
 //   bench_skeleton MODEL...

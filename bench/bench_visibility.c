@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How many segment queries a second and core, engine by engine, beside Embree in the same run: a
  * line of a table for each model.
  *

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Star decomposition of many models: one table.
 
 usage: decompose.py STARGUARD DATA [MODEL ...] [--results FILE] [--seeds N] [--limit S]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures morphs: a row for each pair and method, and the means at the end.
 
 usage: morph.py STARGUARD [--shared FOLDER] [--frames N] [--samples-only] [--only WORD]

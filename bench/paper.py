@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The paper's tables and figures, done again [YL11].
 
 usage: paper.py COMMAND STARGUARD DATA [options]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """How well each distance retrieves: the tables of docs/retrieval.md.
 
 usage: retrieval.py COMMAND STARGUARD FOLDER... [--distances star,paper,shape-dna,d2]

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # The figures of docs/BENCHMARKS.md. Usage: run.sh BUILD [DATA]
 # DATA holds models; without it the bundled samples stand in for them.
 set -eu

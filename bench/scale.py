@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Seconds of each stage against the size of a model and against threads.
 
 usage: scale.py STARGUARD [--commands NAME,...] [--sample NAME] [--sizes N,N,...]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Makes the skeleton of every .off model of a folder but nasty/, and checks each by other means.
 
 usage: skeletons.py STARGUARD FOLDER [--only SUBFOLDER]

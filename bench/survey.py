@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Guards and cuts every model of a folder, verifies each result, and prints a table.
 
 usage: survey.py STARGUARD FOLDER [--results FILE] [--only SUBFOLDER] [--limit S] [--threads N]

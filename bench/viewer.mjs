@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frame times of a page against a plain three.js page of the same mesh, in one headless browser.
 //
 //   STARGUARD=build/starguard STARGUARD_CHROMIUM=/usr/bin/chromium STARGUARD_MODULES=build/viewer \

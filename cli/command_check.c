@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard check: is a model a usable solid, and if not, what is wrong where? */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard completion: what shells need to complete command lines. */
 #include <stdlib.h>
 #include <string.h>

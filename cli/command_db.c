@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard db: the group of the commands about a retrieval database. */
 #include "commands.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard db matrix, evaluate: all stored models with one another. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard db query: which stored models are most like this one? */
 #include "commands.h"
 #include "database.h"

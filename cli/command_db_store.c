@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard db create, add, remove, list: what is stored. */
 #include "commands.h"
 #include "database.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard decompose: cuts a solid into star-shaped pieces. */
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard describe: a shape by its guards and what they see. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard export: a model with its results in one file for other programs. */
 
 #include "commands.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard guard: places guards, the main job. */
 #include <stdlib.h>
 #include <string.h>

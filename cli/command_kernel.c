@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard kernel: is a solid star-shaped, and where is its kernel? */
 #include "commands.h"
 #include "model.h"

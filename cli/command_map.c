@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard map: where each vertex of one surface lies on another one. */
 #include "commands.h"
 #include "model.h"

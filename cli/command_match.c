@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard match: how unlike are two models? */
 #include "commands.h"
 #include "database.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard morph: the shapes between two surfaces. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard repair: makes a solid of a mesh that is nearly one. */
 #include "commands.h"
 #include "model.h"

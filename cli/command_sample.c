@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard sample: procedural solids. */
 #include "commands.h"
 #include "model.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard skeleton: the curve skeleton of a solid. */
 #include <stdlib.h>
 #include <string.h>

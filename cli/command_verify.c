@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard verify: checks results by other means than those that made them. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard view: a page to look at results. */
 #include "commands.h"
 #include "database.h"

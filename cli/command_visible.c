@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* starguard visible: what do points inside a solid, or boxes in it, see? */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The commands as a table: all that main, the help and the suggestions know about them. */
 #ifndef STARGUARD_CLI_COMMANDS_H
 #define STARGUARD_CLI_COMMANDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Each script is a table in the shell's own words: for every command its options, what each of them
  * takes, and what the operands are. What an option takes is known by its kind: a choice has its
  * words, text is a file or one of the lower-case words of its form ("skeleton|medial|FILE"), and

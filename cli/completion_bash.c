@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* bash: one function that looks at the words before the cursor. */
 #include "completion_parts.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* fish: one line for each thing that can be offered, and the condition under which it is. */
 #include "completion_parts.h"
 

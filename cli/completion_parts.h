@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the completion (completion.c): what the scripts of all shells are made of. */
 #ifndef STARGUARD_CLI_COMPLETION_PARTS_H
 #define STARGUARD_CLI_COMPLETION_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* zsh: specifications for _arguments, with the first sentence of each help. */
 #include <stdio.h>
 

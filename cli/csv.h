@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tables as comma-separated values (RFC 4180), reals with 17 significant digits. */
 #ifndef STARGUARD_CLI_CSV_H
 #define STARGUARD_CLI_CSV_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the commands about a database share. */
 #ifndef STARGUARD_CLI_DATABASE_H
 #define STARGUARD_CLI_DATABASE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* File extensions, and what they stand for. */
 #ifndef STARGUARD_CLI_EXTENSIONS_H
 #define STARGUARD_CLI_EXTENSIONS_H

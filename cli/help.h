@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The help, made of the table of commands and their options. */
 #ifndef STARGUARD_CLI_HELP_H
 #define STARGUARD_CLI_HELP_H

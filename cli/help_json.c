@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The table of commands as JSON, for whoever makes something of it: manual pages, documentation, a
  * graphical front. */
 #include <jansson.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Finds the command, reads its options, runs it. */
 #include <stdlib.h>
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Plain man(7): what every man program can show. Dashes, quotes and the like are escaped, or they
  * would be set as typographic ones, which cannot be copied into a shell; a line must not begin with
  * a control character. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Models and coloured models, as several commands read and write them. */
 #ifndef STARGUARD_CLI_MODEL_H
 #define STARGUARD_CLI_MODEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Strict numbers: the whole word or nothing. */
 #ifndef STARGUARD_CLI_NUMBERS_H
 #define STARGUARD_CLI_NUMBERS_H

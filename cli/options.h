@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Options as tables: rows of the library's field tables (starguard/fields.h), and rows of the same
  * kind for what only a command knows. The parser, the help, the manual, completion and the messages
  * all live on them.

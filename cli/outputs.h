@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Output files of a run. Each is written beside its place under another name first; all take
  * their places together at the very end, so that a run that fails leaves everything as it was. */
 #ifndef STARGUARD_CLI_OUTPUTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Progress of the library's stages: a bar on a terminal, and the seconds of each stage. */
 #ifndef STARGUARD_CLI_PROGRESS_H
 #define STARGUARD_CLI_PROGRESS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Several processes that mpirun has started for one command (starguard/ranks.h): rank 0 runs it,
  * the others help. In a build without MPI, and when nobody has started several, there is this one
  * alone. */

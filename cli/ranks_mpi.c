@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Messages by MPI.
  *
  * A message is its size, then its bytes in parts that MPI can count. Whoever waits sleeps between

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* --json: the one object on standard output. Keys are documented in docs/formats.md. */
 #ifndef STARGUARD_CLI_REPORT_H
 #define STARGUARD_CLI_REPORT_H

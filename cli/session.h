@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One run of one command: its options, the library's context, where text, errors, results and
  * files go, and how all of it becomes an exit status. */
 #ifndef STARGUARD_CLI_SESSION_H

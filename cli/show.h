@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a page shows, read from result files of any kind: the content of each tells what it is. */
 #ifndef STARGUARD_CLI_SHOW_H
 #define STARGUARD_CLI_SHOW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The frames of a morph in a folder, as 'starguard morph' leaves them. */
 #include <dirent.h>
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tables of distances: a database, or what 'starguard db matrix -o' has written; with small
  * pictures of the models that can be found. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Did you mean ...? The name nearest to a mistyped word. */
 #ifndef STARGUARD_CLI_SUGGEST_H
 #define STARGUARD_CLI_SUGGEST_H

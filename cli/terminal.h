@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a terminal can show. */
 #ifndef STARGUARD_CLI_TERMINAL_H
 #define STARGUARD_CLI_TERMINAL_H

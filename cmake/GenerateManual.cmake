@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Has the program write its manual pages and completion scripts.
 # Usage: cmake -DPROGRAM=... -DOUTPUT=FOLDER -P GenerateManual.cmake
 file(REMOVE_RECURSE ${OUTPUT})

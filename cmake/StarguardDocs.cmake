@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Documentation that is made while building, in ${STARGUARD_DOCS}: schemas and tables of the field
 # tables, the C reference of the headers, the Python reference of the docstrings. It is installed among
 # docs/. A cross build cannot run what it has built, and a sanitizer's run time is not in Python.

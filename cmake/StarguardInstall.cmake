@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What `cmake --install` installs: libraries and headers, the CMake package (find_package) and the
 # pkg-config files. None of them names the prefix, so that an installed tree may be moved.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The viewer of pages: Node.js and npm bundle the sources in viewer/ into one text, which becomes a C
 # file. Packages are fetched when CMake runs, into the build directory; a build that cannot have
 # them goes on without the viewer, and `starguard view` says so.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Places guards inside a model and lists them: guards MODEL [GUARDS.json]
  *
  * Outputs are NULL until a call succeeds and every free takes NULL, so that one place at the end

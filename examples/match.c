@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How unlike are two models? match A B
  *
  * Distances are made of signatures; those by guards need a decomposition of each model, those by

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cuts a model into star-shaped pieces and lists them: pieces MODEL [PIECES.vtk]
  *
  * The search for few pieces ends when its time is over; progress is shown on the way. */

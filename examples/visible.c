@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which faces of a model does a point see? visible MODEL X Y Z
  *
  * The result is a matrix of bits: a row for each point asked about, a column for each face. */

@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the C reference from the comments of the public headers. Usage: c-api.py OUTPUT.md
 
 A header is a comment about it, then blocks parted by empty lines: a comment, if there is one, and the

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # A folder of src/ includes only itself and the folders above it in this list; cover includes core
 # only; cli sees public headers only.
 set -eu

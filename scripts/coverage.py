@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Which lines the tests have reached, folder by folder.
 
 Usage: coverage.py BUILD

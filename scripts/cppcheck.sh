@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # cppcheck over the library and the command line. Usage: cppcheck.sh
 set -eu
 cd "$(dirname "$0")/.."

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # The main jobs on a bundled sample: makes the solid, guards it, cuts it into pieces, checks both, and
 # leaves a picture and a page to look at.
 # Usage: demo.sh BUILD

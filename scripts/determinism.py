@@ -1,4 +1,5 @@
 #!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
 """Holds every result file against itself: made with 1, 2, 7 and 32 threads, by programs of different
 compilers at different levels of optimisation, its bytes have to be the same.
 

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Draws the pictures of docs/ that show single results: what one guard sees, a morph by three methods,
 # distances of shapes. All of samples. Needs ImageMagick. Usage: doc-pictures.sh STARGUARD
 set -eu

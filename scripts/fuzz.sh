@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Runs all libFuzzer targets in a row, each for its share of some seconds, from its seeds and what
 # earlier runs have found, and prints what they did. Fails when one of them crashed.
 # Usage: fuzz.sh BUILD SECONDS

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Installs the Debian packages that are missing, as root or with sudo.
 # Usage: install-deps.sh build|check|coverage|memory|mpi|bench ...
 set -eu

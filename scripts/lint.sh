@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Format, layers, and public headers that stand alone.
 set -eu
 cd "$(dirname "$0")/.."
@@ -8,6 +9,14 @@ sources=$( (find include src cli tools tests bench examples -name '*.[ch]'; find
 clang-format --dry-run -Werror $sources
 
 scripts/check-layers.sh
+
+# The licence of each source in one line.
+unmarked=$(git ls-files '*.c' '*.h' '*.cpp' '*.py' '*.sh' '*.js' '*.mjs' '*.cmake' '*CMakeLists.txt' |
+    xargs grep -L 'SPDX-License-Identifier' || true)
+if [ -n "$unmarked" ]; then
+    echo "lint: without an SPDX line: $unmarked" >&2
+    exit 1
+fi
 
 # Each public header alone, as C11 and as C++.
 for header in include/starguard/*.h; do

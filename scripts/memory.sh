@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Runs every kind of command under valgrind, which finds memory that is read before it is written.
 # What it does not know, AVX-512, the program does not choose there; so the results, which have to
 # be those of the program as it is, also hold one vector width against another.

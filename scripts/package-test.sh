@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Builds the Debian packages, installs them on a clean root and uses them there: the program, and a C
 # program compiled with pkg-config. Usage: package-test.sh BUILD
 #

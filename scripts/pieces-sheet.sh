@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Draws the star pieces of starguard's own samples on one contact sheet (needs ImageMagick's montage).
 #   scripts/pieces-sheet.sh [STARGUARD] [SHEET.png]
 set -eu

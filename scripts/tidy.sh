@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # clang-tidy over what a build compiles of the library and the command line. Usage: tidy.sh BUILD
 # But for the visibility stages for instruction sets, which are one source: the plain variant stands for all.
 set -eu

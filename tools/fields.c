@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Usage: starguard_fields schemas FOLDER | page FILE.md | keywords FILE.pyi */
 #include "fields.h"
 

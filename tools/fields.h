@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is made from the field tables (starguard/fields.h) when the project is built: JSON Schemas,
  * the page fields.md, and the types of Python's keyword arguments. */
 #ifndef STARGUARD_TOOLS_FIELDS_H

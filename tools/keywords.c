@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* _keywords.pyi: the types of the keyword arguments of the Python package, for type checkers and
  * editors. At run time the package reads the tables themselves. */
 #include <string.h>

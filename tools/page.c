@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* fields.md: a table for each record of a file and for the options of each call. */
 #include <string.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* JSON Schemas (2020-12) of the documents.
  *
  * A schema says what is written, strictly: types, ranges, and that every key is there but those

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bundles the viewer: node build.mjs MODULES OUT.c
 //
 // page.html, page.css and the modules under main.js become one text, cut in two where a page's data

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What all 3D views share: how clear the model is, the cut, which way is up.
 import { shared } from "./materials.js";
 import { choice, element, heading, say, slider } from "./panel.js";

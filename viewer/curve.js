@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The coverage curve: how much the first 1, 2, ... guards see, with a mark that moves.
 import { drawn } from "./panel.js";
 import { percent } from "./text.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page's data: a block of JSON, and arrays in base64 in blocks of their own.
 
 const page = JSON.parse(document.getElementById("data").textContent);

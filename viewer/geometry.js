@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Surfaces as the graphics card wants them: vertices with normals.
 
 const CREASE = Math.cos((38 * Math.PI) / 180);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Guards: points inside the glass model; what one sees is painted when it is picked, and what the
 // first few see when the slider moves.
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";

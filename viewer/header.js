@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What stands above the tabs: the model's name and size, and two buttons.
 import page from "./data.js";
 import { showHelp } from "./help.js";

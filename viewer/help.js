@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys, as a table: what they do and what the help says about them.
 import { element } from "./panel.js";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A page: makes the views that there are results for, and joins them with stage, panel and keys.
 import page from "./data.js";
 import { Controls } from "./controls.js";

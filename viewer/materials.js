@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How things look: one shader for surfaces, one for points. Colours are those of the style sheet, as
 // they are; light comes from the viewer's left shoulder.
 import { Color, DoubleSide, FrontSide, ShaderMaterial, Vector4 } from "three";

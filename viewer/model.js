@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model alone, when there is no result to show with it.
 import page from "./data.js";
 import { facts } from "./panel.js";

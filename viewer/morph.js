@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A morph: frames of one surface, and the moments between them on straight lines.
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";

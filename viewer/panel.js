@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parts of the panel. Whatever comes from a file is set as text, never as markup.
 
 /** An element with properties and children; strings become text. */

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Star-shaped pieces in colours of their own, which can be moved apart; each with its guard.
 import { BufferAttribute, BufferGeometry, Color, Mesh } from "three";
 import page, { floats, indices } from "./data.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points that can be picked: guards of the solid or of its pieces, as discs that nothing hides.
 import { BufferAttribute, BufferGeometry, Color, Points } from "three";
 import { pointMaterial, shared } from "./materials.js";

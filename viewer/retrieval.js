@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Retrieval: the table of distances as shades, darkest for the most alike of each shape, and for a
 // picked shape the others by distance, with their pictures.
 import page, { doubles, pictureAddress } from "./data.js";

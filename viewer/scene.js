@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stage: canvas, camera, turning and zooming, drawing when something has changed.
 import {
     ColorManagement,

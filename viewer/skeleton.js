@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The curve skeleton: rods along its edges, and balls of the nodes' radii, which the slider grows.
 import {
     Color,

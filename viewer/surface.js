@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model: glass, with faces painted that are seen, or that nothing sees.
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";

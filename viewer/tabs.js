@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tabs, one for each view, with their panels. Arrow keys go from one to the next.
 import { element } from "./panel.js";
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light or dark: as the system has it, until the switch says otherwise.
 
 const system = window.matchMedia("(prefers-color-scheme: dark)");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** The one after (by 1) or before (-1) among `count`, around the ends; the first or last after -1. */
 export function following(i, by, count) {
     if (count === 0) return -1;

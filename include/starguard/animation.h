@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Animated files of a mesh whose vertices move. */
 #ifndef STARGUARD_ANIMATION_H
 #define STARGUARD_ANIMATION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A matrix of bits, stored by rows of 64-bit words: what each point sees, and what a cover is
  * chosen from. Bit j of row i is bit j % 64 of word j / 64; the bits behind the last column are
  * zero. */

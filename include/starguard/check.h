@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Is a mesh the boundary of a solid? What is wrong with it, and where. */
 #ifndef STARGUARD_CHECK_H
 #define STARGUARD_CHECK_H

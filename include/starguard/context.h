@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The context: what every call shares (memory, threads, seed, callbacks) and the detail of the
  * last error.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Set cover on bit rows: the fewest rows whose union holds every column, with a proven lower
  * bound [YL11, sections 3.2 and 3.3]. Knows nothing of geometry. */
 #ifndef STARGUARD_COVER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A retrieval database: signatures of models in an SQLite file (docs/formats.md has its schema). */
 #ifndef STARGUARD_DATABASE_H
 #define STARGUARD_DATABASE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Star decomposition: cuts a solid into few pieces, each wholly visible from its guard. */
 #ifndef STARGUARD_DECOMPOSE_H
 #define STARGUARD_DECOMPOSE_H

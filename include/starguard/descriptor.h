@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The descriptor of a shape by its guards [YL11, section 5.1]: a graph of guards, and from each of
  * them the distances to the boundary in all directions. */
 #ifndef STARGUARD_DESCRIPTOR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Marks the symbols that the library makes public; everything else is hidden. */
 #ifndef STARGUARD_EXPORT_H
 #define STARGUARD_EXPORT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the members of a struct are called, may hold and mean.
  *
  * Each struct of options and each result is described once, by a table. Defaults, range checks, the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The main job: a small set of points inside a solid that together see its whole boundary, with a
  * proven lower bound [YL11, section 3]. */
 #ifndef STARGUARD_GUARD_H

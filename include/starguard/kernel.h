@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The kernel of a solid: the points that see all of it. A solid whose kernel has an interior is
  * called strictly star-shaped here. */
 #ifndef STARGUARD_KERNEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Triangle surface meshes: an immutable indexed face set, and files of it. */
 #ifndef STARGUARD_MESH_H
 #define STARGUARD_MESH_H

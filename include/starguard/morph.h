@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Two surfaces: a map from one to the other, and the shapes between them [YL11, section 5.2]. */
 #ifndef STARGUARD_MORPH_H
 #define STARGUARD_MORPH_H

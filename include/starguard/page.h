@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A page to look at results: one HTML file with everything in it, for any browser, without network
  * (docs/viewer.md). */
 #ifndef STARGUARD_PAGE_H

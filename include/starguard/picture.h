@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures of meshes with points in them, drawn by a small software renderer into a PNG. */
 #ifndef STARGUARD_PICTURE_H
 #define STARGUARD_PICTURE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Several processes that share the work of one, for machines that have no memory in common. The
  * first of them, rank 0, makes the calls of this library; the others, its helpers, wait in
  * starg_ranks_serve for what it hands out: visibility rows, and files to be described. How bytes go

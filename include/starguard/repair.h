@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Makes a solid's boundary of a mesh that is nearly one. */
 #ifndef STARGUARD_REPAIR_H
 #define STARGUARD_REPAIR_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Procedural closed solids for demonstrations, tests and benchmarks. */
 #ifndef STARGUARD_SAMPLE_H
 #define STARGUARD_SAMPLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A model with results about it in one file for other programs: guards, pieces, skeleton. */
 #ifndef STARGUARD_SCENE_H
 #define STARGUARD_SCENE_H

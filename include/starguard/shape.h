@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Comparing shapes: signatures of models, distances between them, and how well such distances
  * retrieve models of the same class. */
 #ifndef STARGUARD_SHAPE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Simpler versions of a mesh: fewer vertices, the same topology, nearly the same shape. */
 #ifndef STARGUARD_SIMPLIFY_H
 #define STARGUARD_SIMPLIFY_H

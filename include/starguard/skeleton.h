@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The curve skeleton of a solid: a graph of points inside that runs along its middle and has its
  * topology. */
 #ifndef STARGUARD_SKELETON_H

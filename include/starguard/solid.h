@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A solid: a mesh that has passed the check, with every shell turned so that faces point out of
  * it (inward at the wall of a cavity), and the search structures that all later stages share. */
 #ifndef STARGUARD_SOLID_H

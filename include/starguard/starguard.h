@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Everything. Each header also stands alone. */
 #ifndef STARGUARD_STARGUARD_H
 #define STARGUARD_STARGUARD_H

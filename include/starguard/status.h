@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Result codes of every call that can fail. The enum only ever grows at its end. */
 #ifndef STARGUARD_STATUS_H
 #define STARGUARD_STATUS_H

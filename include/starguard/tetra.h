@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tetrahedral meshes: checked, positively oriented, with neighbours; files of them, and generators
  * that fill a solid. */
 #ifndef STARGUARD_TETRA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Independent checks of results: arithmetic and algorithms of their own, slow and simple. */
 #ifndef STARGUARD_VERIFY_H
 #define STARGUARD_VERIFY_H

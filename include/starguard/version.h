@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Version of the library and the header that it was compiled with. */
 #ifndef STARGUARD_VERSION_H
 #define STARGUARD_VERSION_H

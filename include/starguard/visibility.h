@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which vertices and faces of a solid does a point see? [YL11, section 3.1]
  *
  * A vertex q is visible from p when the segment p q meets the boundary in q alone. A face is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """starguard: the fewest guards inside a solid that see its whole boundary, and star-shaped pieces.
 
     >>> import starguard

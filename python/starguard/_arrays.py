@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arrays to the library and back, copied only where types differ."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options of C: words that stand for the values of an enum, and fields that the caller has named."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C structs as dataclasses."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The shared libraries, which lie beside this module, and its declarations."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options of calls: keyword arguments, range checks and docstrings, all of the library's field tables
 (starguard/fields.h). A new row there is a new keyword here."""
 from __future__ import annotations

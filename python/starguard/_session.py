@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls of the library: a context for each, off the main thread, so that they can be interrupted.
 
 A call works with a context of its own, so that any thread may call anything at any time. What it

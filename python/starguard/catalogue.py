@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Procedural solids to try things with."""
 from __future__ import annotations
 

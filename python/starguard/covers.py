@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Set cover on bit rows: the fewest rows whose union holds every column, with a proven bound."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A retrieval database: signatures of models in an SQLite file."""
 from __future__ import annotations
 

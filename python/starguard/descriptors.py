@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The descriptor of a shape by its guards, and signatures by which shapes compare."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The main job: few points inside a solid that together see its whole boundary, and a bound."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The kernel of a solid: the points that see all of it."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Triangle surface meshes: files of them, what is wrong with them, and simpler versions."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two surfaces: a map from one to the other, and the shapes between them."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of meshes with points in them, of tables and of curves."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Star decomposition: few pieces, each wholly visible from its guard."""
 from __future__ import annotations
 

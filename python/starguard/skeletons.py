@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The curve skeleton of a solid: a graph that runs along its middle and has its topology."""
 from __future__ import annotations
 

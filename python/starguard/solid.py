@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Solids: meshes that have passed the check, and the search structures over them."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tetrahedral meshes: checked, positively oriented, with neighbours."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Results to look at: a page for browsers, and files for other programs."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What points inside a solid see, as rows of bits."""
 from __future__ import annotations
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Translates the public headers for cffi: the C declarations have one source.
 
     make_ffi.py INCLUDE_FOLDER OUTPUT.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the reference of the Python package from its docstrings. The package must be importable.
 
     make_reference.py OUTPUT.md

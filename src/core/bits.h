@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the public bit matrix, and word-wise helpers for bit rows. */
 #ifndef STARG_CORE_BITS_H
 #define STARG_CORE_BITS_H

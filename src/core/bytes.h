@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Messages as bytes: what is put into a buffer in order is taken out in the same order. Numbers
  * keep the form that they have in memory: both ends are the same program. */
 #ifndef STARG_CORE_BYTES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the context: memory, error detail, cancellation, deadline. */
 #ifndef STARG_CORE_CONTEXT_H
 #define STARG_CORE_CONTEXT_H
@@ -74,7 +75,8 @@ double starg_clock(void) STARG_PRIVATE(starg_clock);
 
 /* Puts what follows under a rule, until starg_time_end gets what this returned. Inside of another
  * rule the later one of the enum holds: what runs to its end does so with all its parts. */
-starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule) STARG_PRIVATE(starg_time_begin);
+starg_time_rule starg_time_begin(starg_context *context, starg_time_rule rule)
+    STARG_PRIVATE(starg_time_begin);
 void starg_time_end(starg_context *context, starg_time_rule former) STARG_PRIVATE(starg_time_end);
 
 /* Seconds until the time limit, negative once it has passed; INFINITY where there is none or it is
@@ -89,7 +91,8 @@ bool starg_time_has_failed(const starg_context *context) STARG_PRIVATE(starg_tim
 
 /* STARG_ERROR_CANCELLED (with its message set) once a cancellation was asked for; STARG_ERROR_TIME
  * where the time limit ends the call. Cheap. */
-starg_status starg_check_cancel(starg_context *context, const char *stage) STARG_PRIVATE(starg_check_cancel);
+starg_status starg_check_cancel(starg_context *context, const char *stage)
+    STARG_PRIVATE(starg_check_cancel);
 
 /* Records the detail of a failure and returns `status`, so that callers can return the call. */
 starg_status starg_fail(starg_context *context, starg_status status, const char *stage,
@@ -118,9 +121,12 @@ void starg_log(starg_context *context, starg_log_level level, const char *format
  * between them ascending fractions above 0 and below 1, at most about 20 a second. A part takes
  * the stage around it along by its `share`; a stage in one of the same name goes on with that.
  * A callback that returns false marks the context cancelled; starg_check_cancel then says so. */
-void starg_progress_begin(starg_context *context, const char *stage) STARG_PRIVATE(starg_progress_begin);
-void starg_progress_begin_part(starg_context *context, const char *stage, double share) STARG_PRIVATE(starg_progress_begin_part);
-void starg_progress_step(starg_context *context, size_t done, size_t total) STARG_PRIVATE(starg_progress_step);
+void starg_progress_begin(starg_context *context, const char *stage)
+    STARG_PRIVATE(starg_progress_begin);
+void starg_progress_begin_part(starg_context *context, const char *stage, double share)
+    STARG_PRIVATE(starg_progress_begin_part);
+void starg_progress_step(starg_context *context, size_t done, size_t total)
+    STARG_PRIVATE(starg_progress_step);
 void starg_progress_end(starg_context *context) STARG_PRIVATE(starg_progress_end);
 
 #endif

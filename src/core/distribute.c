@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Distribution of a parallel loop: its items are shared with other processes.
  *
  * The calling thread of rank 0 hands out blocks of items and takes what comes back; threads of this

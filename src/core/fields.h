@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rows of field tables, and what the library does with a table: range checks. */
 #ifndef STARG_CORE_FIELDS_H
 #define STARG_CORE_FIELDS_H

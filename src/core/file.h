@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Whole files in, whole files out: reading into memory, and writing to a temporary name that is
  * renamed only when everything has reached the disk. */
 #ifndef STARG_CORE_FILE_H

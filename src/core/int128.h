@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* 128-bit integers: an extension that gcc and clang share. */
 #ifndef STARG_CORE_INT128_H
 #define STARG_CORE_INT128_H

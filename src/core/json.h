@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* JSON results as text: one line a key, reals with 17 significant digits, so that reading gives
  * back the same doubles. */
 #ifndef STARG_CORE_JSON_H

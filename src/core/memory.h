@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory from the context's allocator. Blocks remember their size, so that the context can tell
  * what is in use. All of it may be called from worker threads. */
 #ifndef STARG_CORE_MEMORY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A loop hands out its items one by one from an atomic counter: items here are whole visibility
  * rows or the like, so that the counter never dominates. The calling thread works like the others,
  * unless it has to deal with other processes (core/distribute.c). */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Parallel loops whose result does not depend on the number of threads: each item writes only to
  * outputs of its own index. */
 #ifndef STARG_CORE_PARALLEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What rank 0 and its helpers say to each other (starguard/ranks.h).
  *
  * For each shared loop rank 0 sends every helper a JOB, all that the loop's items have in common,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A struct and its field table (starguard/fields.h) as JSON, and back.
  *
  * Written values are exact: reals have 17 significant digits. Reading is strict: every key is held

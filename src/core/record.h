@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Records in JSON: writes and reads structs by their field tables. */
 #ifndef STARG_CORE_RECORD_H
 #define STARG_CORE_RECORD_H

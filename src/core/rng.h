@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Random numbers that depend on (seed, stage, item) only, never on the order of calls or threads:
  * the splitmix64 finaliser over a counter. */
 #ifndef STARG_CORE_RNG_H

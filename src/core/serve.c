@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A helper's life: it takes jobs, works on blocks of them and answers, until it is sent home
  * (core/ranks.h). The work itself is done where it is done without helpers: each kind has a table
  * of functions in its own folder. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* C11 threads by POSIX threads, in place of the C library's: only in builds with the thread
  * sanitizer, which watches POSIX threads and crashes in others. That the types are the same is so
  * in glibc. Source: ISO/IEC 9899:2018, 7.26. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Worker group of a parallel loop: what the threads that work on it share. */
 #ifndef STARG_CORE_WORKER_GROUP_H
 #define STARG_CORE_WORKER_GROUP_H

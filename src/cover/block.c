@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Covering everything: reductions, blocks, and for each block
  *   1. a greedy cover, improved by swaps;
  *   2. rounds of: Lagrangian bound (with covers from its costs), local search down to that bound,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The public call: the problem is checked, brought into its working form, solved for its target,
  * and, where max_rows rows cannot reach that, solved for the most weight. */
 #include "starguard/cover.h"

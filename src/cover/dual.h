@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Lower bound on the rows that cover everything: the Lagrangian dual, in whole numbers.
  *
  * For any multipliers u >= 0, one per column,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The one file in C++: C has no way to catch.
  *
  * When memory is out, operator new calls a handler, again and again until it finds some. The first

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* CBC and Clp are C++: what they throw must not get into C, where nobody catches it and the process
  * ends, and their memory may be out. */
 #ifndef STARG_COVER_EXCEPTIONS_H

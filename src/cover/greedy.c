@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Greedy set cover [Joh74] with lazy evaluation: a row's need never grows while rows are added, so
  * a heap of stale needs suffices: the row on top is evaluated afresh and stays on top, or sinks.
  * Cost: one pass over the ones of the matrix, then a few rows per choice. */

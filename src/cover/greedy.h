@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Heuristics: lazy greedy, dropping of needless rows, and swaps. All of them go by the weight of
  * covered columns; covering everything is the goal "all the weight". */
 #ifndef STARG_COVER_GREEDY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Branch and bound by CBC on a part of the columns, which grows until the best cover of the part
  * covers everything:
  *   1. the columns that the linear relaxation leaves tight are the first part;

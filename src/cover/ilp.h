@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Branch and bound by the solver library. */
 #ifndef STARG_COVER_ILP_H
 #define STARG_COVER_ILP_H

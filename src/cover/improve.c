@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Swap search: each chosen row in turn is exchanged for the row that covers most in its place, as
  * long as that gains. Every exchange raises the covered weight, so the search ends; rounds are
  * limited all the same. Cost of a round: chosen rows x the whole matrix, by words. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The working form of a cover problem: only columns that count, identical ones merged, with the
  * bits by rows and by columns.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The subgradient method for the Lagrangian dual, with covers built from its reduced costs, after
  * [CFT99] with Held and Karp's control of the step length. Floating point only steers: every step's
  * multipliers are rounded to whole numbers and evaluated exactly. Cost of a step: the ones of the

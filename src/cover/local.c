@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Local search with weights on the columns, after Gao, Weise and Li (An efficient local search
  * heuristic with row weighting for the unicost set covering problem, EJOR 246, 2015), stated for
  * demands. Whenever everything is covered that is the best cover, and the chosen row of least loss

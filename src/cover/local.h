@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Local search for a cover of everything with fewer rows. */
 #ifndef STARG_COVER_LOCAL_H
 #define STARG_COVER_LOCAL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A partial target, or a limit on the rows: bounds by weight_bound.h, exact search by search.h. The
  * fewest rows for a target are found by asking for each number of rows from the bound upwards
  * whether so many can reach it. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cover/reduce.h"
 
 static size_t supply(const cover_instance *instance, size_t column) {

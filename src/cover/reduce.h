@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The paper's four reductions [YL11, 3.3], stated for demands and with the modes they hold in.
  *
  * A column j asks for demand(j) of the rows that hold it; R(j) are these rows.

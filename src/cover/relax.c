@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The linear relaxation min sum x, sum over R(j) of x >= demand(j), 0 <= x <= 1, by Clp's dual
  * simplex method. Most columns are never tight, so the model starts with some columns, spread
  * evenly, and takes in the most violated others, round by round, from the last basis. Rounds end

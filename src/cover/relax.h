@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The linear relaxation of covering everything. */
 #ifndef STARG_COVER_RELAX_H
 #define STARG_COVER_RELAX_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Depth first. A node has some rows chosen and some excluded; its candidates are scored in two
  * ways, each of which bounds what any further rows can add:
  *   - need: the weight of the open columns of the row (a column that becomes covered is open and

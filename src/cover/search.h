@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Branch and bound for partial targets and limited rows: the most weight that K rows can cover.
  * Exact in integers. */
 #ifndef STARG_COVER_SEARCH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The two solvers behind the public call: one for covering everything, one for a partial target or
  * a limit on the rows. */
 #ifndef STARG_COVER_SOLVE_H

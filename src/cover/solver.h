@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the two users of the solver library share: its lock and its clock. */
 #ifndef STARG_COVER_SOLVER_H
 #define STARG_COVER_SOLVER_H

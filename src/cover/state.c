@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "cover/state.h"
 
 starg_status cover_state_create(const cover_instance *instance, cover_state *out) {

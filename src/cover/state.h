@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A choice of rows under change, and what each row would add or take away.
  *
  * Invariants: held[j] is the number of chosen rows that hold column j; the masks say open:

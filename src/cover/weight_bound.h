@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Upper bound on the weight that a number of rows can cover, in whole numbers; the other way round
  * a lower bound on the rows that a weight takes.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Animations as binary glTF 2.0.
  *
  * The numbers, all of four bytes and in this order: vertex indices of the faces; positions of the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads the frames of a morph back from binary glTF 2.0, as animation.c writes it: the first
  * primitive of the first mesh, whose positions are the first frame and whose morph targets lead to
  * the others, each a displacement from the first, about the first node's translation.

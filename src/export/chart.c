@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Curves in the unit square as an SVG: axes with ticks at tenths, and a legend to the right. */
 #include <stdio.h>
 
 #include "core/file.h"
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "chart";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A sequence of colours that stay easy to tell apart however long it gets.
  *
  * The hue turns by the golden angle, which keeps any first n hues apart (no two closer than about

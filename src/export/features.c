@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Corner normals and feature lines.
  *
  * The normal at a corner is the area-weighted mean over those faces about the vertex that bend away

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a picture of a mesh needs besides its triangles: normals at the corners and lines along the
  * edges where it bends sharply. Both are decoration: every mesh is accepted. */
 #ifndef STARG_EXPORT_FEATURES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Binary glTF 2.0: 12 bytes of header, then two chunks, each with its length and its name; the JSON
  * is filled up with blanks to a multiple of four bytes. */
 #include "export/glb.h"

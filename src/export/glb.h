@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The container of binary glTF 2.0: a header, a chunk of JSON, a chunk of numbers. */
 #ifndef STARG_EXPORT_GLB_H
 #define STARG_EXPORT_GLB_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A table of distances as a picture: grey by rank, a cell of whole pixels an entry. */
 #include <math.h>
 #include <stdlib.h>

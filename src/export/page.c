@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A page to look at results: the text before the data, the data, the text behind it.
  *
  * Small things stand in one block of JSON ("data"), arrays in blocks of their own in base64, whose

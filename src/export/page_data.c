@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Data blocks of a page, as <script> elements of a type that no browser runs.
  *
  * Nothing in a name can end such an element or begin a comment in it: the JSON is ASCII, and <, >

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Data blocks of a page: elements that a browser keeps and does not run. */
 #ifndef STARG_EXPORT_PAGE_DATA_H
 #define STARG_EXPORT_PAGE_DATA_H

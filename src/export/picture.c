@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures: checks the options, looks at the mesh from the camera, draws, writes.
  *
  * The frame of the camera is x to the right, y up, z towards the viewer. The model is moved and

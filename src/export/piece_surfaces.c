@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The surfaces of pieces: of all faces of the tetrahedra, those that no other tetrahedron of the
  * same piece shares.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The surfaces of pieces of tetrahedra, to be drawn. */
 #ifndef STARG_EXPORT_PIECE_SURFACES_H
 #define STARG_EXPORT_PIECE_SURFACES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writes an image as a PNG file. */
 #ifndef STARG_EXPORT_PNG_H
 #define STARG_EXPORT_PNG_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The renderer: transparent triangles, lines and balls with exact order of depth.
  *
  * The image is cut into bands of rows, each drawn by one thread on its own: all that falls on a

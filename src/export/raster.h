@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Turns a projected scene into pixels. */
 #ifndef STARG_EXPORT_RASTER_H
 #define STARG_EXPORT_RASTER_H

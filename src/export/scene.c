@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A model with results about it in one file: what fits together, what is made of it, and which
  * writer takes it.
  *
@@ -10,7 +11,7 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "scene";

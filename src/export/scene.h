@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the writers of scenes share: the parts, checked, and what is made of them once. */
 #ifndef STARG_EXPORT_SCENE_H
 #define STARG_EXPORT_SCENE_H

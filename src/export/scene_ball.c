@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The ball that stands for a guard: an octahedron whose faces are cut into a triangular grid,
  * pushed out to the sphere. Square roots alone: the same bits on every machine. */
 #include <math.h>

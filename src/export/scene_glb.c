@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as binary glTF 2.0. Below the root, which is moved to the middle of all, stand the nodes
  * "model", "guards" with "guard_0000" and so on, "pieces" with "piece_0000" and so on, "skeleton".
  * What results say about a guard or a piece is in the extras of its node.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as binary PLY: faces in the colours of guards and pieces, edges for the skeleton. The
  * vertices of the parts follow one another: model, surfaces of pieces, balls for guards, nodes. */
 #include "core/file.h"

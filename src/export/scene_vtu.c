@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as a VTK XML unstructured grid: one grid of cells of all kinds, which data of the cells
  * tell apart. The numbers are appended raw behind the XML, as VTK's own writer does by default:
  * each array is 8 bytes of length and its numbers, little endian.

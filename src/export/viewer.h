@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The viewer: the text of a page before and behind its data. viewer/build.mjs makes it of the
  * sources in viewer/; without Node.js and npm at build time, viewer_missing.c stands in. */
 #ifndef STARG_EXPORT_VIEWER_H

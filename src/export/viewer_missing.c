@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "export/viewer.h"
 
 const unsigned char starg_viewer_head[1] = {0};

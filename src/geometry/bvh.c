@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bounding volume hierarchy: split at the median of the longest axis of the centroids, leaves of
  * up to four triangles. Construction O(n log n), queries O(log n) where little is hit.
  *

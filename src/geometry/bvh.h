@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A bounding volume hierarchy over the triangles of a mesh. Box tests only compare coordinates, so
  * that nothing is lost to rounding; what is found in the leaves is decided by predicates. */
 #ifndef STARG_GEOMETRY_BVH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Incremental Delaunay tetrahedralisation [Bowyer 1981, Watson 1981] with exact predicates.
  *
  * Points are inserted in a biased randomised order (rounds of doubling size, each along a Hilbert

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Delaunay tetrahedra of a set of points. */
 #ifndef STARG_GEOMETRY_DELAUNAY_H
 #define STARG_GEOMETRY_DELAUNAY_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Integers of many limbs, for signs that floating point cannot decide.
  *
  * Every finite double is an integer times a power of two. A predicate's inputs are brought to the

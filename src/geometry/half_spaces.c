@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Farkas' lemma for up to four half-spaces, in integers.
  *
  * Problem: the half-spaces n_i . x < d_i have no common point where factors f_i >= 0, not all zero,

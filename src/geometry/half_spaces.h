@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Proofs that half-spaces have no common point. */
 #ifndef STARG_GEOMETRY_HALF_SPACES_H
 #define STARG_GEOMETRY_HALF_SPACES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Intersection tests by signs of predicates only. A point of three dimensions is never computed:
  * coplanar cases are decided in a coordinate plane onto which the common plane projects
  * one to one, and triangles without area are taken apart into their edges. */

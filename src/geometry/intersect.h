@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Segments, triangles and points against each other, every degenerate case decided exactly. */
 #ifndef STARG_GEOMETRY_INTERSECT_H
 #define STARG_GEOMETRY_INTERSECT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* k-d tree [Bentley 1975], implicit: the middle of a range of `order` is the median along the axis
  * of its depth (axes take turns), what is before it is not above, what is behind it not below.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A k-d tree over points of up to four coordinates: which one is nearest? */
 #ifndef STARG_GEOMETRY_KD_TREE_H
 #define STARG_GEOMETRY_KD_TREE_H

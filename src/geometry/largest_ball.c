@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The largest ball inside of half-spaces that come one by one.
  *
  * Problem: maximise r over (x, r) with n_i . x + r <= b_i, when the half-spaces are not known all

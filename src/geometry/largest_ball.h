@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The largest ball inside of half-spaces that come one by one. */
 #ifndef STARG_GEOMETRY_LARGEST_BALL_H
 #define STARG_GEOMETRY_LARGEST_BALL_H

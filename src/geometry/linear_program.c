@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Randomised incremental linear programming.
  *
  * Problem: maximise a linear function over n half-spaces and a ball, in d <= 4 variables.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Linear programs in up to four variables over many constraints. */
 #ifndef STARG_GEOMETRY_LINEAR_PROGRAM_H
 #define STARG_GEOMETRY_LINEAR_PROGRAM_H

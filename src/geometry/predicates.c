@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Exact predicates in three steps: a floating-point filter, 128-bit integers where the inputs are
  * short (lattice-like coordinates), integers of many limbs otherwise.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Exact geometric predicates: the one place where signs are decided.
  *
  * Every function returns the sign (-1, 0, 1) that exact arithmetic on the given doubles would

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Vectors of three doubles. Nothing here decides a sign: see predicates.h. */
 #ifndef STARG_GEOMETRY_VEC3_H
 #define STARG_GEOMETRY_VEC3_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Fast winding numbers by a tree of dipoles.
  *
  * Sources: A. Jacobson, L. Kavan, O. Sorkine-Hornung, Robust inside-outside segmentation using

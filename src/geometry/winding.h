@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The generalised winding number, which tells inside from outside for surfaces with holes too. */
 #ifndef STARG_GEOMETRY_WINDING_H
 #define STARG_GEOMETRY_WINDING_H

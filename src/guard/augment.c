@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Candidates for faces that no candidate sees yet.
  *
  * The paper adds the invisible vertices themselves as candidates [YL11, section 3.2]; a guard must

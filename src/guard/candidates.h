@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Candidates: points where guards may stand. */
 #ifndef STARG_GUARD_CANDIDATES_H
 #define STARG_GUARD_CANDIDATES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The cover problem of a pool. */
 #ifndef STARG_GUARD_CHOOSE_H
 #define STARG_GUARD_CHOOSE_H

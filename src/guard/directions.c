@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where cones of view may look: directions spread evenly over the sphere by a golden spiral.
  *
  * A cone of half angle a takes the fraction (1 - cos a) / 2 of the sphere; OVERLAP times as many

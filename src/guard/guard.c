@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Guarding a solid [YL11, section 3]: candidates, what they see, the fewest that see everything.
  *
  * Stages: levels of detail; candidate points, of a large model from one of the levels

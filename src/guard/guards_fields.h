@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Field tables of guard options and of GUARDS.json. */
 #ifndef STARG_GUARD_GUARDS_FIELDS_H
 #define STARG_GUARD_GUARDS_FIELDS_H

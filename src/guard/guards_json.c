@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* GUARDS.json: the result of guarding as text (docs/formats.md). */
 #include "core/file.h"
 #include "core/memory.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The result: what a set of guards sees, counted anew from its positions. */
 #include "geometry/vec3.h"
 #include "guard/stages.h"

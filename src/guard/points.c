@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Candidate points from a file: text of three numbers a line, with an optional leading "v" and
  * lines of edges as in OBJ, and comments by #; the nodes of a skeleton (CG, VTK); or the positions
  * in a GUARDS.json. */
@@ -6,7 +7,7 @@
 
 #include "core/file.h"
 #include "guard/candidates.h"
-#include "mesh/scan.h"
+#include "mesh/formats/scan.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "points file";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A pool: the candidates of one job and what each of them sees. */
 #ifndef STARG_GUARD_POOL_H
 #define STARG_GUARD_POOL_H

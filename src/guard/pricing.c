@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Column generation for guards: where would a new candidate pay?
  *
  * The linear relaxation of the cover pays a price for each face; a point lowers its bound only if

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* New candidates that can lower the bound of a cover problem: column generation. */
 #ifndef STARG_GUARD_PRICING_H
 #define STARG_GUARD_PRICING_H

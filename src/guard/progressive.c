@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Progressive guarding: from a coarse level of detail to the model itself [YL11, section 3.3].
  *
  * Stages, for each level from the coarsest on:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Proxy level: a large model takes its medial axis from a level of detail, the coarsest that has
  * enough vertices: for some thousand points more tell nothing new. Cost: that of the levels. */
 #include "guard/proxy.h"

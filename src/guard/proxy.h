@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The proxy level: what the medial axis and the skeleton of a large model are made from. */
 #ifndef STARG_GUARD_PROXY_H
 #define STARG_GUARD_PROXY_H

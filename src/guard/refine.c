@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Refinement: better places than the candidates that there were, the paper's future work.
  *
  * Rounds of column generation: the linear relaxation of the cover problem gives a bound and prices;

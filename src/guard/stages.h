@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stages of guarding a solid. Each takes finished inputs, which stay as they are, and returns
  * one result; only a pool that grows is handed over. */
 #ifndef STARG_GUARD_STAGES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the columns of a pool weigh: a coverage below 1 is meant by area, so each face weighs its
  * share of the total area in units of 2^-40, at least one, that the cover works on integers;
  * vertices weigh one unit each. */

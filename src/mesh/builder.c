@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The mesh that a reader builds up, and the messages that name places in its file. Counts and
  * indices have been checked when they arrive here or are checked here, so that what finish hands
  * over cannot be refused for its contents. */
 #include <math.h>
 #include <stdarg.h>
 
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 
 /* Concave polygons beyond this many corners are refused: ear clipping is quadratic. */
 enum { MAX_CONCAVE_CORNERS = 4096 };

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The check of a mesh as the boundary of a solid.
  *
  * Stages: corners, edges, vertices (fans), positions, duplicate faces, degenerate faces,

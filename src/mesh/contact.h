@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How two faces of a mesh meet. */
 #ifndef STARG_MESH_CONTACT_H
 #define STARG_MESH_CONTACT_H

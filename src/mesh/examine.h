@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The check together with the tables that it was made from, for callers that go on with them. */
 #ifndef STARG_MESH_EXAMINE_H
 #define STARG_MESH_EXAMINE_H

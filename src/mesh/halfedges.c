@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Collapse, flip and split of a halfedge mesh.
  *
  * Invariants: the twins of living faces are mutual and run opposite ways; `leaving` names a

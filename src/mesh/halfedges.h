@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The connectivity of a closed, oriented triangle mesh that changes: edges are collapsed, flipped
  * and split, faces are split. It stays a 2-manifold of the same topology. No operation looks at
  * coordinates; what vertices, edges and faces carry is the caller's. */

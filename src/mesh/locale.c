@@ -1,4 +1,5 @@
-#include "mesh/io.h"
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "mesh/formats/io.h"
 
 starg_status starg_c_locale_enter(starg_context *context, starg_c_locale *locale) {
     locale->own = newlocale(LC_ALL_MASK, "C", (locale_t)0);

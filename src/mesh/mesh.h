@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of a mesh. */
 #ifndef STARG_MESH_MESH_H
 #define STARG_MESH_MESH_H

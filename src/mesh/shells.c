@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The depth of a shell is the number of other shells that have a winding number other than 0
  * about one of its corners, counted along a vertical line: O(log n) per shell as a rule. */
 #include "mesh/shells.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How the closed shells of a mesh lie in one another, and which of them must be turned so that
  * all faces point out of the solid. */
 #ifndef STARG_MESH_SHELLS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of a solid: what the later stages read. */
 #ifndef STARG_MESH_SOLID_H
 #define STARG_MESH_SOLID_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Edges are found by sorting the halfedges of each lower vertex by their upper vertex; the faces
  * of an edge are chained in the order of their halfedge numbers. */
 #include "mesh/topology.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which faces meet along which edges, and the connected parts that follow from it. */
 #ifndef STARG_MESH_TOPOLOGY_H
 #define STARG_MESH_TOPOLOGY_H

@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Welding: points at exactly equal positions become one vertex. */
 #ifndef STARG_MESH_WELD_H
 #define STARG_MESH_WELD_H
 
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 
 typedef struct starg_weld {
     starg_mesh_builder *builder;

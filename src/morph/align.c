@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Alignment of two spread surfaces by a rotation of the sphere.
  *
  * Stages: principal axes of both surfaces in space; the 24 ways to lay the axes of one on those of

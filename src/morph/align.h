@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How must one spread surface be turned so that it lies on another one as well as possible? */
 #ifndef STARG_MORPH_ALIGN_H
 #define STARG_MORPH_ALIGN_H

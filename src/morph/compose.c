@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A map between two surfaces that distorts little, coarse to fine.
  *
  * Problem: two surfaces spread over the sphere make a bijection, but each was spread for itself:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The map from one spread surface to another, with all that is known about both. */
 #ifndef STARG_MORPH_COMPOSE_H
 #define STARG_MORPH_COMPOSE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of compose.c: a map between two spread surfaces while it is bettered. */
 #ifndef STARG_MORPH_COMPOSITION_H
 #define STARG_MORPH_COMPOSITION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Consistent guarding [YL11, section 5.2]: guards of A and counterparts in B, and pieces of the
  * surface that each pair of them sees.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Mesh deformation: tetrahedra of A that go with a morph to B.
  *
  * Problem: A's surface moves to B's, on a way that is given; find places for the vertices inside,

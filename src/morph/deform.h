@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Mesh deformation: tetrahedra that go with a morph. */
 #ifndef STARG_MORPH_DEFORM_H
 #define STARG_MORPH_DEFORM_H

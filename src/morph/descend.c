@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Descent of a composed map, a vertex at a time.
  *
  * A vertex goes straight along the second surface against the gradient of its triangles' energy

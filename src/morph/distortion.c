@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How much a composed map distorts about a vertex.
  *
  * Energy of a triangle of area S: S (s^2 + r^2 + 1/s^2 + 1/r^2) for the singular values s, r of the

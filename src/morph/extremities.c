@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Extremities: where the mean distance along the surface to all of it is locally largest.
  *
  * Source: the centricity of M. Hilaga et al., Topology matching for fully automatic similarity
@@ -12,7 +13,7 @@
 #include <math.h>
 
 #include "geometry/vec3.h"
-#include "mesh/heap.h"
+#include "mesh/levels/heap.h"
 
 static const char STAGE[] = "extremities";
 enum { BASES = 12 };

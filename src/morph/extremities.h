@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Extremities, the ends of a shape's limbs: features that tell which way round it stands. */
 #ifndef STARG_MORPH_EXTREMITIES_H
 #define STARG_MORPH_EXTREMITIES_H

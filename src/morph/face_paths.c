@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How each face turns and stretches on its way from A to B [ACOL00; YL11, section 5.2].
  *
  * Stages: the rotation R0 that brings the whole of A closest to B; for each face the Jacobian J of
@@ -19,7 +20,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/heap.h"
+#include "mesh/levels/heap.h"
 #include "mesh/topology.h"
 #include "morph/morph.h"
 #include "morph/rotation.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Faces that the map flips, and how they get from A to B nevertheless.
  *
  * Problem: where A's triangles are coarse for B's shape, B in A's connectivity passes through

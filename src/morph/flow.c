@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Steps of a composed map that move all vertices together, as rigidly as possible.
  *
  * Problem: vertex by vertex a limb that is wound about its axis comes to rest; only together can

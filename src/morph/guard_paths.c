@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How the guards go from A to B: along the guarding graph.
  *
  * Guards whose pieces share an edge are neighbours. A spanning tree of short edges (Prim) is rooted

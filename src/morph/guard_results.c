@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The guards of a morph's ends as results of their own, and what each end alone would need.
  *
  * Both use the candidates of the common problem, so that what differs is only that a pair must see

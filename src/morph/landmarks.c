@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A spread surface is warped until its landmarks are met.
  *
  * Stages, repeated: the tangent field that moves every landmark towards its counterpart, between

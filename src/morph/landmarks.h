@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Landmarks on the sphere, and files of them. */
 #ifndef STARG_MORPH_LANDMARKS_H
 #define STARG_MORPH_LANDMARKS_H

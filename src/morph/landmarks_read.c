@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files of landmarks: a pair a line, by vertex numbers or by points. */
 #include <math.h>
 #include <stdlib.h>
@@ -6,7 +7,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 #include "mesh/mesh.h"
 #include "starguard/morph.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Point location on the sphere by walking.
  *
  * From a face the walk crosses an edge that has the direction on its other side. On triangulations

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where on a spread surface is a direction? */
 #ifndef STARG_MORPH_LOCATE_H
 #define STARG_MORPH_LOCATE_H

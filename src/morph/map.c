@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Maps between surfaces, the first of the steps of section 5.2 of [YL11].
  *
  * Stages for surfaces of genus 0 with different faces: check both; spread both over the sphere

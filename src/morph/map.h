@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of a map. */
 #ifndef STARG_MORPH_MAP_H
 #define STARG_MORPH_MAP_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* MAP.json: where each vertex of A lies on B, as text (docs/formats.md). Its table
  * (starguard/fields.h) is the one place that says what its keys are called, may hold and mean. */
 #include <float.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How much a map distorts: the singular values of the linear maps between faces and their images.
  */
 #include "morph/map.h"

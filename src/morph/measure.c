@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What a frame of a morph is like: exact counts of intersections, folds, and drifts. */
 #include <math.h>
 #include <string.h>

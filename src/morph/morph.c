@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Morphs: from A to the images of its vertices by one of several methods [YL11, section 5.2].
  *
  * Stages: check and scale both ends; for methods with guards, choose guards and pieces

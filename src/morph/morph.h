@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of a morph. */
 #ifndef STARG_MORPH_MORPH_H
 #define STARG_MORPH_MORPH_H

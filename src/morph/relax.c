@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Relaxation of spherical triangulations by stretch.
  *
  * Problem: a valid embedding in the sphere squeezes limbs to almost nothing; give every part of the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Evens out an embedding of a triangulated sphere in the unit sphere. */
 #ifndef STARG_MORPH_RELAX_H
 #define STARG_MORPH_RELAX_H

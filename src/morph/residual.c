@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the least squares leave to B at t = 1, and how it comes in.
  *
  * In [YL11] all of it comes in proportion to t. That is right for what moves whole limbs. But where

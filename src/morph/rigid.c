@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Shapes that are as rigid as possible: vertices by least squares [BBA08].
  *
  * Energy: for each face with the wanted Jacobian A(t), its cotangents times the squared errors of

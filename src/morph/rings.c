@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Removal and return of the vertices of a triangulated sphere [Hop96].
  *
  * Each vertex keeps the cycle of its neighbours. To remove b is to merge it into a neighbour a: the
@@ -20,7 +21,7 @@
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "mesh/heap.h"
+#include "mesh/levels/heap.h"
 #include "mesh/topology.h"
 
 static const char STAGE[] = "sphere";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A closed triangulated sphere that loses and regains its vertices one by one. */
 #ifndef STARG_MORPH_RINGS_H
 #define STARG_MORPH_RINGS_H

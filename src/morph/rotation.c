@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rotations out of 3 x 3 matrices, as morphing needs them [ACOL00]. */
 #include "morph/rotation.h"
 

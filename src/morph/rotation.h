@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Matrices of three rows: rotations, and the parts of other maps that are rotations. Row-major. */
 #ifndef STARG_MORPH_ROTATION_H
 #define STARG_MORPH_ROTATION_H

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Consistent decomposition of solids [YL11, section 5.2]: both ends of a morph cut into the same
  * pieces, each star-shaped in both.
  *
  * Stages: both ends must bound a solid without meeting themselves; A is filled with tetrahedra that
  * keep its surface; the morph takes these to B (deform.c); the pieces are sets of tetrahedra that
- * are star-shaped in both places (star/strict/compatible.c).
+ * are star-shaped in both places (star/strict/start/compatible.c).
  *
  * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the surface
  * of either, so that they fill both without overlap. Cost: that of its stages. */
@@ -12,7 +13,7 @@
 #include "mesh/solid.h"
 #include "morph/deform.h"
 #include "morph/morph.h"
-#include "star/strict/compatible.h"
+#include "star/strict/start/compatible.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "consistent pieces";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Spherical embedding of a surface of genus 0, coarse to fine.
  *
  * Source: E. Praun, H. Hoppe, Spherical parametrization and remeshing, 2003, on progressive

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Surfaces of genus 0 spread over the unit sphere. */
 #ifndef STARG_MORPH_SPHERE_H
 #define STARG_MORPH_SPHERE_H

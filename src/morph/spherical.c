@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Spherical coordinates about the guards, interpolated [SR95 carried to 3D]: the baseline that
  * [YL11, section 5.2] says does not work well.
  *

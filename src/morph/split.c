@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Splitting edges of tetrahedra in two.
  *
  * An edge is split with all tetrahedra about it, so that they still fit together. In each round a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sparse systems that are assembled from triplets. */
 #ifndef STARG_MORPH_TRIPLETS_H
 #define STARG_MORPH_TRIPLETS_H

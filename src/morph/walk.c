@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Straight lines on a triangulated surface, from face to face by unfolding.
  *
  * In each face the step is written in barycentric coordinates; the first of them to become negative

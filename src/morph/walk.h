@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Straight lines on a triangulated surface. */
 #ifndef STARG_MORPH_WALK_H
 #define STARG_MORPH_WALK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A mesh that is being built: vertices are named by keys, so that patches made one by one share
  * the vertices on their common borders. */
 #ifndef STARG_SAMPLE_BUILDER_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The catalogue: which samples there are, and who makes them. */
 #include <string.h>
 

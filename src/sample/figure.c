@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Builds figures: vertebrates from their tables, the octopus from one arm. */
 #include "sample/figure.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* An articulated figure: joints, the solid around them, and poses. */
 #ifndef STARG_SAMPLE_FIGURE_H
 #define STARG_SAMPLE_FIGURE_H

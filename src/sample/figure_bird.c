@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A bird of prey on the wing; lengths in decimetres. ARM is the wing. */
 #include "sample/vertebrate.h"
 

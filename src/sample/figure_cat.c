@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A cat; lengths in decimetres. */
 #include "sample/vertebrate.h"
 

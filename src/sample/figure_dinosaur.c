@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A dinosaur on two legs, in the way of Tyrannosaurus; lengths in metres. */
 #include "sample/vertebrate.h"
 

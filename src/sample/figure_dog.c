@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A dog of a retriever's build; lengths in metres. */
 #include "sample/vertebrate.h"
 

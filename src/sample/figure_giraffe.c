@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A giraffe; lengths in metres. */
 #include "sample/vertebrate.h"
 

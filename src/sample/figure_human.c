@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A person; lengths in metres. Stands with arms held out. */
 #include "sample/vertebrate.h"
 

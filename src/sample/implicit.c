@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Round cones and their smooth union.
  *
  * The distance to a round cone is taken in the half-plane through its axis: there the outline is

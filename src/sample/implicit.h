@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A solid as a function of space: the smooth union of round cones, negative inside. */
 #ifndef STARG_SAMPLE_IMPLICIT_H
 #define STARG_SAMPLE_IMPLICIT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Marching tetrahedra on the body-centred cubic lattice.
  *
  * Problem: a closed 2-manifold near the zero set of a field, touching only space near it.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Meshes the zero set of an implicit field by marching tetrahedra. */
 #ifndef STARG_SAMPLE_ISOSURFACE_H
 #define STARG_SAMPLE_ISOSURFACE_H

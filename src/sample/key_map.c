@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "sample/key_map.h"
 
 #include "core/memory.h"

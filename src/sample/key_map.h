@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers 64-bit keys in the order in which they are first seen. */
 #ifndef STARG_SAMPLE_KEY_MAP_H
 #define STARG_SAMPLE_KEY_MAP_H

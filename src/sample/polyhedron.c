@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Polyhedra whose triangles are cut into n^2 smaller ones each: the sphere and the shell (blown up
  * to balls), and the spiky star (flat).
  *

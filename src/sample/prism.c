@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Upright solids over a plan of rectangles: rooms (the solid is the air), halls with round columns,
  * a plate with holes.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Coarsening and smoothing of an isosurface.
  *
  * Stages: half-edges; collapse of the shortest edges until the number of vertices is met; then

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Turns the raw triangles of an isosurface into well-shaped ones, as many as asked for. */
 #ifndef STARG_SAMPLE_REMESH_H
 #define STARG_SAMPLE_REMESH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Linear blend skinning.
  *
  * A vertex follows the joint whose parts are nearest, and near the border to another joint both, by

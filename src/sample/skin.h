@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Bends a mesh with the joints of a figure. */
 #ifndef STARG_SAMPLE_SKIN_H
 #define STARG_SAMPLE_SKIN_H

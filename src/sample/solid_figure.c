@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Articulated figures as meshes: an isosurface of the rest pose, coarsened to the wanted number of
  * vertices, bent by skinning and freed of the folds that this makes. All poses of one size share
  * their connectivity, because the mesh is made from the rest pose only.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The families of solids that the catalogue is made of. Each takes the wanted number of vertices
  * and comes as near to it as its structure allows. Errors: MEMORY, CANCELLED. */
 #ifndef STARG_SAMPLE_SOLIDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tubes of round section around closed curves: the torus, and a tube tied into a trefoil knot.
  *
  * The section stands on the Frenet frame, which is periodic on both curves (their curvature never

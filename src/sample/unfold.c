@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Linear blending lets the skin run through itself where a joint closes. Such faces turn against
  * the mean normal about their corners, or lose their shape. Vertices of those faces, and their
  * neighbours, take up more and more of their neighbours' motion out of the rest pose, until no face

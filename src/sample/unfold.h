@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Smooths away the folds that skinning makes in the crook of a joint. */
 #ifndef STARG_SAMPLE_UNFOLD_H
 #define STARG_SAMPLE_UNFOLD_H

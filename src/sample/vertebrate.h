@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Figures with a spine, a head, a tail and four limbs, as tables.
  *
  * A table gives the right side only (z > 0): parts off the middle plane and the joints of the right

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Classes of models: from their file names, or from a text. */
 #include <stdlib.h>
 

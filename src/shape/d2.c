@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The D2 shape distribution [OFCD02]: how far apart are two random points of the surface?
  *
  * Stages: running sums of the face areas; pairs of points, uniform in area; their distances by the

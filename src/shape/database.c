@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The database file: making it, opening it, transactions.
  *
  * The schema is told apart by SQLite's application_id (ours or not) and user_version (which). The

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the database: the connection, statements, and SQLite's errors in our words. */
 #ifndef STARG_SHAPE_DATABASE_H
 #define STARG_SHAPE_DATABASE_H

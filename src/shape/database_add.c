@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Adding models to a database.
  *
  * Stages: the contents that are stored whole; then the files are described

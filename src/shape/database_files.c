@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Describing files that are to be added to a database: read, hash, and make all signatures, unless
  * the content is stored already.
  *

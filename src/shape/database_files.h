@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Describing files that are to be added to a database, here or in other processes. */
 #ifndef STARG_SHAPE_DATABASE_FILES_H
 #define STARG_SHAPE_DATABASE_FILES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files that other processes describe.
  *
  * A job is the names of all files, which helpers read themselves, by the same paths, and the hashes

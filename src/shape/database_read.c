@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reading a database, and removing from it.
  *
  * Numbers are stored as IEEE doubles, the least significant byte first. A query goes through all

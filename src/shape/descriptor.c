@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The descriptor of a shape [YL11, section 5.1]: what its guards see, and how they are joined.
  *
  * Stages: the model at a standard level of detail (level.c); a strict star decomposition of it

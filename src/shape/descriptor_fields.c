@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* DESCRIPTOR.json as a table (starguard/fields.h): the one place that says what its keys are
  * called, may hold and mean. Rows are in the order of the file. */
 #include "shape/descriptor_fields.h"
@@ -117,7 +118,7 @@ static const starg_field FILE_ROWS[] = {
      .help = "The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area."},
     {.key = "waves",
      .kind = STARG_FIELD_NUMBERS,
-     RESULT(wks),
+     RESULT(wave_kernel),
      .length = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
      .high = DBL_MAX,
      .help = "Row by row: quantiles, over the surface, of how strong vibrations of about an energy "

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Field table of DESCRIPTOR.json. */
 #ifndef STARG_SHAPE_DESCRIPTOR_FIELDS_H
 #define STARG_SHAPE_DESCRIPTOR_FIELDS_H

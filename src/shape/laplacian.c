@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The cotangent Laplacian: linear finite elements with lumped masses.
  *
  * Stages: scale by the extent, so that no square overflows; drop faces without extent; subdivide at

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The cotangent Laplacian of a triangle mesh. */
 #ifndef STARG_SHAPE_LAPLACIAN_H
 #define STARG_SHAPE_LAPLACIAN_H

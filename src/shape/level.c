@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A model at a standard level of detail, so that noise, resolution and small faults of its mesh
  * count little in what is measured next.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A model at a standard level of detail. */
 #ifndef STARG_SHAPE_LEVEL_H
 #define STARG_SHAPE_LEVEL_H

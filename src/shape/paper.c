@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The distance of [YL11, section 5.1]: how hard is it to deform one guarding graph into another,
  * and how unlike are the histograms of the guards that come together?
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The pose of a descriptor: [YL11] compares coordinates but does not say of which frame.
  *
  * Here: centre, size and principal axes of the points of the boundary that the guards see, each

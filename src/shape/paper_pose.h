@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A descriptor without its place, size and position in space. */
 #ifndef STARG_SHAPE_PAPER_POSE_H
 #define STARG_SHAPE_PAPER_POSE_H

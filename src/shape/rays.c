@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rays inside of a solid.
  *
  * Which triangles of the boundary a ray meets is decided exactly, so that none slips through

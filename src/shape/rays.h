@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How far the boundary of a tetrahedral mesh is from a point inside, in a direction. */
 #ifndef STARG_SHAPE_RAYS_H
 #define STARG_SHAPE_RAYS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How completely does a descriptor hold the shape? [YL11, section 5.1] says: completely.
  *
  * Stages: the points of the boundary that it holds; their distances to the model's surface; random

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How well distances retrieve models of the query's class: the measures of Shilane, Min, Kazhdan
  * and Funkhouser, The Princeton shape benchmark, SMI 2004 [SMKF04].
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* SHA-256 as FIPS 180-4 has it. The constants are the first 32 bits of the fractional parts of the
  * square roots (initial state) and cube roots (rounds) of the first primes. */
 #include "shape/sha256.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* SHA-256 (FIPS 180-4) of a block of memory: names contents, so that equal files are known as such.
  */
 #ifndef STARG_SHAPE_SHA256_H

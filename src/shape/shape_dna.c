@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Shape-DNA [RWP06]: the beginning of the spectrum of the surface's Laplacian, normalised by area.
  *
  * The numbers are the eigenvalues behind the first one, which is 0, in ascending order (further

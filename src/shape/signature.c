@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Signatures of all kinds behind one interface: the table of kinds, and what does not depend on
  * them. */
 

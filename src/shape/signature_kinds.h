@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The kinds of signatures: what each consists of and how two are compared. A new kind is an entry
  * in the table of signature.c and a file of its own. */
 #ifndef STARG_SHAPE_SIGNATURE_KINDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* L D L' without pivoting (LDL), in the order of AMD: stable for positive definite matrices. AMD
  * takes its memory from malloc; all other memory is the context's.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sparse symmetric positive definite systems that are solved for many right-hand sides. */
 #ifndef STARG_SHAPE_SPARSE_H
 #define STARG_SHAPE_SPARSE_H

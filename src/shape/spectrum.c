@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The smallest eigenvalues of a Laplacian by shifted inversion.
  *
  * Implicitly restarted Lanczos iterations (ARPACK) on M^1/2 (L + M)^-1 M^1/2, whose largest

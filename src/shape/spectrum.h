@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The smallest eigenvalues of a Laplacian, and their functions. */
 #ifndef STARG_SHAPE_SPECTRUM_H
 #define STARG_SHAPE_SPECTRUM_H

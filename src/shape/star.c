@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The star distance: what the pieces of a star decomposition tell of a shape whatever its pose and
  * however it was cut.
  *

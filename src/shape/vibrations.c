@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The spectrum of a solid's boundary, and where it vibrates.
  *
  * Problem: numbers of a shape that change neither with its pose, nor with the decomposition that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How the boundary of a solid vibrates. */
 #ifndef STARG_SHAPE_VIBRATIONS_H
 #define STARG_SHAPE_VIBRATIONS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is seen from all over a solid: the histograms of [YL11, section 5.1], of very many points.
  *
  * Problem: where guards stand, and how many, changes with the pose and with the smallest change of

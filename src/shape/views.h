@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is seen from all over a solid. */
 #ifndef STARG_SHAPE_VIEWS_H
 #define STARG_SHAPE_VIEWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The wave kernel signatures of all points of a surface [ASC11], as distributions.
  *
  * Problem: a spectrum tells at which energies a surface vibrates, but not where. Ears, tails and

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Wave kernel signature: where on a surface its vibrations are strong. */
 #ifndef STARG_SHAPE_WKS_H
 #define STARG_SHAPE_WKS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The dual complex of the tetrahedra inside [DS06, section 3: the medial axis as Voronoi facets].
  * The open region made of those simplices whose cofaces are all inside is a union of open stars, so
  * the complex dual to these simplices is homotopy equivalent to it.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The medial axis as a cell complex: the part of the Voronoi diagram dual to what lies inside. */
 #ifndef STARG_SKELETON_COMPLEX_H
 #define STARG_SKELETON_COMPLEX_H

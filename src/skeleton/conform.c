@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Conforming samples: a closed triangle mesh is changed by moves that keep it a closed manifold of
  * the same topology, until all of its faces are faces of the Delaunay tetrahedra of its points. The
  * mesh then bounds a set of whole tetrahedra, and that set has the topology of the solid for

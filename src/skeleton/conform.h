@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Samples of a surface that their own Delaunay tetrahedra follow. */
 #ifndef STARG_SKELETON_CONFORM_H
 #define STARG_SKELETON_CONFORM_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Resampling. The kept nodes fall into branches between joints and ends (a loop without either is
  * one branch from a node to itself). Each branch is smoothed and gets nodes at equal steps of arc
  * length over radius, so that thin parts have as many nodes for their width as thick ones. Joints

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The pruned graph as evenly spaced nodes on smooth branches. */
 #ifndef STARG_SKELETON_CURVE_H
 #define STARG_SKELETON_CURVE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers for edges: a hash table from pairs of vertices, in the order in which they come. */
 #ifndef STARG_SKELETON_EDGE_TABLE_H
 #define STARG_SKELETON_EDGE_TABLE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Erosion in the order of the medial geodesic function [DS06, section 4].
  *
  * A sheet is the Voronoi facet between two sample points; its function value is the length of the

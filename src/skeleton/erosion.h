@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Erosion of the medial complex to a graph. */
 #ifndef STARG_SKELETON_EROSION_H
 #define STARG_SKELETON_EROSION_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Lists of neighbours by counting; each list in the order of the links. Linear. */
 #include "skeleton/graph.h"
 

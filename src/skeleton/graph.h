@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Undirected graphs as lists of neighbours. */
 #ifndef STARG_SKELETON_GRAPH_H
 #define STARG_SKELETON_GRAPH_H

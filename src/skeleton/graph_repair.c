@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where samples are coarse, a hole in the region inside may remain at a lost face; it gives a loop
  * of a few tetrahedra. How many loops are real is known from the surface (its genus), so that the
  * shortest ones above that number are taken for such holes and cut.

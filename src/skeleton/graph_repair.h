@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Graph repair: loops of an eroded graph that the solid does not have. */
 #ifndef STARG_SKELETON_GRAPH_REPAIR_H
 #define STARG_SKELETON_GRAPH_REPAIR_H

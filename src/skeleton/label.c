@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Labels by the surface itself: a tetrahedron on a face of the samples lies on the side that an
  * exact predicate tells, and labels spread to neighbours across all other faces, the widest first.
  * That is a statement about how cells join and so exact, however flat a tetrahedron is, as long as

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which Delaunay tetrahedra of surface samples lie inside the solid. */
 #ifndef STARG_SKELETON_LABEL_H
 #define STARG_SKELETON_LABEL_H

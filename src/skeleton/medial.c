@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Centres of maximal balls [YL11, section 3; Dey and Zhao 2004]: where the vertices of the surface
  * sample it densely, the Voronoi vertices inside the solid lie near its medial axis (or near the
  * surface, between vertices that are almost cospherical with their neighbours).

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The medial axis as its centres of maximal balls: Voronoi vertices of the surface's vertices. */
 #ifndef STARG_SKELETON_MEDIAL_H
 #define STARG_SKELETON_MEDIAL_H

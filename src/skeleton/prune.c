@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Erosion leaves a graph with a twig to nearly every tetrahedron. Trees are peeled from their
  * leaves down to the loops, or to the largest ball of a part without loops; thus each node knows
  * the one below it. Among the branches that meet in a node the one with the longest way up goes on,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pruning: which branches of an eroded medial axis are features of the shape. */
 #ifndef STARG_SKELETON_PRUNE_H
 #define STARG_SKELETON_PRUNE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Skeleton files, as write.c writes them: OBJ (v and l, from 1), CG (v and e, from 1), and VTK
  * (legacy polydata as text, from 0, with the points' radii). What the numbers say about the graph
  * is counted anew; whether it lies in a solid is not asked. Cost: linear. */
@@ -5,7 +6,7 @@
 #include <stdlib.h>
 
 #include "core/file.h"
-#include "mesh/scan.h"
+#include "mesh/formats/scan.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "skeleton file";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Samples under the moves of mesh/halfedges.h.
  *
  * Invariants: every point has a depth, which grows by one with each cut and never beyond MAX_DEPTH;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The samples of a surface as a mesh that moves: halfedges, with what a sample carries besides. */
 #ifndef STARG_SKELETON_SAMPLE_MESH_H
 #define STARG_SKELETON_SAMPLE_MESH_H

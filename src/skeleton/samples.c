@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Surface samples by subdivision: edges are split in the middle, each decided by itself, and a face
  * is cut into two, three or four by the edges of it that are. So the result is again a closed mesh
  * of the same topology, whatever is split.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Samples of a surface: a subdivision of its mesh, dense enough for the Voronoi diagram. */
 #ifndef STARG_SKELETON_SAMPLES_H
 #define STARG_SKELETON_SAMPLES_H

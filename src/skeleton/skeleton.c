@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Curve skeletons by erosion of the medial axis [DS06], homotopic by construction.
  *
  * Stages: samples of the surface; moves that make them follow their own Delaunay tetrahedra

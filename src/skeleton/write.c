@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Skeleton files. OBJ: v and l, from 1. CG: a line of counts, then v and e, from 1. VTK: legacy
  * polydata, from 0, with the radius of every point. */
 #include <inttypes.h>
 
 #include "core/file.h"
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 #include "starguard/skeleton.h"
 
 static const char STAGE[] = "skeleton file";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
 #include <math.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is told about the pieces of a solid.
  *
  * Problem: labels on tetrahedra and a guard for each label are given; count and measure the pieces,

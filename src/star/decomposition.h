@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The result of a star decomposition, whichever mode has found it. */
 #ifndef STARG_STAR_DECOMPOSITION_H
 #define STARG_STAR_DECOMPOSITION_H

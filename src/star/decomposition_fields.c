@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PIECES.json as a table (starguard/fields.h): the one place that says what its keys are called,
  * may hold and mean. Rows are in the order of the file. */
 #include <float.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Reads PIECES.vtk and PIECES.json back as a decomposition. What the tables do not know is checked
  * here: that both files are of one decomposition, and that its counts agree. Whether pieces are
  * star-shaped is not proven anew; that is what verification is for. */

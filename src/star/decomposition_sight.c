@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The fraction of the vertices of pieces that the pieces' guards see [YL11, section 4]: a vertex
  * counts once for each piece that it belongs to.
  *

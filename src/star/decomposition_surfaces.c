@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The closed surfaces of all pieces in one mesh or one file: the faces of each with vertices of its
  * own, which are numbered in the order in which its faces name them. Cost: O(n). */
 #include "core/file.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 #include "mesh/mesh.h"
 #include "star/decomposition.h"
 #include "star/piece_faces.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PIECES.vtk and PIECES.json: a decomposition as text (docs/formats.md). */
 #include "core/record.h"
 #include "star/decomposition.h"

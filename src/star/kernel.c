@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The kernel of a closed surface, with a proof.
  *
  * Problem: the points strictly on the inner side of every face; of those, one as far as possible

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the kernel: the same for oriented triangles that are no mesh, such as the boundary of a
  * set of tetrahedra. */
 #ifndef STARG_STAR_KERNEL_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which faces bound each piece: those without a neighbour of the same label, filed by label
  * (counting sort). Cost: O(n). */
 #include "star/piece_faces.h"

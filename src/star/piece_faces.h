@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The boundary faces of labelled sets of tetrahedra. */
 #ifndef STARG_STAR_PIECE_FACES_H
 #define STARG_STAR_PIECE_FACES_H

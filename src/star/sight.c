@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Does a point inside of a tetrahedral mesh see another one? By a tree over the boundary faces,
  * exactly [YL11, section 4: the visibility of section 3.1 for all vertices of tetrahedra]. Cost:
  * O(log n) a segment where little stands between. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Sight inside of a tetrahedral mesh: its boundary alone blocks it. */
 #ifndef STARG_STAR_SIGHT_H
 #define STARG_STAR_SIGHT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which tetrahedra share a face.
  *
  * Stages: the faces are filed under their lowest vertex (counting sort) with their two others as a

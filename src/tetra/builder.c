@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The tetrahedral mesh that a reader builds up, and the numbers that it reads. */
 #include "tetra/io.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Rows of the tetrahedra options, which the table of decompositions shares. */
 #ifndef STARG_TETRA_FIELDS_H
 #define STARG_TETRA_FIELDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How flat tetrahedra are: the least height over the longest edge, 0.816 for the regular one and 0
  * for one without volume. Rounded; decides nothing. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One interface for the generators: which one, how fine, and what is told about it. */
 #include "tetra/generate.h"
 #include "tetra/fields.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The generators behind starg_tetmesh_from_solid. */
 #ifndef STARG_TETRA_GENERATE_H
 #define STARG_TETRA_GENERATE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Surfaces that enclose nothing.
  *
  * Problem: the winding number of some meshes is at most 1/2 everywhere: of those that lie in a

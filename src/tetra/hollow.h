@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Does a surface enclose nothing at all, whatever its size? */
 #ifndef STARG_TETRA_HOLLOW_H
 #define STARG_TETRA_HOLLOW_H

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the readers of tetrahedral meshes share: the builder that they feed, and numbers in text or
  * binary data. */
 #ifndef STARG_TETRA_IO_H
 #define STARG_TETRA_IO_H
 
-#include "mesh/scan.h"
+#include "mesh/formats/scan.h"
 #include "tetra/tetmesh.h"
 
 /* A tetrahedral mesh under construction. All zero but points.source to begin with. */

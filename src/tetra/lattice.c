@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The lattice of isosurface stuffing [LS07]: insides, cuts, and the warp.
  *
  * Inside is where the surface winds at least once, as for solids everywhere; the winding number is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A body-centred cubic lattice around a solid: which of its points are inside, where the surface
  * cuts its edges, and the points that have moved onto the surface. */
 #ifndef STARG_TETRA_LATTICE_H

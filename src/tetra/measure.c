@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How far two surfaces are from one another. A triangle is halved at its longest edge until no edge
  * is longer than the step, and the distance taken at the middle of that edge: each point of a part
  * is nearer than the step to it, and the distance to a surface changes no faster than the point

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Do tetrahedra overlap that share no face?
  *
  * A point off all faces lies in as many positive tetrahedra as the boundary winds around it: both

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Gmsh .msh, versions 2 and 4.1, text or binary. Nodes have tags of their own, which need not be
  * consecutive; elements come in blocks of one type. Sections of no concern are passed over.
  *

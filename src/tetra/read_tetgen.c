@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* TetGen's pair of text files: .node (points) and .ele (tetrahedra). Lines begin with their number,
  * the first of which is 0 or 1. The first attribute of a tetrahedron is its region. */
 #include "tetra/io.h"

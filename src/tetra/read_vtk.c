@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords stand on
  * lines of text in both. Version 5.1 replaced the list of cells (count, then indices, cell by cell)
  * by offsets and connectivity. Cells become tetrahedra when their types are known, which comes

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Isosurface stuffing: tetrahedra of bounded angles in any solid.
  *
  * Source: F. Labelle, J. R. Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good

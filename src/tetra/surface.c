@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The boundary of a tetrahedral mesh: the faces that one tetrahedron alone has. */
 #include "core/memory.h"
 #include "mesh/mesh.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tetrahedra by the program TetGen [Si 2015], run as a child, whose licence and crashes stay
  * outside.
  *
@@ -14,11 +15,11 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "core/process.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "tetra/generate.h"
 #include "tetra/io.h"
+#include "tetra/process.h"
 
 static const char STAGE[] = TETRA_STAGE;
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Making a tetrahedral mesh: counts, coordinates, indices, orientation, neighbours, overlap. Every
  * check names the elements that fail it. */
 #include "tetra/tetmesh.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of a tetrahedral mesh. */
 #ifndef STARG_TETRA_TETMESH_H
 #define STARG_TETRA_TETMESH_H

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writing a legacy VTK unstructured grid of tetrahedra, as text or binary (big endian), with a
  * label for each. The file appears under its name when it is complete. */
 #include <ctype.h>
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 #include "tetra/tetmesh.h"
 
 enum { VTK_TETRAHEDRON = 10 };

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Is the boundary of a decomposition the surface of the model?
  *
  * An outer face must be a face of the model, corner for corner, or have its corners on one within

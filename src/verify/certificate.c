@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Star-shapedness about a guard: the guard is strictly on the inner side of every wall, and the
  * walls wind around it once. Both are exact.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The claims about boundary and volume. A boundary that is the model's surface is laid on it
  * (verify/boundary.c), and the volumes agree; of one that is only near it the distance is measured
  * (verify/nearness.c), and volumes are not compared. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The claims that a report makes in numbers: tetrahedra, volumes and contacts of the pieces. Cost:
  * O(n). */
 #include <math.h>

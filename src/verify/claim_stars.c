@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The claims about guards: star-shaped pieces by their certificates (verify/certificate.c), and
  * what share of its vertices each guard sees (verify/seen.c). */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A verdict under construction: claims one after the other. */
 #ifndef STARG_VERIFY_CLAIMS_H
 #define STARG_VERIFY_CLAIMS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* q is within the cone exactly if (q - p) . d >= c |q - p| |d|. Far from the side a rounded
  * comparison is enough. Otherwise the sign of (q - p) . d is found, and where both sides have the
  * same one, their squares are compared: polynomials, written out in products of up to six doubles

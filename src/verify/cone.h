@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Is a point within a cone of view? */
 #ifndef STARG_VERIFY_CONE_H
 #define STARG_VERIFY_CONE_H

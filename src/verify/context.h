@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Verification context of a decomposition: what it is checked against, and the claims that are
  * checked. */
 #ifndef STARG_VERIFY_CONTEXT_H

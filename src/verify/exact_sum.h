@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Exact sums of products of three doubles, and their signs.
  *
  * A long accumulator [Kulisch, Miranker: Computer Arithmetic in Theory and Practice, 1981]: a

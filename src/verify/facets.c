@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A hash table of triangles by their three vertices. The first facet of a triangle takes a slot,
  * the second one becomes its mate if it runs around the triangle the other way; a facet that finds
  * its triangle taken otherwise is counted as misuse and stays alone.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The triangles of tetrahedra: which two tetrahedra share each of them, and which stay alone. */
 #ifndef STARG_VERIFY_FACETS_H
 #define STARG_VERIFY_FACETS_H

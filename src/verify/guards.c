@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Verification of a guards result. First the facts: each guard looks around anew (verify/sight.h),
  * in parallel. Then the claims of the result are held against them, one by one. What depends on
  * the candidates, which a result does not hold (which faces are coverable, the proof of the lower

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Lengths and areas in doubles, in a unit near the size of the model, so that neither huge nor
  * tiny coordinates leave the range. They decide nothing but claims with a tolerance. */
 #ifndef STARG_VERIFY_MEASURE_H

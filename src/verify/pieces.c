@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Verification of a star decomposition: facts are found one after the other, and every claim is
  * held against them. Nothing is shared with what makes decompositions.
  *

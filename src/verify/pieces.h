@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A decomposition taken apart for verification, and what is found out about it. */
 #ifndef STARG_VERIFY_PIECES_H
 #define STARG_VERIFY_PIECES_H

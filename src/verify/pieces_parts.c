@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Takes a decomposition apart: facets, the outer boundary, labels, and the walls of each piece by
  * counting. Cost: O(n). */
 #include <string.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PIECES.json, read for the verifier (docs/formats.md). Types and shapes are checked here; whether
  * the numbers are true is what verification tells. Keys that are not known are passed over.
  *

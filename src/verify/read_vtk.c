@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* PIECES.vtk, read for the verifier: a legacy VTK file of this form, and no other
  * (docs/formats.md):
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which result does a file hold? The content tells. */
 #include <jansson.h>
 #include <string.h>

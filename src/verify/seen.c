@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How many vertices of its piece each guard sees. A star-shaped piece has all of them seen: that
  * is its certificate. For the others the line from guard to vertex is tested exactly against the
  * boundary of all tetrahedra, which may be touched at the vertex only; a guard that is not strictly

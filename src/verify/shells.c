@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Union-find over faces. A hash table holds the first directed edge of every pair of vertices; the
  * second one becomes its partner, a third one spoils the pair. Faces that touch in a vertex only,
  * or in an edge of more than two faces, stay apart: what is known of one says nothing of the other.

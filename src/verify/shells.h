@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Shells: the parts of a surface that hang together through edges of exactly two faces. */
 #ifndef STARG_VERIFY_SHELLS_H
 #define STARG_VERIFY_SHELLS_H

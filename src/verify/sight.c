@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility by a map of directions.
  *
  * The directions from p are divided like the sides of a cube about it, each side into 2^levels

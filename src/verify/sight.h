@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What one point sees, by a map of directions. */
 #ifndef STARG_VERIFY_SIGHT_H
 #define STARG_VERIFY_SIGHT_H

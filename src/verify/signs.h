@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The geometric decisions of the verifier, all exact for finite doubles below 1e100. Written apart
  * from the predicates of the engines: other formulas, other arithmetic (verify/exact_sum.h). */
 #ifndef STARG_VERIFY_SIGNS_H

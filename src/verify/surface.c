@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Shells are components of faces that share edges. The rule of turning is that of the library's
  * solids, written anew: a shell that lies in an even number of others bounds the solid from
  * outside and must have positive volume; one in an odd number bounds a cavity and must have

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The model as the verifier sees it: a copy with every shell turned, and winding numbers. */
 #ifndef STARG_VERIFY_SURFACE_H
 #define STARG_VERIFY_SURFACE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A tree of boxes. The faces are halved again and again at the median of their centres along the
  * longest side of the box of these, down to leaves of a few; node i has the children 2 i and
  * 2 i + 1, and its faces are a range of the order, so that nothing but boxes is stored.

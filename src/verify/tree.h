@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Boxes around the faces of a surface: what is near a point, near a box, or in the way. */
 #ifndef STARG_VERIFY_TREE_H
 #define STARG_VERIFY_TREE_H

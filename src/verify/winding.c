@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Winding number by the crossings of a segment from p to a random point outside of the bounds:
  * plus one where it leaves through a face, minus one where it enters. All of it by exact signs. A
  * segment that meets a face anywhere but in its open inside is given up for another one, from a

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How the boundary of a solid hangs together, in slots and ranks of its scene: edges, the faces
  * about each vertex, and what trees along edges can be made of. Immutable once made. */
 #ifndef STARG_VISIBILITY_ADJACENCY_H

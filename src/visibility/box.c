@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility from a box: tables, the question of a box, and the order in which reasons are tried.
  *
  * The cheap ones come first: planes, then where segments begin, patches, and entries. A vertex is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility from a region: what is surely hidden from every point of an axis-aligned box?
  *
  * Problem. Given a box c (closed; its corners are doubles) and targets, say of which targets it is

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Patches of triangles that hide a point v from a box c.
  *
  * Let K be the shaft conv(v, c). A *flood* begins at a triangle, its seed, and spreads over every

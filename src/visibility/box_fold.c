@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A vertex v that is hidden from a box c partly by where segments begin, partly by what stands
  * right beside v: a fold of the surface.
  *

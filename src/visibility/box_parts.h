@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of visibility from a box: the tables of a scene, what a worker keeps, and the three proofs
  * that a vertex is hidden. */
 #ifndef STARG_VISIBILITY_BOX_PARTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The public call: a row of bits for each box, in parallel over the boxes. */
 #include <math.h>
 

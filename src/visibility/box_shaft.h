@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The shaft of a point v and a box c: the union of the segments from v to the points of c, which is
  * conv(v, c), and what surely misses it.
  *

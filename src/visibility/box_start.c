@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Does every segment from a vertex v to a box c begin outside the solid?
  *
  * The triangles around v cut the sphere of directions from v along a closed curve of arcs, its

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A hierarchy with four children a node, whose boxes are floats: a segment is held against the four
  * at once. A node takes the place of a node of the binary tree and its children; below it a leaf's
  * triangles are the children, with their own boxes.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Triangles that a segment may meet, four boxes at a time in single precision. */
 #ifndef STARG_VISIBILITY_BOX_TREE_H
 #define STARG_VISIBILITY_BOX_TREE_H

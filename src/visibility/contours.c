@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility by counting the layers before each vertex, which change at contours only: Appel's
  * quantitative invisibility [A. Appel, The notion of quantitative invisibility and the machine
  * rendering of solids, ACM 1967], made exact.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the engine by contours (visibility/contours.c): its tables, and the stages that are
  * compiled once for each instruction set. */
 #ifndef STARG_VISIBILITY_CONTOURS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Is a face visible as a whole? Part of the stages of visibility/contours.c; what is not plain here
  * is left to whole.c.
  *

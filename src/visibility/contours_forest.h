@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage 2 of the engine by contours (visibility/contours.c): which edges the count follows.
  * Included by the stages.
  *

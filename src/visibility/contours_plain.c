@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stages of the engine by contours for any processor. */
 #define CONTOURS_VARIANT contours_plain
 #define LANES_PLAIN

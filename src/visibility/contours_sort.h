@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage 3 of the engine by contours (visibility/contours.c): what contours cover on the faces of
  * the cube, in rows of cells. Included by the stages. */
 

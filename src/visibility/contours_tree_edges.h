@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage 4 of the engine by contours (visibility/contours.c): how the number of front-facing layers
  * changes along each tree edge. Included by the stages. */
 

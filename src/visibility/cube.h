@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Directions from a point, projected to the six faces of a cube about it. Included by the stages
  * that are compiled once for each instruction set. */
 #ifndef STARG_VISIBILITY_CUBE_H

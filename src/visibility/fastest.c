@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Chooses for each point between the engine by contours and the grid, which give the same bits.
  *
  * What the grid does falls with the faces that lie behind others, of which it leaves out most; what

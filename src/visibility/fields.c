@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "visibility/fields.h"
 
 const char *const visibility_engine_words[] = {"grid", "bvh", "sweep", "contours", "fastest", NULL};

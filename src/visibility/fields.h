@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Field tables of the visibility options: rows that other tables share. */
 #ifndef STARG_VISIBILITY_FIELDS_H
 #define STARG_VISIBILITY_FIELDS_H

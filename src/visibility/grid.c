@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility on a grid of directions: all segments of a point share their origin, so that a face
  * hides exactly those vertices behind it whose directions lie in its cone.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stages of the direction grid for AVX2 with FMA. */
 #define GRID_RUN grid_run_avx2
 #define LANES_AVX2

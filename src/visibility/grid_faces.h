@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Stage 3 of the direction grid (visibility/grid.c): what each front-facing face hides. Included by
  * the stages. Faces are taken a block at a time and one step after the other, so that the compiler
  * can take several faces at once and the processor need not wait for one before it turns to the

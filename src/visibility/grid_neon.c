@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stages of the direction grid for NEON. */
 #define GRID_RUN grid_run_neon
 #define LANES_NEON

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stages of the direction grid (visibility/grid.c), written once and compiled for each
  * instruction set: the including file names the function and chooses the lanes. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "visibility/isa.h"
 
 bool isa_is_supported(visibility_isa isa) {

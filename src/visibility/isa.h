@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stages of an engine are compiled once for each instruction set; which of them run is chosen
  * when the program runs. All variants give the same bits: what floating point does not decide
  * beyond its error bound is decided exactly. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Eight doubles or WIDE floats at a time, in the ISA variant that the including file has chosen by
  * LANES_PLAIN, LANES_NEON, LANES_AVX2 or LANES_AVX512. Bit k of a mask stands for lane k;
  * comparisons with NaN are false. */

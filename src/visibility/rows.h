@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the visibility matrix: its rows, and how other processes make some of them. */
 #ifndef STARG_VISIBILITY_ROWS_H
 #define STARG_VISIBILITY_ROWS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility rows that other processes make.
  *
  * A job is the solid, as it is after the check, with all points and the options; so helpers read no

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What all engines share of one solid: its vertices and faces in spatial order, the faces' planes,
  * and on which side of them a point lies. Immutable once made. */
 #ifndef STARG_VISIBILITY_SCENE_H

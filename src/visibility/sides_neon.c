@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The sides of faces for NEON. */
 #define SIDES_RUN sides_run_neon
 #define LANES_NEON

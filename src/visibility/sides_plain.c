@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The sides of faces for any processor. */
 #define SIDES_RUN sides_run_plain
 #define LANES_PLAIN

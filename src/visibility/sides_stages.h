@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The sides of faces (visibility/sides.h), written once and compiled for each instruction set: the
  * including file names the function and chooses the lanes. */
 #include "visibility/lanes.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The paper's sweep [YL11, section 3.1], swept by longitude.
  *
  * Each vertex is a direction (longitude phi, latitude theta) from p, each face covers a range of

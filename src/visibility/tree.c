@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility by a bounding volume hierarchy: one query per vertex, O(log n) where little stands
  * between. Uses every face, whatever its side. */
 #include "geometry/predicates.h"

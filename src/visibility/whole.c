@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Is a face visible as a whole, not only in its corners?
  *
  * The view to the points of face f = (a, b, c) is blocked by a triangle t exactly if t has a point

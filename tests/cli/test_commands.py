@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What each command does with good input, seen through its files and its --json."""
 import json
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The retrieval database: contract, wrong use, harm from outside, several processes at once."""
 import json
 import os

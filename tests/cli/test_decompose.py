@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Star decomposition: files that agree with each other, models of every kind, failures that leave
 nothing behind."""
 import json

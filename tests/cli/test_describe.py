@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """describe and match: descriptors there and back, distances, and what is refused."""
 import json
 

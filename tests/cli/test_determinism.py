@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every result file has the same bytes at 1 and at 7 threads, and the comparison sees a difference.
 The whole matrix of threads, compilers and optimisation is scripts/determinism.py --matrix."""
 import os

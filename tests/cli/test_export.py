@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`starguard export`: its files, opened by readers that are not ours."""
 import json
 import math

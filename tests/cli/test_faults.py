@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Disks that are full, places where outputs stand, and paths inside of mesh files
 (docs/robustness.md)."""
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bad input: a message and status 2, never a crash, a hang or an output."""
 import os
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Signals, time limits, and results that do not depend on threads."""
 import json
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Killed at any moment (docs/robustness.md): outputs are there whole or not at all, databases stay in
 order, and what is left behind is in nobody's way. 6 kills of each command, with STARGUARD_LONG=1 200."""
 import collections

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Memory and time end (docs/robustness.md): the status and the message are those of the contract, and
 no output is left or changed. With STARGUARD_LONG=1 in many more steps."""
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Manual pages and completion: they tell of all that there is, and shells and man take them."""
 import json
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is said: numbers that are right, elements of the model and of nothing else, each thing once."""
 import math
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """map and morph: the contract, and wrong use of both."""
 import json
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs of several processes by mpirun: the same bytes as of one, and no half file when one dies."""
 import glob
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A collection of broken meshes: each is done or rejected, and quickly."""
 import glob
 import os

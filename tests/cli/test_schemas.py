@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Results and reports are what the schemas say, those of docs/schema and those that the build makes of
 the field tables, by a validator that we did not write.
 

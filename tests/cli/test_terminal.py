@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a person sees: colours and bars on a terminal, and neither anywhere else."""
 import os
 import pty

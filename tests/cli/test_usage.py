@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Help, version, and every way to get the command line wrong."""
 import support
 from support import COMMANDS, TETRAHEDRON

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """verify with star decompositions: which file is which, exit status, what is printed."""
 import json
 import os

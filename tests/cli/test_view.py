@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """view: what goes into a page, what is refused, and what a build without the viewer says."""
 import base64
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One command of each kind that writes, for the tests of what happens when it cannot, or is killed."""
 import os
 import resource

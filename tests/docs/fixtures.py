@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A folder with every file that examples speak of, and commands run in it."""
 import os
 import shutil

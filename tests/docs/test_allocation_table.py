@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every public call that can allocate is in the tables of tests/property/test_allocation_*.c, which let
 each of its allocations fail, or it stands here with the reason why not."""
 import glob

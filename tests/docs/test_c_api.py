@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C reference that is made of the headers leaves no function out."""
 import os
 import re

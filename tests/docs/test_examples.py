@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every example of every command's help, run as it stands there."""
 import json
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every command of the documentation is run, page by page, and every link leads somewhere.
 
 A block marked `sh` is run, all blocks of a page in one folder in their order (it holds models under the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a morph in binary glTF: read or rejected with a message, nothing lost. */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a text of classes for four models: read or rejected with a message; every model has
  * a class that there is, or none, and class names ascend. */
 #include <stdlib.h>

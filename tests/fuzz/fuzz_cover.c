@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Small set covers with weights, targets, redundancy, limits and given rows, by every method: what
  * is returned covers what it says, bounds are bounds, and with nodes enough the best is found, as
  * trying all choices of rows shows. */

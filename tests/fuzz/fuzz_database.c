@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A database file of any bytes or, with FUZZ_ROWS, a sound SQLite file with any rows, in tables of
  * our columns but of any types. Opening, listing, asking for signatures, querying and removing give
  * what they promise, or an error that says something. */

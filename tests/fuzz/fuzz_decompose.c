@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A small solid is cut into star-shaped pieces, with little effort: the verifier, from the files
  * that are written, accepts them all. */
 #include <string.h>

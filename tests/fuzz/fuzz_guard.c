@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A small mesh is checked, repaired and guarded. What is called usable makes a solid and nothing
  * else does; what was repaired is usable, and needs no more of it when nothing is found any more;
  * the verifier accepts the guards; and another engine finds as many. */

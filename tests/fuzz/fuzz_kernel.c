@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The kernel of a small closed surface: each verdict is held against rationals. A guard is strictly
  * on the inner side of every face, and wound around once; a witness leaves no point in the box. */
 #include <math.h>

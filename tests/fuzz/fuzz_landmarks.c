@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as landmarks between a tetrahedron and a cube: read or rejected with a message; what is
  * read names vertices that there are, and maps are made of it or not, without losing anything. */
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes given to the mesh readers, under a name that has FUZZ_NAME's extension: no crash, a
  * sound mesh or an error that says something, all memory returned, and never much more of it taken
  * than the input is long. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Two small surfaces are mapped onto one another, and the shapes between them made by every method:
  * a map is written and read without loss, frames begin with the one surface and end with the other,
  * and are finite in between. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every exact decision against rationals, on points of any doubles: those of the engines
  * (geometry/predicates.h, intersect.h, half_spaces.h) and those of the verifier (verify/signs.h).
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a result file, of each kind: read or rejected with a message; what is read can be
  * written, and read and written again as the same bytes, by its table and by the library's calls.
  * Descriptors are made into signatures at distance 0 from themselves, maps put every vertex on the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as a file of a skeleton: read or rejected with a message, nothing lost. */
 #include <stdlib.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes as TetGen's pair of files, .node up to the first line of a dash, .ele behind it: no
  * crash, a sound mesh or an error that says something. */
 #include <math.h>

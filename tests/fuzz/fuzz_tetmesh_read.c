@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Any bytes given to the readers of tetrahedral meshes: no crash, a sound mesh or an error that
  * says something, all memory returned, and never much more of it taken than the input is long. */
 #include <math.h>

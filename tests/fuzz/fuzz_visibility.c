@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What points see of a small solid: every engine and the verifier against the definition, every
  * segment against every triangle in rationals. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Runs a fuzz target without a fuzzer: over every file of a folder, then over so many mutations of
  * them in all (flipped, overwritten, inserted and dropped bytes, truncations, splices of two
  * files), the same ones in every run. When the target crashes, the last input is written to the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What fuzz targets share: demands that end the process, bytes read as choices, small meshes made
  * of them, files for readers that take a path. */
 #ifndef TESTS_FUZZ_SUPPORT_H

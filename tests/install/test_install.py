@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Installs into a fresh prefix, moves that, and builds and runs the examples with what is there: by
 find_package and by pkg-config, with the shared and with the static library."""
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The libraries export the functions that the public headers declare: all of them, nothing else."""
 import os
 import re

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory that fails at every place of the calls about guards: bits, covers, visibility, skeletons,
  * candidates, guards, and what verifies them. */
 #include "failing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory that fails at every place of the calls about surfaces: reading and writing, check, repair,
  * levels, solids, kernels, samples, pictures, animations, pages and scenes. */
 #include "failing.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory that fails at every place of the calls that compare shapes and turn one into another:
  * signatures, descriptors, the database, maps, morphs. */
 #include "failing.h"

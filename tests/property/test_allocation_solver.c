@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Memory of CBC and Clp that fails: the n-th call of C++'s operator new has none, in a process of
  * its own for each n. Where there is some once the reserve is given up, the cover that comes back
  * is a cover, with a bound that holds, and no memory is lost. Where there is none from then on, the

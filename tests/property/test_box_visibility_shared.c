@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Real solids: no point of a box sees what is said to be hidden from all of it. Points of the
  * boxes, adversarial ones among them, are asked by the point engines; on the smallest solids also
  * by the definition, in rationals where doubles are not certain. Printed is how many of the pairs

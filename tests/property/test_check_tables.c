@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The check against the tables of the shared data, which another program made: closed, oriented,
  * components, genus; and whether faces cross. */
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Conforming samples of surfaces with cracks, spikes and fins, against slow counts: what comes out
  * is a closed surface of the same topology, and exactly as many of its faces are lost as is told.
  */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Whole solves of small random problems against exhaustive search, in every mode. */
 #include "core/rng.h"
 #include "cover_oracle.h"

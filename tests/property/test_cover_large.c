@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A problem of the usual size: points on a sphere seen by caps, a few of which see far and many of
  * which see little. Solved to proven optimality; the seconds are printed, not asserted. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Each stage of the cover alone, on small random instances, against exhaustive search: what the
  * whole solve rarely reaches because an earlier stage has finished the work. */
 #include <math.h>

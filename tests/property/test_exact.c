@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Exact integers and proofs about half-spaces against GMP: sums, differences and products limb by
  * limb; and that what is proven about half-spaces is true, and what can be proven is. */
 #include <gmp.h>

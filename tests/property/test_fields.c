@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* All field tables, of options and of results: a random record, written, read and written again, is
  * the same; each key that is missing, or of another type, is named or has its default; and the
  * range check, the JSON reader and the setter agree about every number. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Real models of up to 600 vertices, with STARGUARD_LONG 1,200: guarded, verified, and the same
  * with every engine. */
 #include "support.h"

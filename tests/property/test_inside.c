@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is inside: winding numbers of the engines and of the verifier, containment, and what a point
  * is in front of, against rationals; from points on vertices, edges and faces, in planes of faces,
  * an ulp beside them, and anywhere. */

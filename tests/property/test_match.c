@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Distances between shapes by their guards: what must not change them, what bounds them, and graphs
  * of every size. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every surface file of the shared data: those that the tables of its README give counts for are
  * read with these counts, and those that must be rejected are, with a message that names them. */
 #include <stdbool.h>

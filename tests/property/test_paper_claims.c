@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The claims of [YL11, section 4] about visibly dependent tetrahedra, by brute force in rationals:
  *
  * a) t is visible if all of its predecessors are visible;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Guarding by levels: every level's guards see their level, refinement only helps, and the result
  * is the same for any number of threads. */
 #include "support.h"

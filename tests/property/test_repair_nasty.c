@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Repair of every readable file among the nasty ones: a usable solid or a clear message. Also what
  * must be reached for some of them. */
 #include <dirent.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Skeletons of real models: parts and loops against the Euler characteristic of the model's
  * surface, both counted here by slow and simple means; nodes inside; the same counts
  * after a rigid motion. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Surfaces spread over the sphere: are they bijections? Landmarks: are they met? */
 #include <gmp.h>
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Strict star decompositions of whole solids: each is verified from outside, by rationals, and what
  * the options promise holds. */
 #include "support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every tetrahedral file of the shared data, with the counts of its README. */
 #include "support.h"
 

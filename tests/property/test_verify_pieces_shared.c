@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The verifier of star decompositions on real models. Every tetrahedron a piece of its own, all of
  * them proven by rationals, is a strict decomposition that must pass, with each way to make
  * tetrahedra; with something wrong somewhere it must not. A whole solid as one piece is star-shaped

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Both verifiers against slow ones. A result is made, honest or with something changed at random;
  * whether all that it claims holds is found out by brute force in rationals, with code that shares
  * nothing with the verifier: its verdict must be the same. */

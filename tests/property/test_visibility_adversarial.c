@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every engine against visibility by definition, on small solids and points made to break them:
  * lattices, coplanar and cospherical faces, shells within shells, slivers, self-intersection, and
  * points in the planes of faces and of edges or an ulp beside them. */

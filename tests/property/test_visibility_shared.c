@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Real solids: every engine and the verifier see, bit for bit, what the definition says: every
  * segment against every triangle, in rationals where doubles are not certain. With STARGUARD_LONG
  * all solids of the shared data of up to 5,000 vertices, else the smallest of them. */

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the tests of the Python package share: scratch folders, small models, the command line."""
 import os
 import subprocess

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Is the package complete, typed, and made of the headers as they are?"""
 import dataclasses
 import glob

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arrays in and out: shapes, types, values; what is copied, what is not, and who keeps whom."""
 import gc
 import pickle

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls: progress, cancelling, Ctrl-C, time limits, threads, and the interpreter lock."""
 import inspect
 import logging

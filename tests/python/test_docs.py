@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every example in a docstring runs and prints what stands there, and the reference that is made of
 them has every name."""
 import doctest

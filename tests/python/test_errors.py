@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every status is an exception of its own, with the library's message and what it is about."""
 import os
 import unittest

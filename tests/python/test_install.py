@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`pip install .` from a checkout, and the example of the README with what it has installed."""
 import importlib.util
 import os

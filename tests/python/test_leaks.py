@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nothing of the library is left behind, whatever becomes of the objects; no memory grows."""
 import gc
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keyword arguments are the rows of the library's field tables, by the names of the command line."""
 import inspect
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pages, files for other programs, skeletons and animations read back."""
 import json
 import os

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Families of points that break careless geometry: lattices, near degeneracies, extreme scales. */
 #ifndef TESTS_ADVERSARIAL_H
 #define TESTS_ADVERSARIAL_H

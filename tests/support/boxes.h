@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Boxes in and about a solid, and points of them from which something might be seen after all. */
 #ifndef TESTS_BOXES_H
 #define TESTS_BOXES_H

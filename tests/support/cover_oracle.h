@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Set cover by trying all choices of rows: the tests' independent answer. */
 #ifndef TESTS_COVER_ORACLE_H
 #define TESTS_COVER_ORACLE_H

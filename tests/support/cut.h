@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Star decompositions made by hand from cells, their honest reports, and files of them. */
 #ifndef TESTS_CUT_H
 #define TESTS_CUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Star decompositions against their definition: by brute force, in rationals where signs decide. */
 #ifndef TESTS_DECOMPOSITION_ORACLE_H
 #define TESTS_DECOMPOSITION_ORACLE_H

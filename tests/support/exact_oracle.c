@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Signs are determinants of rationals. Intersections are systems of linear equations and
  * inequalities in the parameters of the shapes, whose solvability is decided by Gauss elimination
  * and then Fourier-Motzkin elimination: no case of position is special, so none can be missed.

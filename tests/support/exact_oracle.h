@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Slow, exact answers for tests: rationals of GMP and methods that share nothing with the library.
  * Everything works for all finite doubles. Triangles without area count as the segments or points
  * that they are. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Calls whose memory fails: the n-th allocation of the context, for every n until the call no
  * longer gets that far. Each attempt has a context of its own, which must be left without a block,
  * and a folder for outputs, which a call that fails must leave empty.

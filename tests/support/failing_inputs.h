@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* One of everything, as small as can be: what the tests of failing memory hand to the library. */
 #ifndef TESTS_FAILING_INPUTS_H
 #define TESTS_FAILING_INPUTS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Models as most tests need them, and what is asserted of results. Whatever fails, fails the test.
  */
 #ifndef TESTS_MODELS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Processes that share work, as threads of the test: rank 0 is the test itself, the helpers serve
  * on threads with contexts of their own, and messages go through queues. */
 #ifndef TESTS_NETWORK_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "partition_oracle.h"
 
 #include <math.h>
@@ -6,7 +7,7 @@
 
 #include "exact_oracle.h"
 #include "geometry/delaunay.h"
-#include "star/strict/region_growing.h"
+#include "star/strict/start/region_growing.h"
 #include "support.h"
 #include "tetrahedra.h"
 

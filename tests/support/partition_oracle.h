@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Partitions into closed surfaces against their definition, slowly, and partitions to test with. */
 #ifndef TESTS_PARTITION_ORACLE_H
 #define TESTS_PARTITION_ORACLE_H
 
 #include "core/rng.h"
-#include "star/strict/partition.h"
+#include "star/strict/partition/partition.h"
 
 /* Asserts what holds of every partition with an index: facets between two different pieces, or a
  * piece and the outside, none of them degenerate; every piece closed; no number unused; unit

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Records of any field table: written, freed and compared by their tables. */
 #ifndef TESTS_RECORDS_H
 #define TESTS_RECORDS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Small closed meshes for tests. Faces are counter-clockwise seen from outside. */
 #ifndef TESTS_SHAPES_H
 #define TESTS_SHAPES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the tests share: cmocka in its required order, a context, shared data, random numbers. */
 #ifndef TESTS_SUPPORT_H
 #define TESTS_SUPPORT_H

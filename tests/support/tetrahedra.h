@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Random tetrahedral meshes for tests. */
 #ifndef TESTS_TETRAHEDRA_H
 #define TESTS_TETRAHEDRA_H

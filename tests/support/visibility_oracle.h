@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility by its definition: every segment against every triangle. Doubles with an error bound
  * answer first, exact_oracle.h behind them. Works on any mesh, self-intersecting and degenerate
  * ones too, whose shells are turned as those of a solid are; a point that is not strictly inside

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Animations read back: the frames that were written, and bytes that are no animation. */
 #include "support.h"
 

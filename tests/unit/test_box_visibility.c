@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is hidden from a box: definitions, reasons, and small solids on lattices and off them, held
  * against points of the boxes by rational arithmetic. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Solids cut by planes until every part is star-shaped, and pieces parted into what is connected:
  * against the definitions, by brute force and in rationals (partition_oracle.h). */
 #include "support.h"
@@ -7,10 +8,10 @@
 #include <string.h>
 
 #include "partition_oracle.h"
-#include "star/strict/bsp_start.h"
-#include "star/strict/separate.h"
-#include "star/strict/slice.h"
-#include "star/strict/split_plane.h"
+#include "star/strict/partition/separate.h"
+#include "star/strict/partition/slice.h"
+#include "star/strict/search/split_plane.h"
+#include "star/strict/start/bsp_start.h"
 #include "tetrahedra.h"
 
 enum { EVALUATIONS = 1500 };

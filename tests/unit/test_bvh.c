@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The tree against loops over all triangles. */
 #include "geometry/bvh.h"
 

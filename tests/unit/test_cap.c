@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Filling plane loops: areas, edges and turns of the triangles against those of the loops, for
  * random rings with holes and islands in them, in random planes; and loops that make no sense. */
 #include "support.h"
@@ -8,7 +9,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "star/strict/cap.h"
+#include "star/strict/partition/cap.h"
 
 enum { POINTS_MOST = 1200, LOOPS_MOST = 90 };
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures of tables and curves: what they show is read back from them. */
 #include <math.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The check: every kind of finding on meshes small enough to count by hand, and intersections of
  * random meshes against exact arithmetic over all pairs. */
 #include "starguard/check.h"

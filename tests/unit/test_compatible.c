@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pieces that are star-shaped in two places at once, against their definition in rationals. */
 #include "support.h"
 
@@ -7,7 +8,7 @@
 #include "core/rng.h"
 #include "decomposition_oracle.h"
 #include "exact_oracle.h"
-#include "star/strict/compatible.h"
+#include "star/strict/start/compatible.h"
 #include "tetra/tetmesh.h"
 #include "tetrahedra.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The public call on problems with known answers, at its limits, and when things go wrong. */
 #include <fcntl.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The database: what is stored and found again, what is refused, and that nothing harms it. */
 #include "starguard/database.h"
 

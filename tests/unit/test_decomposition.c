@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What is told about pieces, for random labels and guards on random tetrahedra, against brute force
  * in rationals; what is written is what was told. */
 #include "support.h"

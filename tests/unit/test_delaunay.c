@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Delaunay tetrahedra against the definition: no point strictly inside a sphere, and the volumes
  * add up to that of the hull (as found by a second triangulation in another order). */
 #include "support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Descriptors: distances in closed form, files there and back and broken, reconstruction. */
 #include "starguard/descriptor.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Piece elimination: fans of triangles at random and those that are found, against brute force and
  * in rationals (partition_oracle.h). */
 #include "support.h"
@@ -6,8 +7,8 @@
 #include <stdlib.h>
 
 #include "partition_oracle.h"
-#include "star/strict/apply.h"
-#include "star/strict/eliminate.h"
+#include "star/strict/partition/apply.h"
+#include "star/strict/search/eliminate.h"
 
 enum { AROUND_MOST = 400 };
 

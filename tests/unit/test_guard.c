@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Guarding end to end on procedural solids: every result goes through the independent verifier. */
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* GUARDS.json that is read and written again: nothing is lost, made up or cut off. */
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The halfedge mesh under random collapses, flips and splits, beside a list of oriented triangles
  * on which each of them is done by its definition. */
 #include "mesh/halfedges.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Intersections against linear elimination in rationals. */
 #include "adversarial.h"
 #include "exact_oracle.h"

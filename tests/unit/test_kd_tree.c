@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The k-d tree against looking at every point. */
 #include "geometry/kd_tree.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Kernels against rationals: all vertices of the arrangement of the face planes that lie behind no
  * plane. The kernel has an interior exactly if their mean is strictly on the inner side of every
  * face. */

@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Labellings against trying all of them. */
 #include "support.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "star/strict/labelling.h"
+#include "star/strict/start/labelling.h"
 
 enum { NODES_MOST = 8 };
 

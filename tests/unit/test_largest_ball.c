@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The largest ball inside of half-spaces, against all choices of four of them in long double and
  * against a linear program in four variables; the proof that it carries, against its definition. */
 #include "support.h"

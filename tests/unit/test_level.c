@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Levels of detail for descriptors: noise goes, the shape stays. */
 #include "shape/level.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Linear programs against the enumeration of all vertices of the arrangement in long double, and
  * the rows that are told against their definition. */
 #include "support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Polygons cut into triangles. The checker knows nothing of ears: positive triangles whose areas
  * add up to the polygon's area, and whose edges cancel to its boundary, cannot overlap. */
 #include <math.h>
@@ -6,7 +7,7 @@
 
 #include "core/rng.h"
 #include "geometry/predicates.h"
-#include "mesh/io.h"
+#include "mesh/formats/io.h"
 #include "support.h"
 
 enum { MOST = 300 };

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Readers: every form that is accepted, and every documented error with its status and place. */
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Numbers and words of text files, against strtod and by hand. */
 #include <locale.h>
 #include <math.h>
@@ -6,7 +7,7 @@
 #include <string.h>
 
 #include "core/rng.h"
-#include "mesh/scan.h"
+#include "mesh/formats/scan.h"
 #include "support.h"
 
 static bool parses(const char *text, double *value) {

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Writers: what is written is read back bit for bit, and a file appears whole or not at all. */
 #include <dirent.h>
 #include <fcntl.h>

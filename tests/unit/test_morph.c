@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Maps and morphs of small shapes: ends, rigid motions, bad input, memory that gives out. */
 #include <math.h>
 #include <stdio.h>

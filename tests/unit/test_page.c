@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pages: what stands in them is read back with code of its own (blocks, base64, JSON), names are
  * held against all that HTML could take for markup, surfaces of pieces against the volumes of their
  * tetrahedra; and all that must be refused. Without a viewer in the build, pages are refused. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Paper mode: what it gives is what decomposition_oracle.h makes of it; the same at any number of
  * threads; smoothing does no harm; odd guards and limits; memory that runs out. */
 #include "support.h"

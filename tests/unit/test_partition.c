@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Partitions through what is done to them: built, joined, sliced, merged, cut to a plan. After
  * every step the whole of it is checked by brute force (partition_oracle.h). */
 #include "support.h"
@@ -8,10 +9,10 @@
 
 #include "exact_oracle.h"
 #include "partition_oracle.h"
-#include "star/strict/apply.h"
-#include "star/strict/improve.h"
-#include "star/strict/merge_coplanar.h"
-#include "star/strict/slice.h"
+#include "star/strict/partition/apply.h"
+#include "star/strict/partition/merge_coplanar.h"
+#include "star/strict/partition/slice.h"
+#include "star/strict/search/improve.h"
 #include "tetrahedra.h"
 
 enum { CUTS_MOST = 8 };

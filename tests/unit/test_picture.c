@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Pictures: the file is a PNG of the right size, and its pixels show what the scene says. The PNG
  * is taken apart by code of the test's own (zlib inflates). */
 #include "support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every predicate against rational arithmetic, on families of input that break careless ones. */
 #include <math.h>
 

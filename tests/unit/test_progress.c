@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the progress callback hears: stages that nest, each from 0 to 1, without a step back. */
 #include <stdio.h>
 #include <stdlib.h>

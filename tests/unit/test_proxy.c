@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Which level of detail the medial axis of a large model is taken from. */
 #include "guard/proxy.h"
 #include "models.h"

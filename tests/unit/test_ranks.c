@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Work that several processes share: the same results as without them, and what becomes of a run in
  * which one of them fails. */
 #include "starguard/ranks.h"

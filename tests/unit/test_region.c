@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the search for cuts knows of a union of pieces, against linear programs over all rows that
  * count, set up anew for every height that matters. */
 #include "support.h"
@@ -8,9 +9,9 @@
 
 #include "geometry/linear_program.h"
 #include "partition_oracle.h"
-#include "star/strict/region.h"
-#include "star/strict/scan.h"
-#include "star/strict/slice.h"
+#include "star/strict/partition/region.h"
+#include "star/strict/partition/slice.h"
+#include "star/strict/search/scan.h"
 
 enum { UNION_MOST = 5, TURNS = 20 };
 

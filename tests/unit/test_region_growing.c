@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Grown regions against their definition in rationals: every set star-shaped about its guard,
  * nothing left over; and what hints and threads may and may not change. */
 #include "support.h"
@@ -8,7 +9,7 @@
 
 #include "core/rng.h"
 #include "exact_oracle.h"
-#include "star/strict/region_growing.h"
+#include "star/strict/start/region_growing.h"
 #include "tetrahedra.h"
 
 /* Outward faces of a tetrahedron with det(b - a, c - a, d - a) > 0. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Each operation of repair on meshes with one known fault, and what the report says of it. */
 #include "starguard/repair.h"
 

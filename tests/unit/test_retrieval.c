@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Retrieval measures: by hand for small cases, and on random tables with many ties against counting
  * straight from the definitions. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every sample, every pose: a closed 2-manifold, outward, embedded, of the expected genus, near the
  * wanted size. Checked with simple code that shares nothing with the library. */
 #include "support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes in one file: what is in them, read back by our readers of meshes and by code here; what
  * does not fit together, and every way in which writing can end early. Readers of others open the
  * files in tests/cli/test_export.py. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Guards that look in one direction: cones of view against their definition, and end to end. */
 #include "support.h"
 

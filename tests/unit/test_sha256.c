@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* SHA-256 against the examples that FIPS 180-4 and its test vectors give. */
 #include "shape/sha256.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Signatures against what is known in closed form, and against motions that must not change them.
  */
 #include "starguard/shape.h"

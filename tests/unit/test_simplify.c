@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Simplified meshes: the topology, the embedding and nearly the shape of the input, the same bytes
  * every time, and no harm on anything else. What comes out is judged by starg_mesh_check and by
  * distances, which share nothing with the simplification. */
@@ -10,8 +11,8 @@
 #include <string.h>
 
 #include "core/rng.h"
-#include "mesh/collapse.h"
-#include "mesh/heap.h"
+#include "mesh/levels/collapse.h"
+#include "mesh/levels/heap.h"
 #include "models.h"
 #include "starguard/check.h"
 #include "starguard/sample.h"

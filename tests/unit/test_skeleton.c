@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Curve skeletons of small shapes whose skeletons are known, their files, and bad options. */
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files of skeletons: round trips through each format, files by hand, and what must be refused with
  * the line. */
 #include "support.h"

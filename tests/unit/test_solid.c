@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The solid: what is refused and with which message, shells turned, order kept, containment and
  * distance. */
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Both ends of a morph in the same pieces: what is promised, checked on the results alone. */
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tetrahedral meshes: what is accepted is what the definition says, neighbours by brute force,
  * boundary and volume against each other. */
 #include "support.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Files of tetrahedra: every format by hand, round trips, and what must be refused, quickly and
  * with a message that says where. */
 #include "support.h"

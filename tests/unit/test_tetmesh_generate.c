@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Tetrahedra of solids: what both generators promise, checked on their results alone; programs that
  * fail in every way; the same bytes at any number of threads. */
 #include "support.h"
@@ -426,14 +427,14 @@ static size_t count_files(const char *path) {
 }
 
 typedef struct told {
-    size_t notices;
+    size_t warnings;
     char last[600];
 } told;
 
 static void listen(void *user, starg_log_level level, const char *message) {
     told *t = user;
-    if (level == STARG_LOG_NOTICE) {
-        t->notices++;
+    if (level == STARG_LOG_WARNING) {
+        t->warnings++;
         snprintf(t->last, sizeof t->last, "%s", message);
     }
 }
@@ -493,11 +494,11 @@ static void test_broken_programs(void **state) {
             fail_msg("%s: %s", BROKEN[i].script, starg_context_error(context)->message);
         assert_int_equal(count_files(scratch), 0);
 
-        heard.notices = 0;
+        heard.warnings = 0;
         options.generator = STARG_TETRA_AUTO;
         test_ok(context, starg_tetmesh_from_solid(context, solid, &options, &report, &mesh));
         assert_int_equal(report.generator, STARG_TETRA_STUFFING);
-        assert_true(heard.notices == 1 && strstr(heard.last, "stuffing") != NULL);
+        assert_true(heard.warnings == 1 && strstr(heard.last, "stuffing") != NULL);
         assert_int_equal(count_files(scratch), 0);
         starg_tetmesh_free(mesh);
     }

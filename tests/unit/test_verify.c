@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The verifier of guards: its arithmetic and geometry against rationals, true results that must
  * pass, and results with one thing wrong that must fail by the right claim. */
 #include <math.h>

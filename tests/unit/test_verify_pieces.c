@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The verifier of star decompositions: decompositions made by hand pass, and with one thing wrong
  * they fail by the right claim. */
 #include <math.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The verifier's readers of PIECES.vtk and PIECES.json: what was written comes back, and whatever
  * is wrong with a file, it is refused with a message. */
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The verifier's search tree and its table of facets against slow ones. */
 #include <math.h>
 #include <stdlib.h>

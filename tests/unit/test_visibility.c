@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* All engines, and all ISA variants of the grid, against visibility by definition (the oracle). */
 #include <math.h>
 #include <stdio.h>

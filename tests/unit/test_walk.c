@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Straight lines on surfaces: unfolded, they are straight. */
 #include <math.h>
 #include <string.h>

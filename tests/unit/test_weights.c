@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What faces weigh does not depend on the size of the model. */
 #include <math.h>
 #include <stdlib.h>

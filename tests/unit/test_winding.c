@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The generalised winding number against the sum of all solid angles. */
 #include "support.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Wave kernel signatures on a string, whose vibrations are known in closed form, against the
  * definition. */
 #include "shape/wks.h"

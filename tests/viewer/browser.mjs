@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the tests of pages and their benchmark share: a browser, and watching what a page does.
 import { existsSync } from "node:fs";
 import { createRequire } from "node:module";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pages as a browser shows them: they load, answer to mouse, touch and keys, ask for nothing, run
 // nothing but their own script, and say what they show.
 import assert from "node:assert/strict";

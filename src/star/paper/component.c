@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Breadth-first search through uncoloured tetrahedra. Marks are numbers of searches, so that
  * nothing has to be cleared in between: the cost of a search is the size of what it finds. */
 #include "star/paper/component.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What hangs together by faces and has no colour yet. */
 #ifndef STARG_STAR_PAPER_COMPONENT_H
 #define STARG_STAR_PAPER_COMPONENT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The cost f(g, n): how many nodes depend on node n, directly or not [YL11, section 4].
  *
  * The paper accumulates it from the leaves to the guard, in linear time. A sum over all dependents

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How many tetrahedra depend on each. */
 #ifndef STARG_STAR_PAPER_COST_H
 #define STARG_STAR_PAPER_COST_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibly dependent tetrahedra [YL11, section 4].
  *
  * The paper: T_v(g, t) holds the tetrahedra that the segments from the guard g to the vertices of t

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* On which tetrahedra does the visibility of a tetrahedron depend? */
 #ifndef STARG_STAR_PAPER_DEPENDENCY_H
 #define STARG_STAR_PAPER_DEPENDENCY_H

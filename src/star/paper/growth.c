@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Region growing by node merging [YL11, section 4].
  *
  * Problem: give each tetrahedron one colour, so that a tetrahedron of colour c is visible from

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Region growing by node merging. */
 #ifndef STARG_STAR_PAPER_GROWTH_H
 #define STARG_STAR_PAPER_GROWTH_H

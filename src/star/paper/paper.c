@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Star decomposition by growth from guards [YL11, section 4].
  *
  * Problem: give each tetrahedron to one of few guards, so that nearly all vertices of a piece are

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Star decomposition by growth from guards [YL11, section 4]. */
 #ifndef STARG_STAR_PAPER_PAPER_H
 #define STARG_STAR_PAPER_PAPER_H

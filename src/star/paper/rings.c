@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The tetrahedra around each vertex: a counting sort by vertex. Cost: O(n). */
 #include "star/paper/state.h"
 

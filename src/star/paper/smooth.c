@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Laplacian smoothing of the inner borders of pieces [YL11, section 4].
  *
  * A vertex that lies between pieces, and not on the boundary of the solid, moves towards the mean

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Smoothing of the borders between pieces. */
 #ifndef STARG_STAR_PAPER_SMOOTH_H
 #define STARG_STAR_PAPER_SMOOTH_H

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What the stages of the paper's decomposition share. */
 #ifndef STARG_STAR_PAPER_STATE_H
 #define STARG_STAR_PAPER_STATE_H
 
 #include "core/memory.h"
-#include "mesh/heap.h"
+#include "mesh/levels/heap.h"
 #include "star/sight.h"
 
 #define PAPER_STAGE "growth"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Uncoloured components, guarded again [YL11, section 4: "we collect each uncolored connected
  * components, and respectively compute their guarding and re-apply the region growing until all
  * tetrahedra are colored"].

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What no guard's region holds. */
 #ifndef STARG_STAR_PAPER_UNCOLOURED_H
 #define STARG_STAR_PAPER_UNCOLOURED_H

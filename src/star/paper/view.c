@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility carried over to the vertices of tetrahedra [YL11, section 4]: for each guard, which
  * vertices it sees past the boundary of the whole solid, into which tetrahedron each of them looks
  * for it, and the costs that follow. Cost: a look-up in the tree for each guard and vertex. */

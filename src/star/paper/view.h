@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* What guards see of the vertices of tetrahedra, and what follows from it for growth. */
 #ifndef STARG_STAR_PAPER_VIEW_H
 #define STARG_STAR_PAPER_VIEW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Strict star decomposition: few pieces, each proven to be star-shaped.
  *
  * Stages: two starts, each with its neighbours joined where that can be done, and the better one is
@@ -13,10 +14,10 @@
 #include "star/strict/strict.h"
 
 #include "star/decomposition.h"
-#include "star/strict/bsp_start.h"
-#include "star/strict/cone.h"
-#include "star/strict/improve.h"
-#include "star/strict/region_growing.h"
+#include "star/strict/partition/cone.h"
+#include "star/strict/search/improve.h"
+#include "star/strict/start/bsp_start.h"
+#include "star/strict/start/region_growing.h"
 
 enum {
     SEARCHES = 6,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Strict star decomposition: every piece is proven to be star-shaped. */
 #ifndef STARG_STAR_STRICT_STRICT_H
 #define STARG_STAR_STRICT_STRICT_H

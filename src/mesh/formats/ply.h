@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* What the two halves of the PLY reader share: the header's declarations. */
+#ifndef STARG_MESH_FORMATS_PLY_H
+#define STARG_MESH_FORMATS_PLY_H
+
+#include "mesh/formats/scan.h"
+
+typedef enum ply_encoding { PLY_TEXT, PLY_LITTLE, PLY_BIG } ply_encoding;
+
+typedef enum ply_type {
+    PLY_INT8,
+    PLY_UINT8,
+    PLY_INT16,
+    PLY_UINT16,
+    PLY_INT32,
+    PLY_UINT32,
+    PLY_FLOAT32,
+    PLY_FLOAT64,
+    PLY_TYPES
+} ply_type;
+
+/* What a property is to us. PLY_X, PLY_Y, PLY_Z are 0, 1, 2. */
+typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_OTHER } ply_role;
+
+typedef struct ply_property {
+    ply_role role;
+    bool list;
+    ply_type count_type; /* of a list */
+    ply_type type;
+} ply_property;
+
+typedef enum ply_kind { PLY_VERTICES, PLY_FACES, PLY_OTHERS } ply_kind;
+
+typedef struct ply_element {
+    ply_kind kind;
+    size_t count;
+    size_t first, properties; /* in the array of all properties */
+    size_t line;
+} ply_element;
+
+typedef struct ply_reader {
+    starg_mesh_builder *builder;
+    const starg_source *source;
+    starg_scan scan; /* in binary data only its `at` is used */
+    ply_encoding encoding;
+    bool has_encoding;
+    bool by_lines; /* each item has a line of its own, whose further values are ignored */
+    size_t extra;  /* lines that had some */
+    size_t first_extra;
+    STARG_ARRAY(ply_element) elements;
+    STARG_ARRAY(ply_property) properties;
+} ply_reader;
+
+/* Bytes of one value in a binary file. */
+size_t starg_ply_type_size(ply_type type);
+
+/* The element of this kind, which is not PLY_OTHERS; NULL when the header declares none. */
+const ply_element *starg_ply_find(const ply_reader *ply, ply_kind kind);
+
+/* Reads and checks the header and leaves the scanner at the first byte of the data. A header that
+ * passes declares vertices with x, y, z, faces with a list of indices, and no more items than the
+ * rest of the source can hold. Errors: FORMAT, MEMORY. */
+starg_status starg_ply_read_header(ply_reader *ply);
+
+#endif

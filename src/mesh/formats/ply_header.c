@@ -1,0 +1,250 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The header of a PLY file: lines that declare the encoding, elements and their properties. */
+#include <string.h>
+
+#include "mesh/formats/ply.h"
+
+static const struct type_info {
+    const char *name, *other_name;
+    size_t size;
+} type_infos[PLY_TYPES] = {
+    [PLY_INT8] = {"char", "int8", 1},        [PLY_UINT8] = {"uchar", "uint8", 1},
+    [PLY_INT16] = {"short", "int16", 2},     [PLY_UINT16] = {"ushort", "uint16", 2},
+    [PLY_INT32] = {"int", "int32", 4},       [PLY_UINT32] = {"uint", "uint32", 4},
+    [PLY_FLOAT32] = {"float", "float32", 4}, [PLY_FLOAT64] = {"double", "float64", 8},
+};
+
+bool starg_ply_matches(const starg_source *source) {
+    return source->size >= 4 && memcmp(source->bytes, "ply", 3) == 0 &&
+           (source->bytes[3] == '\n' || source->bytes[3] == '\r');
+}
+
+size_t starg_ply_type_size(ply_type type) {
+    return type_infos[type].size;
+}
+
+static starg_status fail_header(const ply_reader *ply, const char *what) {
+    return starg_source_fail(ply->source, starg_at_line(ply->scan.line), "%s", what);
+}
+
+static starg_status header_word(ply_reader *ply, const char *what, starg_word *word) {
+    if (starg_scan_word_here(&ply->scan, word))
+        return STARG_OK;
+    return starg_source_fail(ply->source, starg_at_line(ply->scan.line),
+                             "%s is missing on this line of the header", what);
+}
+
+static starg_status read_format(ply_reader *ply) {
+    static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+    starg_word word;
+    starg_status status = header_word(ply, "the encoding", &word);
+    if (status != STARG_OK)
+        return status;
+    for (int i = 0; i < 3; i++) {
+        if (starg_word_is(word, names[i])) {
+            ply->encoding = (ply_encoding)i;
+            ply->has_encoding = true;
+            return STARG_OK;
+        }
+    }
+    return starg_source_fail(ply->source, starg_at_line(word.line),
+                             "the encoding '%s' is unknown; ascii, binary_little_endian and "
+                             "binary_big_endian are read",
+                             starg_word_excerpt(word).text);
+}
+
+static starg_status read_element(ply_reader *ply) {
+    starg_status status = STARG_OK;
+    starg_word name, word;
+    int64_t count;
+    STARG_TRY(header_word(ply, "the name of the element", &name));
+    STARG_TRY(header_word(ply, "the count of the element", &word));
+    STARG_TRY(starg_word_integer(&ply->scan, word, "the count of the element", &count));
+    if (count < 0)
+        return fail_header(ply, "the count of the element is negative");
+    ply_element element = {.kind = starg_word_is(name, "vertex") ? PLY_VERTICES
+                                   : starg_word_is(name, "face") ? PLY_FACES
+                                                                 : PLY_OTHERS,
+                           .count = (size_t)count,
+                           .first = ply->properties.count,
+                           .line = name.line};
+    for (size_t i = 0; i < ply->elements.count; i++)
+        if (element.kind != PLY_OTHERS && ply->elements.data[i].kind == element.kind)
+            return fail_header(ply, "the element is declared twice");
+    STARG_PUSH(ply->source->context, STARG_MESH_FILE, &ply->elements, element);
+done:
+    return status;
+}
+
+static starg_status read_type(ply_reader *ply, ply_type *out) {
+    starg_word word;
+    starg_status status = header_word(ply, "the type of the property", &word);
+    if (status != STARG_OK)
+        return status;
+    for (int i = 0; i < PLY_TYPES; i++) {
+        if (starg_word_is(word, type_infos[i].name) ||
+            starg_word_is(word, type_infos[i].other_name)) {
+            *out = (ply_type)i;
+            return STARG_OK;
+        }
+    }
+    return starg_source_fail(ply->source, starg_at_line(word.line),
+                             "the type '%s' is unknown; char, uchar, short, ushort, int, uint, "
+                             "float and double are read",
+                             starg_word_excerpt(word).text);
+}
+
+static ply_role find_role(ply_kind kind, bool list, starg_word name) {
+    if (kind == PLY_FACES && list &&
+        (starg_word_is(name, "vertex_indices") || starg_word_is(name, "vertex_index")))
+        return PLY_CORNERS;
+    if (kind == PLY_VERTICES && !list && name.length == 1 && name.text[0] >= 'x' &&
+        name.text[0] <= 'z')
+        return (ply_role)(name.text[0] - 'x');
+    return PLY_OTHER;
+}
+
+static starg_status read_property(ply_reader *ply) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    ply_property property = {0};
+    if (ply->elements.count == 0)
+        return fail_header(ply, "a property stands before the first element");
+    ply_element *element = &ply->elements.data[ply->elements.count - 1];
+    starg_scan ahead = ply->scan;
+    property.list = starg_scan_word_here(&ahead, &word) && starg_word_is(word, "list");
+    if (property.list) {
+        ply->scan = ahead;
+        STARG_TRY(read_type(ply, &property.count_type));
+        if (property.count_type >= PLY_FLOAT32)
+            return fail_header(ply, "the size of a list has to be of a whole type");
+    }
+    STARG_TRY(read_type(ply, &property.type));
+    STARG_TRY(header_word(ply, "the name of the property", &word));
+    property.role = find_role(element->kind, property.list, word);
+    for (size_t i = 0; i < element->properties; i++)
+        if (property.role != PLY_OTHER &&
+            ply->properties.data[element->first + i].role == property.role)
+            return fail_header(ply, "the property is declared twice");
+    STARG_PUSH(ply->source->context, STARG_MESH_FILE, &ply->properties, property);
+    element->properties++;
+done:
+    return status;
+}
+
+/* Goes behind the line end of "end_header". A lone CR ends it only if it does so in the first
+ * line: the LF behind it is data then, but not in a file with CR LF. */
+static starg_status pass_header_end(ply_reader *ply) {
+    starg_scan *scan = &ply->scan;
+    starg_word word;
+    if (starg_scan_word_here(scan, &word))
+        return fail_header(ply, "something stands behind end_header");
+    if (scan->at == scan->end)
+        return STARG_OK;
+    bool two = *scan->at == '\r' && scan->end - scan->at > 1 && scan->at[1] == '\n' &&
+               ply->source->bytes[4] == '\n';
+    scan->at += two ? 2 : 1;
+    scan->line++;
+    return STARG_OK;
+}
+
+/* A line that only people read. */
+static bool is_remark(starg_word word) {
+    return starg_word_is(word, "comment") || starg_word_is(word, "obj_info");
+}
+
+static starg_status read_lines(ply_reader *ply) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    STARG_TRY(starg_scan_expect(&ply->scan, "the word ply", &word));
+    if (!starg_word_is(word, "ply"))
+        return fail_header(ply, "a PLY file begins with a line that says ply");
+    for (;;) {
+        starg_scan_next_line(&ply->scan);
+        STARG_TRY(starg_scan_expect(&ply->scan, "a line of the header or end_header", &word));
+        if (starg_word_is(word, "end_header"))
+            break;
+        if (starg_word_is(word, "format"))
+            STARG_TRY(read_format(ply));
+        else if (starg_word_is(word, "element"))
+            STARG_TRY(read_element(ply));
+        else if (starg_word_is(word, "property"))
+            STARG_TRY(read_property(ply));
+        else if (!is_remark(word))
+            return starg_source_fail(ply->source, starg_at_line(word.line),
+                                     "'%s' begins no line of a PLY header",
+                                     starg_word_excerpt(word).text);
+    }
+    STARG_TRY(pass_header_end(ply));
+    if (!ply->has_encoding)
+        return fail_header(ply, "the header has no line that says the format");
+done:
+    return status;
+}
+
+const ply_element *starg_ply_find(const ply_reader *ply, ply_kind kind) {
+    for (size_t i = 0; i < ply->elements.count; i++)
+        if (ply->elements.data[i].kind == kind)
+            return &ply->elements.data[i];
+    return NULL;
+}
+
+static bool has_role(const ply_reader *ply, const ply_element *element, ply_role role) {
+    for (size_t i = 0; i < element->properties; i++)
+        if (ply->properties.data[element->first + i].role == role)
+            return true;
+    return false;
+}
+
+/* The fewest bytes that one item takes. */
+static size_t least_bytes(const ply_reader *ply, const ply_element *element) {
+    size_t bytes = 0;
+    for (size_t i = 0; i < element->properties; i++) {
+        const ply_property *property = &ply->properties.data[element->first + i];
+        size_t values = !property->list ? 1 : property->role == PLY_CORNERS ? 3 : 0;
+        if (ply->encoding == PLY_TEXT)
+            bytes += 2 * (values + property->list);
+        else
+            bytes += values * starg_ply_type_size(property->type) +
+                     (property->list ? starg_ply_type_size(property->count_type) : 0);
+    }
+    return bytes;
+}
+
+/* A count that the rest of the file cannot hold is refused before any memory is asked for. */
+static starg_status check_counts(const ply_reader *ply) {
+    size_t left = (size_t)(ply->scan.end - ply->scan.at);
+    for (size_t i = 0; i < ply->elements.count; i++) {
+        const ply_element *element = &ply->elements.data[i];
+        size_t bytes = least_bytes(ply, element);
+        if (bytes != 0 && element->count > (left + 1) / bytes)
+            return starg_source_fail(ply->source, starg_at_line(element->line),
+                                     "%zu items are announced, which the %zu bytes behind the "
+                                     "header cannot hold; the header is wrong or the file is cut "
+                                     "off",
+                                     element->count, left);
+    }
+    return STARG_OK;
+}
+
+static starg_status check_header(const ply_reader *ply) {
+    const ply_element *vertices = starg_ply_find(ply, PLY_VERTICES),
+                      *faces = starg_ply_find(ply, PLY_FACES);
+    if (vertices == NULL || faces == NULL)
+        return starg_source_fail(ply->source, starg_at_file(),
+                                 "the file has no faces: a surface needs the elements vertex and "
+                                 "face");
+    for (int k = 0; k < 3; k++)
+        if (!has_role(ply, vertices, (ply_role)k))
+            return starg_source_fail(ply->source, starg_at_line(vertices->line),
+                                     "vertices have no property %c", "xyz"[k]);
+    if (!has_role(ply, faces, PLY_CORNERS))
+        return starg_source_fail(ply->source, starg_at_line(faces->line),
+                                 "faces have no list property vertex_indices");
+    return check_counts(ply);
+}
+
+starg_status starg_ply_read_header(ply_reader *ply) {
+    starg_status status = read_lines(ply);
+    return status == STARG_OK ? check_header(ply) : status;
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reading a mesh of any format: which one it is, is told by the content, and only if that leaves
+ * it open by the name. */
+#include <string.h>
+#include <strings.h>
+
+#include "core/file.h"
+#include "mesh/formats/io.h"
+
+static const struct format {
+    const char *extension;
+    bool (*matches)(const starg_source *source);
+    starg_status (*read)(starg_mesh_builder *builder);
+} formats[] = {
+    {".ply", starg_ply_matches, starg_ply_read},
+    {".stl", starg_stl_matches, starg_stl_read},
+    {".off", starg_off_matches, starg_off_read},
+    {".obj", starg_obj_matches, starg_obj_read},
+};
+
+enum { FORMATS = sizeof formats / sizeof formats[0] };
+
+bool starg_has_extension(const char *name, const char *extension) {
+    size_t length = strlen(name), tail = strlen(extension);
+    return length >= tail && strcasecmp(name + length - tail, extension) == 0;
+}
+
+static starg_status detect(const starg_source *source, const char *name,
+                           const struct format **out) {
+    if (source->size == 0)
+        return starg_source_fail(source, starg_at_file(), "the file is empty");
+    for (int i = 0; i < FORMATS; i++) {
+        if (formats[i].matches(source)) {
+            *out = &formats[i];
+            return STARG_OK;
+        }
+    }
+    for (int i = 0; i < FORMATS; i++) {
+        if (starg_has_extension(name, formats[i].extension)) {
+            *out = &formats[i];
+            return STARG_OK;
+        }
+    }
+    return starg_source_fail(source, starg_at_file(),
+                             "the format is unknown; OFF, OBJ, PLY and STL are read");
+}
+
+/* Text may begin with a byte order mark, which says nothing. */
+static void pass_byte_order_mark(starg_source *source) {
+    if (source->size >= 3 && memcmp(source->bytes, "\xEF\xBB\xBF", 3) == 0) {
+        source->bytes += 3;
+        source->size -= 3;
+    }
+}
+
+/* Long names are shown by their ends, so that a message has room for what it says. */
+static void show_name(const char *name, char *shown, size_t size) {
+    size_t length = strlen(name);
+    if (length < size)
+        memcpy(shown, name, length + 1);
+    else
+        snprintf(shown, size, "...%s", name + length - (size - 4));
+}
+
+starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, size_t size,
+                                    const char *name, starg_mesh **out) {
+    starg_status status = STARG_OK;
+    char shown[256];
+    show_name(name, shown, sizeof shown);
+    starg_source source = {context, shown, bytes, size};
+    starg_mesh_builder builder = {.source = &source};
+    starg_c_locale locale = {0};
+    const struct format *format = NULL;
+    *out = NULL;
+    starg_progress_begin(context, "read");
+    pass_byte_order_mark(&source);
+    STARG_TRY(starg_check_cancel(context, STARG_MESH_FILE));
+    STARG_TRY(starg_c_locale_enter(context, &locale));
+    STARG_TRY(detect(&source, name, &format));
+    STARG_TRY(format->read(&builder));
+    STARG_TRY(starg_builder_finish(&builder, out));
+done:
+    starg_c_locale_leave(&locale);
+    starg_builder_free(&builder);
+    starg_progress_end(context);
+    return status;
+}
+
+starg_status starg_mesh_read(starg_context *context, const char *path, starg_mesh **out) {
+    starg_status status = STARG_OK;
+    char *bytes = NULL;
+    size_t size = 0;
+    *out = NULL;
+    STARG_TRY(starg_file_read(context, STARG_MESH_FILE, path, &bytes, &size));
+    const char *name = strcmp(path, "-") == 0 ? "standard input" : path;
+    STARG_TRY(starg_mesh_read_memory(context, bytes, size, name, out));
+done:
+    starg_release(context, bytes);
+    return status;
+}

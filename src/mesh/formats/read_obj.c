@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* OBJ, Wavefront's text format: lines of a keyword and its values, of which v and f matter. Faces
+ * may name vertices that come later, so one pass reads the vertices and a second one the faces.
+ * Other files that it names are never opened. */
+#include "mesh/formats/scan.h"
+
+bool starg_obj_matches(const starg_source *source) {
+    static const char *const keywords[] = {"v", "vn", "vt", "vp", "f",      "o",
+                                           "g", "s",  "l",  "p",  "mtllib", "usemtl"};
+    starg_scan scan = starg_scan_make(source);
+    starg_word word;
+    if (!starg_scan_word(&scan, &word))
+        return false;
+    for (size_t i = 0; i < sizeof keywords / sizeof keywords[0]; i++)
+        if (starg_word_is(word, keywords[i]))
+            return true;
+    return false;
+}
+
+static starg_scan scan_lines(const starg_source *source) {
+    starg_scan scan = starg_scan_make(source);
+    scan.continuations = true;
+    return scan;
+}
+
+/* x y z, then perhaps a weight or a colour. */
+static starg_status read_vertex(starg_scan *scan, starg_mesh_builder *builder) {
+    enum { MOST_EXTRAS = 5 };
+    starg_status status = STARG_OK;
+    starg_place place = starg_at_line(scan->line);
+    double point[3];
+    for (int k = 0; k < 3; k++) {
+        starg_word word;
+        if (!starg_scan_word_here(scan, &word))
+            return starg_source_fail(scan->source, place,
+                                     "a vertex has %d coordinate%s; it needs 3", k,
+                                     k == 1 ? "" : "s");
+        STARG_TRY(starg_word_real(scan, word, "a coordinate of a vertex", &point[k]));
+    }
+    STARG_TRY(starg_builder_vertex(builder, point, place));
+    STARG_TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "a weight or a colour"));
+done:
+    return status;
+}
+
+/* Splits v, v/t, v//n or v/t/n; the numbers behind the slashes must be numbers, no more. */
+static bool parse_corner(starg_word word, int64_t *vertex) {
+    size_t begin = 0;
+    for (int part = 0; part < 3; part++) {
+        size_t end = begin;
+        while (end < word.length && word.text[end] != '/')
+            end++;
+        int64_t value = 0;
+        bool empty = end == begin;
+        if (!empty && !starg_parse_integer(word.text + begin, end - begin, &value))
+            return false;
+        if (part == 0 && empty)
+            return false;
+        if (part == 0)
+            *vertex = value;
+        if (end == word.length)
+            return true;
+        begin = end + 1;
+    }
+    return false;
+}
+
+/* Counts from 1 on, or backward from the last vertex before this line; `out` counts from 0. */
+static starg_status resolve(starg_scan *scan, int64_t given, size_t before,
+                            const starg_mesh_builder *builder, int64_t *out) {
+    size_t count = starg_builder_vertex_count(builder);
+    if (given > 0 && (uint64_t)given <= count)
+        *out = given - 1;
+    else if (given < 0 && given >= -(int64_t)before)
+        *out = (int64_t)before + given;
+    else
+        return starg_source_fail(scan->source, starg_at_line(scan->line),
+                                 "a face names vertex %lld, but there are %zu vertices, %zu of "
+                                 "them before this line; they count from 1 on, or backward from "
+                                 "-1",
+                                 (long long)given, count, before);
+    return STARG_OK;
+}
+
+/* The corners of a face; `before` vertices stand before this line. */
+static starg_status read_face(starg_scan *scan, size_t before, starg_mesh_builder *builder) {
+    starg_status status = STARG_OK;
+    starg_place place = starg_at_line(scan->line);
+    starg_word word;
+    while (starg_scan_word_here(scan, &word)) {
+        int64_t vertex = 0;
+        if (!parse_corner(word, &vertex))
+            return starg_source_fail(scan->source, starg_at_line(word.line),
+                                     "'%s' is not a corner of a face, which is v, v/t, v//n or "
+                                     "v/t/n in whole numbers",
+                                     starg_word_excerpt(word).text);
+        STARG_TRY(resolve(scan, vertex, before, builder, &vertex));
+        STARG_TRY(starg_builder_corner(builder, vertex, starg_at_line(word.line)));
+    }
+    STARG_TRY(starg_builder_face(builder, place));
+done:
+    return status;
+}
+
+static starg_status read_vertices(starg_mesh_builder *builder) {
+    starg_status status = STARG_OK;
+    starg_scan scan = scan_lines(builder->source);
+    starg_word word;
+    while (starg_scan_word(&scan, &word)) {
+        if (starg_word_is(word, "v"))
+            STARG_TRY(read_vertex(&scan, builder));
+        starg_scan_next_line(&scan);
+        STARG_TRY(starg_builder_tick(builder, (size_t)(scan.at - scan.source->bytes) / 2));
+    }
+done:
+    return status;
+}
+
+static starg_status read_faces(starg_mesh_builder *builder) {
+    starg_status status = STARG_OK;
+    starg_scan scan = scan_lines(builder->source);
+    starg_word word;
+    size_t before = 0;
+    while (starg_scan_word(&scan, &word)) {
+        before += starg_word_is(word, "v");
+        if (starg_word_is(word, "f"))
+            STARG_TRY(read_face(&scan, before, builder));
+        starg_scan_next_line(&scan);
+        size_t done = (size_t)(scan.at - scan.source->bytes);
+        STARG_TRY(starg_builder_tick(builder, (scan.source->size + done) / 2));
+    }
+done:
+    return status;
+}
+
+starg_status starg_obj_read(starg_mesh_builder *builder) {
+    starg_status status = STARG_OK;
+    STARG_TRY(read_vertices(builder));
+    STARG_TRY(read_faces(builder));
+done:
+    return status;
+}

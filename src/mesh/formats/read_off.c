@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* OFF, Geomview's text format: a keyword, the counts of vertices, faces and edges, the vertices,
+ * the faces. The letters before OFF tell what vertices carry besides their position; those numbers
+ * end with the line, and so do the colours of faces. Everything else may be spread over lines as
+ * one likes. */
+#include <string.h>
+
+#include "mesh/formats/scan.h"
+
+typedef struct off_header {
+    bool vertex_extras; /* normals, colours or texture coordinates follow each position */
+    bool homogeneous;   /* 4OFF: four coordinates   */
+    bool dimension;     /* nOFF: a number of coordinates of its own */
+    size_t length;      /* of the keyword */
+} off_header;
+
+static bool take(const char **at, const char *end, const char *prefix) {
+    size_t length = strlen(prefix);
+    if ((size_t)(end - *at) < length || memcmp(*at, prefix, length) != 0)
+        return false;
+    *at += length;
+    return true;
+}
+
+/* [ST][C][N][4][n]OFF, and then nothing; or a digit, which can only belong to the first count. */
+static bool parse_keyword(starg_word word, off_header *header) {
+    const char *at = word.text, *end = word.text + word.length;
+    bool texture = take(&at, end, "ST");
+    bool color = take(&at, end, "C");
+    bool normal = take(&at, end, "N");
+    header->vertex_extras = texture || color || normal;
+    header->homogeneous = take(&at, end, "4");
+    header->dimension = take(&at, end, "n");
+    if (!take(&at, end, "OFF"))
+        return false;
+    header->length = (size_t)(at - word.text);
+    return at == end || (*at >= '0' && *at <= '9');
+}
+
+bool starg_off_matches(const starg_source *source) {
+    starg_scan scan = starg_scan_make(source);
+    starg_word word;
+    off_header ignored;
+    return starg_scan_word(&scan, &word) && parse_keyword(word, &ignored);
+}
+
+/* Reads the keyword and leaves the scanner behind its last letter. */
+static starg_status read_keyword(starg_scan *scan, off_header *header) {
+    starg_word word;
+    starg_status status = starg_scan_expect(scan, "the keyword OFF", &word);
+    if (status != STARG_OK)
+        return status;
+    starg_place place = starg_at_line(word.line);
+    if (!parse_keyword(word, header))
+        return starg_source_fail(scan->source, place,
+                                 "'%s' stands where the keyword OFF should; an OFF file begins "
+                                 "with it",
+                                 starg_word_excerpt(word).text);
+    if (header->homogeneous || header->dimension)
+        return starg_source_fail(scan->source, place,
+                                 "%s: only points with three coordinates are read, so convert the "
+                                 "file to plain OFF",
+                                 starg_word_excerpt(word).text);
+    scan->at = word.text + header->length;
+    starg_scan ahead = *scan;
+    if (starg_scan_word_here(&ahead, &word) && starg_word_is(word, "BINARY"))
+        return starg_source_fail(scan->source, place,
+                                 "binary OFF is not read; convert the file to text OFF or to PLY");
+    return STARG_OK;
+}
+
+/* The edge count means nothing and is often left out: it stands on the line of the face count, or
+ * alone on the next one. */
+static starg_status pass_edge_count(starg_scan *scan) {
+    starg_word word;
+    starg_scan ahead = *scan;
+    if (!starg_scan_word_here(&ahead, &word)) {
+        starg_word neighbour;
+        if (!starg_scan_word(&ahead, &word) || starg_scan_word_here(&ahead, &neighbour))
+            return STARG_OK;
+    }
+    *scan = ahead;
+    int64_t edges;
+    return starg_word_integer(scan, word, "the edge count", &edges);
+}
+
+/* A count that the rest of the file cannot hold is refused before any memory is asked for. */
+static starg_status read_counts(starg_scan *scan, size_t *vertices, size_t *faces) {
+    starg_status status = STARG_OK;
+    int64_t v, f;
+    STARG_TRY(starg_scan_integer(scan, "the vertex count", &v));
+    STARG_TRY(starg_scan_integer(scan, "the face count", &f));
+    size_t line = scan->line;
+    STARG_TRY(pass_edge_count(scan));
+    enum { VERTEX_BYTES = 6, FACE_BYTES = 8 }; /* "0 0 0\n", "3 0 0 0\n" */
+    int64_t left = (int64_t)(scan->end - scan->at) + 1;
+    if (v < 0 || f < 0 || v > left / VERTEX_BYTES || f > left / FACE_BYTES)
+        return starg_source_fail(scan->source, starg_at_line(line),
+                                 "%lld vertices and %lld faces are announced, which the %lld bytes "
+                                 "that follow cannot hold; the header is wrong or the file is cut "
+                                 "off",
+                                 (long long)v, (long long)f, (long long)left - 1);
+    *vertices = (size_t)v;
+    *faces = (size_t)f;
+done:
+    return status;
+}
+
+static starg_status read_vertices(starg_scan *scan, const off_header *header, size_t count,
+                                  starg_mesh_builder *builder) {
+    enum { MOST_EXTRAS = 11 }; /* normal 3, colour 4, texture 4 */
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < count; i++) {
+        double point[3];
+        for (int k = 0; k < 3; k++)
+            STARG_TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
+        STARG_TRY(starg_builder_vertex(builder, point, starg_at_line(scan->line)));
+        if (header->vertex_extras)
+            STARG_TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "what a vertex carries"));
+        STARG_TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
+    }
+done:
+    return status;
+}
+
+static starg_status read_faces(starg_scan *scan, size_t count, starg_mesh_builder *builder) {
+    enum { MOST_COLORS = 4 };
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < count; i++) {
+        int64_t corners, vertex;
+        STARG_TRY(starg_scan_integer(scan, "the number of corners of a face", &corners));
+        starg_place place = starg_at_line(scan->line);
+        for (int64_t k = 0; k < corners; k++) {
+            STARG_TRY(starg_scan_integer(scan, "a vertex index", &vertex));
+            STARG_TRY(starg_builder_corner(builder, vertex, starg_at_line(scan->line)));
+        }
+        STARG_TRY(starg_builder_face(builder, place));
+        STARG_TRY(starg_scan_extra_numbers(scan, MOST_COLORS, "the colour of a face"));
+        STARG_TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
+    }
+done:
+    return status;
+}
+
+starg_status starg_off_read(starg_mesh_builder *builder) {
+    starg_status status = STARG_OK;
+    starg_scan scan = starg_scan_make(builder->source);
+    off_header header;
+    size_t vertices = 0, faces = 0;
+    STARG_TRY(read_keyword(&scan, &header));
+    STARG_TRY(read_counts(&scan, &vertices, &faces));
+    STARG_TRY(starg_builder_reserve(builder, vertices, faces));
+    STARG_TRY(read_vertices(&scan, &header, vertices, builder));
+    STARG_TRY(read_faces(&scan, faces, builder));
+    STARG_TRY(starg_scan_end(&scan, "the counts in the header are too small, or vertices carry "
+                                    "numbers that the keyword does not announce (COFF, NOFF)"));
+done:
+    return status;
+}

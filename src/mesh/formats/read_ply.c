@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* PLY, the Stanford polygon format: a text header that declares elements and their properties,
+ * then the elements in text or in binary of either byte order. Any types and order of properties
+ * are read; elements and properties that do not matter here are stepped over. Faces may stand
+ * before the vertices: then they are stepped over first and read at the end.
+ *
+ * Text is read value by value, wherever lines end. Some programs write more values for an item than
+ * the header declares: where that is what went wrong, it is read again line by line. */
+#include <math.h>
+#include <string.h>
+
+#include "mesh/formats/ply.h"
+
+static starg_place place_of(const ply_reader *ply) {
+    return ply->encoding == PLY_TEXT ? starg_at_line(ply->scan.line)
+                                     : starg_at_byte((size_t)(ply->scan.at - ply->source->bytes));
+}
+
+/* The place of what was just read, given that of the cursor before: a scanner of text reaches the
+ * line of a word only when it reads it. */
+static starg_place place_since(const ply_reader *ply, starg_place before) {
+    return ply->encoding == PLY_TEXT ? place_of(ply) : before;
+}
+
+static starg_status need(const ply_reader *ply, size_t bytes) {
+    if (bytes <= (size_t)(ply->scan.end - ply->scan.at))
+        return STARG_OK;
+    return starg_source_fail(ply->source, place_of(ply),
+                             "the file ends within its data; it seems to be cut off");
+}
+
+/* The next `size` bytes as a number, whatever their order. */
+static uint64_t take_bits(ply_reader *ply, size_t size) {
+    const unsigned char *bytes = (const unsigned char *)ply->scan.at;
+    uint64_t bits = 0;
+    for (size_t i = 0; i < size; i++)
+        bits |= (uint64_t)bytes[i] << 8 * (ply->encoding == PLY_LITTLE ? i : size - 1 - i);
+    ply->scan.at += size;
+    return bits;
+}
+
+static double float_of(ply_type type, uint64_t bits) {
+    if (type == PLY_FLOAT32) {
+        uint32_t half = (uint32_t)bits;
+        float value;
+        memcpy(&value, &half, sizeof value);
+        return (double)value;
+    }
+    double value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static int64_t integer_of(ply_type type, uint64_t bits) {
+    switch (type) {
+    case PLY_INT8:
+        return (int8_t)bits;
+    case PLY_INT16:
+        return (int16_t)bits;
+    case PLY_INT32:
+        return (int32_t)bits;
+    default:
+        return (int64_t)bits; /* unsigned, at most 32 bits */
+    }
+}
+
+static starg_status read_real(ply_reader *ply, ply_type type, const char *what, double *value) {
+    if (ply->encoding == PLY_TEXT)
+        return starg_scan_real(&ply->scan, what, value);
+    starg_status status = need(ply, starg_ply_type_size(type));
+    if (status != STARG_OK)
+        return status;
+    uint64_t bits = take_bits(ply, starg_ply_type_size(type));
+    *value = type >= PLY_FLOAT32 ? float_of(type, bits) : (double)integer_of(type, bits);
+    return STARG_OK;
+}
+
+/* Whole numbers may be stored in a floating type. */
+static starg_status read_integer(ply_reader *ply, ply_type type, const char *what, int64_t *value) {
+    if (type >= PLY_FLOAT32) {
+        double real;
+        starg_place before = place_of(ply);
+        starg_status status = read_real(ply, type, what, &real);
+        if (status != STARG_OK)
+            return status;
+        if (!(fabs(real) <= 0x1p53) || real != floor(real))
+            return starg_source_fail(ply->source, place_since(ply, before),
+                                     "%g is not a whole number; %s should stand here", real, what);
+        *value = (int64_t)real;
+        return STARG_OK;
+    }
+    if (ply->encoding == PLY_TEXT)
+        return starg_scan_integer(&ply->scan, what, value);
+    starg_status status = need(ply, starg_ply_type_size(type));
+    if (status == STARG_OK)
+        *value = integer_of(type, take_bits(ply, starg_ply_type_size(type)));
+    return status;
+}
+
+static starg_status skip_values(ply_reader *ply, ply_type type, uint64_t count) {
+    starg_status status = STARG_OK;
+    if (ply->encoding == PLY_TEXT) {
+        starg_word word;
+        for (uint64_t i = 0; i < count; i++)
+            STARG_TRY(starg_scan_expect(&ply->scan, "the value of a property", &word));
+        return STARG_OK;
+    }
+    size_t left = (size_t)(ply->scan.end - ply->scan.at);
+    if (count > left / starg_ply_type_size(type))
+        return need(ply, left + 1);
+    ply->scan.at += count * starg_ply_type_size(type);
+done:
+    return status;
+}
+
+static starg_status read_list(ply_reader *ply, const ply_property *property, bool skip) {
+    starg_status status = STARG_OK;
+    int64_t count, vertex;
+    starg_place before = place_of(ply);
+    STARG_TRY(read_integer(ply, property->count_type, "the size of a list", &count));
+    if (count < 0)
+        return starg_source_fail(ply->source, place_since(ply, before),
+                                 "the size of a list is negative");
+    if (property->role != PLY_CORNERS || skip)
+        return skip_values(ply, property->type, (uint64_t)count);
+    for (int64_t i = 0; i < count; i++) {
+        before = place_of(ply);
+        STARG_TRY(read_integer(ply, property->type, "a vertex index", &vertex));
+        STARG_TRY(starg_builder_corner(ply->builder, vertex, place_since(ply, before)));
+    }
+done:
+    return status;
+}
+
+/* One item of an element; its values are used unless `skip`. */
+static starg_status read_item(ply_reader *ply, const ply_element *element, bool skip) {
+    starg_status status = STARG_OK;
+    starg_place before = place_of(ply);
+    double point[3] = {0, 0, 0};
+    for (size_t i = 0; i < element->properties; i++) {
+        const ply_property *property = &ply->properties.data[element->first + i];
+        if (property->list)
+            STARG_TRY(read_list(ply, property, skip));
+        else if (property->role <= PLY_Z)
+            STARG_TRY(
+                read_real(ply, property->type, "a coordinate of a vertex", &point[property->role]));
+        else
+            STARG_TRY(skip_values(ply, property->type, 1));
+    }
+    starg_place place = place_since(ply, before);
+    if (element->kind == PLY_VERTICES)
+        STARG_TRY(starg_builder_vertex(ply->builder, point, place));
+    if (element->kind == PLY_FACES && !skip)
+        STARG_TRY(starg_builder_face(ply->builder, place));
+    STARG_TRY(starg_builder_tick(ply->builder, (size_t)(ply->scan.at - ply->source->bytes)));
+done:
+    return status;
+}
+
+/* One item on a line of its own. */
+static starg_status read_line(ply_reader *ply, const ply_element *element, bool skip) {
+    starg_status status = STARG_OK;
+    starg_scan ahead = ply->scan;
+    starg_word word;
+    STARG_TRY(starg_scan_expect(&ahead, "the value of a property", &word));
+    STARG_TRY(read_item(ply, element, skip));
+    if (ply->scan.line != word.line)
+        return starg_source_fail(ply->source, starg_at_line(word.line), "the line is too short");
+    if (starg_scan_word_here(&ply->scan, &word)) {
+        if (ply->extra++ == 0)
+            ply->first_extra = word.line;
+        starg_scan_next_line(&ply->scan);
+    }
+done:
+    return status;
+}
+
+static starg_status read_items(ply_reader *ply, const ply_element *element, bool skip) {
+    if (element->properties == 0)
+        return STARG_OK; /* takes no bytes, however many there are */
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < element->count && status == STARG_OK; i++)
+        status = ply->by_lines ? read_line(ply, element, skip) : read_item(ply, element, skip);
+    return status;
+}
+
+/* Nothing but line ends may follow. */
+static starg_status check_end(ply_reader *ply) {
+    static const char hint[] = "the counts in the header do not fit the data";
+    if (ply->encoding == PLY_TEXT)
+        return starg_scan_end(&ply->scan, hint);
+    const char *at = ply->scan.at;
+    while (at < ply->scan.end && (*at == '\n' || *at == '\r'))
+        at++;
+    if (at == ply->scan.end)
+        return STARG_OK;
+    return starg_source_fail(ply->source, place_of(ply), "%zu bytes stand behind the data; %s",
+                             (size_t)(ply->scan.end - ply->scan.at), hint);
+}
+
+static starg_status read_data(ply_reader *ply) {
+    starg_status status = STARG_OK;
+    const ply_element *faces = starg_ply_find(ply, PLY_FACES),
+                      *vertices = starg_ply_find(ply, PLY_VERTICES);
+    bool late = faces < vertices;
+    starg_scan begin_of_faces = ply->scan;
+    for (size_t i = 0; i < ply->elements.count; i++) {
+        const ply_element *element = &ply->elements.data[i];
+        if (element == faces)
+            begin_of_faces = ply->scan;
+        STARG_TRY(read_items(ply, element, late && element == faces));
+    }
+    STARG_TRY(check_end(ply));
+    if (late) {
+        ply->scan = begin_of_faces;
+        STARG_TRY(read_items(ply, faces, false));
+    }
+done:
+    return status;
+}
+
+/* The data from its beginning, into an empty builder. */
+static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_lines) {
+    ply->scan = *begin;
+    ply->by_lines = by_lines;
+    ply->extra = 0;
+    ply->builder->vertices.count = ply->builder->faces.count = ply->builder->corners.count = 0;
+    return read_data(ply);
+}
+
+/* If that fails line by line as well, the first fault is what is told. */
+static starg_status read_either_way(ply_reader *ply) {
+    const starg_scan begin = ply->scan;
+    starg_status status = read_anew(ply, &begin, false);
+    if (status != STARG_ERROR_FORMAT || ply->encoding != PLY_TEXT)
+        return status;
+    status = read_anew(ply, &begin, true);
+    if (status == STARG_ERROR_FORMAT)
+        return read_anew(ply, &begin, false);
+    if (status == STARG_OK)
+        starg_log(ply->source->context, STARG_LOG_NOTICE,
+                  "'%s': %zu lines, the first being line %zu, have more values than the header "
+                  "declares, which were ignored",
+                  ply->source->name, ply->extra, ply->first_extra);
+    return status;
+}
+
+starg_status starg_ply_read(starg_mesh_builder *builder) {
+    starg_status status = STARG_OK;
+    ply_reader ply = {
+        .builder = builder, .source = builder->source, .scan = starg_scan_make(builder->source)};
+    ply.scan.comments = false;
+    STARG_TRY(starg_ply_read_header(&ply));
+    STARG_TRY(starg_builder_reserve(builder, starg_ply_find(&ply, PLY_VERTICES)->count,
+                                    starg_ply_find(&ply, PLY_FACES)->count));
+    STARG_TRY(read_either_way(&ply));
+done:
+    STARG_ARRAY_FREE(builder->source->context, &ply.elements);
+    STARG_ARRAY_FREE(builder->source->context, &ply.properties);
+    return status;
+}

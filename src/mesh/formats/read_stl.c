@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* STL: a soup of triangles, each with three points of its own, in text or binary. Points at
+ * exactly equal positions are welded; normals are ignored, the order of the corners counts.
+ *
+ * Many binary files begin with the word "solid", so a size that fits the triangle count decides
+ * first, then whether a zero byte stands in the header, which text never has. */
+#include <string.h>
+#include <strings.h>
+
+#include "mesh/formats/scan.h"
+#include "mesh/weld.h"
+
+enum { HEADER = 84, RECORD = 50 };
+
+static uint32_t little_endian(const char *bytes) {
+    uint32_t value = 0;
+    for (int i = 3; i >= 0; i--)
+        value = value << 8 | (unsigned char)bytes[i];
+    return value;
+}
+
+static uint64_t announced_size(const starg_source *source) {
+    return HEADER + RECORD * (uint64_t)little_endian(source->bytes + 80);
+}
+
+static bool size_fits(const starg_source *source) {
+    return source->size >= HEADER && announced_size(source) == source->size;
+}
+
+static bool keyword_is(starg_word word, const char *text) {
+    return word.length == strlen(text) && strncasecmp(word.text, text, word.length) == 0;
+}
+
+static bool begins_with_solid(const starg_source *source) {
+    starg_scan scan = starg_scan_make(source);
+    starg_word word;
+    return starg_scan_word(&scan, &word) && keyword_is(word, "solid");
+}
+
+static bool is_binary(const starg_source *source) {
+    size_t header = source->size < HEADER ? source->size : HEADER;
+    return size_fits(source) || !begins_with_solid(source) ||
+           memchr(source->bytes, '\0', header) != NULL;
+}
+
+bool starg_stl_matches(const starg_source *source) {
+    return size_fits(source) || begins_with_solid(source);
+}
+
+/* One corner of the open face. */
+static starg_status add_corner(starg_weld *weld, const double point[3], starg_place place) {
+    uint32_t vertex;
+    starg_status status = starg_weld_point(weld, point, place, &vertex);
+    return status == STARG_OK ? starg_builder_corner(weld->builder, vertex, place) : status;
+}
+
+static starg_status expect_keyword(starg_scan *scan, const char *keyword) {
+    starg_word word;
+    starg_status status = starg_scan_expect(scan, keyword, &word);
+    if (status != STARG_OK || keyword_is(word, keyword))
+        return status;
+    return starg_source_fail(scan->source, starg_at_line(word.line),
+                             "'%s' stands where '%s' should", starg_word_excerpt(word).text,
+                             keyword);
+}
+
+/* Behind "facet": normal, outer loop, three points, endloop, endfacet. Normals of facets without
+ * area are written in many ways, so anything passes for their numbers. */
+static starg_status read_facet(starg_scan *scan, starg_weld *weld) {
+    starg_status status = STARG_OK;
+    starg_place place = starg_at_line(scan->line);
+    starg_word ignored;
+    double point[3];
+    STARG_TRY(expect_keyword(scan, "normal"));
+    for (int k = 0; k < 3; k++)
+        STARG_TRY(starg_scan_expect(scan, "a coordinate of a normal", &ignored));
+    STARG_TRY(expect_keyword(scan, "outer"));
+    STARG_TRY(expect_keyword(scan, "loop"));
+    for (int corner = 0; corner < 3; corner++) {
+        STARG_TRY(expect_keyword(scan, "vertex"));
+        for (int k = 0; k < 3; k++)
+            STARG_TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
+        STARG_TRY(add_corner(weld, point, starg_at_line(scan->line)));
+    }
+    STARG_TRY(expect_keyword(scan, "endloop"));
+    STARG_TRY(expect_keyword(scan, "endfacet"));
+    STARG_TRY(starg_builder_face(weld->builder, place));
+    STARG_TRY(starg_builder_tick(weld->builder, (size_t)(scan->at - scan->source->bytes)));
+done:
+    return status;
+}
+
+/* Facets up to "endsolid"; the name that may follow either keyword ends with its line. */
+static starg_status read_solid(starg_scan *scan, starg_weld *weld) {
+    starg_status status = STARG_OK;
+    starg_word word;
+    STARG_TRY(expect_keyword(scan, "solid"));
+    starg_scan_next_line(scan);
+    for (;;) {
+        STARG_TRY(starg_scan_expect(scan, "facet or endsolid", &word));
+        if (keyword_is(word, "endsolid"))
+            break;
+        if (!keyword_is(word, "facet"))
+            return starg_source_fail(scan->source, starg_at_line(word.line),
+                                     "'%s' stands where 'facet' or 'endsolid' should",
+                                     starg_word_excerpt(word).text);
+        STARG_TRY(read_facet(scan, weld));
+    }
+    starg_scan_next_line(scan);
+done:
+    return status;
+}
+
+/* One solid after the other, to the end of the text. */
+static starg_status read_text(const starg_source *source, starg_weld *weld) {
+    starg_status status = STARG_OK;
+    starg_scan scan = starg_scan_make(source);
+    starg_scan ahead;
+    starg_word word;
+    scan.comments = false; /* the format has none, and names may hold anything */
+    do {
+        STARG_TRY(read_solid(&scan, weld));
+        ahead = scan;
+    } while (starg_scan_word(&ahead, &word));
+done:
+    return status;
+}
+
+/* What stands behind the triangles is of no use to anybody. */
+static starg_status check_size(const starg_source *source) {
+    if (source->size < HEADER)
+        return starg_source_fail(source, starg_at_byte(source->size),
+                                 "the file ends within the header of a binary STL file; it is cut "
+                                 "off, or it is something else");
+    uint64_t announced = announced_size(source);
+    if (source->size < announced)
+        return starg_source_fail(source, starg_at_byte(80),
+                                 "%u triangles are announced, which take %llu bytes, but the file "
+                                 "has %zu; it is cut off, or no STL file",
+                                 little_endian(source->bytes + 80), (unsigned long long)announced,
+                                 source->size);
+    if (source->size > announced)
+        starg_log(source->context, STARG_LOG_NOTICE,
+                  "'%s': %llu bytes behind the %u triangles that are announced were ignored",
+                  source->name, (unsigned long long)(source->size - announced),
+                  little_endian(source->bytes + 80));
+    return STARG_OK;
+}
+
+static starg_status read_binary(const starg_source *source, starg_weld *weld) {
+    enum { NORMAL = 12, POINT = 12, COORDINATE = 4 };
+    starg_status status = STARG_OK;
+    STARG_TRY(check_size(source));
+    for (size_t at = HEADER; at < announced_size(source); at += RECORD) {
+        for (size_t corner = 0; corner < 3; corner++) {
+            double point[3];
+            size_t begin = at + NORMAL + POINT * corner;
+            for (size_t k = 0; k < 3; k++) {
+                uint32_t bits = little_endian(source->bytes + begin + COORDINATE * k);
+                float value;
+                memcpy(&value, &bits, sizeof value);
+                point[k] = (double)value;
+            }
+            STARG_TRY(add_corner(weld, point, starg_at_byte(begin)));
+        }
+        STARG_TRY(starg_builder_face(weld->builder, starg_at_byte(at)));
+        STARG_TRY(starg_builder_tick(weld->builder, at));
+    }
+done:
+    return status;
+}
+
+starg_status starg_stl_read(starg_mesh_builder *builder) {
+    starg_weld weld = {.builder = builder};
+    starg_status status = is_binary(builder->source) ? read_binary(builder->source, &weld)
+                                                     : read_text(builder->source, &weld);
+    starg_weld_free(&weld);
+    return status;
+}

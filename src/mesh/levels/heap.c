@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A binary heap that knows where each item is. */
+#include "mesh/levels/heap.h"
+
+#include "core/memory.h"
+
+starg_status heap_create(starg_context *context, size_t items, mesh_heap **out) {
+    starg_status status = STARG_OK;
+    mesh_heap *heap = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, "simplify", heap, 1);
+    heap->context = context;
+    STARG_NEW(context, "simplify", heap->entries, items);
+    STARG_NEW(context, "simplify", heap->slot, items);
+    for (size_t i = 0; i < items; i++)
+        heap->slot[i] = HEAP_NONE;
+    *out = heap;
+done:
+    if (status != STARG_OK)
+        heap_free(heap);
+    return status;
+}
+
+void heap_free(mesh_heap *heap) {
+    if (heap == NULL)
+        return;
+    starg_release(heap->context, heap->entries);
+    starg_release(heap->context, heap->slot);
+    starg_release(heap->context, heap);
+}
+
+static bool before(heap_entry a, heap_entry b) {
+    return a.key != b.key ? a.key < b.key : a.item < b.item;
+}
+
+static void put(mesh_heap *heap, size_t slot, heap_entry entry) {
+    heap->entries[slot] = entry;
+    heap->slot[entry.item] = (uint32_t)slot;
+}
+
+/* Puts the entry where it belongs on the way from a free slot to the root. */
+static void rise(mesh_heap *heap, size_t slot, heap_entry entry) {
+    while (slot > 0 && before(entry, heap->entries[(slot - 1) / 2])) {
+        put(heap, slot, heap->entries[(slot - 1) / 2]);
+        slot = (slot - 1) / 2;
+    }
+    put(heap, slot, entry);
+}
+
+/* The same on the way to the leaves. */
+static void sink(mesh_heap *heap, size_t slot, heap_entry entry) {
+    for (;;) {
+        size_t child = 2 * slot + 1;
+        if (child + 1 < heap->count && before(heap->entries[child + 1], heap->entries[child]))
+            child++;
+        if (child >= heap->count || !before(heap->entries[child], entry))
+            break;
+        put(heap, slot, heap->entries[child]);
+        slot = child;
+    }
+    put(heap, slot, entry);
+}
+
+static void settle(mesh_heap *heap, size_t slot, heap_entry entry) {
+    if (slot > 0 && before(entry, heap->entries[(slot - 1) / 2]))
+        rise(heap, slot, entry);
+    else
+        sink(heap, slot, entry);
+}
+
+void heap_set(mesh_heap *heap, uint32_t item, double key) {
+    size_t slot = heap_contains(heap, item) ? heap->slot[item] : heap->count++;
+    settle(heap, slot, (heap_entry){key, item});
+}
+
+void heap_remove(mesh_heap *heap, uint32_t item) {
+    if (!heap_contains(heap, item))
+        return;
+    size_t slot = heap->slot[item];
+    heap_entry last = heap->entries[--heap->count];
+    heap->slot[item] = HEAP_NONE;
+    if (slot < heap->count)
+        settle(heap, slot, last);
+}
+
+bool heap_pop(mesh_heap *heap, uint32_t *item) {
+    if (heap->count == 0)
+        return false;
+    *item = heap->entries[0].item;
+    heap_remove(heap, *item);
+    return true;
+}

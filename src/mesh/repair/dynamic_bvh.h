@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Dynamic bounding volume hierarchy: the faces near a place on a changing surface. Its boxes grow
+ * with the faces. */
+#ifndef STARG_MESH_REPAIR_DYNAMIC_BVH_H
+#define STARG_MESH_REPAIR_DYNAMIC_BVH_H
+
+#include "geometry/bvh.h"
+#include "mesh/levels/surface.h"
+
+typedef struct dynamic_bvh {
+    starg_context *context;
+    const mesh_surface *surface;
+    size_t listed;     /* faces when the tree was built  */
+    bvh *tree;         /* over copies of those           */
+    uint32_t *corners; /* listed x 3, what the tree read */
+    uint32_t *face;    /* per triangle of the tree       */
+    uint32_t *leaf;    /* per face of the surface        */
+    uint32_t *parent;  /* per node; the root's is itself */
+} dynamic_bvh;
+
+/* The surface is borrowed. Errors: MEMORY. */
+starg_status dynamic_bvh_create(starg_context *context, const mesh_surface *surface,
+                                dynamic_bvh **out);
+void dynamic_bvh_free(dynamic_bvh *tree);
+
+/* Tells that a face has moved. */
+void dynamic_bvh_update(dynamic_bvh *tree, uint32_t face);
+/* Builds the tree anew once half of its faces are gone. Errors: MEMORY. */
+starg_status dynamic_bvh_renew(dynamic_bvh *tree);
+
+/* Calls visit for every living face whose box meets `box`, until it returns false. Returns false
+ * exactly if visit did. */
+bool dynamic_bvh_query(const dynamic_bvh *tree, const bvh_box *box, bvh_visit *visit, void *user);
+
+bvh_box dynamic_bvh_face_box(const mesh_surface *surface, const uint32_t corner[3]);
+bool dynamic_bvh_boxes_meet(const bvh_box *a, const bvh_box *b);
+
+#endif

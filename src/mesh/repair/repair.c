@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Mending a mesh until it bounds a solid.
+ *
+ * Stages: weld, drop what is doubled or hangs loose, orient patch by patch, cut apart what is not
+ * a manifold, remove faces without area, fill holes, drop what encloses nothing, turn the shells,
+ * resolve local intersections. Each stage is a file of its own (mesh/repair/repair.h lists them)
+ * and takes what the ones before it leave. A mesh that needs none of them comes back as it is.
+ *
+ * What is never attempted: the union of components that overlap. They stay, are counted in
+ * intersections_after, and the winding number makes one solid of them. */
+#include <math.h>
+
+#include "core/fields.h"
+#include "geometry/vec3.h"
+#include "mesh/examine.h"
+#include "mesh/repair/repair.h"
+
+static const starg_field OPTIONS[] = {
+    {.key = "merge_distance",
+     .option = "merge-distance",
+     .kind = STARG_FIELD_REAL,
+     FIELD_MEMBER(starg_repair_options, merge_distance),
+     .high = 1,
+     .value = "D",
+     .help = "Vertices this close become one; a fraction of the model's diagonal.",
+     .default_text = "0, only equal positions"},
+    {.key = "max_hole_edges",
+     .option = "max-hole-edges",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_repair_options, max_hole_edges),
+     .most = UINT32_MAX,
+     .value = "N",
+     .help = "Leave holes of more edges open.",
+     .default_text = "0, fill all"},
+    {.key = "max_rounds",
+     .option = "rounds",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_repair_options, max_rounds),
+     .most = 10000,
+     .initial = 10,
+     .value = "N",
+     .help = "Attempts to resolve self-intersections."},
+};
+static const starg_fields OPTIONS_TABLE = {
+    .name = "repair options", .size = sizeof(starg_repair_options), FIELD_ROWS(OPTIONS)};
+
+const starg_fields *starg_repair_options_fields(void) {
+    return &OPTIONS_TABLE;
+}
+
+void starg_repair_options_default(starg_repair_options *options) {
+    *options = (starg_repair_options){0};
+    starg_fields_default(&OPTIONS_TABLE, options);
+}
+
+static size_t found(const starg_check *check, starg_finding_kind kind) {
+    return check->findings[kind].count;
+}
+
+/* Contacts and doubled positions are no faults of a solid: shells may touch. */
+static bool needs_nothing(const starg_check *check, const starg_repair_options *options) {
+    return check->usable && options->merge_distance == 0 &&
+           found(check, STARG_FINDING_INWARD_COMPONENT) == 0 &&
+           found(check, STARG_FINDING_DEGENERATE_FACE) == 0 &&
+           found(check, STARG_FINDING_ISOLATED_VERTEX) == 0 &&
+           found(check, STARG_FINDING_SELF_INTERSECTION) == 0;
+}
+
+/* The combinatorial part. Equal positions are merged only where the surface is broken or a
+ * distance is asked for: a sound surface may well touch itself. */
+static starg_status mend_surface(repair_state *state, const starg_check *before) {
+    starg_status status = STARG_OK;
+    bool sound = before->closed && before->manifold;
+    if (!sound || state->options.merge_distance > 0)
+        STARG_TRY(repair_weld(state));
+    repair_drop_repeated(state);
+    STARG_TRY(repair_drop_duplicates(state));
+    STARG_TRY(repair_drop_fins(state));
+    STARG_TRY(repair_orient(state));
+    STARG_TRY(repair_split(state));
+    STARG_TRY(repair_degenerate(state));
+    STARG_TRY(repair_split(state)); /* dropped faces may have left two fans at a vertex */
+done:
+    return status;
+}
+
+/* From an oriented manifold to the boundary of a solid. */
+static starg_status close_surface(repair_state *state) {
+    starg_status status = STARG_OK;
+    STARG_TRY(repair_fill_holes(state));
+    STARG_TRY(repair_degenerate(state)); /* loops with corners in a row leave no choice */
+    STARG_TRY(repair_drop_flat(state));
+    STARG_TRY(repair_untangle(state));
+    STARG_TRY(repair_drop_flat(state)); /* cutting out may have closed a pocket */
+    STARG_TRY(repair_drop_isolated(state));
+    STARG_TRY(repair_turn_shells(state));
+done:
+    return status;
+}
+
+static starg_status describe_vertices(repair_state *state) {
+    starg_status status = STARG_OK;
+    starg_repair_report *report = &state->report;
+    size_t different = 0;
+    uint8_t *seen = NULL;
+    STARG_NEW_ZERO(state->context, REPAIR_STAGE, seen, state->input->vertex_count);
+    for (size_t v = 0; v < repair_vertex_count(state); v++) {
+        uint32_t origin = state->origin.data[v];
+        if (origin == REPAIR_NEW) {
+            report->vertices_added++;
+            continue;
+        }
+        double move = vec3_distance(repair_position(state, (uint32_t)v),
+                                    state->input->vertices + 3 * (size_t)origin);
+        report->vertices_split += seen[origin];
+        report->vertices_moved += move > 0;
+        report->largest_move = fmax(report->largest_move, move);
+        different += !seen[origin];
+        seen[origin] = 1;
+    }
+    report->vertices_dropped = state->input->vertex_count - different - report->vertices_merged;
+done:
+    starg_release(state->context, seen);
+    return status;
+}
+
+static void describe_faces(repair_state *state) {
+    starg_repair_report *report = &state->report;
+    for (size_t f = 0; f < repair_face_count(state); f++) {
+        bool added = state->flags.data[f] & REPAIR_ADDED;
+        report->faces_added += added;
+        report->faces_turned += !added && (state->flags.data[f] & REPAIR_TURNED);
+    }
+    report->faces_dropped =
+        state->input->face_count - (repair_face_count(state) - report->faces_added);
+}
+
+static starg_status fail_empty(repair_state *state) {
+    const starg_repair_report *report = &state->report;
+    if (state->input->face_count == 0)
+        return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
+                          "the mesh has no faces: there is nothing to repair");
+    return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
+                      "nothing is left that encloses volume: of %zu faces %zu are of one-sided "
+                      "surfaces (as a Moebius strip is), and %zu components are flat",
+                      state->input->face_count, state->one_sided_faces, report->components_dropped);
+}
+
+static starg_status fail_unusable(starg_context *context, const starg_check *check) {
+    for (int kind = 0; kind < STARG_FINDING_INWARD_COMPONENT; kind++) {
+        const starg_finding *finding = &check->findings[kind];
+        if (finding->count > 0)
+            return starg_fail_at(
+                context, STARG_ERROR_MESH, REPAIR_STAGE, finding->element, finding->first,
+                finding->shown, "the mesh could not be made a solid: %zu %s are left%s",
+                finding->count, starg_finding_name((starg_finding_kind)kind),
+                kind == STARG_FINDING_OPEN_EDGE ? "; a larger limit on hole edges may close them"
+                                                : "");
+    }
+    return starg_fail(context, STARG_ERROR_MESH, REPAIR_STAGE,
+                      "the mesh could not be made a solid: what is left encloses no volume");
+}
+
+/* Checks the result, and hands it over if it is a solid's boundary. */
+static starg_status finish(repair_state *state, starg_mesh **out) {
+    starg_status status = STARG_OK;
+    starg_check *check = NULL;
+    starg_mesh *mesh = NULL;
+    if (repair_face_count(state) == 0)
+        return fail_empty(state);
+    starg_mesh view = repair_view(state);
+    STARG_TRY(starg_mesh_create(state->context, view.vertices, view.vertex_count, view.faces,
+                                view.face_count, &mesh));
+    STARG_TRY(starg_mesh_check(state->context, mesh, &check));
+    state->report.intersections_after = found(check, STARG_FINDING_SELF_INTERSECTION);
+    if (!check->usable)
+        STARG_TRY(fail_unusable(state->context, check));
+    STARG_TRY(describe_vertices(state));
+    describe_faces(state);
+    *out = mesh;
+    mesh = NULL;
+done:
+    starg_check_free(state->context, check);
+    starg_mesh_free(mesh);
+    return status;
+}
+
+starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
+                               const starg_repair_options *options, starg_mesh **out,
+                               starg_repair_report *report) {
+    starg_status status = STARG_OK;
+    starg_repair_options defaults;
+    repair_state state = {.context = context};
+    starg_check *before = NULL;
+    *out = NULL;
+    *report = (starg_repair_report){0};
+    starg_repair_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
+    STARG_TRY(fields_check(context, REPAIR_STAGE, &OPTIONS_TABLE, options));
+    STARG_TRY(starg_mesh_check(context, mesh, &before));
+    STARG_TRY(repair_begin(&state, context, mesh, options));
+    state.report.intersections_before = found(before, STARG_FINDING_SELF_INTERSECTION);
+    if (!needs_nothing(before, options)) {
+        STARG_TRY(mend_surface(&state, before));
+        STARG_TRY(close_surface(&state));
+    }
+    STARG_TRY(finish(&state, out));
+    *report = state.report;
+done:
+    starg_time_end(context, former);
+    starg_check_free(context, before);
+    repair_end(&state);
+    return status;
+}

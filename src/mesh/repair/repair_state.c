@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "mesh/repair/repair_state.h"
+
+#include <math.h>
+
+#include "core/rng.h"
+#include "geometry/predicates.h"
+
+enum { FIRST_KEYS = 64 };
+
+starg_status repair_begin(repair_state *state, starg_context *context, const starg_mesh *input,
+                          const starg_repair_options *options) {
+    starg_status status = STARG_OK;
+    *state = (repair_state){.context = context, .input = input, .options = *options};
+    for (size_t v = 0; v < input->vertex_count; v++) {
+        uint32_t copy;
+        STARG_TRY(repair_add_vertex(state, input->vertices + 3 * v, (uint32_t)v, &copy));
+    }
+    for (size_t f = 0; f < input->face_count; f++) {
+        const uint32_t *corner = input->faces + 3 * f;
+        STARG_TRY(repair_add_face(state, corner[0], corner[1], corner[2], 0));
+    }
+done:
+    return status;
+}
+
+void repair_end(repair_state *state) {
+    STARG_ARRAY_FREE(state->context, &state->vertices);
+    STARG_ARRAY_FREE(state->context, &state->origin);
+    STARG_ARRAY_FREE(state->context, &state->faces);
+    STARG_ARRAY_FREE(state->context, &state->flags);
+}
+
+starg_mesh repair_view(const repair_state *state) {
+    return (starg_mesh){.context = state->context,
+                        .vertex_count = repair_vertex_count(state),
+                        .face_count = repair_face_count(state),
+                        .vertices = state->vertices.data,
+                        .faces = state->faces.data};
+}
+
+double repair_diagonal(const repair_state *state) {
+    double lower[3], upper[3];
+    starg_mesh_bounds(state->input, lower, upper);
+    return hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+}
+
+bool repair_has_no_area(const repair_state *state, const uint32_t corner[3]) {
+    return collinear(repair_position(state, corner[0]), repair_position(state, corner[1]),
+                     repair_position(state, corner[2]));
+}
+
+starg_status repair_add_vertex(repair_state *state, const double p[3], uint32_t origin,
+                               uint32_t *vertex) {
+    starg_status status = STARG_OK;
+    const double copy[3] = {p[0], p[1], p[2]}; /* p may lie in the array that grows */
+    for (int k = 0; k < 3; k++)
+        STARG_PUSH(state->context, REPAIR_STAGE, &state->vertices, copy[k]);
+    STARG_PUSH(state->context, REPAIR_STAGE, &state->origin, origin);
+    *vertex = (uint32_t)(repair_vertex_count(state) - 1);
+done:
+    return status;
+}
+
+starg_status repair_add_face(repair_state *state, uint32_t a, uint32_t b, uint32_t c,
+                             uint8_t flags) {
+    starg_status status = STARG_OK;
+    STARG_PUSH(state->context, REPAIR_STAGE, &state->faces, a);
+    STARG_PUSH(state->context, REPAIR_STAGE, &state->faces, b);
+    STARG_PUSH(state->context, REPAIR_STAGE, &state->faces, c);
+    STARG_PUSH(state->context, REPAIR_STAGE, &state->flags, flags);
+done:
+    return status;
+}
+
+void repair_turn(repair_state *state, size_t face) {
+    uint32_t *corner = repair_face(state, face), swap = corner[1];
+    corner[1] = corner[2];
+    corner[2] = swap;
+    state->flags.data[face] ^= REPAIR_TURNED;
+}
+
+void repair_compact(repair_state *state) {
+    size_t kept = 0;
+    for (size_t f = 0; f < repair_face_count(state); f++) {
+        if (state->flags.data[f] & REPAIR_GONE)
+            continue;
+        memmove(repair_face(state, kept), repair_face(state, f), 3 * sizeof(uint32_t));
+        state->flags.data[kept++] = state->flags.data[f];
+    }
+    state->flags.count = kept;
+    state->faces.count = 3 * kept;
+}
+
+starg_status repair_drop_isolated(repair_state *state) {
+    starg_status status = STARG_OK;
+    size_t count = repair_vertex_count(state), kept = 0;
+    uint32_t *place = NULL;
+    STARG_NEW_ZERO(state->context, REPAIR_STAGE, place, count);
+    for (size_t i = 0; i < state->faces.count; i++)
+        place[state->faces.data[i]] = 1;
+    for (size_t v = 0; v < count; v++) {
+        if (place[v] == 0)
+            continue;
+        place[v] = (uint32_t)kept;
+        memmove(state->vertices.data + 3 * kept, state->vertices.data + 3 * v, 3 * sizeof(double));
+        state->origin.data[kept++] = state->origin.data[v];
+    }
+    for (size_t i = 0; i < state->faces.count; i++)
+        state->faces.data[i] = place[state->faces.data[i]];
+    state->origin.count = kept;
+    state->vertices.count = 3 * kept;
+done:
+    starg_release(state->context, place);
+    return status;
+}
+
+starg_status repair_stars_create(const repair_state *state, repair_stars *stars) {
+    starg_status status = STARG_OK;
+    size_t count = repair_vertex_count(state);
+    *stars = (repair_stars){0};
+    STARG_NEW_ZERO(state->context, REPAIR_STAGE, stars->start, count + 1);
+    STARG_NEW(state->context, REPAIR_STAGE, stars->list, state->faces.count);
+    for (size_t i = 0; i < state->faces.count; i++)
+        stars->start[state->faces.data[i]]++;
+    for (size_t v = 0; v < count; v++)
+        stars->start[v + 1] += stars->start[v];
+    /* start[v] is where v ends by now; filing from behind brings it back to where v begins */
+    for (size_t i = state->faces.count; i-- > 0;)
+        stars->list[--stars->start[state->faces.data[i]]] = (uint32_t)(i / 3);
+done:
+    return status;
+}
+
+void repair_stars_free(const repair_state *state, repair_stars *stars) {
+    starg_release(state->context, stars->start);
+    starg_release(state->context, stars->list);
+}
+
+/* The slot of a key, or the free one where it belongs. */
+static uint64_t *find_slot(const repair_keys *keys, uint64_t key) {
+    size_t mask = keys->size - 1;
+    size_t i = (size_t)starg_hash64(key) & mask;
+    while (keys->slots[i] != 0 && keys->slots[i] != key + 1)
+        i = (i + 1) & mask;
+    return &keys->slots[i];
+}
+
+static starg_status grow_keys(starg_context *context, repair_keys *keys) {
+    starg_status status = STARG_OK;
+    repair_keys grown = {.size = keys->size ? 2 * keys->size : FIRST_KEYS, .count = keys->count};
+    STARG_NEW_ZERO(context, REPAIR_STAGE, grown.slots, grown.size);
+    for (size_t i = 0; i < keys->size; i++)
+        if (keys->slots[i] != 0)
+            *find_slot(&grown, keys->slots[i] - 1) = keys->slots[i];
+    starg_release(context, keys->slots);
+    *keys = grown;
+done:
+    return status;
+}
+
+starg_status repair_keys_add(starg_context *context, repair_keys *keys, uint64_t key) {
+    starg_status status = STARG_OK;
+    if (2 * (keys->count + 1) > keys->size)
+        STARG_TRY(grow_keys(context, keys));
+    uint64_t *slot = find_slot(keys, key);
+    keys->count += *slot == 0;
+    *slot = key + 1;
+done:
+    return status;
+}
+
+bool repair_keys_have(const repair_keys *keys, uint64_t key) {
+    return keys->size != 0 && *find_slot(keys, key) != 0;
+}

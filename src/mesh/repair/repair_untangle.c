@@ -1,0 +1,449 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Local self-intersections of closed components.
+ *
+ * In rounds: faces that cross others of their own component are gathered into patches that hang
+ * together. For each patch, first its vertices are smoothed a little; if that does not help, the
+ * patch is cut out with up to three rings about it and the hole is filled. A change stays only if
+ * fewer pairs of faces cross after it, over the whole mesh, and if it keeps the topology: patches
+ * that are no discs are not cut out. Changes of one round do not touch one another, so that the
+ * tables of the round stay true. The rounds end when none is left, when nothing helps, or when
+ * they are spent. Components that cross one another are left as they are: that is no local fault.
+ *
+ * To weigh a change, its faces are taken out of the mesh (REPAIR_GONE) and put in again at the
+ * end: first as they were, then as they would become. */
+#include "geometry/vec3.h"
+#include "mesh/contact.h"
+#include "mesh/repair/repair.h"
+#include "mesh/repair/repair_fill.h"
+
+/* No vertex of the input is moved further from where it was, as a fraction of the diagonal. */
+#define LARGEST_MOVE 0.01
+
+enum { SMOOTHING_STEPS = 8, MAX_RINGS = 3, MAX_REGION = 1024, MAX_LOOP = 96 };
+
+/* Searches for fillings stop after so many steps in all: some seconds. */
+#define MAX_WORK ((size_t)1 << 28)
+
+typedef STARG_ARRAY(double) double_list;
+
+typedef struct untangler {
+    repair_state *state;
+    repair_index index;
+    mesh_topology *topology;
+    repair_stars stars;
+    uint8_t *crossing; /* per face of the round                                    */
+    uint32_t *patch;   /* disjoint sets of crossing faces                          */
+    uint8_t *inside;   /* per face: in the region at hand                          */
+    uint8_t *marked;   /* per vertex: in the region at hand                        */
+    uint8_t *touched;  /* per vertex: of a change of this round                    */
+    uint32_t *next;    /* per vertex: the next one on the region's border          */
+    fill_list region;  /* its faces                                                */
+    fill_list points;  /* its vertices                                             */
+    fill_list loop, triangles;
+    double_list before, best, moved; /* positions of `points`                      */
+    double largest_move;
+    size_t *work; /* steps of all fillings so far               */
+    size_t base;  /* first of the faces that stand in for it    */
+    bool changed;
+} untangler;
+
+/* ---- weighing ---- */
+
+typedef struct crossing_count {
+    size_t base, face, count;
+} crossing_count;
+
+static bool count_pair(void *user, uint32_t other) {
+    crossing_count *c = user;
+    c->count += other < c->base || other > c->face; /* pairs of stand-ins once */
+    return true;
+}
+
+/* Pairs that cross and of which one face stands in for the region. */
+static size_t count_crossings(const untangler *u) {
+    crossing_count c = {.base = u->base};
+    for (c.face = u->base; c.face < repair_face_count(u->state); c.face++)
+        repair_index_query(&u->index, repair_face(u->state, c.face), count_pair, &c);
+    return c.count;
+}
+
+/* ---- regions ---- */
+
+static starg_status add_face_to_region(untangler *u, uint32_t face) {
+    starg_status status = STARG_OK;
+    if (u->inside[face])
+        return STARG_OK;
+    u->inside[face] = 1;
+    STARG_PUSH(u->state->context, REPAIR_STAGE, &u->region, face);
+    for (int k = 0; k < 3; k++) {
+        uint32_t vertex = repair_face(u->state, face)[k];
+        if (u->marked[vertex])
+            continue;
+        u->marked[vertex] = 1;
+        STARG_PUSH(u->state->context, REPAIR_STAGE, &u->points, vertex);
+    }
+done:
+    return status;
+}
+
+/* Adds every face that has a vertex in the region. */
+static starg_status grow_region(untangler *u) {
+    starg_status status = STARG_OK;
+    size_t points = u->points.count;
+    for (size_t i = 0; i < points; i++) {
+        uint32_t vertex = u->points.data[i];
+        for (size_t k = u->stars.start[vertex]; k < u->stars.start[vertex + 1]; k++)
+            STARG_TRY(add_face_to_region(u, u->stars.list[k]));
+    }
+done:
+    return status;
+}
+
+static void clear_region(untangler *u) {
+    for (size_t i = 0; i < u->region.count; i++)
+        u->inside[u->region.data[i]] = 0;
+    for (size_t i = 0; i < u->points.count; i++)
+        u->marked[u->points.data[i]] = 0;
+    u->region.count = u->points.count = 0;
+}
+
+static bool region_is_free(const untangler *u) {
+    for (size_t i = 0; i < u->points.count; i++)
+        if (u->touched[u->points.data[i]])
+            return false;
+    return u->region.count <= MAX_REGION;
+}
+
+/* Puts copies of the region's faces in their place. */
+static starg_status stand_in(untangler *u) {
+    starg_status status = STARG_OK;
+    u->base = repair_face_count(u->state);
+    for (size_t i = 0; i < u->region.count; i++) {
+        uint8_t *flags = &u->state->flags.data[u->region.data[i]];
+        const uint32_t corner[3] = {repair_face(u->state, u->region.data[i])[0],
+                                    repair_face(u->state, u->region.data[i])[1],
+                                    repair_face(u->state, u->region.data[i])[2]};
+        uint8_t old = *flags;
+        *flags |= REPAIR_GONE;
+        STARG_TRY(repair_add_face(u->state, corner[0], corner[1], corner[2], old));
+    }
+done:
+    return status;
+}
+
+static void remove_stand_ins(untangler *u) {
+    u->state->flags.count = u->base;
+    u->state->faces.count = 3 * u->base;
+}
+
+/* Undoes a change that did not help. */
+static void restore(untangler *u) {
+    remove_stand_ins(u);
+    for (size_t i = 0; i < u->region.count; i++)
+        u->state->flags.data[u->region.data[i]] &= (uint8_t)~REPAIR_GONE;
+}
+
+static void keep_change(untangler *u) {
+    for (size_t i = 0; i < u->points.count; i++)
+        u->touched[u->points.data[i]] = 1;
+    u->changed = true;
+}
+
+/* ---- smoothing ---- */
+
+static starg_status save_positions(untangler *u, double_list *list, size_t count) {
+    starg_status status = STARG_OK;
+    list->count = 0;
+    for (size_t i = 0; i < 3 * count; i++)
+        STARG_PUSH(u->state->context, REPAIR_STAGE, list,
+                   repair_position(u->state, u->points.data[i / 3])[i % 3]);
+done:
+    return status;
+}
+
+static void load_positions(untangler *u, const double_list *list) {
+    for (size_t i = 0; i < list->count; i++)
+        u->state->vertices.data[3 * (size_t)u->points.data[i / 3] + i % 3] = list->data[i];
+}
+
+static bool moves_too_far(const untangler *u, uint32_t vertex, const double to[3]) {
+    uint32_t origin = u->state->origin.data[vertex];
+    return origin != REPAIR_NEW &&
+           vec3_distance(to, u->state->input->vertices + 3 * (size_t)origin) > u->largest_move;
+}
+
+/* Half way from a vertex to the mean of its neighbours, unless that is too far. */
+static void smooth_vertex(const untangler *u, uint32_t vertex, double out[3]) {
+    const double *p = repair_position(u->state, vertex);
+    double sum[3] = {0, 0, 0};
+    size_t count = 0;
+    for (size_t i = u->stars.start[vertex]; i < u->stars.start[vertex + 1]; i++) {
+        const uint32_t *corner = repair_face(u->state, u->stars.list[i]);
+        for (int k = 0; k < 3; k++) {
+            if (corner[k] == vertex)
+                continue;
+            vec3_along(sum, 0.5, repair_position(u->state, corner[k]), sum);
+            count++;
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = 0.5 * p[k] + sum[k] / (double)count;
+    if (moves_too_far(u, vertex, out))
+        vec3_copy(p, out);
+}
+
+static void smooth_points(untangler *u) {
+    for (size_t i = 0; 3 * i < u->moved.count; i++)
+        smooth_vertex(u, u->points.data[i], u->moved.data + 3 * i);
+    load_positions(u, &u->moved);
+}
+
+/* Smooths the patch's vertices step by step and keeps the step with the fewest crossings, if that
+ * at least halves them. The region is the patch and one ring. */
+static starg_status try_smoothing(untangler *u, size_t points, bool *helped) {
+    starg_status status = STARG_OK;
+    STARG_TRY(stand_in(u));
+    size_t start = count_crossings(u), fewest = start;
+    STARG_TRY(save_positions(u, &u->before, points));
+    STARG_TRY(save_positions(u, &u->best, points));
+    STARG_TRY(save_positions(u, &u->moved, points));
+    for (int step = 0; step < SMOOTHING_STEPS && fewest > 0; step++) {
+        smooth_points(u);
+        size_t now = count_crossings(u);
+        if (now >= fewest)
+            continue;
+        fewest = now;
+        STARG_TRY(save_positions(u, &u->best, points));
+    }
+    *helped = 2 * fewest <= start && fewest < start;
+    load_positions(u, *helped ? &u->best : &u->before);
+    if (*helped)
+        keep_change(u);
+    else
+        restore(u);
+done:
+    return status;
+}
+
+/* ---- cutting out and filling ---- */
+
+/* Collects the border of the region as a loop; false unless the region is a disc. */
+static starg_status collect_border(untangler *u, bool *is_disc) {
+    starg_status status = STARG_OK;
+    size_t border = 0;
+    uint32_t first = TOPOLOGY_NONE;
+    bool simple = true;
+    u->loop.count = 0;
+    for (size_t i = 0; i < u->points.count; i++)
+        u->next[u->points.data[i]] = TOPOLOGY_NONE;
+    for (size_t i = 0; i < 3 * u->region.count; i++) {
+        uint32_t h = 3 * u->region.data[i / 3] + (uint32_t)(i % 3);
+        uint32_t twin = u->topology->twin[h];
+        if (twin != TOPOLOGY_NONE && u->inside[twin / 3])
+            continue;
+        first = u->state->faces.data[h];
+        simple = simple && u->next[first] == TOPOLOGY_NONE;
+        u->next[first] = u->state->faces.data[corner_next(h)];
+        border++;
+    }
+    size_t edges = (3 * u->region.count + border) / 2;
+    *is_disc = simple && border > 0 && border <= MAX_LOOP &&
+               u->points.count + u->region.count == edges + 1;
+    for (uint32_t v = first; *is_disc && u->loop.count < border; v = u->next[v])
+        STARG_PUSH(u->state->context, REPAIR_STAGE, &u->loop, v);
+    /* two loops would close before all of the border is listed */
+    for (size_t i = 1; i < u->loop.count; i++)
+        *is_disc = *is_disc && u->loop.data[i] != first;
+done:
+    return status;
+}
+
+static bool edge_is_taken(const void *user, uint32_t a, uint32_t b) {
+    const untangler *u = user;
+    for (size_t i = u->stars.start[a]; i < u->stars.start[a + 1]; i++) {
+        const uint32_t *corner = repair_face(u->state, u->stars.list[i]);
+        if (!(u->state->flags.data[u->stars.list[i]] & REPAIR_GONE) &&
+            (corner[0] == b || corner[1] == b || corner[2] == b))
+            return true;
+    }
+    return false;
+}
+
+static bool all_have_area(const untangler *u) {
+    for (size_t i = 0; i < u->triangles.count; i += 3)
+        if (repair_has_no_area(u->state, u->triangles.data + i))
+            return false;
+    return true;
+}
+
+/* Replaces the region, a disc, by a filling of its border when that crosses less. */
+static starg_status try_filling(untangler *u, bool *helped) {
+    starg_status status = STARG_OK;
+    fill_job job = {u->state, &u->index, edge_is_taken, u};
+    size_t faults;
+    bool possible;
+    STARG_TRY(stand_in(u));
+    size_t start = count_crossings(u);
+    remove_stand_ins(u);
+    u->triangles.count = 0;
+    *u->work += u->loop.count * u->loop.count * u->loop.count;
+    STARG_TRY(repair_fill(&job, u->loop.data, u->loop.count, &u->triangles, &faults, &possible));
+    for (size_t i = 0; i < u->triangles.count; i += 3)
+        STARG_TRY(repair_add_face(u->state, u->triangles.data[i], u->triangles.data[i + 1],
+                                  u->triangles.data[i + 2], REPAIR_ADDED));
+    *helped = possible && all_have_area(u) && count_crossings(u) < start;
+    if (*helped)
+        keep_change(u);
+    else
+        restore(u);
+done:
+    return status;
+}
+
+/* ---- patches ---- */
+
+static starg_status start_region(untangler *u, const uint32_t *members, size_t count) {
+    starg_status status = STARG_OK;
+    clear_region(u);
+    for (size_t i = 0; i < count; i++)
+        STARG_TRY(add_face_to_region(u, members[i]));
+done:
+    return status;
+}
+
+static starg_status mend_patch(untangler *u, const uint32_t *members, size_t count) {
+    starg_status status = STARG_OK;
+    bool helped = false, is_disc;
+    STARG_TRY(start_region(u, members, count));
+    size_t points = u->points.count; /* those of the patch come first */
+    STARG_TRY(grow_region(u));
+    if (region_is_free(u))
+        STARG_TRY(try_smoothing(u, points, &helped));
+    STARG_TRY(start_region(u, members, count));
+    for (int ring = 0; ring <= MAX_RINGS && !helped && region_is_free(u); ring++) {
+        STARG_TRY(collect_border(u, &is_disc));
+        if (is_disc && *u->work < MAX_WORK)
+            STARG_TRY(try_filling(u, &helped));
+        STARG_TRY(grow_region(u));
+    }
+done:
+    clear_region(u);
+    return status;
+}
+
+/* Two crossing faces of one component. */
+static bool note_pair(void *user, uint32_t a, uint32_t b) {
+    untangler *u = user;
+    if (u->topology->component[a] == u->topology->component[b] &&
+        faces_contact(u->state->vertices.data, repair_face(u->state, a),
+                      repair_face(u->state, b)) == TRIANGLES_CROSS)
+        u->crossing[a] = u->crossing[b] = 1;
+    return true;
+}
+
+/* Crossing faces that share a vertex are of one patch. */
+static void join_patches(untangler *u) {
+    sets_make(u->patch, u->index.tracked);
+    for (size_t v = 0; v < repair_vertex_count(u->state); v++) {
+        uint32_t first = TOPOLOGY_NONE;
+        for (size_t i = u->stars.start[v]; i < u->stars.start[v + 1]; i++) {
+            uint32_t face = u->stars.list[i];
+            if (!u->crossing[face])
+                continue;
+            if (first == TOPOLOGY_NONE)
+                first = face;
+            sets_join(u->patch, first, face);
+        }
+    }
+}
+
+static starg_status mend_patches(untangler *u) {
+    starg_status status = STARG_OK;
+    fill_list members = {0};
+    size_t faces = u->index.tracked;
+    /* files the crossing faces by patch, a patch at its lowest face */
+    uint32_t *chain = NULL;
+    STARG_NEW(u->state->context, REPAIR_STAGE, chain, faces);
+    for (size_t f = faces; f-- > 0;)
+        chain[f] = TOPOLOGY_NONE;
+    for (size_t f = faces; f-- > 0;) {
+        uint32_t root = sets_find(u->patch, (uint32_t)f);
+        if (!u->crossing[f] || root == f)
+            continue;
+        chain[f] = chain[root];
+        chain[root] = (uint32_t)f;
+    }
+    for (uint32_t f = 0; f < faces; f++) {
+        if (!u->crossing[f] || sets_find(u->patch, f) != f)
+            continue;
+        members.count = 0;
+        for (uint32_t m = f; m != TOPOLOGY_NONE; m = chain[m])
+            STARG_PUSH(u->state->context, REPAIR_STAGE, &members, m);
+        STARG_TRY(mend_patch(u, members.data, members.count));
+        STARG_TRY(starg_check_cancel(u->state->context, REPAIR_STAGE));
+    }
+done:
+    starg_release(u->state->context, chain);
+    STARG_ARRAY_FREE(u->state->context, &members);
+    return status;
+}
+
+static void free_round(untangler *u) {
+    starg_context *context = u->state->context;
+    repair_index_free(&u->index);
+    topology_free(u->topology);
+    repair_stars_free(u->state, &u->stars);
+    starg_release(context, u->crossing);
+    starg_release(context, u->patch);
+    starg_release(context, u->inside);
+    starg_release(context, u->marked);
+    starg_release(context, u->touched);
+    starg_release(context, u->next);
+    STARG_ARRAY_FREE(context, &u->region);
+    STARG_ARRAY_FREE(context, &u->points);
+    STARG_ARRAY_FREE(context, &u->loop);
+    STARG_ARRAY_FREE(context, &u->triangles);
+    STARG_ARRAY_FREE(context, &u->before);
+    STARG_ARRAY_FREE(context, &u->best);
+    STARG_ARRAY_FREE(context, &u->moved);
+}
+
+static starg_status untangle_once(repair_state *state, size_t *work, bool *changed) {
+    starg_status status = STARG_OK;
+    starg_context *context = state->context;
+    untangler u = {
+        .state = state, .work = work, .largest_move = LARGEST_MOVE * repair_diagonal(state)};
+    size_t faces = repair_face_count(state), vertices = repair_vertex_count(state);
+    starg_mesh view = repair_view(state);
+    STARG_TRY(topology_create(context, &view, &u.topology));
+    STARG_TRY(repair_stars_create(state, &u.stars));
+    STARG_TRY(repair_index_create(state, &u.index));
+    STARG_NEW_ZERO(context, REPAIR_STAGE, u.crossing, faces);
+    STARG_NEW(context, REPAIR_STAGE, u.patch, faces);
+    STARG_NEW_ZERO(context, REPAIR_STAGE, u.inside, faces);
+    STARG_NEW_ZERO(context, REPAIR_STAGE, u.marked, vertices);
+    STARG_NEW_ZERO(context, REPAIR_STAGE, u.touched, vertices);
+    STARG_NEW(context, REPAIR_STAGE, u.next, vertices);
+    bvh_query_pairs(u.index.tree, note_pair, &u);
+    join_patches(&u);
+    STARG_TRY(mend_patches(&u));
+    *changed = u.changed;
+    repair_compact(state);
+done:
+    free_round(&u);
+    return status;
+}
+
+starg_status repair_untangle(repair_state *state) {
+    starg_status status = STARG_OK;
+    bool changed = true;
+    size_t work = 0;
+    starg_progress_begin(state->context, REPAIR_STAGE);
+    for (size_t round = 0; round < state->options.max_rounds && changed; round++) {
+        starg_progress_step(state->context, round, state->options.max_rounds);
+        STARG_TRY(untangle_once(state, &work, &changed));
+    }
+done:
+    starg_progress_end(state->context);
+    return status;
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Welding: vertices at equal positions, or within the merge distance, become one.
+ *
+ * Vertices come in order; each joins the nearest earlier one that stands for itself and is near
+ * enough, so that nothing moves further than the distance (chains of near vertices do not run
+ * together). Candidates lie in the same cell of a hashed grid or the 26 about it; for distance 0
+ * the cell is the position itself. Cost O(n) as long as few vertices share a cell. */
+#include <math.h>
+
+#include "core/rng.h"
+#include "geometry/vec3.h"
+#include "mesh/repair/repair.h"
+
+typedef struct weld_grid {
+    const repair_state *state;
+    double distance;
+    size_t mask;
+    uint32_t *head, *next; /* vertex + 1, or 0; chained through next */
+} weld_grid;
+
+static void cell_of(const weld_grid *grid, const double p[3], double cell[3]) {
+    for (int k = 0; k < 3; k++)
+        cell[k] = grid->distance > 0 ? floor(p[k] / grid->distance) : p[k];
+}
+
+static uint32_t *bucket(const weld_grid *grid, const double cell[3]) {
+    uint64_t hash = 0;
+    for (int k = 0; k < 3; k++) {
+        double value = cell[k] + 0.0; /* -0 is 0 */
+        uint64_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        hash = starg_hash64(hash + bits + UINT64_C(0x9e3779b97f4a7c15));
+    }
+    return &grid->head[(size_t)hash & grid->mask];
+}
+
+/* Looks for a vertex nearer to p than *least in one cell. */
+static void search_cell(const weld_grid *grid, const double cell[3], const double p[3],
+                        double *least, uint32_t *found) {
+    for (uint32_t slot = *bucket(grid, cell); slot != 0; slot = grid->next[slot - 1]) {
+        const double *q = repair_position(grid->state, slot - 1);
+        bool equal = p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+        double d = equal ? 0 : vec3_distance(p, q);
+        if (!equal && !(d > 0 && d <= grid->distance))
+            continue;
+        if (d < *least || (d == *least && slot - 1 < *found)) {
+            *least = d;
+            *found = slot - 1;
+        }
+    }
+}
+
+static uint32_t find_near(const weld_grid *grid, const double p[3]) {
+    double cell[3], least = INFINITY;
+    uint32_t found = REPAIR_NEW;
+    int reach = grid->distance > 0 ? 1 : 0;
+    cell_of(grid, p, cell);
+    for (int x = -reach; x <= reach; x++)
+        for (int y = -reach; y <= reach; y++)
+            for (int z = -reach; z <= reach; z++) {
+                const double near[3] = {cell[0] + x, cell[1] + y, cell[2] + z};
+                search_cell(grid, near, p, &least, &found);
+            }
+    return found;
+}
+
+starg_status repair_weld(repair_state *state) {
+    starg_status status = STARG_OK;
+    size_t count = repair_vertex_count(state), size = 16;
+    uint32_t *place = NULL;
+    weld_grid grid = {.state = state,
+                      .distance = state->options.merge_distance * repair_diagonal(state)};
+    while (size < 2 * count)
+        size *= 2;
+    grid.mask = size - 1;
+    STARG_NEW_ZERO(state->context, REPAIR_STAGE, grid.head, size);
+    STARG_NEW(state->context, REPAIR_STAGE, grid.next, count);
+    STARG_NEW(state->context, REPAIR_STAGE, place, count);
+    for (uint32_t v = 0; v < count; v++) {
+        const double *p = repair_position(state, v);
+        place[v] = find_near(&grid, p);
+        if (place[v] != REPAIR_NEW) {
+            state->report.vertices_merged++;
+            continue;
+        }
+        double cell[3];
+        cell_of(&grid, p, cell);
+        uint32_t *slot = bucket(&grid, cell);
+        place[v] = v;
+        grid.next[v] = *slot;
+        *slot = v + 1;
+    }
+    for (size_t i = 0; i < state->faces.count; i++)
+        state->faces.data[i] = place[state->faces.data[i]];
+done:
+    starg_release(state->context, grid.head);
+    starg_release(state->context, grid.next);
+    starg_release(state->context, place);
+    return status;
+}

@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Pieces shared out by a fan of triangles.
+ *
+ * Stages: facets between the pieces go; each facet of their union changes hands; along every edge
+ * whose two facets have gone to different takers, a triangle from the edge to the apex comes
+ * between these; facets between a piece and its own taker go.
+ *
+ * Invariants: no facet and no edge is split, so that no other piece is concerned; every surface
+ * stays closed. Cost: linear in the facets of the partition. */
+#include "star/strict/partition/fan.h"
+
+#include <stdlib.h>
+
+#include "geometry/vec3.h"
+
+/* An edge of the union, from a to b in the facet that goes to `taker`. */
+typedef struct fan_edge {
+    uint32_t a, b;
+    uint8_t taker;
+} fan_edge;
+
+typedef STARG_ARRAY(fan_edge) fan_edges;
+
+void fan_plan_free(starg_context *context, fan_plan *plan) {
+    STARG_ARRAY_FREE(context, &plan->entries);
+    STARG_ARRAY_FREE(context, &plan->takes);
+    *plan = (fan_plan){.piece_count = 0};
+}
+
+static starg_status gather_edges(const partition *p, const fan_plan *plan, fan_edges *edges) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < plan->entries.count; i++) {
+        uint32_t entry = plan->entries.data[i], c[3];
+        facet_outward(&p->facets.data[entry / 2], (int)(entry % 2), c);
+        for (int k = 0; k < 3; k++) {
+            const fan_edge fresh = {c[k], c[(k + 1) % 3], plan->takes.data[i]};
+            STARG_PUSH(p->context, PARTITION_STAGE, edges, fresh);
+        }
+    }
+done:
+    return status;
+}
+
+/* Both directions of an edge next to each other. */
+static int compare_edges(const void *left, const void *right) {
+    const fan_edge *x = left, *y = right;
+    int order = partition_compare_edges(x->a, x->b, y->a, y->b);
+    return order != 0 ? order : (x->a > y->a) - (x->a < y->a);
+}
+
+static bool is_piece(const fan_plan *plan, uint32_t number) {
+    for (size_t i = 0; i < plan->piece_count; i++)
+        if (plan->pieces[i] == number)
+            return true;
+    return false;
+}
+
+/* What lies between two of the pieces is marked by the same number on both sides. */
+static void hand_over(partition *p, const fan_plan *plan) {
+    for (size_t i = 0; i < p->facets.count; i++) {
+        facet *f = &p->facets.data[i];
+        if (is_piece(plan, f->side[0]) && is_piece(plan, f->side[1]))
+            f->side[1] = f->side[0];
+    }
+    for (size_t i = 0; i < plan->entries.count; i++) {
+        uint32_t entry = plan->entries.data[i];
+        p->facets.data[entry / 2].side[entry % 2] = plan->takers[plan->takes.data[i]];
+    }
+}
+
+static void drop_inner(partition *p) {
+    size_t kept = 0;
+    for (size_t i = 0; i < p->facets.count; i++)
+        if (p->facets.data[i].side[0] != p->facets.data[i].side[1])
+            p->facets.data[kept++] = p->facets.data[i];
+    p->facets.count = kept;
+}
+
+static starg_status add_triangles(partition *p, const fan_plan *plan, const fan_edges *edges,
+                                  uint32_t apex) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i + 1 < edges->count; i += 2) {
+        const fan_edge *e = &edges->data[i];
+        if (e[0].taker == e[1].taker)
+            continue;
+        facet f = {.corners = {e[0].b, e[0].a, apex},
+                   .side = {plan->takers[e[0].taker], plan->takers[e[1].taker]},
+                   .plane = (uint32_t)p->planes.count};
+        partition_plane plane;
+        partition_plane_of(p, f.corners, &plane);
+        STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
+        STARG_PUSH(p->context, PARTITION_STAGE, &p->facets, f);
+    }
+done:
+    return status;
+}
+
+starg_status partition_fan(partition *p, const fan_plan *plan) {
+    starg_status status = STARG_OK;
+    fan_edges edges = {0};
+    double at[3];
+    uint32_t apex;
+    partition_from_unit(p, plan->apex, at);
+    STARG_TRY(partition_add_point(p, at, &apex));
+    STARG_TRY(gather_edges(p, plan, &edges));
+    if (edges.count > 0)
+        qsort(edges.data, edges.count, sizeof *edges.data, compare_edges);
+    hand_over(p, plan);
+    drop_inner(p);
+    STARG_TRY(add_triangles(p, plan, &edges, apex));
+done:
+    STARG_ARRAY_FREE(p->context, &edges);
+    return status;
+}

@@ -1,0 +1,395 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Coplanar merge: undoes splits of facets that no cut needs any more.
+ *
+ * Problem: a cut splits the facets that it meets, and when later cuts take its place the splits
+ * stay. They cost time, and slivers come of them.
+ *
+ * Stages: facets of one plane with the same piece on either side form a group; the border of a
+ * group are its edges that no other facet of it has the other way round. A vertex that cuts have
+ * made is needed unless all borders through it run between the same two neighbours, straight on (it
+ * was put on an edge that has become a seam of planes), or no border passes. Each group's border,
+ * without the vertices that are not needed, is filled anew (star/strict/partition/cap.c). A group
+ * whose border touches itself, or that cannot be filled, stays as it is and needs all of its
+ * vertices. At last the certificate.
+ *
+ * Invariants: a vertex is left out of all facets or of none, so that every surface stays closed.
+ *
+ * Cost: n log n for sorting, and that of the fillings. */
+#include "star/strict/partition/merge_coplanar.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "star/strict/partition/cap.h"
+
+enum { ROUNDS = 4 };
+
+/* An edge of a group's border, in the direction of its facet. */
+typedef struct border {
+    uint32_t from, to, group;
+} border;
+
+typedef struct group {
+    uint32_t first, count; /* facets */
+    uint32_t border_first, border_count;
+    bool kept; /* stays as it is */
+} group;
+
+typedef struct tidier {
+    partition *p; /* the copy: its facets are sorted by group */
+    STARG_ARRAY(group) groups;
+    STARG_ARRAY(border) borders; /* by group, then by where they start */
+    uint32_t (*around)[2];       /* per vertex: its neighbours along borders, or NONE */
+    bool *needed;                /* per vertex */
+    STARG_ARRAY(facet) facets;   /* made anew */
+    cap_indices corners, starts, triangles;
+    bool *visited; /* per border edge */
+} tidier;
+
+static const uint32_t NONE = UINT32_MAX;
+
+/* ---- groups ---- */
+
+static int by_group(const void *x, const void *y) {
+    const facet *a = x, *b = y;
+    if (a->plane != b->plane)
+        return a->plane < b->plane ? -1 : 1;
+    if (a->side[0] != b->side[0])
+        return a->side[0] < b->side[0] ? -1 : 1;
+    if (a->side[1] != b->side[1])
+        return a->side[1] < b->side[1] ? -1 : 1;
+    /* the rest makes the order the same everywhere */
+    return memcmp(a->corners, b->corners, sizeof a->corners);
+}
+
+static bool same_group(const facet *a, const facet *b) {
+    return a->plane == b->plane && a->side[0] == b->side[0] && a->side[1] == b->side[1];
+}
+
+static starg_status find_groups(tidier *t) {
+    starg_status status = STARG_OK;
+    const facet *facets = t->p->facets.data;
+    size_t count = t->p->facets.count;
+    if (count > 0)
+        qsort(t->p->facets.data, count, sizeof *facets, by_group);
+    for (size_t i = 0; i < count; i++) {
+        if (i > 0 && same_group(&facets[i - 1], &facets[i])) {
+            t->groups.data[t->groups.count - 1].count++;
+            continue;
+        }
+        const group fresh = {.first = (uint32_t)i, .count = 1};
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->groups, fresh);
+    }
+done:
+    return status;
+}
+
+/* ---- borders ---- */
+
+static int by_edge(const void *x, const void *y) {
+    const border *a = x, *b = y;
+    uint32_t a_low = a->from < a->to ? a->from : a->to, a_high = a->from + a->to - a_low;
+    uint32_t b_low = b->from < b->to ? b->from : b->to, b_high = b->from + b->to - b_low;
+    if (a_low != b_low)
+        return a_low < b_low ? -1 : 1;
+    return a_high < b_high ? -1 : a_high > b_high;
+}
+
+static int by_start(const void *x, const void *y) {
+    const border *a = x, *b = y;
+    if (a->from != b->from)
+        return a->from < b->from ? -1 : 1;
+    return a->to < b->to ? -1 : a->to > b->to;
+}
+
+/* Pairs of opposite edges cancel. */
+static size_t cancel_pairs(border *edges, size_t count) {
+    size_t kept = 0;
+    qsort(edges, count, sizeof *edges, by_edge);
+    for (size_t i = 0; i < count; i++)
+        if (i + 1 < count && edges[i].from == edges[i + 1].to && edges[i].to == edges[i + 1].from)
+            i++;
+        else
+            edges[kept++] = edges[i];
+    qsort(edges, kept, sizeof *edges, by_start);
+    return kept;
+}
+
+static starg_status find_border(tidier *t, uint32_t number) {
+    starg_status status = STARG_OK;
+    group *g = &t->groups.data[number];
+    g->border_first = (uint32_t)t->borders.count;
+    for (uint32_t i = 0; i < g->count; i++) {
+        const uint32_t *k = t->p->facets.data[g->first + i].corners;
+        for (int e = 0; e < 3; e++) {
+            const border edge = {k[e], k[(e + 1) % 3], number};
+            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->borders, edge);
+        }
+    }
+    border *edges = t->borders.data + g->border_first;
+    g->border_count = (uint32_t)cancel_pairs(edges, t->borders.count - g->border_first);
+    t->borders.count = g->border_first + g->border_count;
+    for (uint32_t i = 1; i < g->border_count; i++)
+        g->kept = g->kept || edges[i].from == edges[i - 1].from;
+done:
+    return status;
+}
+
+/* ---- vertices that are needed ---- */
+
+static void meet(tidier *t, uint32_t vertex, uint32_t neighbour) {
+    uint32_t *around = t->around[vertex];
+    if (around[0] == neighbour || around[1] == neighbour)
+        return;
+    if (around[0] == NONE)
+        around[0] = neighbour;
+    else if (around[1] == NONE)
+        around[1] = neighbour;
+    else
+        t->needed[vertex] = true;
+}
+
+static void need_all(tidier *t, const group *g) {
+    for (uint32_t i = 0; i < g->count; i++)
+        for (int k = 0; k < 3; k++)
+            t->needed[t->p->facets.data[g->first + i].corners[k]] = true;
+}
+
+static void find_needed(tidier *t) {
+    for (size_t v = 0; v < t->p->first_points; v++)
+        t->needed[v] = true;
+    for (size_t i = 0; i < t->borders.count; i++) {
+        meet(t, t->borders.data[i].from, t->borders.data[i].to);
+        meet(t, t->borders.data[i].to, t->borders.data[i].from);
+    }
+    for (size_t i = 0; i < t->groups.count; i++)
+        if (t->groups.data[i].kept)
+            need_all(t, &t->groups.data[i]);
+}
+
+/* ---- filling ---- */
+
+/* The border edge of a group that starts at a vertex; each vertex has one. */
+static uint32_t edge_from(const tidier *t, const group *g, uint32_t vertex) {
+    uint32_t low = g->border_first, high = g->border_first + g->border_count;
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (t->borders.data[middle].from <= vertex)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static starg_status trace(tidier *t, const group *g) {
+    starg_status status = STARG_OK;
+    t->corners.count = t->starts.count = t->triangles.count = 0;
+    STARG_PUSH(t->p->context, PARTITION_STAGE, &t->starts, 0);
+    for (uint32_t i = g->border_first; i < g->border_first + g->border_count; i++) {
+        if (t->visited[i])
+            continue;
+        for (uint32_t at = i; !t->visited[at]; at = edge_from(t, g, t->borders.data[at].to)) {
+            t->visited[at] = true;
+            if (t->needed[t->borders.data[at].from])
+                STARG_PUSH(t->p->context, PARTITION_STAGE, &t->corners, t->borders.data[at].from);
+        }
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->starts, (uint32_t)t->corners.count);
+    }
+done:
+    return status;
+}
+
+static bool all_needed(const tidier *t, const group *g) {
+    for (uint32_t i = 0; i < g->count; i++)
+        for (int k = 0; k < 3; k++)
+            if (!t->needed[t->p->facets.data[g->first + i].corners[k]])
+                return false;
+    return true;
+}
+
+static starg_status copy_facets(tidier *t, const group *g) {
+    starg_status status = STARG_OK;
+    for (uint32_t i = 0; i < g->count; i++)
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->facets, t->p->facets.data[g->first + i]);
+done:
+    return status;
+}
+
+static starg_status fill(tidier *t, group *g) {
+    starg_status status = STARG_OK;
+    facet fresh = t->p->facets.data[g->first];
+    bool done = false;
+    if (g->kept || all_needed(t, g))
+        return copy_facets(t, g);
+    STARG_TRY(trace(t, g));
+    STARG_TRY(cap_fill(t->p->context, t->p->points.data, t->p->planes.data[fresh.plane].normal,
+                       t->corners.data, t->starts.data, t->starts.count - 1, &t->triangles, &done));
+    g->kept = !done;
+    for (size_t i = 0; done && i + 2 < t->triangles.count; i += 3) {
+        memcpy(fresh.corners, t->triangles.data + i, sizeof fresh.corners);
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->facets, fresh);
+    }
+done:
+    return status;
+}
+
+/* *again: some group has turned out to need all of its vertices. */
+static starg_status fill_all(tidier *t, bool *again) {
+    starg_status status = STARG_OK;
+    *again = false;
+    t->facets.count = 0;
+    memset(t->visited, 0, t->borders.count * sizeof *t->visited);
+    for (size_t i = 0; i < t->groups.count; i++) {
+        bool kept = t->groups.data[i].kept;
+        STARG_TRY(fill(t, &t->groups.data[i]));
+        *again = *again || t->groups.data[i].kept != kept;
+    }
+    if (*again)
+        find_needed(t);
+done:
+    return status;
+}
+
+/* ---- the result ---- */
+
+static starg_status take_facets(tidier *t) {
+    starg_status status = STARG_OK;
+    t->p->facets.count = 0;
+    for (size_t i = 0; i < t->facets.count; i++)
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->p->facets, t->facets.data[i]);
+done:
+    return status;
+}
+
+/* Planes of cuts that no facet lies in go. */
+static starg_status drop_planes(partition *p) {
+    starg_status status = STARG_OK;
+    uint32_t *number = NULL;
+    size_t count = p->planes.count, kept = p->first_planes;
+    STARG_NEW_ZERO(p->context, PARTITION_STAGE, number, count);
+    for (size_t i = 0; i < p->facets.count; i++)
+        number[p->facets.data[i].plane] = 1;
+    for (size_t k = 0; k < count; k++) {
+        bool used = number[k] != 0;
+        number[k] = (uint32_t)(k < p->first_planes ? k : kept);
+        if (k >= p->first_planes && used)
+            p->planes.data[kept++] = p->planes.data[k];
+    }
+    p->planes.count = kept;
+    for (size_t i = 0; i < p->facets.count; i++)
+        p->facets.data[i].plane = number[p->facets.data[i].plane];
+done:
+    starg_release(p->context, number);
+    return status;
+}
+
+/* Points made by cuts that no facet uses go. */
+static starg_status drop_points(partition *p) {
+    starg_status status = STARG_OK;
+    uint32_t *number = NULL;
+    size_t count = p->points.count / 3, kept = p->first_points;
+    STARG_NEW_ZERO(p->context, PARTITION_STAGE, number, count);
+    for (size_t i = 0; i < 3 * p->facets.count; i++)
+        number[p->facets.data[i / 3].corners[i % 3]] = 1;
+    for (size_t v = 0; v < count; v++) {
+        if (v < p->first_points) {
+            number[v] = (uint32_t)v;
+            continue;
+        }
+        if (number[v] == 0)
+            continue;
+        memmove(p->points.data + 3 * kept, p->points.data + 3 * v, 3 * sizeof *p->points.data);
+        memmove(p->unit.data + 3 * kept, p->unit.data + 3 * v, 3 * sizeof *p->unit.data);
+        number[v] = (uint32_t)kept++;
+    }
+    p->points.count = p->unit.count = 3 * kept;
+    for (size_t i = 0; i < 3 * p->facets.count; i++) {
+        uint32_t *corner = &p->facets.data[i / 3].corners[i % 3];
+        *corner = number[*corner];
+    }
+done:
+    starg_release(p->context, number);
+    return status;
+}
+
+static starg_status certify_all(const partition *p, bool *done) {
+    starg_status status = STARG_OK;
+    partition_triangles triangles = {0};
+    *done = true;
+    for (uint32_t i = 0; i < p->pieces.count && *done; i++) {
+        triangles.count = 0;
+        STARG_TRY(partition_gather(p, i, &triangles));
+        *done = partition_certify(p, triangles.data, triangles.count / 3, p->pieces.data[i].guard);
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
+}
+
+static starg_status make_anew(tidier *t, bool *done) {
+    starg_status status = STARG_OK;
+    size_t vertices = t->p->points.count / 3;
+    bool again = true;
+    STARG_NEW(t->p->context, PARTITION_STAGE, t->around, vertices);
+    STARG_NEW_ZERO(t->p->context, PARTITION_STAGE, t->needed, vertices);
+    memset(t->around, 0xff, vertices * sizeof *t->around);
+    STARG_TRY(find_groups(t));
+    for (uint32_t i = 0; i < t->groups.count; i++)
+        STARG_TRY(find_border(t, i));
+    find_needed(t);
+    STARG_NEW(t->p->context, PARTITION_STAGE, t->visited, t->borders.count);
+    for (int round = 0; round < ROUNDS && again; round++)
+        STARG_TRY(fill_all(t, &again));
+    *done = !again;
+    if (*done)
+        STARG_TRY(take_facets(t));
+done:
+    return status;
+}
+
+static void tidier_free(tidier *t) {
+    starg_context *context = t->p->context;
+    STARG_ARRAY_FREE(context, &t->groups);
+    STARG_ARRAY_FREE(context, &t->borders);
+    STARG_ARRAY_FREE(context, &t->facets);
+    STARG_ARRAY_FREE(context, &t->corners);
+    STARG_ARRAY_FREE(context, &t->starts);
+    STARG_ARRAY_FREE(context, &t->triangles);
+    starg_release(context, t->around);
+    starg_release(context, t->needed);
+    starg_release(context, t->visited);
+}
+
+static starg_status merge_all(partition *p, bool proven) {
+    starg_status status = STARG_OK;
+    partition copy = {.context = p->context};
+    tidier t = {.p = &copy};
+    bool done = false;
+    STARG_TRY(partition_copy(p, &copy));
+    STARG_TRY(make_anew(&t, &done));
+    if (!done)
+        goto done;
+    STARG_TRY(drop_points(&copy));
+    STARG_TRY(drop_planes(&copy));
+    STARG_TRY(partition_build_index(&copy));
+    if (proven)
+        STARG_TRY(certify_all(&copy, &done));
+    if (!done)
+        goto done;
+    partition before = *p;
+    *p = copy;
+    copy = before;
+done:
+    tidier_free(&t);
+    partition_free(&copy);
+    return status;
+}
+
+starg_status merge_coplanar(partition *p) {
+    return merge_all(p, true);
+}
+
+starg_status merge_coplanar_unproven(partition *p) {
+    return merge_all(p, false);
+}

@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A solid in pieces: building it, copying it, finding the facets of a piece.
+ *
+ * Why surfaces and not sets of tetrahedra: whether a piece is star-shaped depends on its boundary
+ * alone, and a star-shaped piece with its guard is a set of tetrahedra already (each facet with the
+ * guard). So inner tetrahedra are needed neither to search nor to write a result; a flat cut is a
+ * polygon, not a layer of split tetrahedra.
+ *
+ * Why the pieces are then proven to be a partition: every facet has one piece on its inner side and
+ * another one, or the outside, on its outer side. So the winding numbers of all pieces' surfaces
+ * add up to that of the outer facets, which is 1 inside the solid and 0 outside. A piece whose
+ * guard is strictly inside of all its facets and is wound around once has winding number 1 inside
+ * itself and 0 elsewhere (star/kernel.c). Hence every point of the solid off the facets lies in
+ * exactly one piece, and no other point in any.
+ *
+ * Cost: linear. */
+#include "star/strict/partition/partition.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geometry/vec3.h"
+
+void partition_to_unit(const partition *p, const double point[3], double out[3]) {
+    vec3_subtract(point, p->origin, out);
+    for (int k = 0; k < 3; k++)
+        out[k] = ldexp(out[k], -p->exponent);
+}
+
+void partition_from_unit(const partition *p, const double unit[3], double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = p->origin[k] + ldexp(unit[k], p->exponent);
+}
+
+starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex) {
+    starg_status status = STARG_OK;
+    double unit[3];
+    partition_to_unit(p, point, unit);
+    *vertex = (uint32_t)(p->points.count / 3);
+    for (int k = 0; k < 3; k++) {
+        STARG_PUSH(p->context, PARTITION_STAGE, &p->points, point[k]);
+        STARG_PUSH(p->context, PARTITION_STAGE, &p->unit, unit[k]);
+    }
+done:
+    return status;
+}
+
+/* ---- from tetrahedra ---- */
+
+static void find_frame(const starg_tetmesh *mesh, partition *p) {
+    double lower[3], upper[3], extent = 0;
+    vec3_copy(tetmesh_corner(mesh, 0, 0), lower);
+    vec3_copy(lower, upper);
+    for (size_t i = 0; i < 4 * mesh->count; i++) {
+        const double *q = tetmesh_corner(mesh, i / 4, (int)(i % 4));
+        for (int k = 0; k < 3; k++) {
+            lower[k] = fmin(lower[k], q[k]);
+            upper[k] = fmax(upper[k], q[k]);
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        p->origin[k] = 0.5 * lower[k] + 0.5 * upper[k];
+        extent = fmax(extent, upper[k] - lower[k]);
+    }
+    frexp(extent, &p->exponent);
+}
+
+static bool is_border(const starg_tetmesh *mesh, const uint32_t *labels, size_t slot) {
+    uint32_t beyond = mesh->neighbours[slot];
+    if (beyond == STARG_TETMESH_NONE)
+        return true;
+    return labels[slot / 4] < labels[beyond];
+}
+
+/* Numbers the vertices of all facets in the order of the mesh. */
+static starg_status add_points(partition *p, const starg_tetmesh *mesh, const uint32_t *labels,
+                               uint32_t *numbers) {
+    starg_status status = STARG_OK;
+    memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
+    for (size_t slot = 0; slot < 4 * mesh->count; slot++)
+        for (int k = 0; is_border(mesh, labels, slot) && k < 3; k++)
+            numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)TETMESH_FACE[slot % 4][k]]] = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        if (numbers[v] == 0)
+            STARG_TRY(partition_add_point(p, mesh->vertices + 3 * v, &numbers[v]));
+    p->first_points = p->points.count / 3;
+done:
+    return status;
+}
+
+void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane) {
+    const double *a = partition_unit(p, corners[0]);
+    double n[3];
+    vec3_triangle_normal(a, partition_unit(p, corners[1]), partition_unit(p, corners[2]), n);
+    double length = vec3_length(n);
+    for (int k = 0; k < 3; k++)
+        plane->normal[k] = length > 0 ? n[k] / length : 0;
+    plane->offset = vec3_dot(plane->normal, a);
+}
+
+static starg_status add_facet(partition *p, const starg_tetmesh *mesh, const uint32_t *labels,
+                              const uint32_t *numbers, size_t slot) {
+    starg_status status = STARG_OK;
+    uint32_t beyond = mesh->neighbours[slot];
+    facet f = {.side = {labels[slot / 4],
+                        beyond == STARG_TETMESH_NONE ? PARTITION_OUTSIDE : labels[beyond]},
+               .plane = (uint32_t)p->planes.count};
+    for (int k = 0; k < 3; k++) {
+        int corner = TETMESH_FACE[slot % 4][k];
+        f.corners[k] = numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)corner]];
+    }
+    partition_plane plane;
+    partition_plane_of(p, f.corners, &plane);
+    STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
+    STARG_PUSH(p->context, PARTITION_STAGE, &p->facets, f);
+done:
+    return status;
+}
+
+static void add_volume(partition *p, const starg_tetmesh *mesh, size_t tetrahedron,
+                       uint32_t label) {
+    double a[3], edge[3][3];
+    partition_to_unit(p, tetmesh_corner(mesh, tetrahedron, 0), a);
+    for (int k = 0; k < 3; k++) {
+        double b[3];
+        partition_to_unit(p, tetmesh_corner(mesh, tetrahedron, k + 1), b);
+        vec3_subtract(b, a, edge[k]);
+    }
+    p->pieces.data[label].volume += vec3_triple(edge[0], edge[1], edge[2]) / 6;
+}
+
+starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
+                              const uint32_t *labels, const double *guards, size_t count,
+                              partition *out) {
+    starg_status status = STARG_OK;
+    uint32_t *numbers = NULL;
+    *out = (partition){.context = context};
+    find_frame(mesh, out);
+    STARG_NEW(context, PARTITION_STAGE, numbers, mesh->vertex_count);
+    STARG_TRY(add_points(out, mesh, labels, numbers));
+    for (size_t i = 0; i < count; i++) {
+        piece fresh = {.stamp = ++out->stamps};
+        vec3_copy(guards + 3 * i, fresh.guard);
+        STARG_PUSH(context, PARTITION_STAGE, &out->pieces, fresh);
+    }
+    for (size_t slot = 0; slot < 4 * mesh->count; slot++)
+        if (is_border(mesh, labels, slot))
+            STARG_TRY(add_facet(out, mesh, labels, numbers, slot));
+    out->first_planes = out->planes.count;
+    for (size_t t = 0; t < mesh->count; t++)
+        add_volume(out, mesh, t, labels[t]);
+    STARG_TRY(partition_build_index(out));
+done:
+    starg_release(context, numbers);
+    if (status != STARG_OK)
+        partition_free(out);
+    return status;
+}
+
+void partition_free(partition *p) {
+    STARG_ARRAY_FREE(p->context, &p->points);
+    STARG_ARRAY_FREE(p->context, &p->unit);
+    STARG_ARRAY_FREE(p->context, &p->planes);
+    STARG_ARRAY_FREE(p->context, &p->facets);
+    STARG_ARRAY_FREE(p->context, &p->pieces);
+    STARG_ARRAY_FREE(p->context, &p->start);
+    STARG_ARRAY_FREE(p->context, &p->index);
+    *p = (partition){.context = p->context};
+}
+
+/* ---- copies ---- */
+
+/* TO = a copy of the array FROM with some room. */
+#define COPY_ARRAY(CONTEXT, TO, FROM)                                                              \
+    do {                                                                                           \
+        (TO)->capacity = (FROM)->count + (FROM)->count / 8 + 64;                                   \
+        STARG_NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (TO)->capacity);                         \
+        (TO)->count = (FROM)->count;                                                               \
+        if ((FROM)->count > 0)                                                                     \
+            memcpy((TO)->data, (FROM)->data, (FROM)->count * sizeof *(TO)->data);                  \
+    } while (0)
+
+starg_status partition_copy(const partition *from, partition *to) {
+    starg_status status = STARG_OK;
+    *to = (partition){.context = from->context,
+                      .exponent = from->exponent,
+                      .first_points = from->first_points,
+                      .first_planes = from->first_planes,
+                      .stamps = from->stamps};
+    vec3_copy(from->origin, to->origin);
+    COPY_ARRAY(from->context, &to->points, &from->points);
+    COPY_ARRAY(from->context, &to->unit, &from->unit);
+    COPY_ARRAY(from->context, &to->planes, &from->planes);
+    COPY_ARRAY(from->context, &to->facets, &from->facets);
+    COPY_ARRAY(from->context, &to->pieces, &from->pieces);
+done:
+    if (status != STARG_OK)
+        partition_free(to);
+    return status;
+}
+
+/* ---- facets of a piece ---- */
+
+starg_status partition_build_index(partition *p) {
+    starg_status status = STARG_OK;
+    size_t pieces = p->pieces.count;
+    p->start.count = p->index.count = 0;
+    for (size_t i = 0; i < pieces + 2; i++)
+        STARG_PUSH(p->context, PARTITION_STAGE, &p->start, 0);
+    /* counted one place further on, so that filling leaves each start where it belongs */
+    uint32_t total = 0, *start = p->start.data;
+    for (size_t i = 0; i < 2 * p->facets.count; i++) {
+        uint32_t owner = p->facets.data[i / 2].side[i % 2];
+        if (owner != PARTITION_OUTSIDE)
+            start[owner + 2]++, total++;
+    }
+    for (size_t i = 2; i < pieces + 2; i++)
+        start[i] += start[i - 1];
+    if (p->index.capacity < total) {
+        starg_release(p->context, p->index.data);
+        p->index.data = NULL;
+        p->index.capacity = 0;
+        STARG_NEW(p->context, PARTITION_STAGE, p->index.data, (size_t)total + total / 4);
+        p->index.capacity = (size_t)total + total / 4;
+    }
+    p->index.count = total;
+    for (size_t i = 0; i < 2 * p->facets.count; i++) {
+        uint32_t owner = p->facets.data[i / 2].side[i % 2];
+        if (owner != PARTITION_OUTSIDE)
+            p->index.data[start[owner + 1]++] = (uint32_t)i;
+    }
+    p->start.count = pieces + 1;
+done:
+    return status;
+}
+
+starg_status partition_gather(const partition *p, uint32_t number, partition_triangles *triangles) {
+    starg_status status = STARG_OK;
+    for (uint32_t k = p->start.data[number]; k < p->start.data[number + 1]; k++) {
+        uint32_t corners[3];
+        facet_outward(&p->facets.data[p->index.data[k] / 2], (int)(p->index.data[k] % 2), corners);
+        for (int i = 0; i < 3; i++)
+            STARG_PUSH(p->context, PARTITION_STAGE, triangles, corners[i]);
+    }
+done:
+    return status;
+}
+
+double partition_volume(const partition *p, const uint32_t *triangles, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++)
+        sum += vec3_triple(partition_unit(p, triangles[3 * i]),
+                           partition_unit(p, triangles[3 * i + 1]),
+                           partition_unit(p, triangles[3 * i + 2]));
+    return sum / 6;
+}
+
+void partition_renumber(partition *p, uint32_t from, uint32_t to) {
+    p->pieces.count--;
+    if (from == to)
+        return;
+    for (size_t i = 0; i < p->facets.count; i++)
+        for (int side = 0; side < 2; side++)
+            if (p->facets.data[i].side[side] == from)
+                p->facets.data[i].side[side] = to;
+    p->pieces.data[to] = p->pieces.data[from];
+}
+
+bool partition_certify(const partition *p, const uint32_t *triangles, size_t count,
+                       const double guard[3]) {
+    const kernel_faces surface = {p->points.data, triangles, count};
+    return kernel_sees_all(&surface, guard) && kernel_winding(&surface, guard) == 1;
+}

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A solid in pieces, each given by its closed surface: triangles in space, every one with what lies
+ * on either side of it. */
+#ifndef STARG_STAR_STRICT_PARTITION_PARTITION_H
+#define STARG_STAR_STRICT_PARTITION_PARTITION_H
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "star/kernel.h"
+#include "tetra/tetmesh.h"
+
+#define PARTITION_STAGE "decompose"
+
+/* A plane {x : normal . x = offset} in unit coordinates; the normal has length one. */
+typedef struct partition_plane {
+    double normal[3], offset;
+} partition_plane;
+
+enum { FACET_INNER = 0, FACET_OUTER = 1 };
+
+/* What lies beyond the surface of the solid. */
+#define PARTITION_OUTSIDE UINT32_MAX
+
+/* A triangle, counter-clockwise seen from side[FACET_OUTER]. Facets that a cut has made of one
+ * larger facet keep the plane of that. */
+typedef struct facet {
+    uint32_t corners[3];
+    uint32_t side[2]; /* pieces, or OUTSIDE for the outer one */
+    uint32_t plane;
+} facet;
+
+typedef struct piece {
+    double guard[3];  /* in the coordinates of the solid; certified                          */
+    double radius;    /* of the ball about it in the kernel, in unit coordinates; rounded     */
+    double volume;    /* in unit coordinates                                                  */
+    uint64_t stamp;   /* changes whenever the piece does                                      */
+    uint64_t checked; /* partition's stamps when its union with each neighbour was last tried */
+} piece;
+
+/* Invariants between operations: every piece's surface is closed, and its guard is strictly on the
+ * inner side of each of its facets and is wound around once, exactly. No piece number is unused. */
+typedef struct partition {
+    starg_context *context;
+    /* Unit coordinates are (p - origin) / 2^exponent: the solid about fills [-1/2, 1/2]^3. They
+     * serve the search; signs are decided on the points. */
+    double origin[3];
+    int exponent;
+    STARG_ARRAY(double) points; /* x 3, in the coordinates of the solid */
+    STARG_ARRAY(double) unit;   /* x 3, the same in unit coordinates    */
+    size_t first_points;        /* those before any cut: the first ones */
+    STARG_ARRAY(partition_plane) planes;
+    size_t first_planes; /* likewise */
+    STARG_ARRAY(facet) facets;
+    STARG_ARRAY(piece) pieces;
+    uint64_t stamps; /* handed out so far */
+
+    /* facets of piece i: index[start[i]] to index[start[i + 1] - 1], ascending, each as
+     * 2 * facet + side */
+    STARG_ARRAY(uint32_t) start;
+    STARG_ARRAY(uint32_t) index;
+} partition;
+
+static inline const double *partition_point(const partition *p, uint32_t vertex) {
+    return p->points.data + 3 * (size_t)vertex;
+}
+
+static inline const double *partition_unit(const partition *p, uint32_t vertex) {
+    return p->unit.data + 3 * (size_t)vertex;
+}
+
+void partition_to_unit(const partition *p, const double point[3], double out[3]);
+void partition_from_unit(const partition *p, const double unit[3], double out[3]);
+
+/* The partition of a tetrahedral mesh by labels 0 to count - 1, whose guards (count x 3, in the
+ * mesh's coordinates) see their pieces as the invariants say. Errors: MEMORY. */
+starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
+                              const uint32_t *labels, const double *guards, size_t count,
+                              partition *out);
+void partition_free(partition *p);
+
+/* A copy without an index, on which operations can be tried. Errors: MEMORY. */
+starg_status partition_copy(const partition *from, partition *to);
+
+/* Fills start and index. Errors: MEMORY. */
+starg_status partition_build_index(partition *p);
+
+/* Appends a point in the solid's coordinates; its number. Errors: MEMORY. */
+starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex);
+
+/* Order of edges by their ends, whichever of the two comes first: 0 for the same edge. */
+static inline int partition_compare_edges(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    uint32_t low[2] = {a < b ? a : b, c < d ? c : d}, high[2] = {a < b ? b : a, c < d ? d : c};
+    if (low[0] != low[1])
+        return low[0] < low[1] ? -1 : 1;
+    return (high[0] > high[1]) - (high[0] < high[1]);
+}
+
+/* Of three vertices, counter-clockwise seen from where the normal points. */
+void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane);
+
+/* Corners of a facet of piece side s in the order that is counter-clockwise from outside of that
+ * piece. */
+static inline void facet_outward(const facet *f, int side, uint32_t corners[3]) {
+    corners[0] = f->corners[0];
+    corners[1] = f->corners[side == FACET_INNER ? 1 : 2];
+    corners[2] = f->corners[side == FACET_INNER ? 2 : 1];
+}
+
+/* All facets of a piece, outward, appended to `triangles`. Errors: MEMORY. */
+typedef STARG_ARRAY(uint32_t) partition_triangles;
+starg_status partition_gather(const partition *p, uint32_t number, partition_triangles *triangles);
+
+/* Volume inside of closed triangles, in unit coordinates. */
+double partition_volume(const partition *p, const uint32_t *triangles, size_t count);
+
+/* Piece `from`, the last one, takes over the number `to`, which has no facets any more. */
+void partition_renumber(partition *p, uint32_t from, uint32_t to);
+
+/* Is the guard strictly inside each of the `count` triangles, and do they wind around it once?
+ * Exact. */
+bool partition_certify(const partition *p, const uint32_t *triangles, size_t count,
+                       const double guard[3]);
+
+#endif

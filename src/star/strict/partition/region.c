@@ -1,0 +1,537 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Star-shaped parts of a union of pieces, without touching it.
+ *
+ * Problem: along a direction n, how far up can a plane {n . x = s} move so that the part of a
+ * region below it is still strictly star-shaped? The part below is bounded by the plane and by
+ * those triangles of the surface that have a vertex below; so its kernel is the set of points
+ * inside of the plane and of their planes ("rows"). A row counts from the height of its lowest
+ * vertex on.
+ *
+ * Method: a cutting-plane loop. A few rows are in a linear program for the centre of the largest
+ * ball; of all rows that count below the bound on s (at first none), the one that the centre is
+ * farthest out of joins them. When the program leaves less room than the margin, its tight rows
+ * alone allow no more: the highest of them cannot count, so the bound falls to where it begins, and
+ * it leaves. The plane itself is one of the rows and moves with the bound. At the end the centre is
+ * inside of all rows that count below the bound.
+ *
+ * Invariants: rounded throughout; what is found is proven later on the cut mesh. Heights never
+ * exceed what the tight rows allow, so the answer is the highest s but for rounding and for sides
+ * whose kernel is empty at the highest s only.
+ *
+ * Cost: linear in the rows for each round of the loop; 5 to 20 rounds as a rule. */
+#include "star/strict/partition/region.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "geometry/largest_ball.h"
+#include "geometry/vec3.h"
+#include "star/strict/search/scan.h"
+
+enum { ROUNDS_MOST = 500, ROW = 4 };
+
+void region_scratch_free(region_scratch *scratch) {
+    STARG_ARRAY_FREE(scratch->context, &scratch->vertex_of);
+    STARG_ARRAY_FREE(scratch->context, &scratch->row_of);
+    STARG_ARRAY_FREE(scratch->context, &scratch->heights);
+    STARG_ARRAY_FREE(scratch->context, &scratch->lowest);
+    STARG_ARRAY_FREE(scratch->context, &scratch->lowest_back);
+}
+
+starg_status region_make_scratch(starg_context *context, void *shared, void **out) {
+    starg_status status = STARG_OK;
+    region_scratch *scratch = NULL;
+    (void)shared;
+    STARG_NEW_ZERO(context, PARTITION_STAGE, scratch, 1);
+    scratch->context = context;
+done:
+    *out = scratch;
+    return status;
+}
+
+void region_free_scratch(starg_context *context, void *scratch) {
+    if (scratch != NULL)
+        region_scratch_free(scratch);
+    starg_release(context, scratch);
+}
+
+void region_free(starg_context *context, region *r) {
+    STARG_ARRAY_FREE(context, &r->vertices);
+    STARG_ARRAY_FREE(context, &r->triangles);
+    STARG_ARRAY_FREE(context, &r->rows);
+    STARG_ARRAY_FREE(context, &r->blocks);
+    *r = (region){.vertices = {0}};
+}
+
+/* ---- gathering ---- */
+
+static starg_status grow_zero(starg_context *context, uint32_t **data, size_t *count,
+                              size_t *capacity, size_t needed) {
+    starg_status status = STARG_OK;
+    if (*capacity < needed) {
+        starg_release(context, *data);
+        *data = NULL;
+        *capacity = *count = 0;
+        STARG_NEW_ZERO(context, PARTITION_STAGE, *data, needed + needed / 4);
+        *capacity = needed + needed / 4;
+    }
+    *count = needed;
+done:
+    return status;
+}
+
+static bool is_chosen(const uint32_t *pieces, size_t count, uint32_t owner) {
+    for (size_t i = 0; i < count; i++)
+        if (pieces[i] == owner)
+            return true;
+    return false;
+}
+
+static starg_status gather_vertex(const partition *p, uint32_t vertex, region_scratch *scratch,
+                                  region *out, uint32_t *number) {
+    starg_status status = STARG_OK;
+    uint32_t *slot = &scratch->vertex_of.data[vertex];
+    if (*slot == 0) {
+        for (int k = 0; k < 3; k++)
+            STARG_PUSH(p->context, PARTITION_STAGE, &out->vertices, partition_unit(p, vertex)[k]);
+        *slot = (uint32_t)(out->vertices.count / 3);
+    }
+    *number = *slot - 1;
+done:
+    return status;
+}
+
+static starg_status gather_row(const partition *p, uint32_t plane, int side,
+                               region_scratch *scratch, region *out, uint32_t *number) {
+    starg_status status = STARG_OK;
+    uint32_t *slot = &scratch->row_of.data[2 * (size_t)plane + (size_t)side];
+    if (*slot == 0) {
+        const partition_plane *from = &p->planes.data[plane];
+        double sign = side == FACET_INNER ? 1 : -1;
+        for (int k = 0; k < 3; k++)
+            STARG_PUSH(p->context, PARTITION_STAGE, &out->rows, sign * from->normal[k]);
+        STARG_PUSH(p->context, PARTITION_STAGE, &out->rows, sign * from->offset);
+        *slot = (uint32_t)(out->rows.count / ROW);
+    }
+    *number = *slot - 1;
+done:
+    return status;
+}
+
+static starg_status gather_facet(const partition *p, uint32_t entry, region_scratch *scratch,
+                                 region *out) {
+    starg_status status = STARG_OK;
+    const facet *f = &p->facets.data[entry / 2];
+    region_triangle fresh;
+    uint32_t corners[3];
+    facet_outward(f, (int)(entry % 2), corners);
+    for (int k = 0; k < 3; k++)
+        STARG_TRY(gather_vertex(p, corners[k], scratch, out, &fresh.corners[k]));
+    STARG_TRY(gather_row(p, f->plane, (int)(entry % 2), scratch, out, &fresh.row));
+    STARG_PUSH(p->context, PARTITION_STAGE, &out->triangles, fresh);
+done:
+    return status;
+}
+
+/* From one facet of a piece that is looked at to the next. */
+static uint32_t stride_of(const partition *p, uint32_t number, uint32_t most) {
+    uint32_t facets = p->start.data[number + 1] - p->start.data[number];
+    return facets > most ? facets / most : 1;
+}
+
+/* The tables are all zero between calls. */
+static void forget(const partition *p, const uint32_t *pieces, size_t count, uint32_t most,
+                   region_scratch *scratch) {
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1];
+             k += stride_of(p, pieces[i], most)) {
+            const facet *f = &p->facets.data[p->index.data[k] / 2];
+            for (int c = 0; c < 3; c++)
+                scratch->vertex_of.data[f->corners[c]] = 0;
+            scratch->row_of.data[2 * (size_t)f->plane] = 0;
+            scratch->row_of.data[2 * (size_t)f->plane + 1] = 0;
+        }
+}
+
+/* The rows in blocks, the last one filled up with rows that nothing violates. */
+static starg_status make_blocks(starg_context *context, region *r) {
+    starg_status status = STARG_OK;
+    size_t rows = r->rows.count / ROW, blocks = (rows + SCAN_BLOCK - 1) / SCAN_BLOCK;
+    r->blocks.count = 0;
+    for (size_t i = 0; i < blocks * SCAN_SIZE; i++)
+        STARG_PUSH(context, PARTITION_STAGE, &r->blocks, i % SCAN_SIZE < 3 * SCAN_BLOCK ? 0 : 16);
+    for (size_t i = 0; i < rows; i++)
+        for (size_t k = 0; k < ROW; k++)
+            r->blocks.data[i / SCAN_BLOCK * SCAN_SIZE + k * SCAN_BLOCK + i % SCAN_BLOCK] =
+                r->rows.data[ROW * i + k];
+done:
+    return status;
+}
+
+starg_status region_gather_some(const partition *p, const uint32_t *pieces, size_t count,
+                                uint32_t most, region_scratch *scratch, region *out) {
+    starg_status status = STARG_OK;
+    out->vertices.count = out->triangles.count = out->rows.count = 0;
+    STARG_TRY(grow_zero(p->context, &scratch->vertex_of.data, &scratch->vertex_of.count,
+                        &scratch->vertex_of.capacity, p->points.count / 3));
+    STARG_TRY(grow_zero(p->context, &scratch->row_of.data, &scratch->row_of.count,
+                        &scratch->row_of.capacity, 2 * p->planes.count));
+    for (size_t i = 0; i < count; i++)
+        for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1];
+             k += stride_of(p, pieces[i], most)) {
+            uint32_t entry = p->index.data[k];
+            if (!is_chosen(pieces, count, p->facets.data[entry / 2].side[1 - entry % 2]))
+                STARG_TRY(gather_facet(p, entry, scratch, out));
+            if (i == 0)
+                out->first_rows = out->rows.count / ROW;
+        }
+    scratch->work += 4 * out->triangles.count;
+    forget(p, pieces, count, most, scratch);
+    STARG_TRY(make_blocks(p->context, out));
+done:
+    return status;
+}
+
+starg_status region_gather(const partition *p, const uint32_t *pieces, size_t count,
+                           region_scratch *scratch, region *out) {
+    return region_gather_some(p, pieces, count, UINT32_MAX, scratch, out);
+}
+
+/* ---- clipping ---- */
+
+typedef struct clipper {
+    starg_context *context;
+    const region *from;
+    region *out;
+    const double *normal;
+    double height;
+    uint32_t cap;
+} clipper;
+
+static double above(const clipper *c, uint32_t vertex) {
+    return vec3_dot(c->normal, c->from->vertices.data + 3 * (size_t)vertex) - c->height;
+}
+
+/* A polygon of up to four corners: the part of a triangle above the plane. */
+typedef struct clipped {
+    double corners[4][3];
+    bool cut[4]; /* on the plane */
+    int count;
+} clipped;
+
+static void clip_triangle(const clipper *c, const region_triangle *t, clipped *out) {
+    out->count = 0;
+    for (int k = 0; k < 3; k++) {
+        uint32_t a = t->corners[k], b = t->corners[(k + 1) % 3];
+        const double *p = c->from->vertices.data + 3 * (size_t)a;
+        const double *q = c->from->vertices.data + 3 * (size_t)b;
+        double ha = above(c, a), hb = above(c, b);
+        if (ha > 0) {
+            out->cut[out->count] = false;
+            vec3_copy(p, out->corners[out->count++]);
+        }
+        if ((ha > 0) == (hb > 0))
+            continue;
+        double d[3];
+        vec3_subtract(q, p, d);
+        out->cut[out->count] = true;
+        vec3_along(p, ha / (ha - hb), d, out->corners[out->count++]);
+    }
+}
+
+static starg_status add_vertex(const clipper *c, const double at[3], uint32_t *number) {
+    starg_status status = STARG_OK;
+    *number = (uint32_t)(c->out->vertices.count / 3);
+    for (int k = 0; k < 3; k++)
+        STARG_PUSH(c->context, PARTITION_STAGE, &c->out->vertices, at[k]);
+done:
+    return status;
+}
+
+static starg_status add_clipped(const clipper *c, const clipped *polygon, uint32_t row) {
+    starg_status status = STARG_OK;
+    uint32_t number[4], on_plane[2] = {0, 0};
+    int cuts = 0;
+    for (int k = 0; k < polygon->count; k++) {
+        STARG_TRY(add_vertex(c, polygon->corners[k], &number[k]));
+        if (polygon->cut[k] && cuts < 2)
+            on_plane[cuts++] = number[k];
+    }
+    for (int k = 2; k < polygon->count; k++) {
+        const region_triangle t = {{number[0], number[k - 1], number[k]}, row};
+        STARG_PUSH(c->context, PARTITION_STAGE, &c->out->triangles, t);
+    }
+    if (cuts == 2) {
+        const region_triangle segment = {{on_plane[0], on_plane[1], on_plane[1]}, c->cap};
+        STARG_PUSH(c->context, PARTITION_STAGE, &c->out->triangles, segment);
+    }
+done:
+    return status;
+}
+
+double region_volume_above(const region *part, const double normal[3], double height) {
+    double sum = 0, origin[3];
+    for (int k = 0; k < 3; k++)
+        origin[k] = height * normal[k];
+    for (size_t i = 0; i < part->triangles.count; i++) {
+        double corner[3][3];
+        for (int k = 0; k < 3; k++)
+            vec3_subtract(part->vertices.data + 3 * (size_t)part->triangles.data[i].corners[k],
+                          origin, corner[k]);
+        sum += vec3_triple(corner[0], corner[1], corner[2]);
+    }
+    return sum / 6;
+}
+
+starg_status region_clip(starg_context *context, const region *from, const double normal[3],
+                         double height, region *out) {
+    starg_status status = STARG_OK;
+    clipper c = {.context = context,
+                 .from = from,
+                 .out = out,
+                 .normal = normal,
+                 .height = height,
+                 .cap = (uint32_t)(from->rows.count / ROW)};
+    out->vertices.count = out->triangles.count = out->rows.count = 0;
+    for (size_t i = 0; i < from->rows.count; i++)
+        STARG_PUSH(context, PARTITION_STAGE, &out->rows, from->rows.data[i]);
+    for (int k = 0; k < 3; k++)
+        STARG_PUSH(context, PARTITION_STAGE, &out->rows, -normal[k]);
+    STARG_PUSH(context, PARTITION_STAGE, &out->rows, -height);
+    for (size_t i = 0; i < from->triangles.count; i++) {
+        clipped polygon;
+        clip_triangle(&c, &from->triangles.data[i], &polygon);
+        STARG_TRY(add_clipped(&c, &polygon, from->triangles.data[i].row));
+    }
+    STARG_TRY(make_blocks(context, out));
+done:
+    return status;
+}
+
+/* ---- rows along a direction ---- */
+
+/* `count` values, each infinite. */
+static starg_status reset(starg_context *context, region_values *out, size_t count) {
+    starg_status status = STARG_OK;
+    if (out->capacity < count) {
+        starg_release(context, out->data);
+        *out = (region_values){.capacity = 0};
+        STARG_NEW(context, PARTITION_STAGE, out->data, 2 * count);
+        out->capacity = 2 * count;
+    }
+    for (size_t i = 0; i < count; i++)
+        out->data[i] = INFINITY;
+    out->count = count;
+done:
+    return status;
+}
+
+static starg_status find_heights(const region *r, const double normal[3], region_scratch *scratch) {
+    starg_status status = STARG_OK;
+    size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
+    scratch->work += vertices + r->triangles.count;
+    STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
+    STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
+    STARG_TRY(reset(scratch->context, &scratch->lowest_back, padded));
+    double *height = scratch->heights.data;
+    for (size_t i = 0; i < vertices; i++)
+        height[i] = vec3_dot(normal, r->vertices.data + 3 * i);
+    for (size_t i = 0; i < r->triangles.count; i++) {
+        const region_triangle *t = &r->triangles.data[i];
+        double a = height[t->corners[0]], b = height[t->corners[1]], c = height[t->corners[2]];
+        double low = a < b ? a : b, high = a < b ? b : a;
+        double *lowest = &scratch->lowest.data[t->row], *back = &scratch->lowest_back.data[t->row];
+        low = low < c ? low : c;
+        high = high < c ? c : high;
+        *lowest = low < *lowest ? low : *lowest;
+        *back = -high < *back ? -high : *back;
+    }
+done:
+    return status;
+}
+
+/* ---- the loop ---- */
+
+static const uint32_t THE_PLANE = UINT32_MAX - 1;
+
+/* The search for a ball among the rows that count below the bound. */
+typedef struct ball_search {
+    const region *r;
+    const double *normal; /* of the plane; NULL: there is none */
+    const double *lowest; /* of rows along it */
+    double bound;
+    largest_ball ball;
+    size_t at; /* the block of rows where the last violated one was begins there */
+    uint64_t *work;
+} ball_search;
+
+/* A row that the ball's centre is less than `room` inside of: the worst of the first block that has
+ * one, from where the last one was. False when there is none. */
+static bool find_violated(ball_search *w, double room, uint32_t *worst) {
+    size_t blocks = w->r->blocks.count / SCAN_SIZE;
+    for (size_t seen = 0; seen < blocks; seen++) {
+        size_t found = scan_block(w->r->blocks.data + SCAN_SIZE * w->at,
+                                  w->lowest + SCAN_BLOCK * w->at, w->bound, w->ball.center, room);
+        *w->work += SCAN_BLOCK;
+        if (found < SCAN_BLOCK) {
+            *worst = (uint32_t)(SCAN_BLOCK * w->at + found);
+            return true;
+        }
+        w->at = w->at + 1 < blocks ? w->at + 1 : 0;
+    }
+    return false;
+}
+
+static bool plane_is_violated(const ball_search *w, double room) {
+    return w->normal != NULL && w->bound < INFINITY &&
+           w->bound - vec3_dot(w->normal, w->ball.center) < room;
+}
+
+/* Adds what the ball violates by `room`: 1 when something was, 0 when nothing is, -1 on failure. */
+static int add_violated(ball_search *w, double room) {
+    if (plane_is_violated(w, room))
+        return largest_ball_add(&w->ball, w->normal, w->bound, THE_PLANE) ? 1 : -1;
+    uint32_t worst = 0;
+    if (!find_violated(w, room, &worst))
+        return 0;
+    const double *row = w->r->rows.data + ROW * (size_t)worst;
+    return largest_ball_add(&w->ball, row, row[3], worst) ? 1 : -1;
+}
+
+/* Where the highest of the rows that hold the ball begins to count. */
+static double highest_tight(const ball_search *w) {
+    double highest = -INFINITY;
+    for (int k = 0; k < 4; k++)
+        if (w->ball.names[k] < THE_PLANE && w->ball.weights[k] > 1e-12)
+            highest = fmax(highest, w->lowest[w->ball.names[k]]);
+    return highest;
+}
+
+/* Rows that no longer count leave, the plane goes where the bound is. */
+static void lower_bound_to(ball_search *w, double bound) {
+    w->bound = bound;
+    for (int k = 0; k < 4; k++) {
+        uint32_t name = w->ball.names[k];
+        if (name == THE_PLANE)
+            largest_ball_move(&w->ball, k, bound, THE_PLANE);
+        else if (name != LARGEST_BALL_FAR && w->lowest[name] >= bound)
+            largest_ball_move(&w->ball, k, LARGEST_BALL_DISTANCE, LARGEST_BALL_FAR);
+    }
+}
+
+static void find_reach(ball_search *w, double margin, region_reach *out) {
+    *out = (region_reach){.height = -INFINITY};
+    largest_ball_start(&w->ball);
+    for (int round = 0; round < ROUNDS_MOST; round++) {
+        if (w->ball.radius < margin) {
+            double bound = highest_tight(w);
+            if (bound == -INFINITY)
+                return;
+            lower_bound_to(w, bound);
+            continue;
+        }
+        int added = add_violated(w, 0.5 * margin); /* the ball itself is rounded */
+        if (added < 0)
+            return;
+        if (added == 0) {
+            out->height = w->bound;
+            vec3_copy(w->ball.center, out->guard);
+            return;
+        }
+    }
+}
+
+starg_status region_find_reach(const region *r, const double normal[3], double margin,
+                               region_scratch *scratch, region_reach *up, region_reach *down) {
+    starg_status status = STARG_OK;
+    double back[3] = {-normal[0], -normal[1], -normal[2]};
+    STARG_TRY(find_heights(r, normal, scratch));
+    ball_search w = {.r = r,
+                     .work = &scratch->work,
+                     .normal = normal,
+                     .lowest = scratch->lowest.data,
+                     .bound = INFINITY};
+    find_reach(&w, margin, up);
+    if (down == NULL || up->height == -INFINITY)
+        goto done;
+    w = (ball_search){.r = r,
+                      .work = &scratch->work,
+                      .normal = back,
+                      .lowest = scratch->lowest_back.data,
+                      .bound = INFINITY};
+    find_reach(&w, margin, down);
+done:
+    return status;
+}
+
+/* Distances of vertices from a point in the place of heights. */
+static starg_status find_distances(const region *r, const double center[3],
+                                   region_scratch *scratch) {
+    starg_status status = STARG_OK;
+    size_t vertices = r->vertices.count / 3, padded = r->blocks.count / 4;
+    scratch->work += vertices + r->triangles.count;
+    STARG_TRY(reset(scratch->context, &scratch->heights, vertices));
+    STARG_TRY(reset(scratch->context, &scratch->lowest, padded));
+    double *distance = scratch->heights.data;
+    for (size_t i = 0; i < vertices; i++)
+        distance[i] = vec3_distance_squared(center, r->vertices.data + 3 * i);
+    for (size_t i = 0; i < r->triangles.count; i++) {
+        const region_triangle *t = &r->triangles.data[i];
+        double *lowest = &scratch->lowest.data[t->row];
+        for (int k = 0; k < 3; k++)
+            if (distance[t->corners[k]] < *lowest)
+                *lowest = distance[t->corners[k]];
+    }
+done:
+    return status;
+}
+
+starg_status region_find_reach_about(const region *r, const double center[3], double margin,
+                                     region_scratch *scratch, region_reach *out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_distances(r, center, scratch));
+    ball_search w = {
+        .r = r, .work = &scratch->work, .lowest = scratch->lowest.data, .bound = INFINITY};
+    find_reach(&w, margin, out);
+done:
+    return status;
+}
+
+starg_status region_find_reach_beyond(const region *r, const double center[3], double margin,
+                                      region_scratch *scratch, region_reach *out) {
+    starg_status status = STARG_OK;
+    STARG_TRY(find_distances(r, center, scratch));
+    for (size_t i = 0; i < r->first_rows; i++)
+        scratch->lowest.data[i] = -INFINITY;
+    ball_search w = {
+        .r = r, .work = &scratch->work, .lowest = scratch->lowest.data, .bound = INFINITY};
+    find_reach(&w, margin, out);
+done:
+    return status;
+}
+
+starg_status region_find_center(const region *r, const double *normal, double height,
+                                region_scratch *scratch, double center[3], double *radius) {
+    starg_status status = STARG_OK;
+    static const double anywhere[3] = {0, 0, 0};
+    *radius = -1;
+    STARG_TRY(find_heights(r, normal == NULL ? anywhere : normal, scratch));
+    ball_search w = {.r = r,
+                     .work = &scratch->work,
+                     .normal = normal,
+                     .lowest = scratch->lowest.data,
+                     .bound = normal == NULL ? INFINITY : height};
+    largest_ball_start(&w.ball);
+    for (int round = 0; round < 4 * ROUNDS_MOST && w.ball.radius > 0; round++) {
+        int added = add_violated(&w, w.ball.radius - 1e-9);
+        if (added < 0)
+            goto done;
+        if (added == 0) {
+            vec3_copy(w.ball.center, center);
+            *radius = w.ball.radius - 1e-9;
+            goto done;
+        }
+    }
+done:
+    return status;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Cutting a piece of a partition by a plane. */
+#ifndef STARG_STAR_STRICT_PARTITION_SLICE_H
+#define STARG_STAR_STRICT_PARTITION_SLICE_H
+
+#include "star/strict/partition/partition.h"
+
+/* Makes all of `pieces` one piece, the first of them: facets between them go. The other numbers
+ * stay without facets. */
+void partition_join(partition *p, const uint32_t *pieces, size_t count);
+
+/* Gives what piece `low` has above the plane to piece `high`, which has nothing yet; facets along
+ * the plane come between them, and facets that the plane cuts are split, also where they meet the
+ * piece in an edge only. *done is false, and the partition is of no more use, when a vertex of the
+ * piece is too near to the plane, or when its surface is no manifold there, or nothing is cut.
+ * Proves nothing about either part. Errors: MEMORY. */
+starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
+                             const partition_plane *plane, bool *done);
+
+/* How near to a plane of a slice no vertex may be, in unit coordinates, but for those so near that
+ * they count as on it: so a plane can be laid through an edge. */
+#define SLICE_CLEARANCE 1e-9
+#define SLICE_ON        1e-12
+
+#endif

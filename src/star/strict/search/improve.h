@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Making the pieces of a partition fewer. */
+#ifndef STARG_STAR_STRICT_SEARCH_IMPROVE_H
+#define STARG_STAR_STRICT_SEARCH_IMPROVE_H
+
+#include "star/strict/partition/partition.h"
+
+typedef struct improve_options {
+    uint64_t trials; /* to be made at most                             */
+    uint64_t work;   /* likewise, in vertices, facets and rows looked at; whole batches are made */
+    size_t enough;   /* stop when there are no more pieces than that   */
+    uint64_t first;  /* number of the first trial: others try other things */
+} improve_options;
+
+typedef struct improve_report {
+    uint64_t trials, work, joins, repartitions, eliminated, moves, refused;
+    bool time_limited;
+} improve_report;
+
+/* Joins neighbours whose union is star-shaped, until there are none or the time is over. Errors:
+ * MEMORY, CANCELLED. */
+starg_status improve_join(partition *p);
+
+/* Joins pieces whose union is star-shaped and cuts unions again into fewer pieces, until no trial
+ * helps for long, or the trials, the work or the time are used up; then every guard goes where
+ * it is farthest from all planes. The partition is valid at all times.
+ * Errors: MEMORY, CANCELLED. */
+starg_status improve(partition *p, const improve_options *options, improve_report *report);
+
+#endif

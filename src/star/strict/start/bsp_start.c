@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* BSP start: cuts by planes until every piece is star-shaped.
+ *
+ * Problem: a partition of a solid into few star-shaped pieces with flat borders, found fast.
+ *
+ * Method: as a decision tree is grown. A piece with a kernel is done; any other is cut by the plane
+ * after which two guards miss the least of it (star/strict/search/split_plane.c), into connected
+ * parts, and each of these goes on. All open pieces are looked at at once, then cut one after the
+ * other.
+ *
+ * A piece that resists (no plane gains, or the cut fails, or leaves a small component that nothing
+ * sees) is tried again with more effort and with less room for its guard, and is then halved: a
+ * plane that is right where the trouble is may cost more elsewhere in a large piece. Where one
+ * resists to the last, there is no start by planes.
+ *
+ * Invariants: what a cut does to other pieces is nothing but split facets; every guard is certified
+ * on the finished partition, and where that fails the piece is opened again. The result does not
+ * depend on the number of threads. Cost: each round that of split_plane.c for all open pieces;
+ * about as many rounds as twice the depth of the tree. */
+#include "star/strict/start/bsp_start.h"
+
+#include <math.h>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "geometry/vec3.h"
+#include "star/strict/partition/merge_coplanar.h"
+#include "star/strict/partition/separate.h"
+#include "star/strict/partition/slice.h"
+#include "star/strict/search/split_plane.h"
+
+enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3 };
+
+/* Numbers of stages are below. */
+static const uint64_t STREAMS = 1000;
+
+static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9,
+                    SMALL_COMPONENT = 1e-7;       /* unit coordinates */
+static const double TURN = 1e-5, TURN_MOST = 0.1; /* radians, about */
+
+/* A piece that is not known to be star-shaped. */
+typedef struct job {
+    uint32_t number;
+    int attempts;
+    double radius, guard[3]; /* of the ball in its kernel; unit coordinates */
+    partition_plane plane;
+    bool found;
+} job;
+
+typedef struct bsp_builder {
+    partition *p;
+    region_scratch scratch; /* of the calling thread */
+    STARG_ARRAY(job) jobs;
+    STARG_ARRAY(job) next;
+    uint64_t stream;
+    size_t budget;     /* jobs, after which it is given up */
+    size_t done;       /* jobs so far */
+    size_t merge_from; /* facets from which on it is time to merge */
+    double volume;     /* of the solid, in unit coordinates */
+    double finished;   /* of it, in pieces that have a guard */
+    bool hopeless;
+} bsp_builder;
+
+/* Each attempt asks for less. */
+static double ease_of(const job *j) {
+    return pow(0.25, j->attempts);
+}
+
+static double margin_of(const job *j) {
+    return fmax(MARGIN * ease_of(j), MARGIN_LEAST);
+}
+
+/* ---- looking at open pieces ---- */
+
+static starg_status look_at(starg_context *context, void *shared, void *scratch, size_t item) {
+    starg_status status = STARG_OK;
+    bsp_builder *b = shared;
+    job *j = &b->jobs.data[item];
+    region r = {.vertices = {0}};
+    starg_rng rng = starg_rng_make(context->seed, 78 + STREAMS * b->stream, b->done + item);
+    const split_plane_options options = {.margin = margin_of(j),
+                                         .effort = j->attempts < EFFORT_MOST ? j->attempts + 1
+                                                                             : EFFORT_MOST,
+                                         .demand = j->attempts < FAIR_FROM    ? SPLIT_PLANE_GAIN
+                                                   : j->attempts < HALVE_FROM ? SPLIT_PLANE_FAIR
+                                                                              : SPLIT_PLANE_HALVE};
+    j->found = false;
+    STARG_TRY(region_gather(b->p, &j->number, 1, scratch, &r));
+    STARG_TRY(region_find_center(&r, NULL, 0, scratch, j->guard, &j->radius));
+    if (j->radius < options.margin)
+        STARG_TRY(split_plane_find(&r, &options, &rng, scratch, &j->plane, &j->found));
+done:
+    region_free(context, &r);
+    return status;
+}
+
+/* ---- cutting ---- */
+
+/* A part so small that no later cut will make anything of it. */
+static starg_status is_small_component(bsp_builder *b, partition *p, uint32_t number, const job *j,
+                                       bool *small) {
+    starg_status status = STARG_OK;
+    region r = {.vertices = {0}};
+    double center[3], radius;
+    *small = false;
+    if (p->pieces.data[number].volume >= SMALL_COMPONENT * ease_of(j))
+        goto done;
+    STARG_TRY(region_gather(p, &number, 1, &b->scratch, &r));
+    STARG_TRY(region_find_center(&r, NULL, 0, &b->scratch, center, &radius));
+    *small = radius < margin_of(j);
+done:
+    region_free(p->context, &r);
+    return status;
+}
+
+/* Facets that a cut has made keep the plane of what they were part of; where rounding has turned
+ * one out of it, it may be that no guard will be certified. */
+static bool is_flat(const partition *p, size_t old_points, double most) {
+    for (size_t i = 0; i < p->facets.count; i++) {
+        const facet *f = &p->facets.data[i];
+        const uint32_t *c = f->corners;
+        double normal[3], across[3];
+        if (c[0] < old_points && c[1] < old_points && c[2] < old_points)
+            continue;
+        vec3_triangle_normal(partition_unit(p, c[0]), partition_unit(p, c[1]),
+                             partition_unit(p, c[2]), normal);
+        const double *expected = p->planes.data[f->plane].normal;
+        vec3_cross(normal, expected, across);
+        double along = vec3_dot(normal, expected);
+        if (!(along > 0 && vec3_length(across) <= most * along))
+            return false;
+    }
+    return true;
+}
+
+/* On a copy: the piece cut, and both sides parted into what is connected. */
+static starg_status cut(bsp_builder *b, const job *j, partition *copy, bool *done) {
+    starg_status status = STARG_OK;
+    const piece fresh = {.stamp = ++b->p->stamps};
+    STARG_TRY(partition_copy(b->p, copy));
+    uint32_t first = (uint32_t)copy->pieces.count;
+    STARG_PUSH(copy->context, PARTITION_STAGE, &copy->pieces, fresh);
+    STARG_TRY(partition_slice(copy, j->number, first, &j->plane, done));
+    *done = *done && is_flat(copy, b->p->points.count / 3, fmin(TURN / ease_of(j), TURN_MOST));
+    if (!*done)
+        goto done;
+    STARG_TRY(partition_build_index(copy));
+    STARG_TRY(partition_separate(copy, j->number));
+    STARG_TRY(partition_separate(copy, first));
+    for (uint32_t i = j->number; i < copy->pieces.count && *done; i = i < first ? first : i + 1) {
+        bool small;
+        STARG_TRY(is_small_component(b, copy, i, j, &small));
+        *done = !small;
+    }
+done:
+    return status;
+}
+
+static starg_status open_piece(bsp_builder *b, uint32_t number, int attempts) {
+    starg_status status = STARG_OK;
+    const job fresh = {.number = number, .attempts = attempts};
+    STARG_PUSH(b->p->context, PARTITION_STAGE, &b->next, fresh);
+done:
+    return status;
+}
+
+static starg_status try_again(bsp_builder *b, const job *j) {
+    b->hopeless = j->attempts >= ATTEMPTS_MOST;
+    return b->hopeless ? STARG_OK : open_piece(b, j->number, j->attempts + 1);
+}
+
+static starg_status carry_out(bsp_builder *b, const job *j) {
+    starg_status status = STARG_OK;
+    partition copy = {.context = b->p->context};
+    bool done = false;
+    if (j->found)
+        STARG_TRY(cut(b, j, &copy, &done));
+    if (!done) {
+        STARG_TRY(try_again(b, j));
+        goto done;
+    }
+    uint32_t first = (uint32_t)b->p->pieces.count;
+    partition before = *b->p;
+    *b->p = copy;
+    copy = before;
+    STARG_TRY(open_piece(b, j->number, j->attempts / 2));
+    for (uint32_t i = first; i < b->p->pieces.count; i++)
+        STARG_TRY(open_piece(b, i, j->attempts / 2));
+done:
+    partition_free(&copy);
+    return status;
+}
+
+static void settle(bsp_builder *b, const job *j) {
+    piece *it = &b->p->pieces.data[j->number];
+    partition_from_unit(b->p, j->guard, it->guard);
+    it->radius = j->radius;
+    b->finished += it->volume;
+    starg_progress_step(b->p->context, (size_t)(1e6 * fmin(1, b->finished / b->volume)), 1000000);
+}
+
+/* ---- rounds ---- */
+
+/* Facets of a piece are split again and again, also by cuts of its neighbours. */
+static starg_status merge_if_crowded(bsp_builder *b) {
+    if (b->p->facets.count <= b->merge_from)
+        return STARG_OK;
+    starg_status status = merge_coplanar_unproven(b->p);
+    b->merge_from = b->p->facets.count + b->p->facets.count / 8;
+    return status;
+}
+
+static starg_status run_round(bsp_builder *b) {
+    starg_status status = STARG_OK;
+    const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
+                                      .count = b->jobs.count,
+                                      .shared = b,
+                                      .item = look_at,
+                                      .make_scratch = region_make_scratch,
+                                      .free_scratch = region_free_scratch,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(b->p->context, &loop));
+    b->done += b->jobs.count;
+    b->next.count = 0;
+    for (size_t i = 0; i < b->jobs.count; i++) {
+        const job *j = &b->jobs.data[i];
+        STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
+        if (b->hopeless)
+            continue;
+        if (j->radius >= margin_of(j))
+            settle(b, j);
+        else
+            STARG_TRY(carry_out(b, j));
+    }
+    STARG_TRY(merge_if_crowded(b));
+done:
+    return status;
+}
+
+static void swap_lists(bsp_builder *b) {
+    bsp_builder before = *b;
+    b->jobs.data = before.next.data;
+    b->jobs.count = before.next.count;
+    b->jobs.capacity = before.next.capacity;
+    b->next.data = before.jobs.data;
+    b->next.count = 0;
+    b->next.capacity = before.jobs.capacity;
+}
+
+static bool may_go_on(const bsp_builder *b) {
+    return b->jobs.count > 0 && !b->hopeless && b->done < b->budget &&
+           !starg_time_is_over(b->p->context);
+}
+
+/* ---- proofs ---- */
+
+/* Pieces whose guard does not see them: neighbours' cuts have split their facets since. */
+static starg_status certify(bsp_builder *b) {
+    starg_status status = STARG_OK;
+    partition_triangles triangles = {0};
+    partition *p = b->p;
+    b->next.count = 0;
+    for (uint32_t i = 0; i < p->pieces.count; i++) {
+        triangles.count = 0;
+        STARG_TRY(partition_gather(p, i, &triangles));
+        size_t count = triangles.count / 3;
+        p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
+        p->pieces.data[i].stamp = ++p->stamps;
+        if (!partition_certify(p, triangles.data, count, p->pieces.data[i].guard))
+            STARG_TRY(open_piece(b, i, (int)(b->done % 3)));
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
+}
+
+static starg_status open_all(bsp_builder *b) {
+    starg_status status = STARG_OK;
+    uint32_t given = (uint32_t)b->p->pieces.count;
+    for (uint32_t i = 0; i < given; i++)
+        STARG_TRY(partition_separate(b->p, i));
+    for (uint32_t i = 0; i < b->p->pieces.count && !b->hopeless; i++)
+        STARG_TRY(partition_touches_itself(b->p, i, &b->hopeless));
+    for (uint32_t i = 0; i < b->p->pieces.count; i++) {
+        b->volume += b->p->pieces.data[i].volume;
+        STARG_TRY(open_piece(b, i, 0));
+    }
+done:
+    return status;
+}
+
+starg_status bsp_start(partition *p, uint64_t stream, size_t budget, bool *done) {
+    starg_status status = STARG_OK;
+    bsp_builder b = {
+        .p = p, .stream = stream, .budget = budget, .scratch = {.context = p->context}};
+    *done = false;
+    starg_progress_begin(p->context, "planes");
+    STARG_TRY(open_all(&b));
+    b.merge_from = p->facets.count + p->facets.count / 8;
+    while (b.next.count > 0) {
+        swap_lists(&b);
+        while (may_go_on(&b)) {
+            STARG_TRY(run_round(&b));
+            swap_lists(&b);
+        }
+        if (b.jobs.count > 0)
+            goto done;
+        STARG_TRY(certify(&b));
+    }
+    *done = true;
+done:
+    starg_progress_end(p->context);
+    region_scratch_free(&b.scratch);
+    STARG_ARRAY_FREE(p->context, &b.jobs);
+    STARG_ARRAY_FREE(p->context, &b.next);
+    return status;
+}

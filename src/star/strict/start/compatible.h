@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Compatible decomposition: pieces that are star-shaped in two solids at once. */
+#ifndef STARG_STAR_STRICT_START_COMPATIBLE_H
+#define STARG_STAR_STRICT_START_COMPATIBLE_H
+
+#include "core/context.h"
+#include "core/private.h"
+#include "starguard/decompose.h"
+
+/* Labels the tetrahedra of a mesh so that every piece is strictly star-shaped in it and in its
+ * image, the same tetrahedra in other places. out[0] is the mesh in pieces, out[1] the image in the
+ * same pieces; copies of both. Errors: MESH (a tetrahedron so thin that no point is found in it),
+ * MEMORY, CANCELLED. */
+starg_status compatible_decompose(starg_context *context, const starg_tetmesh *mesh,
+                                  const starg_tetmesh *image, starg_decomposition *out[2])
+    STARG_PRIVATE(compatible_decompose);
+
+#endif

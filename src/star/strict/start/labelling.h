@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Labels for nodes such that those across an edge go together. */
+#ifndef STARG_STAR_STRICT_START_LABELLING_H
+#define STARG_STAR_STRICT_START_LABELLING_H
+
+#include "core/context.h"
+#include "core/memory.h"
+#include "core/rng.h"
+
+/* Labels are bits of a set. */
+typedef uint32_t label_set;
+enum { LABELLING_MOST = 32 };
+
+/* Different labels may be at its two ends if each is one of those that fit there. No label fits at
+ * both ends. */
+typedef struct labelling_edge {
+    uint32_t nodes[2];
+    label_set fits[2];
+} labelling_edge;
+
+/* Every node has three edges. The lists are filled by the caller, then labelling_prepare is called;
+ * the fits and `given` may change between solutions. */
+typedef struct labelling {
+    starg_context *context;
+    STARG_ARRAY(label_set) given; /* of each node: those it may have */
+    STARG_ARRAY(labelling_edge) edges;
+    /* Where nothing else decides, a high rank is preferred; labels of rank 0 are for nodes that no
+     * other is left for. */
+    double ranks[LABELLING_MOST];
+
+    STARG_ARRAY(label_set) left;    /* of each node; of a solution: exactly one */
+    label_set ranked;               /* those with a rank above 0 */
+    STARG_ARRAY(uint32_t) edges_of; /* node x 3 */
+    STARG_ARRAY(uint32_t) queue;
+    STARG_ARRAY(uint32_t) changed; /* nodes and what they had before, to go back */
+} labelling;
+
+void labelling_free(labelling *l);
+
+/* Errors: MEMORY. */
+starg_status labelling_prepare(labelling *l);
+
+/* *found is false when there is no solution, and sometimes when there is one that is hard to find.
+ * Another state of `rng` gives another solution. Errors: MEMORY. */
+starg_status labelling_solve(labelling *l, starg_rng *rng, bool *found);
+
+#endif

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Child processes by fork and exec. Between the two the child calls async-signal-safe functions
+ * only, since other threads of the parent may hold locks. It leads a process group of its own, so
+ * that what it starts is killed with it, and a terminal's interrupt reaches it through the parent
+ * only. */
+#include "tetra/process.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+
+enum { NOT_FOUND = 127, FIRST_NAP = 1000000, LONGEST_NAP = 20000000 }; /* naps in nanoseconds */
+
+/* The child's half; never returns. Where the system can, it dies with its parent. */
+static void become(const char *const *arguments) {
+    setpgid(0, 0);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+    setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
+    int nothing = open("/dev/null", O_RDWR);
+    for (int stream = 0; stream < 3 && nothing >= 0; stream++)
+        dup2(nothing, stream);
+    signal(SIGPIPE, SIG_DFL);
+    signal(SIGXFSZ, SIG_DFL);
+    union { /* exec takes what it does not change as if it might */
+        const char *const *given;
+        char *const *taken;
+    } words = {.given = arguments};
+    execvp(arguments[0], words.taken);
+    _exit(NOT_FOUND);
+}
+
+static starg_status explain(starg_context *context, const char *stage, const char *program,
+                            int status) {
+    if (WIFSIGNALED(status))
+        return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was ended by signal %d",
+                          program, WTERMSIG(status));
+    if (WEXITSTATUS(status) == NOT_FOUND)
+        return starg_fail(context, STARG_ERROR_SOLVER, stage,
+                          "'%s' cannot be run; is it installed?", program);
+    if (WEXITSTATUS(status) != 0)
+        return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' failed with status %d", program,
+                          WEXITSTATUS(status));
+    return STARG_OK;
+}
+
+/* Why to stop waiting: cancellation, or time. */
+static starg_status look_around(starg_context *context, const char *stage, const char *program,
+                                double deadline) {
+    starg_status status = starg_check_cancel(context, stage);
+    if (status == STARG_OK && (starg_clock() > deadline || starg_time_is_over(context)))
+        status = starg_fail(context, STARG_ERROR_SOLVER, stage,
+                            "'%s' took too long and was stopped", program);
+    return status;
+}
+
+static starg_status await(starg_context *context, const char *stage, const char *program,
+                          pid_t child, double seconds) {
+    double deadline = starg_clock() + seconds;
+    struct timespec nap = {0, FIRST_NAP};
+    for (;;) {
+        int status;
+        pid_t ended = waitpid(child, &status, WNOHANG);
+        if (ended == child)
+            return explain(context, stage, program, status);
+        if (ended < 0 && errno != EINTR)
+            return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was lost: %s", program,
+                              strerror(errno));
+        starg_status reason = look_around(context, stage, program, deadline);
+        if (reason != STARG_OK) {
+            kill(-child, SIGKILL);
+            kill(child, SIGKILL); /* in case it has no group yet */
+            while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+                continue;
+            return reason;
+        }
+        nanosleep(&nap, NULL);
+        if (nap.tv_nsec < LONGEST_NAP)
+            nap.tv_nsec *= 2;
+    }
+}
+
+starg_status starg_process_run(starg_context *context, const char *stage,
+                               const char *const *arguments, double seconds) {
+    pid_t child = fork();
+    if (child < 0)
+        return starg_fail(context, STARG_ERROR_SOLVER, stage, "cannot start '%s': %s", arguments[0],
+                          strerror(errno));
+    if (child == 0)
+        become(arguments);
+    return await(context, stage, arguments[0], child, seconds);
+}
+
+starg_status starg_scratch_create(starg_context *context, const char *stage, char **path) {
+    static const char name[] = "/starguard-XXXXXX";
+    starg_status status = STARG_OK;
+    const char *parent = getenv("TMPDIR");
+    *path = NULL;
+    if (parent == NULL || *parent == '\0')
+        parent = "/tmp";
+    size_t length = strlen(parent);
+    STARG_NEW(context, stage, *path, length + sizeof name);
+    memcpy(*path, parent, length);
+    memcpy(*path + length, name, sizeof name);
+    if (mkdtemp(*path) == NULL) {
+        status = starg_fail(context, STARG_ERROR_WRITE, stage,
+                            "cannot make a temporary folder in '%s': %s; set TMPDIR to one that "
+                            "can be written",
+                            parent, strerror(errno));
+        starg_release(context, *path);
+        *path = NULL;
+    }
+done:
+    return status;
+}
+
+void starg_scratch_remove(starg_context *context, char *path) {
+    if (path == NULL)
+        return;
+    DIR *folder = opendir(path);
+    for (struct dirent *entry; folder != NULL && (entry = readdir(folder)) != NULL;)
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder != NULL)
+        closedir(folder);
+    rmdir(path);
+    starg_release(context, path);
+}
