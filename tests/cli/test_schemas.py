@@ -176,7 +176,7 @@ class Schemas(support.Case):
         self.report("verify", "verify", room, "p.vtk", "p.json")
         self.write("open.off", support.OPEN)
         self.report("decompose", "decompose", "open.off", "-o", "o.vtk", "--report", "o.json",
-                    "--effort", "10")
+                    "--effort", "10", "--fill")
         self.file("pieces", "o.json")
         self.report("decompose", "decompose", "--tets", "p.vtk", "-o", "t.vtk", "--report", "t.json",
                     "--mode", "paper")
