@@ -1,12 +1,20 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# A folder of src/ includes only itself and the folders above it in this list; cover includes core
-# only; cli sees public headers only.
+# A folder of src/ includes only itself and the folders above it in this list, and the public headers
+# that these implement; cover includes core only. verify includes core, and of the public headers
+# those that declare what it checks: their structs and readers are all it shares with the solvers
+# (docs/verification.md). cli sees public headers only; the library starguard-shapes is the last
+# two folders.
 set -eu
 cd "$(dirname "$0")/.."
 
-layers="core geometry mesh skeleton visibility cover guard tetra star verify sample export shape morph"
+# A folder, and the public headers that it implements.
+layers="core:bits,context,export,fields,ranks,status,version geometry:
+mesh:check,mesh,repair,simplify,solid skeleton:skeleton visibility:visibility cover:cover
+guard:guard tetra:tetra star:decompose,kernel verify:verify sample:sample
+export:animation,page,picture,scene shape:database,descriptor,shape morph:morph"
 above=""
+headers_above=""
 failed=0
 
 report() {
@@ -14,29 +22,46 @@ report() {
     failed=1
 }
 
-for layer in $layers; do
+for entry in $layers; do
+    layer=${entry%%:*}
+    headers=$(echo "${entry#*:}" | tr ',' ' ')
     above="$above $layer"
+    headers_above="$headers_above $headers"
     allowed=$above
+    headers_allowed=$headers_above
     case $layer in
-    cover | verify) allowed="core $layer" ;;
+    cover) allowed="core $layer" headers_allowed="bits context fields $headers" ;;
+    verify) allowed="core $layer" headers_allowed="mesh visibility $headers" ;;
     esac
     for include in $(grep -rhoE '^#include "[a-z]+/' "src/$layer" | sed 's/.*"//; s|/||' | sort -u); do
-        [ "$include" = starguard ] && continue
-        case " $allowed " in
+        case " starguard $allowed " in
         *" $include "*) ;;
         *) report "src/$layer includes $include/: $(grep -rlE "^#include \"$include/" "src/$layer" | tr '\n' ' ')" ;;
+        esac
+    done
+    for header in $(grep -rhoE '^#include "starguard/[a-z]+' "src/$layer" | sed 's|.*/||' | sort -u); do
+        case " $headers_allowed " in
+        *" $header "*) ;;
+        *) report "src/$layer includes starguard/$header.h: $(grep -rlE "^#include \"starguard/$header.h" "src/$layer" | tr '\n' ' ')" ;;
         esac
     done
 done
 
 for folder in src/*/; do
-    case " $layers " in
+    case " $above " in
     *" $(basename "$folder") "*) ;;
     *) report "$folder is in no layer" ;;
     esac
 done
+for header in include/starguard/*.h; do
+    case " starguard $headers_above " in
+    *" $(basename "$header" .h) "*) ;;
+    *) report "$header is of no layer" ;;
+    esac
+done
 
-if grep -rnE '^#include "(core|geometry|mesh|skeleton|visibility|cover|guard|tetra|star|shape|morph|verify|sample|export)/' cli >&2; then
+inside=$(echo "$above" | tr ' ' '|')
+if grep -rnE "^#include \"(${inside#|})/" cli >&2; then
     report "cli may include public headers only"
 fi
 exit $failed
