@@ -12,14 +12,14 @@
 #include "starguard/decompose.h"
 #include "starguard/descriptor.h"
 
-static const char *const NAMES[] = {"bound",      "candidates", "check",       "claim",
-                                    "completion", "decompose",  "delaunay",    "descriptor",
-                                    "growth",     "ilp",        "join",        "kernel",
-                                    "levels",     "map",        "medial axis", "medial complex",
-                                    "pieces",     "planes",     "reduce",      "refine",
-                                    "sight",      "simplify",   "spectrum",    "sphere",
-                                    "tetrahedra", "thickness",  "visibility",  "views",
-                                    "d2",         "erosion",    "signature"};
+static const char *const NAMES[] = {"bound",        "candidates", "check",       "grow regions",
+                                    "augmentation", "decompose",  "delaunay",    "descriptor",
+                                    "growth",       "ilp",        "join",        "kernel",
+                                    "levels",       "map",        "medial axis", "medial complex",
+                                    "pieces",       "planes",     "reduce",      "refine",
+                                    "sight",        "simplify",   "spectrum",    "sphere",
+                                    "tetrahedra",   "thickness",  "visibility",  "views",
+                                    "d2",           "erosion",    "signature"};
 
 enum { DEEPEST = 16 };
 
