@@ -24,12 +24,15 @@
 
 #include "core/memory.h"
 #include "geometry/predicates.h"
+#include "mesh/mesh.h"
 #include "tetra/generate.h"
 #include "tetra/lattice.h"
 
 static const char STAGE[] = TETRA_STAGE;
 
 enum { FINEST = 24 }; /* halvings of the spacing before a solid counts as too thin */
+static const double TOO_THIN =
+    8; /* times that the finest lattice is wider than the solid is thick */
 
 /* A corner of a lattice tetrahedron. */
 typedef struct corner {
@@ -262,9 +265,26 @@ done:
     return status;
 }
 
+static starg_status fail_thin(stuffer *s) {
+    return starg_fail(
+        s->context, STARG_ERROR_SOLVER, STAGE,
+        "the solid is too thin to be filled: no lattice of at most %zu points has one "
+        "inside; thicken it, or cut it where it is thin",
+        LATTICE_LIMIT);
+}
+
+/* Is the solid far thinner than the finest lattice is wide? Then at most stray points are inside.
+ * Twice the volume over the area is the thickness of a plate. */
+static bool is_below_lattice(const tetra_shape *shape, double spacing) {
+    double finest = lattice_spacing(shape, ldexp(spacing, -FINEST));
+    return 2 * fabs(shape->volume) < finest / TOO_THIN * starg_mesh_area(shape->mesh);
+}
+
 /* Halves the spacing until a point stays inside after the warp. */
 static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *spacing) {
     starg_status status = STARG_OK;
+    if (is_below_lattice(shape, *spacing))
+        return fail_thin(s);
     for (int attempt = 0; attempt < FINEST; attempt++) {
         double taken = lattice_spacing(shape, *spacing);
         STARG_TRY(lattice_create(s->context, shape, taken, &s->lattice));
@@ -282,10 +302,7 @@ static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *s
             break;
         *spacing *= 0.5;
     }
-    status = starg_fail(s->context, STARG_ERROR_SOLVER, STAGE,
-                        "the solid is too thin to be filled: no lattice of at most %zu points has "
-                        "one inside; thicken it, or cut it where it is thin",
-                        LATTICE_LIMIT);
+    status = fail_thin(s);
 done:
     return status;
 }

@@ -98,6 +98,16 @@ class Decompose(support.Case):
             _, err = self.run_text("decompose", name, "-o", "p.vtk", status=2)
             self.assertRegex(err, "encloses no volume|nothing is inside")
 
+    def test_thin(self):
+        """A plate far thinner than the finest lattice is refused at once, by what is wrong with it."""
+        self.write("plate.off", "OFF\n8 12 0\n" + "".join(
+            f"{x} {y} {z}\n" for z in ("0", "1e-8") for y in (0, 8) for x in (0, 8)) +
+            "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n"
+            "3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5\n")
+        _, err = self.run_text("decompose", "plate.off", "-o", "p.vtk", status=3)
+        self.assertIn("too thin", err)
+        self.assertNotIn("p.vtk", self.names())
+
     def test_strict(self):
         room = self.sample("l-room")
         report = self.run_json("decompose", room, "-o", "p.vtk", "--report", "p.json",
@@ -182,9 +192,9 @@ class Decompose(support.Case):
         path = {"PATH": f"{self.folder}:{os.environ['PATH']}"}
         self.write("closed.off", TETRAHEDRON)
         self.write("open.off", OPEN)
-        for model, reason in [("closed.off", "crashed"), ("open.off", "open")]:
+        for model, reason in [("closed.off", "signal"), ("open.off", "open")]:
             with self.subTest(model=model):
-                words = ["decompose", model, "-o", "p.vtk", "--effort", "1"]
+                words = ["decompose", model, "-o", "p.vtk", "--effort", "1", "--fill"]
                 out, err = self.run_text(*words, "--quiet", environment=path)
                 self.assertEqual(out, "")
                 self.assertEqual(err.count("warning:"), 1, err)

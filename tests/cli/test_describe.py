@@ -17,7 +17,7 @@ class Describe(support.Case):
                                      "--histograms", "seen.svg")
         self.assertEqual({key: report[key] for key in file}, file)
         self.assertEqual(file["format"], "starguard-descriptor")
-        self.assertEqual(file["version"], 3)
+        self.assertEqual(file["version"], 4)
         self.assertEqual(file["model"]["file"], "torus.off")
         self.assertEqual({len(g["distances"]) for g in file["guards"]}, {100})
         points = report["reconstruction"]["points"]

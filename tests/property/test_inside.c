@@ -39,7 +39,7 @@ static shape make_model(int which) {
     case 3:
         return two_cubes(1.5); /* wound around twice, in part */
     case 4:
-        return placed(shape_cube(2), 0x1p-1073, 0);
+        return placed(shape_cube(2), 0x1p-290, 0);
     case 5:
         return placed(shape_room(), 1e90, 0);
     case 6:
