@@ -18,6 +18,8 @@ static void tell_claims(cli_session *session, const starg_verdict *verdict) {
         if (!claim->holds && session->common.quiet)
             cli_warn(session, "FAILED %s", claim->text);
     }
+    for (size_t i = 0; i < verdict->not_checked_count; i++)
+        cli_say(session, "  not checked: %s\n", verdict->not_checked[i].text);
 }
 
 /* Tells a verdict and adds it to the results; `result` holds the keys that only its kind has, and
@@ -32,9 +34,13 @@ static void tell_verdict(cli_session *session, const char *file, const starg_ver
         cli_append(session, claims,
                    json_pack("{s:o, s:b}", "claim", cli_json_text(verdict->claims[i].text), "holds",
                              (int)verdict->claims[i].holds));
+    json_t *unchecked = json_array();
+    for (size_t i = 0; i < verdict->not_checked_count; i++)
+        cli_append(session, unchecked, cli_json_text(verdict->not_checked[i].text));
     cli_put(session, result, "file", cli_json_text(file));
     cli_put(session, result, "passed", json_boolean(verdict->passed));
     cli_put(session, result, "claims", claims);
+    cli_put(session, result, "not_checked", unchecked);
     cli_append(session, results, result);
     if (!verdict->passed)
         session->outcome = CLI_EXIT_FAILED;
@@ -182,7 +188,9 @@ const cli_command cli_command_verify = {
         "made them; signs are exact. The content of a file tells what it is. Exit status 4 if a "
         "claim does not hold.\n"
         "GUARDS.json, of 'starguard guard': every guard is inside, sees as many faces as it says, "
-        "the coverage and the uncovered faces are right, and counts and bounds agree.\n"
+        "the coverage and the uncovered faces are right, and counts and bounds agree. Faces that "
+        "could be seen, and guards that would do alone, refute claims about candidates; what then "
+        "remains of these is told as not checked.\n"
         "PIECES.vtk and PIECES.json, of 'starguard decompose', in either order: the tetrahedra are "
         "positive, conforming and labelled, fill the model and do not overlap; every piece is "
         "connected, has the size and the contacts that are claimed, and is star-shaped about its "

@@ -23,16 +23,25 @@ typedef struct starg_claim {
     bool holds;
 } starg_claim;
 
+/* Something that a result says and that its verdict does not answer for. */
+typedef struct starg_unchecked {
+    char text[256]; /* what, and why */
+} starg_unchecked;
+
 typedef struct starg_verdict {
-    bool passed; /* every claim holds */
+    bool passed; /* every claim holds that was checked */
     size_t count;
     starg_claim *claims;
+    size_t not_checked_count;
+    starg_unchecked *not_checked;
 } starg_verdict;
 
 /* Checks everything that a guards result claims about a mesh and that can be checked without its
  * candidates: counts, every guard strictly inside with its clearance, what each guard sees, the
- * coverage, the uncovered faces, and that bounds and counts are consistent. The mesh is the model
- * as read (inward shells are turned here as well).
+ * coverage, the uncovered faces, and that bounds and counts are consistent. What the result says of
+ * candidates is refuted where points just above unseen faces see them, where fewer guards of the
+ * result would do, or where redundancy is far from kept; else it is `not_checked`. The mesh is the
+ * model as read (inward shells are turned here as well).
  * Errors: MESH (not closed and oriented), MEMORY, CANCELLED; a claim that fails is no error. */
 STARG_API starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
                                            const starg_guards *guards, starg_verdict **out);
@@ -54,7 +63,7 @@ typedef struct starg_pieces_report {
     starg_decompose_mode mode;
     size_t tetrahedra;
     size_t piece_count;
-    starg_piece *pieces; /* without radius */
+    starg_piece *pieces; /* a radius that is no number: not told */
     size_t contact_count;
     starg_piece_contact *contacts;
     size_t strictly_star;
@@ -62,6 +71,7 @@ typedef struct starg_pieces_report {
     bool approximated;    /* the boundary is near the model's surface only; then: */
     double distance;      /* no point of the boundary is farther from the model's surface ...   */
     double distance_back; /* ... and no point of the surface from it; infinite when not told    */
+    double flattest;      /* least height over longest edge of a tetrahedron; 0: not told         */
 } starg_pieces_report;
 
 /* Reads PIECES.vtk with code of its own: a legacy VTK unstructured grid of tetrahedra with the

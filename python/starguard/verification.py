@@ -33,6 +33,8 @@ class Verdict:
 
     passed: bool
     claims: list[Claim]
+    #: What the results say and no claim answers for.
+    not_checked: list[str] = field(default_factory=list)
 
     def __bool__(self) -> bool:
         return self.passed
@@ -77,6 +79,8 @@ class PiecesReport:
     approximated: bool
     distance: float
     distance_back: float
+    #: 0 where it is not told.
+    flattest: float
     _handle: Any = field(repr=False)
     _owner: Any = field(repr=False)
 
@@ -141,23 +145,26 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
         raise ArgumentError("name a result to verify")
     session = Session(threads, seed)
     claims: list[Claim] = []
+    rest: list[str] = []
     for result in given:
         if isinstance(result, Guards):
             surface = shape.surface()[0] if isinstance(shape, TetMesh) else shape
-            claims += _claims(session, lib.starg_verify_guards, surface, result._handle,
-                              progress=progress)
+            _judge(session, lib.starg_verify_guards, surface, result._handle, claims=claims,
+                   rest=rest, progress=progress)
     for mesh, report in _decompositions(given):
         function = (lib.starg_verify_pieces_of_tetmesh if isinstance(shape, TetMesh)
                     else lib.starg_verify_pieces)
-        claims += _claims(session, function, shape, mesh, report, progress=progress)
-    return Verdict(all(claim.holds for claim in claims), claims)
+        _judge(session, function, shape, mesh, report, claims=claims, rest=rest, progress=progress)
+    return Verdict(all(claim.holds for claim in claims), claims, rest)
 
 
-def _claims(session: Session, function: Any, shape: Any, *arguments: Any,
-            progress: Progress | None) -> list[Claim]:
+def _judge(session: Session, function: Any, shape: Any, *arguments: Any, claims: list[Claim],
+           rest: list[str], progress: Progress | None) -> None:
+    """Adds what a verdict checked to `claims`, and what it did not to `rest`."""
     verdict = session.make("starg_verdict", lib.starg_verdict_free, function, session.context,
                            shape._handle, *arguments, shared=True, progress=progress)
-    return [Claim(text(c.text), c.holds) for c in (verdict.claims[i] for i in range(verdict.count))]
+    claims += [Claim(text(c.text), c.holds) for c in (verdict.claims[i] for i in range(verdict.count))]
+    rest += [text(verdict.not_checked[i].text) for i in range(verdict.not_checked_count)]
 
 
 def _decompositions(results: list[Any]) -> list[tuple[Any, Any]]:
@@ -198,4 +205,5 @@ def pieces_report_of(d: Decomposition) -> Any:
     report.approximated = not own.tetra.surface_kept
     report.distance = own.tetra.to_surface + own.tetra.step
     report.distance_back = own.tetra.from_surface + own.tetra.step
+    report.flattest = own.flattest
     return report

@@ -25,13 +25,6 @@ static const double TOLERANCE = 1e-9; /* relative to the diagonal, and of areas 
 
 enum { CANCEL_STEP = 256 };
 
-static double diagonal_of(const verify_surface *surface) {
-    double sum = 0;
-    for (int k = 0; k < 3; k++)
-        sum = hypot(sum, surface->upper[k] - surface->lower[k]);
-    return sum;
-}
-
 /* ---- one face ---- */
 
 typedef enum place { OFF = 0, TURNED = 1, ON = 2, EQUAL = 3 } place;
@@ -173,7 +166,7 @@ starg_status verify_match_boundary(const verify_pieces *pieces, const verify_sur
     verify_tree *tree = NULL;
     shells all = {0};
     *match = (verify_match){0};
-    own.near = TOLERANCE * diagonal_of(model) + rounding;
+    own.near = TOLERANCE * verify_diagonal(model) + rounding;
     own.close = pow(ldexp(own.near, own.scale), 2);
     STARG_TRY(verify_tree_create(model, &tree));
     own.tree = tree;

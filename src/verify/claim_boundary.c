@@ -8,6 +8,10 @@
 
 static const double TOLERANCE = 1e-9; /* relative */
 
+/* Of the diagonal: no distance beyond that is called near. What a surface winds around lies within
+ * its convex hull, whose points are hardly farther from it than that. */
+static const double FARTHEST = 0.5;
+
 /* ---- the boundary ---- */
 
 static void claim_on_model(const verify_context *own, const verify_match *match) {
@@ -42,7 +46,9 @@ static void claim_covered(const verify_context *own, const verify_match *match) 
 static void claim_near(const verify_context *own, const verify_nearness *nearness) {
     const starg_pieces_report *report = own->report;
     double rounding = verify_rounding(own->model);
+    double most = FARTHEST * verify_diagonal(own->model);
     double limit = report->distance;
+    bool told = report->distance_back != INFINITY;
     if (nearness->to.farthest <= limit * (1 + TOLERANCE) + rounding)
         verify_claim(own->verdict, true,
                      "the boundary is at most %.17g from the model's surface (%.17g at %zu points)",
@@ -51,9 +57,17 @@ static void claim_near(const verify_context *own, const verify_nearness *nearnes
         verify_claim(own->verdict, false,
                      "the boundary is at most %.17g from the model's surface: %s is %.17g away",
                      limit, verify_outer_words(own, nearness->to.face).text, nearness->to.farthest);
+    verify_claim(own->verdict,
+                 limit <= most && nearness->from.farthest <= most &&
+                     (!told || report->distance_back <= most),
+                 "boundary and model are the same but for a part of the diagonal: %.17g and %.17g "
+                 "are at most %.17g, half of it",
+                 limit, told ? report->distance_back : nearness->from.farthest, most);
+    verify_leave(own->verdict, "points of either surface between those that were measured");
+    verify_leave(own->verdict, "the volume: the boundary is not the model's surface");
+    if (!told)
+        return;
     limit = report->distance_back;
-    if (limit == INFINITY)
-        return; /* not told */
     verify_claim(own->verdict, nearness->from.farthest <= limit * (1 + TOLERANCE) + rounding,
                  "the model's surface is at most %.17g from the boundary (%.17g at %zu points, in "
                  "face %zu)",

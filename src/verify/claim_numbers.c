@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The claims that a report makes in numbers: tetrahedra, volumes and contacts of the pieces. Cost:
- * O(n). */
+/* The claims that a report makes in numbers: tetrahedra, volumes, contacts and radii of the pieces,
+ * and how flat tetrahedra are. Cost: O(n). */
 #include <math.h>
 
 #include "core/memory.h"
@@ -78,14 +78,117 @@ done:
     return status;
 }
 
+/* ---- radius ---- */
+
+/* Between what bounds is the distance of a piece's guard to the nearest plane of a wall, for all
+ * that rounding does to normals? Thin walls leave the most room. */
+static void bound_radius(const verify_context *own, size_t piece, double *least, double *most) {
+    const verify_pieces *pieces = own->pieces;
+    const double *guard = own->report->pieces[piece].guard;
+    *least = *most = INFINITY;
+    for (size_t wall = pieces->wall_start[piece]; wall < pieces->wall_start[piece + 1]; wall++) {
+        const double *t[3];
+        double n[3], length = 0, along = 0, away = 0, extent = 0;
+        verify_corners(pieces->walls, wall, t);
+        verify_normal(pieces->walls, wall, pieces->scale, n);
+        for (int k = 0; k < 3; k++) {
+            double d = ldexp(t[0][k] - guard[k], pieces->scale);
+            along += n[k] * d;
+            away = hypot(away, d);
+            length = hypot(length, n[k]);
+            extent +=
+                ldexp(fmax(fmax(t[0][k], t[1][k]), t[2][k]) - fmin(fmin(t[0][k], t[1][k]), t[2][k]),
+                      pieces->scale);
+        }
+        if (!(length > 0))
+            continue;
+        double slack = 0x1p-48 * away * (1 + extent * extent / length);
+        *least = fmin(*least, along / length - slack);
+        *most = fmin(*most, along / length + slack);
+    }
+}
+
+static void claim_radius(const verify_context *own) {
+    const starg_pieces_report *report = own->report;
+    size_t bad = 0, first = 0, told = 0;
+    double found = 0, slack = 1e-9 * ldexp(1, -own->pieces->scale);
+    for (size_t p = report->piece_count; p-- > 0;) {
+        double least, most, claimed = report->pieces[p].radius;
+        if (isnan(claimed))
+            continue;
+        told++;
+        bound_radius(own, p, &least, &most);
+        least = ldexp(least, -own->pieces->scale);
+        most = ldexp(most, -own->pieces->scale);
+        if (claimed >= least - slack && claimed <= most + slack)
+            continue;
+        bad++;
+        first = p;
+        found = least / 2 + most / 2;
+    }
+    if (told < report->piece_count)
+        verify_leave(own->verdict, "the radius of %zu pieces: the report does not tell it",
+                     report->piece_count - told);
+    if (bad > 0)
+        verify_claim(own->verdict, false,
+                     "guards are as far from the planes of their pieces' faces as claimed: %zu are "
+                     "not, first piece %zu, claimed %.17g, found %.17g",
+                     bad, first, report->pieces[first].radius, found);
+    else if (told > 0)
+        verify_claim(own->verdict, true,
+                     "guards are as far from the planes of their pieces' faces as claimed");
+}
+
+/* ---- flatness ---- */
+
+/* Least height over longest edge of a tetrahedron, which scaling does not change. */
+static double flatness_of(const verify_context *own, size_t tetrahedron) {
+    const uint32_t *corners = own->mesh->tetrahedra + 4 * tetrahedron;
+    const double *t[4];
+    double longest = 0, largest = 0;
+    verify_volume volume = {0};
+    for (int i = 0; i < 4; i++)
+        t[i] = verify_point(own->mesh, corners[i]);
+    for (int i = 0; i < 4; i++)
+        for (int j = i + 1; j < 4; j++)
+            longest = fmax(longest,
+                           hypot(hypot(t[i][0] - t[j][0], t[i][1] - t[j][1]), t[i][2] - t[j][2]));
+    if (!(longest > 0))
+        return 0;
+    int scale = -ilogb(longest); /* in a unit near the longest edge */
+    for (int i = 0; i < 4; i++)
+        largest = fmax(largest, verify_triangle_area(t[i], t[(i + 1) % 4], t[(i + 2) % 4], scale));
+    verify_add_volume(&volume, t, scale);
+    return largest > 0 ? 3 * fabs(verify_volume_value(&volume)) / largest / ldexp(longest, scale)
+                       : 0;
+}
+
+static void claim_flattest(const verify_context *own) {
+    double claimed = own->report->flattest, found = 1;
+    if (claimed > 0) {
+        for (size_t t = 0; t < own->mesh->count; t++)
+            found = fmin(found, flatness_of(own, t));
+        verify_claim(own->verdict, fabs(claimed - found) <= 1e-9 * claimed + 1e-12,
+                     "the flattest tetrahedron has a height of %.17g of its longest edge (found: "
+                     "%.17g)",
+                     claimed, found);
+    } else {
+        verify_leave(own->verdict, "the flattest tetrahedron: the report does not tell it");
+    }
+    verify_leave(own->verdict, "how flat tetrahedra were to begin with, and whether fewer pieces "
+                               "would do");
+}
+
 starg_status verify_claim_numbers(const verify_context *own) {
     starg_status status = STARG_OK;
     claim_size(own);
+    claim_flattest(own);
     if (!own->pieces->labels.good)
         goto done;
     claim_counts(own);
     STARG_TRY(claim_volumes(own));
     STARG_TRY(claim_contacts(own));
+    claim_radius(own);
 done:
     return status;
 }

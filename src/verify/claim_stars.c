@@ -79,6 +79,9 @@ static starg_status claim_seen(const verify_context *own, const verify_certifica
                  own->report->visible_vertices,
                  ((double)seen.proven + share * open) / (double)seen.pairs, seen.looked,
                  seen.pairs);
+    if (seen.looked < seen.pairs - seen.proven)
+        verify_leave(own->verdict, "whether guards see the %zu vertices to which no line was drawn",
+                     seen.pairs - seen.proven - seen.looked);
 done:
     return status;
 }

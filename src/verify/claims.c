@@ -12,6 +12,7 @@ starg_status verify_verdict_create(starg_context *context, starg_verdict **out) 
     STARG_NEW_ZERO(context, "verify", verdict, 1);
     verdict->passed = true;
     STARG_NEW_ZERO(context, "verify", verdict->claims, VERIFY_CLAIMS);
+    STARG_NEW_ZERO(context, "verify", verdict->not_checked, VERIFY_UNCHECKED);
     *out = verdict;
 done:
     if (status != STARG_OK)
@@ -31,9 +32,20 @@ void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {
     verdict->passed = verdict->passed && holds;
 }
 
+void verify_leave(starg_verdict *verdict, const char *format, ...) {
+    if (verdict->not_checked_count == VERIFY_UNCHECKED)
+        return;
+    starg_unchecked *claim = &verdict->not_checked[verdict->not_checked_count++];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(claim->text, sizeof claim->text, format, arguments);
+    va_end(arguments);
+}
+
 void starg_verdict_free(starg_context *context, starg_verdict *verdict) {
     if (verdict == NULL)
         return;
     starg_release(context, verdict->claims);
+    starg_release(context, verdict->not_checked);
     starg_release(context, verdict);
 }

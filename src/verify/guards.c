@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Verification of a guards result. First the facts: each guard looks around anew (verify/sight.h),
- * in parallel. Then the claims of the result are held against them, one by one. What depends on
- * the candidates, which a result does not hold (which faces are coverable, the proof of the lower
- * bound), is checked for consistency only.
+ * in parallel. Then the claims of the result are held against them, one by one. The candidates are
+ * not in the file; what is said of them is refuted where facts do so: faces that could be seen
+ * (verify/coverable.c), guards of the result that would do (verify/needed.c), redundancy
+ * (verify/redundancy.c). What remains is named as not checked.
  *
- * Invariant: facts are sums and unions over the guards, so that the order in which threads work
- * does not show. Cost: see verify/sight.h for each guard. */
+ * Invariant: each guard has a row of its own, so that the order in which threads work does not
+ * show. Cost: see verify/sight.h for each guard. */
 #include <math.h>
 #include <stdio.h>
 
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "verify/claims.h"
+#include "verify/facts.h"
 #include "verify/measure.h"
 #include "verify/sight.h"
 
@@ -21,31 +23,13 @@ static const double TOLERANCE = 1e-9; /* relative; for lengths, areas and fracti
 
 /* ---- facts ---- */
 
-typedef struct facts {
-    const verify_surface *surface;
-    const starg_guards *guards;
-    int scale;
-    bool *inside;         /* each guard                      */
-    double *distance;     /* from each guard to the surface; only with a clearance */
-    size_t *seen;         /* faces that each guard sees      */
-    atomic_uchar *united; /* 1: some guard sees the vertex; while threads work */
-    uint8_t *vertex;      /* the same afterwards             */
-    atomic_uint *first;   /* of each face the first guard that sees it, or UINT32_MAX */
-    uint8_t *face;        /* 1: some guard sees it           */
-    uint8_t *used;        /* vertices that faces name        */
-    double *area;         /* of each face, in scaled units   */
-
-    size_t covered_faces, used_vertices, covered_vertices;
-    double covered_area, total_area;
-} facts;
-
 static bool is_finite_point(const double p[3]) {
     return fabs(p[0]) < 1e100 && fabs(p[1]) < 1e100 && fabs(p[2]) < 1e100;
 }
 
 static starg_status make_sight(starg_context *context, void *shared, void **scratch) {
     (void)context;
-    const facts *known = shared;
+    const verify_facts *known = shared;
     verify_sight *sight;
     starg_status status = verify_sight_create(known->surface, &sight);
     *scratch = sight;
@@ -57,26 +41,27 @@ static void free_sight(starg_context *context, void *scratch) {
     verify_sight_free(scratch);
 }
 
-static void unite(atomic_uchar *all, const uint8_t *own, size_t count) {
-    for (size_t i = 0; i < count; i++)
-        if (own[i])
-            atomic_store_explicit(&all[i], 1, memory_order_relaxed);
+static void note_row(starg_bits *rows, size_t row, const uint8_t *seen) {
+    uint64_t *bits = starg_bits_row_mutable(rows, row);
+    for (size_t j = 0; j < rows->columns; j++)
+        if (seen[j])
+            starg_bit_set(bits, j);
 }
 
-/* The lowest guard that sees a face, whatever the order of the threads. */
-static void note_first(atomic_uint *first, const uint8_t *seen, size_t count, uint32_t guard) {
-    for (size_t f = 0; f < count; f++) {
-        uint32_t known = atomic_load_explicit(&first[f], memory_order_relaxed);
-        while (seen[f] && guard < known &&
-               !atomic_compare_exchange_weak(&first[f], &known, guard)) {
-        }
+verify_view verify_view_of(const starg_guards *guards, const double *direction) {
+    const starg_visibility_options *o = &guards->options.visibility;
+    verify_view view = {.range = o->range, .rule = o->face_rule};
+    if (o->cone < 360 && direction != NULL) {
+        view.direction = direction;
+        view.cosine = starg_cone_cosine(o->cone);
     }
+    return view;
 }
 
 /* Finds out about one guard. One that is not inside sees nothing. */
 static starg_status examine_guard(starg_context *context, void *shared, void *scratch, size_t g) {
     (void)context;
-    facts *known = shared;
+    verify_facts *known = shared;
     const verify_surface *surface = known->surface;
     const starg_guard_options *options = &known->guards->options;
     const double *p = known->guards->positions + 3 * g;
@@ -91,34 +76,53 @@ static starg_status examine_guard(starg_context *context, void *shared, void *sc
         return STARG_OK;
 
     const uint8_t *vertices, *faces;
-    verify_view view = {.range = options->visibility.range, .rule = options->visibility.face_rule};
-    if (options->visibility.cone < 360 && known->guards->directions != NULL) {
-        view.direction = known->guards->directions + 3 * g;
-        view.cosine = starg_cone_cosine(options->visibility.cone);
-    }
+    const verify_view view = verify_view_of(known->guards, known->guards->directions != NULL
+                                                               ? known->guards->directions + 3 * g
+                                                               : NULL);
     starg_status status = verify_look(scratch, p, &view, &vertices, &faces);
     if (status != STARG_OK)
         return status;
-    for (size_t f = 0; f < surface->face_count; f++)
-        known->seen[g] += faces[f];
-    unite(known->united, vertices, surface->vertex_count);
-    note_first(known->first, faces, surface->face_count, (uint32_t)g);
+    note_row(known->faces, g, faces);
+    if (known->vertices != NULL)
+        note_row(known->vertices, g, vertices);
     return STARG_OK;
 }
 
-static void sum_up(facts *known) {
+static void unite(const starg_bits *rows, uint8_t *all) {
+    for (size_t g = 0; g < rows->rows; g++)
+        for (size_t w = 0; w < rows->words; w++)
+            STARG_FOR_BITS (bit, starg_bits_row(rows, g)[w]) {
+                all[64 * w + bit] = 1;
+            }
+}
+
+starg_status verify_count_held(const verify_facts *known, uint32_t **held) {
+    starg_status status = STARG_OK;
+    const starg_bits *rows = verify_rows(known);
+    STARG_NEW_ZERO(known->surface->context, STAGE, *held, rows->columns);
+    for (size_t g = 0; g < rows->rows; g++)
+        for (size_t w = 0; w < rows->words; w++)
+            STARG_FOR_BITS (bit, starg_bits_row(rows, g)[w]) {
+                (*held)[64 * w + bit]++;
+            }
+done:
+    return status;
+}
+
+static void sum_up(verify_facts *known) {
     const verify_surface *surface = known->surface;
     for (size_t i = 0; i < 3 * surface->face_count; i++)
         known->used[surface->faces[i]] = 1;
+    unite(known->faces, known->face);
+    if (known->vertices != NULL)
+        unite(known->vertices, known->vertex);
     for (size_t v = 0; v < surface->vertex_count; v++) {
         known->used_vertices += known->used[v];
-        known->vertex[v] = known->united[v];
         known->covered_vertices += known->vertex[v];
     }
     for (size_t f = 0; f < surface->face_count; f++) {
         known->area[f] = verify_area(surface, f, known->scale);
         known->total_area += known->area[f];
-        known->face[f] = known->first[f] != UINT32_MAX;
         if (!known->face[f])
             continue;
         known->covered_faces++;
@@ -126,20 +130,19 @@ static void sum_up(facts *known) {
     }
 }
 
-static starg_status find_facts(starg_context *context, facts *known) {
+static starg_status find_facts(starg_context *context, verify_facts *known) {
     starg_status status = STARG_OK;
     size_t guards = known->guards->count;
     known->scale = verify_scale(known->surface);
     STARG_NEW_ZERO(context, STAGE, known->inside, guards);
     STARG_NEW_ZERO(context, STAGE, known->distance, guards);
-    STARG_NEW_ZERO(context, STAGE, known->seen, guards);
-    STARG_NEW_ZERO(context, STAGE, known->united, known->surface->vertex_count);
+    STARG_TRY(starg_bits_create(context, guards, known->surface->face_count, &known->faces));
+    if (verify_targets_vertices(known))
+        STARG_TRY(
+            starg_bits_create(context, guards, known->surface->vertex_count, &known->vertices));
     STARG_NEW_ZERO(context, STAGE, known->vertex, known->surface->vertex_count);
     STARG_NEW_ZERO(context, STAGE, known->used, known->surface->vertex_count);
     STARG_NEW_ZERO(context, STAGE, known->face, known->surface->face_count);
-    STARG_NEW(context, STAGE, known->first, known->surface->face_count);
-    for (size_t f = 0; f < known->surface->face_count; f++)
-        atomic_init(&known->first[f], UINT32_MAX);
     STARG_NEW(context, STAGE, known->area, known->surface->face_count);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = guards,
@@ -148,26 +151,27 @@ static starg_status find_facts(starg_context *context, facts *known) {
                                       .make_scratch = make_sight,
                                       .free_scratch = free_sight};
     STARG_TRY(starg_parallel_for(context, &loop));
+    STARG_TRY(verify_tree_create(known->surface, &known->tree));
     sum_up(known);
 done:
     return status;
 }
 
-static void free_facts(starg_context *context, facts *known) {
+static void free_facts(starg_context *context, verify_facts *known) {
     starg_release(context, known->inside);
     starg_release(context, known->distance);
-    starg_release(context, known->seen);
-    starg_release(context, known->united);
+    starg_bits_free(known->faces);
+    starg_bits_free(known->vertices);
     starg_release(context, known->vertex);
     starg_release(context, known->used);
     starg_release(context, known->face);
-    starg_release(context, known->first);
     starg_release(context, known->area);
+    verify_tree_free(known->tree);
 }
 
 /* ---- claims about the input ---- */
 
-static void claim_model(starg_verdict *verdict, const facts *known) {
+static void claim_model(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const verify_surface *surface = known->surface;
     verify_claim(
@@ -190,7 +194,7 @@ static void claim_options(starg_verdict *verdict, const starg_guard_options *opt
 
 /* ---- claims about single guards ---- */
 
-static void claim_inside(starg_verdict *verdict, const facts *known) {
+static void claim_inside(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     size_t bad = 0, first = 0;
     for (size_t g = guards->count; g-- > 0;)
@@ -209,7 +213,7 @@ static void claim_inside(starg_verdict *verdict, const facts *known) {
                  guards->count, bad, first, p[0], p[1], p[2]);
 }
 
-static void claim_clearance(starg_verdict *verdict, const facts *known) {
+static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     double wanted = guards->options.clearance;
     size_t bad = 0, first = 0;
@@ -229,11 +233,11 @@ static void claim_clearance(starg_verdict *verdict, const facts *known) {
                      wanted, bad, first, known->distance[first]);
 }
 
-static void claim_seen(starg_verdict *verdict, const facts *known) {
+static void claim_seen(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     size_t bad = 0, first = 0;
     for (size_t g = guards->count; g-- > 0;)
-        if (guards->seen_faces[g] != known->seen[g]) {
+        if (guards->seen_faces[g] != starg_bits_count(known->faces, g)) {
             bad++;
             first = g;
         }
@@ -243,7 +247,7 @@ static void claim_seen(starg_verdict *verdict, const facts *known) {
         verify_claim(verdict, false,
                      "each guard sees as many faces as claimed: %zu do not, first guard %zu, "
                      "claimed %zu, found %zu",
-                     bad, first, guards->seen_faces[first], known->seen[first]);
+                     bad, first, guards->seen_faces[first], starg_bits_count(known->faces, first));
 }
 
 /* ---- claims about coverage ---- */
@@ -308,7 +312,7 @@ static double fraction(double part, double all) {
     return all > 0 ? part / all : 0;
 }
 
-static void claim_coverage(starg_verdict *verdict, const facts *known) {
+static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const verify_surface *surface = known->surface;
     const unseen_list faces = {
@@ -334,53 +338,52 @@ static void claim_coverage(starg_verdict *verdict, const facts *known) {
 
 /* The curve is what the first 1, 2, ... guards see; older files have none. */
 static starg_status claim_curve(starg_context *context, starg_verdict *verdict,
-                                const facts *known) {
+                                const verify_facts *known) {
     starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
-    size_t *faces = NULL, sum = 0, wrong = 0;
-    double *area = NULL, seen = 0;
-    if (guards->curve_faces == NULL || guards->curve_area == NULL)
+    uint64_t *joined = NULL;
+    size_t sum = 0, wrong = 0;
+    double area = 0;
+    if (guards->curve_faces == NULL || guards->curve_area == NULL) {
+        verify_leave(verdict, "the curve of the first 1, 2, ... guards: the file has none");
         return STARG_OK;
-    STARG_NEW_ZERO(context, STAGE, faces, guards->count);
-    STARG_NEW_ZERO(context, STAGE, area, guards->count);
-    for (size_t f = 0; f < known->surface->face_count; f++) {
-        if (known->first[f] == UINT32_MAX)
-            continue;
-        faces[known->first[f]]++;
-        area[known->first[f]] += known->area[f];
     }
+    STARG_NEW_ZERO(context, STAGE, joined, known->faces->words);
     for (size_t g = 0; g < guards->count; g++) {
-        sum += faces[g];
-        seen += area[g];
+        for (size_t w = 0; w < known->faces->words; w++) {
+            uint64_t fresh = starg_bits_row(known->faces, g)[w] & ~joined[w];
+            joined[w] |= fresh;
+            STARG_FOR_BITS (bit, fresh) {
+                sum++;
+                area += known->area[64 * w + bit];
+            }
+        }
         wrong += !about_equal(guards->curve_faces[g],
                               fraction((double)sum, (double)known->surface->face_count)) ||
-                 !about_equal(guards->curve_area[g], fraction(seen, known->total_area));
+                 !about_equal(guards->curve_area[g], fraction(area, known->total_area));
     }
     verify_claim(verdict, wrong == 0, "the curve tells what the first guards see (wrong for %zu)",
                  wrong);
 done:
-    starg_release(context, faces);
-    starg_release(context, area);
+    starg_release(context, joined);
     return status;
 }
 
-/* Levels are checked against one another; their meshes are not in the file. */
-static void claim_levels(starg_verdict *verdict, const starg_guards *guards) {
-    bool grows = true, kept = true, named = true;
-    for (size_t i = 0; i < guards->level_count; i++) {
-        const starg_guard_level *level = &guards->level_list[i];
-        grows = grows && (i == 0 || guards->level_list[i - 1].vertex_count < level->vertex_count);
-        kept = kept && level->kept <= level->count &&
-               level->kept <= (i == 0 ? 0 : guards->level_list[i - 1].count);
-    }
-    for (size_t g = 0; g < guards->count; g++)
-        named =
-            named && (guards->level_count == 0 ||
-                      (guards->levels[g] >= 0 && (size_t)guards->levels[g] < guards->level_count));
-    if (guards->level_count > 0)
-        verify_claim(verdict, grows && kept && named,
-                     "%zu levels grow, keep guards of the one before, and are those of the guards",
-                     guards->level_count);
+static void claim_levels(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    if (guards->level_count == 0 && guards->levels == NULL)
+        return;
+    const verify_levels found = verify_check_levels(known);
+    verify_claim(
+        verdict, found.grow && found.kept && found.named,
+        "%zu levels grow up to the model%s, keep guards of the one before%s, and are those "
+        "of the guards%s",
+        guards->level_count, found.grow ? "" : " (no)", found.kept ? "" : " (no)",
+        found.named ? "" : " (no)");
+    if (guards->level_count == 0)
+        return;
+    verify_claim(verdict, found.inside, "the guards of levels are strictly inside of the model");
+    verify_leave(verdict, "what guards see of coarser levels: their meshes are not in the file");
 }
 
 /* ---- claims about what could be seen ---- */
@@ -391,7 +394,7 @@ typedef struct target {
     size_t all, covered, coverable;
 } target;
 
-static target target_of(const facts *known) {
+static target target_of(const verify_facts *known) {
     const starg_guards *guards = known->guards;
     if (guards->options.visibility.target == STARG_TARGET_VERTICES)
         return (target){"vertices", known->used_vertices, known->covered_vertices,
@@ -400,16 +403,78 @@ static target target_of(const facts *known) {
                     guards->coverable_faces};
 }
 
-static void claim_coverable(starg_verdict *verdict, const facts *known) {
+/* Why is nothing above the faces that no guard sees looked at? NULL: it is. Where a part is to be
+ * seen, the search for candidates may end before the last faces; the part is then one of all. */
+static const char *excuse_of(const verify_facts *known) {
+    const starg_guard_options *o = &known->guards->options;
+    if (o->candidates == STARG_CANDIDATES_GIVEN)
+        return "the candidates were given, and are not in the file";
+    if (known->guards->time_limited)
+        return "a time limit cut the search for candidates short";
+    double seen = verify_targets_vertices(known)
+                      ? fraction((double)known->covered_vertices, (double)known->used_vertices)
+                      : fraction(known->covered_area, known->total_area);
+    if (o->coverage < 1 && o->redundancy < 2 && o->max_guards == 0 &&
+        seen >= o->coverage * (1 - 1e-6))
+        return "the part of all that was asked for is seen";
+    return NULL;
+}
+
+static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *known) {
     target goal = target_of(known);
     verify_claim(verdict, goal.covered <= goal.coverable && goal.coverable <= goal.all,
                  "%zu of %zu %s can be seen (at least those %zu that are)", goal.coverable,
                  goal.all, goal.name, goal.covered);
+    if (goal.coverable < goal.covered || goal.coverable >= goal.all)
+        return STARG_OK;
+    const char *excuse = excuse_of(known);
+    if (excuse != NULL) {
+        verify_leave(verdict, "that the other %zu %s cannot be seen: %s", goal.all - goal.coverable,
+                     goal.name, excuse);
+        return STARG_OK;
+    }
+    verify_coverable found;
+    size_t rest = goal.coverable - goal.covered;
+    starg_status status = verify_find_coverable(known, rest, &found);
+    if (status != STARG_OK)
+        return status;
+    if (found.proven > rest)
+        verify_claim(verdict, false,
+                     "%zu of %zu %s can be seen: more can, %zu of those that no guard sees, first "
+                     "%zu from (%.17g, %.17g, %.17g)",
+                     goal.coverable, goal.all, goal.name, found.proven, found.first, found.place[0],
+                     found.place[1], found.place[2]);
+    else
+        verify_leave(verdict,
+                     "that the other %zu %s cannot be seen: no point just above them was found "
+                     "that does",
+                     goal.all - goal.coverable, goal.name);
+    return STARG_OK;
+}
+
+static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    verify_lack found;
+    starg_status status = verify_find_lack(known, &found);
+    if (status != STARG_OK || found.lacking == 0)
+        return status;
+    const char *name = target_of(known).name;
+    if (4 * found.meeting >= 3 * found.points && 2 * found.points > VERIFY_PLACES)
+        verify_claim(verdict, false,
+                     "what fewer than %u guards see, %zu %s, no other of %zu candidates sees: "
+                     "%zu of %zu points drawn inside see some",
+                     guards->options.redundancy, found.lacking, name, guards->candidate_count,
+                     found.meeting, found.points);
+    else
+        verify_leave(verdict,
+                     "that no other candidate sees the %zu %s that fewer than %u guards see",
+                     found.lacking, name, guards->options.redundancy);
+    return STARG_OK;
 }
 
 /* The least area that a number of faces that no guard sees can have: that number times the area of
  * the smallest of them. */
-static double least_unseen_area(const facts *known, size_t count) {
+static double least_unseen_area(const verify_facts *known, size_t count) {
     double smallest = INFINITY;
     for (size_t f = 0; f < known->surface->face_count; f++)
         if (!known->face[f])
@@ -419,7 +484,7 @@ static double least_unseen_area(const facts *known, size_t count) {
 
 /* Guards without a limit to their number reach the coverage that was asked for. Which of the faces
  * unseen are coverable is not known; the smallest possible area is held against the claim. */
-static void claim_goal(starg_verdict *verdict, const facts *known) {
+static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
     const starg_guard_options *options = &known->guards->options;
     target goal = target_of(known);
     if (options->max_guards != 0 || goal.coverable < goal.covered)
@@ -440,7 +505,34 @@ static void claim_goal(starg_verdict *verdict, const facts *known) {
 
 /* ---- claims about the number of guards ---- */
 
-static void claim_numbers(starg_verdict *verdict, const facts *known) {
+/* Guards that would do are candidates, and refute a bound above their number. In files of morph
+ * --guards, whose candidates are the guards, guards must do in another shape as well. */
+static starg_status claim_bound(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    size_t needed = guards->count;
+    bool pairs = guards->options.candidates == STARG_CANDIDATES_GIVEN &&
+                 guards->candidate_count == guards->count;
+    starg_status status = pairs ? STARG_OK : verify_find_needed(known, &needed);
+    if (status != STARG_OK)
+        return status;
+    if (needed < guards->lower_bound && guards->lower_bound <= guards->count)
+        verify_claim(verdict, false,
+                     "the lower bound %zu is at most the number of guards that would do: %zu of "
+                     "the %zu guards do what was asked for",
+                     guards->lower_bound, needed, guards->count);
+    else
+        verify_claim(verdict, guards->lower_bound <= guards->count,
+                     "the lower bound %zu is at most the number of guards %zu", guards->lower_bound,
+                     guards->count);
+    if (guards->lower_bound > 0)
+        verify_leave(verdict, "that no fewer than %zu%s candidates would do%s", guards->lower_bound,
+                     guards->optimal ? " (\"optimal\")" : "",
+                     pairs ? ", nor fewer of the guards: all candidates are guards" : "");
+    return STARG_OK;
+}
+
+static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *known) {
+    starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
     target goal = target_of(known);
     /* fewer than are to see each face may see none of them often enough */
@@ -453,9 +545,9 @@ static void claim_numbers(starg_verdict *verdict, const facts *known) {
     if (guards->options.max_guards != 0)
         verify_claim(verdict, guards->count <= guards->options.max_guards,
                      "%zu guards are at most %zu", guards->count, guards->options.max_guards);
-    verify_claim(verdict, guards->lower_bound <= guards->count,
-                 "the lower bound %zu is at most the number of guards %zu", guards->lower_bound,
-                 guards->count);
+    verify_leave(verdict, "that there were %zu candidates: they are not in the file",
+                 guards->candidate_count);
+    STARG_TRY(claim_bound(verdict, known));
     bool equal = guards->lower_bound == guards->count;
     verify_claim(verdict, guards->optimal == equal,
                  "the result is called %s, with %zu guards and a lower bound of %zu",
@@ -464,6 +556,11 @@ static void claim_numbers(starg_verdict *verdict, const facts *known) {
     double seen = fraction(known->covered_area, known->total_area);
     verify_claim(verdict, seen <= guards->area_bound * (1 + TOLERANCE),
                  "the area seen, %.17g, is within its bound %.17g", seen, guards->area_bound);
+    if (guards->area_bound < 1)
+        verify_leave(verdict, "that so many candidates see at most a fraction of %.17g of the area",
+                     guards->area_bound);
+done:
+    return status;
 }
 
 starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
@@ -471,7 +568,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     starg_verdict *verdict = NULL;
-    facts known = {.guards = guards};
+    verify_facts known = {.guards = guards};
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(verify_surface_create(context, mesh, &surface));
@@ -486,10 +583,11 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     claim_seen(verdict, &known);
     claim_coverage(verdict, &known);
     STARG_TRY(claim_curve(context, verdict, &known));
-    claim_levels(verdict, guards);
-    claim_coverable(verdict, &known);
+    claim_levels(verdict, &known);
+    STARG_TRY(claim_coverable(verdict, &known));
     claim_goal(verdict, &known);
-    claim_numbers(verdict, &known);
+    STARG_TRY(claim_redundancy(verdict, &known));
+    STARG_TRY(claim_numbers(verdict, &known));
     *out = verdict;
     verdict = NULL;
 done:

@@ -17,6 +17,13 @@ double verify_rounding(const verify_surface *surface) {
     return size * 0x1p-50;
 }
 
+double verify_diagonal(const verify_surface *surface) {
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum = hypot(sum, surface->upper[k] - surface->lower[k]);
+    return sum;
+}
+
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -43,19 +50,30 @@ static double volume_of(const double a[3], const double b[3], const double c[3],
     return dot(n, w) / 6;
 }
 
-void verify_normal(const verify_surface *surface, size_t face, int scale, double n[3]) {
-    const double *t[3];
+static void normal_of(const double a[3], const double b[3], const double c[3], int scale,
+                      double n[3]) {
     double u[3], v[3];
-    verify_corners(surface, face, t);
-    scaled_difference(t[1], t[0], scale, u);
-    scaled_difference(t[2], t[0], scale, v);
+    scaled_difference(b, a, scale, u);
+    scaled_difference(c, a, scale, v);
     cross(u, v, n);
 }
 
-double verify_area(const verify_surface *surface, size_t face, int scale) {
+void verify_normal(const verify_surface *surface, size_t face, int scale, double n[3]) {
+    const double *t[3];
+    verify_corners(surface, face, t);
+    normal_of(t[0], t[1], t[2], scale, n);
+}
+
+double verify_triangle_area(const double a[3], const double b[3], const double c[3], int scale) {
     double n[3];
-    verify_normal(surface, face, scale, n);
+    normal_of(a, b, c, scale, n);
     return 0.5 * sqrt(dot(n, n));
+}
+
+double verify_area(const verify_surface *surface, size_t face, int scale) {
+    const double *t[3];
+    verify_corners(surface, face, t);
+    return verify_triangle_area(t[0], t[1], t[2], scale);
 }
 
 /* A sum that keeps its rounding errors aside [Neumaier 1974]. */

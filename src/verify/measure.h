@@ -12,8 +12,14 @@ int verify_scale(const verify_surface *surface);
 /* How far the rounding of coordinates may move a point of the surface, generously. */
 double verify_rounding(const verify_surface *surface);
 
+/* Of the bounds. */
+double verify_diagonal(const verify_surface *surface);
+
 /* Area of a face in units of 2^(-2 scale). */
 double verify_area(const verify_surface *surface, size_t face, int scale);
+
+/* The same of any triangle. */
+double verify_triangle_area(const double a[3], const double b[3], const double c[3], int scale);
 
 /* Twice the area, outward: the normal of a face in the same units. */
 void verify_normal(const verify_surface *surface, size_t face, int scale, double n[3]);

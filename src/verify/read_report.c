@@ -90,6 +90,8 @@ static void read_pieces(reader *r, const json_t *list, starg_pieces_report *repo
         piece->tetrahedra = read_count(r, object, "tetrahedra");
         piece->volume = read_real(r, object, "volume");
         piece->star = read_bool(r, object, "star");
+        piece->radius =
+            json_object_get(object, "radius") != NULL ? read_real(r, object, "radius") : NAN;
     }
 done:
     if (status != STARG_OK)
@@ -162,6 +164,8 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     read_contacts(r, json_object_get(root, "adjacency"), report);
     report->strictly_star = read_count(r, root, "strictly_star");
     report->visible_vertices = read_real(r, root, "visible_vertices");
+    if (json_object_get(root, "flattest") != NULL)
+        report->flattest = read_real(r, root, "flattest");
     read_surface(r, root, report);
 }
 

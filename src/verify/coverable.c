@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Elements that no guard sees, but that a guard could see: each refutes that it cannot.
+ *
+ * From a point p strictly inside that sees a face whole, nothing is in the tetrahedron (p, face),
+ * so every point of that tetrahedron sees the face whole as well. Hence the line above the centroid
+ * says all: if a point at height h above any place of the face sees it whole, so do those above the
+ * centroid up to h / 3. Heights double from the least one; the first at which something is in the
+ * way ends the search.
+ *
+ * A guard must also be admissible, and a whole interval of heights is asked for, from 0.7 h to h,
+ * so that no search by geometric series, which augmentation is, can have missed it: range      the
+ * corners are within the range from h, and nearer from below clearance  the middle of the interval
+ * keeps it with half the interval to spare cone       looking at the centroid, it holds the corners
+ * from 0.6 h, and from above Faces that are so thin that rounding moves the centroid across them
+ * are left out. What sees a face whole sees its vertices, so this holds for both rules, and for
+ * vertices as the target.
+ *
+ * Cost: at most MOST_TESTS visits of the tree, mostly of tiny boxes. Signs are exact. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "verify/cone.h"
+#include "verify/facts.h"
+#include "verify/measure.h"
+#include "verify/sight.h"
+#include "verify/signs.h"
+
+static const char STAGE[] = "verify";
+
+enum { MOST_TESTS = 20000, CANCEL_STEP = 256 };
+
+static const double LEAST_HEIGHT = 0x1p-28; /* of the diagonal */
+static const double LEAST_WIDTH = 1e-6;     /* of a face, likewise */
+static const double MARGIN = 1e-12;         /* of ranges and clearances */
+
+typedef struct prover {
+    const verify_facts *known;
+    verify_view view;
+    double diagonal, least;
+    size_t tests; /* that are left */
+
+    uint32_t face; /* whose corners these are */
+    const double *corner[3];
+    double centroid[3], normal[3]; /* of unit length, inward */
+} prover;
+
+static void along(const prover *own, double height, double p[3]) {
+    for (int k = 0; k < 3; k++)
+        p[k] = own->centroid[k] + height * own->normal[k];
+}
+
+/* False for faces that are too thin. */
+static bool begin_face(prover *own, uint32_t face) {
+    const verify_surface *surface = own->known->surface;
+    double n[3], length = 0, longest = 0;
+    own->face = face;
+    verify_corners(surface, face, own->corner);
+    verify_normal(surface, face, own->known->scale, n);
+    for (int k = 0; k < 3; k++)
+        length = hypot(length, n[k]);
+    for (int i = 0; i < 3; i++) {
+        const double *a = own->corner[i], *b = own->corner[(i + 1) % 3];
+        longest = fmax(longest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
+    }
+    for (int k = 0; k < 3; k++) {
+        own->normal[k] = -n[k] / length;
+        own->centroid[k] = own->corner[0][k] / 3 + own->corner[1][k] / 3 + own->corner[2][k] / 3;
+    }
+    double width = ldexp(length, -2 * own->known->scale) / longest;
+    return width > LEAST_WIDTH * own->diagonal && width > 0x1p20 * verify_rounding(surface);
+}
+
+typedef struct obstacle {
+    const prover *own;
+    const double *p;
+} obstacle;
+
+static bool passes(void *data, uint32_t other) {
+    const obstacle *o = data;
+    const double *t[3];
+    if (other == o->own->face)
+        return true;
+    verify_corners(o->own->known->surface, other, t);
+    if (verify_on_triangle(o->p, t))
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (verify_blocks(o->p, o->own->corner[i], t))
+            return false;
+    return !verify_enters(o->p, o->own->corner, t);
+}
+
+static bool sees_whole(const prover *own, const double p[3]) {
+    double lower[3], upper[3];
+    obstacle data = {own, p};
+    for (int k = 0; k < 3; k++) {
+        lower[k] = upper[k] = p[k];
+        for (int i = 0; i < 3; i++) {
+            lower[k] = fmin(lower[k], own->corner[i][k]);
+            upper[k] = fmax(upper[k], own->corner[i][k]);
+        }
+    }
+    return verify_tree_visit(own->known->tree, lower, upper, passes, &data);
+}
+
+static bool in_range(const prover *own, const double p[3]) {
+    for (int i = 0; i < 3; i++)
+        if (!verify_within(p, own->corner[i], own->view.range * (1 - MARGIN)))
+            return false;
+    return true;
+}
+
+static bool keeps_clearance(const prover *own, double height) {
+    double middle[3], clearance = own->known->guards->options.clearance;
+    if (!(clearance > 0))
+        return true;
+    along(own, 0.85 * height, middle);
+    return verify_tree_distance(own->known->tree, middle, own->known->scale) >=
+           clearance * (1 + MARGIN) + 0.16 * height;
+}
+
+static bool in_cone(const prover *own, double height) {
+    double low[3], direction[3];
+    if (own->known->guards->options.visibility.cone >= 360)
+        return true;
+    along(own, 0.6 * height, low);
+    for (int k = 0; k < 3; k++)
+        direction[k] = -own->normal[k];
+    for (int i = 0; i < 3; i++)
+        if (!verify_in_cone(low, direction,
+                            starg_cone_cosine(own->known->guards->options.visibility.cone),
+                            own->corner[i]))
+            return false;
+    return true;
+}
+
+static bool is_inside(const prover *own, const double p[3]) {
+    bool on_surface;
+    int winding = verify_tree_winding(own->known->tree, p, &on_surface);
+    return !on_surface && winding >= 1;
+}
+
+/* Could a guard somewhere above the face see it? */
+static bool prove_face(prover *own, uint32_t face, double p[3]) {
+    if (!begin_face(own, face))
+        return false;
+    for (double height = own->least; height < own->diagonal && own->tests > 0; height *= 2) {
+        own->tests--;
+        along(own, height, p);
+        if (verify_side(own->corner[0], own->corner[1], own->corner[2], p) <= 0)
+            continue; /* by rounding */
+        if (!sees_whole(own, p) || !in_range(own, p))
+            return false;
+        if (keeps_clearance(own, height) && in_cone(own, height))
+            return is_inside(own, p);
+    }
+    return false;
+}
+
+static void begin(prover *own) {
+    const verify_surface *surface = own->known->surface;
+    own->diagonal = verify_diagonal(surface);
+    own->least = fmax(LEAST_HEIGHT * own->diagonal, 0x1p16 * verify_rounding(surface));
+    own->least = fmax(own->least, own->known->guards->options.clearance);
+}
+
+/* Does the face hold something that is to be seen, that no guard sees and that is not proven? */
+static bool is_open(const verify_facts *known, const uint8_t *proven, size_t face) {
+    const uint32_t *corner = known->surface->faces + 3 * face;
+    if (!verify_targets_vertices(known))
+        return !known->face[face];
+    for (int i = 0; i < 3; i++)
+        if (!known->vertex[corner[i]] && !proven[corner[i]])
+            return true;
+    return false;
+}
+
+static void note(const verify_facts *known, uint8_t *proven, size_t face, const double p[3],
+                 verify_coverable *found) {
+    const uint32_t *corner = known->surface->faces + 3 * face;
+    bool vertices = verify_targets_vertices(known);
+    for (int i = 0; i < (vertices ? 3 : 1); i++) {
+        size_t element = vertices ? corner[i] : face;
+        if (proven[element] || (vertices && known->vertex[element]))
+            continue;
+        proven[element] = 1;
+        if (found->proven++ > 0)
+            continue;
+        found->first = element;
+        for (int k = 0; k < 3; k++)
+            found->place[k] = p[k];
+    }
+}
+
+starg_status verify_find_coverable(const verify_facts *known, size_t enough,
+                                   verify_coverable *found) {
+    starg_status status = STARG_OK;
+    const verify_surface *surface = known->surface;
+    prover own = {.known = known, .view = verify_view_of(known->guards, NULL), .tests = MOST_TESTS};
+    uint8_t *proven = NULL;
+    *found = (verify_coverable){0};
+    STARG_NEW_ZERO(surface->context, STAGE, proven,
+                   verify_targets_vertices(known) ? surface->vertex_count : surface->face_count);
+    begin(&own);
+    for (size_t f = 0; f < surface->face_count && found->proven <= enough && own.tests > 0; f++) {
+        double p[3];
+        if (is_open(known, proven, f) && prove_face(&own, (uint32_t)f, p))
+            note(known, proven, f, p, found);
+        if (f % CANCEL_STEP == 0)
+            STARG_TRY(starg_check_cancel(surface->context, STAGE));
+    }
+done:
+    starg_release(surface->context, proven);
+    return status;
+}
