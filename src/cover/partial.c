@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A partial target, or a limit on the rows: bounds by weight_bound.h, exact search by search.h. The
+/* A partial target, or a limit on the rows: bounds by weight_bound.h, from the subgradient
+ * method and then the linear relaxation (weight_relax.c), exact search by search.h. The
  * fewest rows for a target are found by asking for each number of rows from the bound upwards
  * whether so many can reach it. */
 #include "cover/solve.h"
@@ -39,11 +40,21 @@ done:
     return status;
 }
 
+/* The bound on the rows for its goal, which `count` rows reach. */
+static starg_status raise_least(cover_run *run, const cover_instance *instance, size_t count,
+                                cover_weight_bound *bound) {
+    starg_status status = STARG_OK;
+    STARG_TRY(cover_weight_bound_improve(run, instance, bound->goal - 1, bound));
+    if (bound->least < count && !cover_time_is_over(run))
+        STARG_TRY(cover_weight_bound_relax(run, instance, true, count, bound));
+done:
+    return status;
+}
+
 /* Closes the gap between the bound and the choice from below. */
 static starg_status close_gap(cover_run *run, const cover_instance *instance,
                               cover_weight_bound *bound, cover_state *choice) {
     starg_status status = STARG_OK;
-    STARG_TRY(cover_weight_bound_improve(run, instance, bound->goal - 1, bound));
     while (bound->least < choice->count && !cover_time_is_over(run)) {
         size_t rows = bound->least;
         bool decided;
@@ -65,6 +76,7 @@ starg_status cover_solve_partial(cover_run *run, const cover_instance *instance,
     STARG_TRY(cover_state_create(instance, &choice));
     STARG_TRY(find_first_choice(run, &choice, goal));
     STARG_TRY(cover_weight_bound_create(instance, choice.count - 1, goal, &bound));
+    STARG_TRY(raise_least(run, instance, choice.count, &bound));
     if (exact)
         STARG_TRY(close_gap(run, instance, &bound, &choice));
     answer->lower_bound = bound.least;
@@ -75,12 +87,22 @@ done:
     return status;
 }
 
+/* Lowers the bound on the weight of its rows, which `reached` cannot exceed. */
+static starg_status lower_most(cover_run *run, const cover_instance *instance, uint64_t reached,
+                               cover_weight_bound *bound) {
+    starg_status status = STARG_OK;
+    STARG_TRY(cover_weight_bound_improve(run, instance, reached, bound));
+    if (bound->most > reached && !cover_time_is_over(run))
+        STARG_TRY(cover_weight_bound_relax(run, instance, false, reached, bound));
+done:
+    return status;
+}
+
 /* Raises the weight of the choice, or lowers the bound on it, until they meet. */
 static starg_status close_weight_gap(cover_run *run, const cover_instance *instance, uint64_t goal,
                                      cover_weight_bound *bound, cover_state *choice) {
     starg_status status = STARG_OK;
     bool exhausted;
-    STARG_TRY(cover_weight_bound_improve(run, instance, choice->weight, bound));
     if (bound->most <= choice->weight || cover_time_is_over(run))
         goto done;
     STARG_TRY(cover_search(run, instance, bound, 0, goal, choice, &exhausted));
@@ -92,8 +114,7 @@ done:
 
 /* The bound on the rows for the weight that has been reached, the goal at most. */
 static starg_status bound_rows(cover_run *run, const cover_instance *instance,
-                               const cover_state *choice, uint64_t goal, bool exact,
-                               size_t *least) {
+                               const cover_state *choice, uint64_t goal, size_t *least) {
     starg_status status = STARG_OK;
     cover_weight_bound bound = {0};
     *least = 0;
@@ -101,8 +122,7 @@ static starg_status bound_rows(cover_run *run, const cover_instance *instance,
         goto done;
     uint64_t reached = choice->weight < goal ? choice->weight : goal;
     STARG_TRY(cover_weight_bound_create(instance, choice->count - 1, reached, &bound));
-    if (exact)
-        STARG_TRY(cover_weight_bound_improve(run, instance, reached - 1, &bound));
+    STARG_TRY(raise_least(run, instance, choice->count, &bound));
     *least = bound.least;
 done:
     cover_weight_bound_free(instance, &bound);
@@ -118,10 +138,12 @@ starg_status cover_solve_limited(cover_run *run, const cover_instance *instance,
     STARG_TRY(cover_greedy(run, &choice, instance->total, limit));
     STARG_TRY(cover_swap(run, &choice, goal));
     STARG_TRY(cover_weight_bound_create(instance, limit, goal, &bound));
+    if (choice.weight < goal)
+        STARG_TRY(lower_most(run, instance, choice.weight, &bound));
     if (exact && choice.weight < goal)
         STARG_TRY(close_weight_gap(run, instance, goal, &bound, &choice));
     cover_drop_needless(&choice, choice.weight < goal ? choice.weight : goal);
-    STARG_TRY(bound_rows(run, instance, &choice, goal, exact, &answer->lower_bound));
+    STARG_TRY(bound_rows(run, instance, &choice, goal, &answer->lower_bound));
     STARG_TRY(cover_state_names(&choice, &answer->rows));
     answer->weight = choice.weight;
     *most = bound.most;

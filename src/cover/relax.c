@@ -12,8 +12,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include <Clp_C_Interface.h>
-
 #include "cover/exceptions.h"
 #include "cover/solver.h"
 
@@ -103,17 +101,6 @@ static bool start_model(relaxing *relax) {
     return true;
 }
 
-static bool run_simplex(const cover_run *run, relaxing *relax, bool first) {
-    if (starg_seconds_left(run->context) < INFINITY)
-        Clp_setMaximumSeconds(relax->model, cover_seconds_left(run));
-    if (first)
-        Clp_initialDualSolve(relax->model);
-    else
-        Clp_dual(relax->model, 0);
-    return Clp_status(relax->model) == 0 && Clp_primalColumnSolution(relax->model) != NULL &&
-           Clp_dualRowSolution(relax->model) != NULL;
-}
-
 static int64_t round_multiplier(double value) {
     if (!(value > 0))
         return 0;
@@ -169,7 +156,7 @@ static starg_status run_rounds(cover_run *run, relaxing *relax, bool *found) {
         starg_status status = starg_check_cancel(run->context, "bound");
         if (status != STARG_OK || cover_time_is_over(run))
             return status;
-        if (!run_simplex(run, relax, !*found))
+        if (!cover_run_simplex(run, relax->model, !*found))
             return STARG_OK;
         read_solution(relax);
         *found = true;

@@ -49,3 +49,14 @@ void cover_solver_unlock(bool held) {
 double cover_seconds_left(const cover_run *run) {
     return fmax(0.001, starg_seconds_left(run->context));
 }
+
+bool cover_run_simplex(const cover_run *run, Clp_Simplex *model, bool first) {
+    if (starg_seconds_left(run->context) < INFINITY)
+        Clp_setMaximumSeconds(model, cover_seconds_left(run));
+    if (first)
+        Clp_initialDualSolve(model);
+    else
+        Clp_dual(model, 0);
+    return Clp_status(model) == 0 && Clp_primalColumnSolution(model) != NULL &&
+           Clp_dualRowSolution(model) != NULL;
+}

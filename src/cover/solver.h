@@ -3,6 +3,8 @@
 #ifndef STARG_COVER_SOLVER_H
 #define STARG_COVER_SOLVER_H
 
+#include <Clp_C_Interface.h>
+
 #include "cover/instance.h"
 
 /* Takes the process-wide lock without which two solves at once fail silently; waits in slices, so
@@ -17,5 +19,9 @@ void cover_solver_give_up(void);
 
 /* Seconds to the time limit, a little more than 0; call it only where there is one. */
 double cover_seconds_left(const cover_run *run);
+
+/* Solves a linear program by Clp's dual simplex method, from the last basis unless it is the first
+ * time; false when there is no solution to read, so when it was cut short. */
+bool cover_run_simplex(const cover_run *run, Clp_Simplex *model, bool first);
 
 #endif

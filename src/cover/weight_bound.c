@@ -17,10 +17,6 @@ void cover_sort_scores(cover_score *scores, size_t count) {
     qsort(scores, count, sizeof *scores, compare_scores);
 }
 
-static uint64_t largest_multiplier(const cover_instance *instance, unsigned shift, size_t column) {
-    return (instance->weights[column] << shift) / instance->demands[column];
-}
-
 /* The sum of the multipliers of a row's columns. What a point sees lies together, so that most
  * words are empty or full; of a word that is nearly full, what is missing is taken off. */
 static uint64_t row_sum(const cover_instance *instance, const cover_weight_bound *bound,
@@ -58,8 +54,7 @@ static cover_wide evaluate(const cover_instance *instance, cover_weight_bound *b
     return kept;
 }
 
-/* Takes over what the trial multipliers prove; returns U(K, u) unscaled. */
-static uint64_t harvest(const cover_instance *instance, cover_weight_bound *bound) {
+uint64_t cover_weight_bound_take(const cover_instance *instance, cover_weight_bound *bound) {
     cover_wide sum = evaluate(instance, bound);
     cover_wide goal = (cover_wide)bound->goal << bound->shift;
     cover_wide most = sum;
@@ -88,8 +83,8 @@ void cover_weight_bound_restart(const cover_instance *instance, cover_weight_bou
     bound->rows = rows;
     bound->most = UINT64_MAX;
     for (size_t j = 0; j < instance->columns; j++)
-        bound->trial[j] = largest_multiplier(instance, bound->shift, j);
-    harvest(instance, bound);
+        bound->trial[j] = cover_largest_multiplier(instance, bound, j);
+    cover_weight_bound_take(instance, bound);
 }
 
 starg_status cover_weight_bound_create(const cover_instance *instance, size_t rows, uint64_t goal,
@@ -134,7 +129,7 @@ static double find_slope(const cover_instance *instance, const cover_weight_boun
     }
     for (size_t j = 0; j < instance->columns; j++) {
         double demand = instance->demands[j];
-        bool full = bound->trial[j] >= largest_multiplier(instance, bound->shift, j);
+        bool full = bound->trial[j] >= cover_largest_multiplier(instance, bound, j);
         slope[j] -= demand;
         if ((full && slope[j] < 0) || (bound->trial[j] == 0 && slope[j] > 0))
             slope[j] = 0; /* the step would leave the box */
@@ -148,10 +143,8 @@ static void take_step(const cover_instance *instance, cover_weight_bound *bound,
                       const double *slope, double length) {
     double scale = (double)((uint64_t)1 << bound->shift);
     for (size_t j = 0; j < instance->columns; j++) {
-        uint64_t limit = largest_multiplier(instance, bound->shift, j);
-        double next =
-            (double)bound->trial[j] - length * scale * (double)instance->weights[j] * slope[j];
-        bound->trial[j] = next <= 0 ? 0 : next >= (double)limit ? limit : (uint64_t)next;
+        double step = length * scale * (double)instance->weights[j] * slope[j];
+        bound->trial[j] = cover_near_multiplier(instance, bound, j, (double)bound->trial[j] - step);
     }
 }
 
@@ -165,7 +158,7 @@ starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *in
     STARG_NEW(run->context, "bound", slope, instance->columns);
     for (size_t j = 0; j < instance->columns; j++)
         bound->trial[j] = bound->multipliers[j];
-    uint64_t value = harvest(instance, bound);
+    uint64_t value = cover_weight_bound_take(instance, bound);
     for (size_t step = 1; step <= MOST_STEPS && bound->most > enough; step++) {
         STARG_TRY(starg_check_cancel(run->context, "bound"));
         if (cover_time_is_over(run))
@@ -176,7 +169,7 @@ starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *in
             break; /* a minimum */
         double gap = (double)(value - enough) + 1e-3 * (double)instance->total;
         take_step(instance, bound, slope, factor * gap / square);
-        value = harvest(instance, bound);
+        value = cover_weight_bound_take(instance, bound);
         if (step % STEPS_PER_REVIEW == 0) {
             if (bound->most >= reviewed)
                 factor *= 0.5;

@@ -33,6 +33,20 @@ typedef struct cover_weight_bound {
     cover_score *scores;
 } cover_weight_bound;
 
+/* The largest multiplier that is of use: a covered column keeps nothing. */
+static inline uint64_t cover_largest_multiplier(const cover_instance *instance,
+                                                const cover_weight_bound *bound, size_t column) {
+    return (instance->weights[column] << bound->shift) / instance->demands[column];
+}
+
+/* A multiplier between 0 and the largest one from a scaled number; 0 from what is none. */
+static inline uint64_t cover_near_multiplier(const cover_instance *instance,
+                                             const cover_weight_bound *bound, size_t column,
+                                             double value) {
+    uint64_t largest = cover_largest_multiplier(instance, bound, column);
+    return !(value > 0) ? 0 : value >= (double)largest ? largest : (uint64_t)value;
+}
+
 /* Bounds for `rows` rows and for the weight `goal`, from u(j) = w(j) / demand(j): the sum of the
  * heaviest rows. Errors: MEMORY. */
 starg_status cover_weight_bound_create(const cover_instance *instance, size_t rows, uint64_t goal,
@@ -43,9 +57,18 @@ void cover_weight_bound_free(const cover_instance *instance, cover_weight_bound 
 void cover_weight_bound_restart(const cover_instance *instance, cover_weight_bound *bound,
                                 size_t rows);
 
+/* Takes over what the trial multipliers prove; returns U(K, u) of them. */
+uint64_t cover_weight_bound_take(const cover_instance *instance, cover_weight_bound *bound);
+
 /* Improves both by the subgradient method until `most` is at most `enough`. Errors: MEMORY,
  * CANCELLED. */
 starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *instance,
                                         uint64_t enough, cover_weight_bound *bound);
+
+/* Improves both by the linear relaxation: of the fewest rows for the goal, until `least` is at
+ * least `enough`, or of the most weight for `rows` rows, until `most` is at most `enough`. Where
+ * the solver has failed or time is over nothing gets worse. Errors: MEMORY, CANCELLED. */
+starg_status cover_weight_bound_relax(cover_run *run, const cover_instance *instance, bool by_goal,
+                                      uint64_t enough, cover_weight_bound *bound);
 
 #endif
