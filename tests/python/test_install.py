@@ -44,7 +44,7 @@ class Install(Case):
                                + blocks[0]], check=True, env=environment, capture_output=True,
                               text=True).stdout.splitlines()
         self.assertEqual(os.path.dirname(told[0]), os.path.abspath("site/starguard"))
-        self.assertRegex(told[1], r"^1 guards, at least 1 needed")
+        self.assertRegex(told[1], r"^1 guards, lower bound 1$")
         self.assertTrue(told[-1].startswith("verified: True"), told)
 
 
