@@ -58,8 +58,8 @@ static void claim_near(const verify_context *own, const verify_nearness *nearnes
                      "the boundary is at most %.17g from the model's surface: %s is %.17g away",
                      limit, verify_outer_words(own, nearness->to.face).text, nearness->to.farthest);
     verify_claim(own->verdict,
-                 limit <= most && nearness->from.farthest <= most &&
-                     (!told || report->distance_back <= most),
+                 !(limit > most) && nearness->from.farthest <= most &&
+                     !(told && report->distance_back > most),
                  "boundary and model are the same but for a part of the diagonal: %.17g and %.17g "
                  "are at most %.17g, half of it",
                  limit, told ? report->distance_back : nearness->from.farthest, most);

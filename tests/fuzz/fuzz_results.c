@@ -110,7 +110,8 @@ static void check_decomposition(starg_context *context, const unsigned char *dat
 
 /* One piece about the middle, as far as it goes. */
 static void verify(starg_context *context, const starg_pieces_mesh *mesh) {
-    starg_piece piece = {.guard = {0.25, 0.25, 0.25}, .tetrahedra = mesh->count, .star = true};
+    starg_piece piece = {
+        .guard = {0.25, 0.25, 0.25}, .radius = 0.1, .tetrahedra = mesh->count, .star = true};
     const starg_pieces_report report = {.mode = STARG_DECOMPOSE_PAPER,
                                         .tetrahedra = mesh->count,
                                         .piece_count = 1,

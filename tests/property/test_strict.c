@@ -59,7 +59,8 @@ static void copy_result(const starg_decomposition *d, starg_pieces_mesh *mesh,
                                     .visible_vertices = d->visible_vertices,
                                     .approximated = !d->tetra.surface_kept,
                                     .distance = d->tetra.to_surface + d->tetra.step,
-                                    .distance_back = d->tetra.from_surface + d->tetra.step};
+                                    .distance_back = d->tetra.from_surface + d->tetra.step,
+                                    .flattest = d->flattest};
 }
 
 /* Against a surface, or a tetrahedral mesh; the other one is NULL. */

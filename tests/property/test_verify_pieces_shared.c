@@ -58,6 +58,7 @@ static double area_of(const result *r, size_t t, int side) {
 /* The centre as guard, and whether it is strictly inside after rounding. */
 static void place_guard(const result *r, size_t t, starg_piece *piece) {
     piece->star = true;
+    piece->radius = NAN;
     for (int k = 0; k < 3; k++)
         piece->guard[k] =
             (corner(r, t, 0)[k] + corner(r, t, 1)[k] + corner(r, t, 2)[k] + corner(r, t, 3)[k]) / 4;

@@ -42,7 +42,7 @@ typedef struct result {
 /* What the guards of a result see, from their positions and the options alone. */
 typedef struct truth {
     bool inside;
-    size_t seen[GUARDS], covered;
+    size_t seen[GUARDS], covered, needed; /* needed: guards that see what both see */
     bool face[FACES];
     double area, all_area;
 } truth;
@@ -72,7 +72,7 @@ static bool in_range(const shape *s, size_t face, const double p[3], double rang
 }
 
 static truth find_truth(const shape *s, const result *r) {
-    truth t = {.inside = true};
+    truth t = {.inside = true, .needed = GUARDS};
     const starg_visibility_options *view = &r->guards.options.visibility;
     for (size_t i = 0; i < GUARDS; i++) {
         const double *p = r->positions + 3 * i;
@@ -91,6 +91,9 @@ static truth find_truth(const shape *s, const result *r) {
         t.area += t.face[f] ? area_of(s, f) : 0;
         t.covered += t.face[f];
     }
+    for (size_t i = 0; i < GUARDS; i++)
+        t.needed = t.seen[i] == t.covered && t.needed > 1 ? 1 : t.needed;
+    t.needed = t.covered == 0 ? 0 : t.needed;
     return t;
 }
 
@@ -103,7 +106,8 @@ static void fill_in(const shape *s, result *r) {
     for (uint32_t f = 0; f < s->face_count; f++)
         if (!t.face[f])
             r->uncovered[g->uncovered_count++] = f;
-    g->coverable_faces = t.covered;
+    g->coverable_faces = s->face_count;
+    g->lower_bound = t.needed < 1 ? t.needed : 1;
     g->coverage_faces = (double)t.covered / (double)s->face_count;
     g->coverage_area = t.area / t.all_area;
 }
@@ -123,9 +127,9 @@ static bool claims_hold(const shape *s, const result *r) {
             return false;
     return t.inside && ascending && memcmp(r->seen, t.seen, sizeof r->seen) == 0 &&
            g->vertex_count == s->vertex_count && g->face_count == s->face_count &&
-           g->coverable_faces == t.covered &&
+           g->coverable_faces == s->face_count &&
            close_to(g->coverage_faces, (double)t.covered / (double)s->face_count) &&
-           close_to(g->coverage_area, t.area / t.all_area) && g->lower_bound <= g->count &&
+           close_to(g->coverage_area, t.area / t.all_area) && g->lower_bound <= t.needed &&
            g->optimal == (g->lower_bound == g->count);
 }
 
@@ -164,7 +168,7 @@ static void pick_point(starg_rng *rng, const shape *s, double p[3]) {
 static void make_result(starg_rng *rng, const shape *s, result *r) {
     *r = (result){.guards = {.vertex_count = s->vertex_count,
                              .face_count = s->face_count,
-                             .options = {.coverage = 1, .redundancy = 1},
+                             .options = {.coverage = 1, .redundancy = 1, .max_guards = GUARDS},
                              .count = GUARDS,
                              .candidate_count = 100,
                              .lower_bound = 1,

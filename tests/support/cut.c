@@ -180,7 +180,7 @@ void cut_recount(cut *c) {
     c->report.tetrahedra = c->mesh.count;
     c->report.contact_count = 0;
     for (size_t p = 0; p < c->report.piece_count; p++)
-        c->pieces[p].tetrahedra = 0, c->pieces[p].volume = 0;
+        c->pieces[p].tetrahedra = 0, c->pieces[p].volume = 0, c->pieces[p].radius = NAN;
     for (size_t t = 0; t < c->mesh.count; t++) {
         c->pieces[c->labels[t]].tetrahedra++;
         c->pieces[c->labels[t]].volume += (double)volume_of(c, t);

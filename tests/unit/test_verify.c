@@ -399,10 +399,11 @@ static void fill_in(result *r, const shape *s) {
     for (size_t v = 0; v < s->vertex_count; v++)
         if (!all_vertices[v])
             g->uncovered_vertices[g->uncovered_vertex_count++] = (uint32_t)v;
-    g->coverable_faces = s->face_count - g->uncovered_count;
-    g->coverable_vertices = s->vertex_count - g->uncovered_vertex_count;
-    g->coverage_faces = (double)g->coverable_faces / (double)s->face_count;
-    g->coverage_vertices = (double)g->coverable_vertices / (double)s->vertex_count;
+    g->coverable_faces = s->face_count;
+    g->coverable_vertices = s->vertex_count;
+    g->coverage_faces = (double)(s->face_count - g->uncovered_count) / (double)s->face_count;
+    g->coverage_vertices =
+        (double)(s->vertex_count - g->uncovered_vertex_count) / (double)s->vertex_count;
     g->coverage_area = (double)(covered / total);
     free(vertices);
     free(all_vertices);
@@ -416,21 +417,25 @@ static void make_result(result *r, const model *m, uint64_t seed,
     *r = (result){0};
     r->uncovered = calloc(s->face_count + 1, sizeof *r->uncovered);
     r->uncovered_vertices = calloc(s->vertex_count + 1, sizeof *r->uncovered_vertices);
-    r->guards = (starg_guards){.vertex_count = s->vertex_count,
-                               .face_count = s->face_count,
-                               .options = {.visibility = *view, .coverage = 1, .redundancy = 1},
-                               .count = GUARDS,
-                               .positions = r->positions,
-                               .seen_faces = r->seen,
-                               .uncovered = r->uncovered,
-                               .uncovered_vertices = r->uncovered_vertices,
-                               .candidate_count = 100,
-                               .lower_bound = 1,
-                               .area_bound = 1};
+    r->guards = (starg_guards){
+        .vertex_count = s->vertex_count,
+        .face_count = s->face_count,
+        .options = {.visibility = *view, .coverage = 1, .redundancy = 1, .max_guards = GUARDS},
+        .count = GUARDS,
+        .positions = r->positions,
+        .seen_faces = r->seen,
+        .uncovered = r->uncovered,
+        .uncovered_vertices = r->uncovered_vertices,
+        .candidate_count = 100,
+        .lower_bound = 1,
+        .area_bound = 1};
     starg_rng rng = starg_rng_make(19, seed, 0);
     for (size_t i = 0; i < GUARDS; i++)
         inside_point(&rng, s, r->positions + 3 * i);
     fill_in(r, s);
+    bool vertices = view->target == STARG_TARGET_VERTICES;
+    r->guards.lower_bound = vertices ? r->guards.uncovered_vertex_count < s->vertex_count
+                                     : r->guards.uncovered_count < s->face_count;
 }
 
 /* Puts all guards where the first one is, so that much stays unseen. */
@@ -588,6 +593,24 @@ static void deny_optimal(result *r, const shape *s) {
     r->guards.lower_bound = GUARDS;
 }
 
+/* Both guards stand at one place, and are called needed. */
+static void need_duplicates(result *r, const shape *s) {
+    (void)s;
+    r->guards.lower_bound = GUARDS;
+    r->guards.optimal = true;
+}
+
+/* A part that one guard sees, and a bound of two. */
+static void ask_for_less(result *r, const shape *s) {
+    (void)s;
+    r->guards.options.max_guards = 0;
+    r->guards.options.coverage = 0.5 * r->guards.coverage_area;
+    r->positions[3] += 1e-3;
+    fill_in(r, s);
+    r->guards.lower_bound = GUARDS;
+    r->guards.optimal = true;
+}
+
 static void demand_clearance(result *r, const shape *s) {
     (void)s;
     r->guards.options.clearance = 0.9;
@@ -604,22 +627,32 @@ static void gain_face(result *r, const shape *s) {
 }
 
 static void lower_coverable(result *r, const shape *s) {
-    (void)s;
-    r->guards.coverable_faces--;
+    r->guards.coverable_faces = s->face_count - r->guards.uncovered_count - 1;
 }
 
 static void raise_coverable(result *r, const shape *s) {
     r->guards.coverable_faces = s->face_count + 1;
 }
 
+/* One face that some candidate sees too few. */
+static void forget_coverable(result *r, const shape *s) {
+    r->guards.coverable_faces = s->face_count - 1;
+}
+
+/* Nothing more can be seen than is seen. */
+static void deny_coverable(result *r, const shape *s) {
+    r->guards.coverable_faces = s->face_count - r->guards.uncovered_count;
+    r->guards.options.max_guards = 0;
+}
+
 static void leave_coverable(result *r, const shape *s) {
     (void)s;
-    r->guards.coverable_faces++;
+    r->guards.options.max_guards = 0;
 }
 
 static void leave_area(result *r, const shape *s) {
     (void)s;
-    r->guards.coverable_faces++;
+    r->guards.options.max_guards = 0;
     r->guards.options.coverage = 1 - 1e-6;
 }
 
@@ -648,7 +681,6 @@ static void forget_guards(result *r, const shape *s) {
     fill_in(r, s);
     r->guards.lower_bound = 0;
     r->guards.optimal = true;
-    r->guards.coverable_faces = 1;
 }
 
 typedef struct falsification {
@@ -671,7 +703,11 @@ static const falsification FALSIFICATIONS[] = {
     {raise_area, "coverage by area", true},
     {raise_bound, "the lower bound", true},
     {call_optimal, "optimal", true},
-    {deny_optimal, "optimal", true},
+    {deny_optimal, "optimal", false},
+    {need_duplicates, "the lower bound", true},
+    {ask_for_less, "the lower bound", true},
+    {forget_coverable, "can be seen: more can", true},
+    {deny_coverable, "can be seen: more can", true},
     {demand_clearance, "clearance", true},
     {lose_vertex, "the model has", true},
     {gain_face, "the model has", true},
@@ -738,7 +774,11 @@ static void raise_vertex_coverage(result *r, const shape *s) {
 
 static void leave_coverable_vertex(result *r, const shape *s) {
     (void)s;
-    r->guards.coverable_vertices++;
+    r->guards.options.max_guards = 0;
+}
+
+static void deny_coverable_vertex(result *r, const shape *s) {
+    r->guards.coverable_vertices = s->vertex_count - 1;
 }
 
 static void test_vertex_falsifications_fail(void **state) {
@@ -747,6 +787,7 @@ static void test_vertex_falsifications_fail(void **state) {
         {drop_uncovered_vertex, "vertices are seen by no guard", true},
         {raise_vertex_coverage, "coverage by vertices", true},
         {leave_coverable_vertex, "guards see a fraction", true},
+        {deny_coverable_vertex, "can be seen: more can", true},
     };
     const starg_visibility_options view = {
         .range = INFINITY, .cone = 360, .target = STARG_TARGET_VERTICES};

@@ -756,7 +756,8 @@ static bend make_bend(const double p[3]) {
 static void expect_seen(starg_context *context, const starg_tetmesh *model, const bend *b,
                         const double p[3], double claimed, bool holds) {
     starg_verdict *verdict = NULL;
-    starg_piece piece = {.guard = {p[0], p[1], p[2]}, .tetrahedra = b->count, .volume = CELLS};
+    starg_piece piece = {
+        .guard = {p[0], p[1], p[2]}, .radius = NAN, .tetrahedra = b->count, .volume = CELLS};
     int32_t *labels = calloc(b->count, sizeof *labels);
     const starg_pieces_mesh mesh = {b->vertex_count, b->count, b->vertices, b->tetrahedra, labels};
     const starg_pieces_report report = {.mode = STARG_DECOMPOSE_PAPER,

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""verify refuses forged results, passes genuine ones, and says what it does not check."""
+import json
+
+import support
+
+# What is asked of guard, one line a question.
+QUESTIONS = ["", "--method ilp", "--method greedy", "--no-refine", "--coverage 0.9",
+             "--coverage 0.5 --method ilp", "--max-guards 3", "--max-guards 4 --redundancy 2",
+             "--redundancy 2", "--redundancy 2 --method greedy", "--range 0.6",
+             "--range 0.5 --clearance 0.03 --method greedy", "--cone 120 --method greedy --count 100",
+             "--target vertices", "--target vertices --redundancy 2", "--faces whole",
+             "--candidates interior --count 50 --method ilp", "--candidates places.txt"]
+MODELS = ["star", "l-room", "octopus"]
+# The candidates that are given: most are in none of the models, and left out.
+PLACES = "".join(f"{x / 4} {y / 4} {z / 4}\n" for x in range(-4, 9) for y in range(-4, 9)
+                 for z in range(-4, 9))
+
+
+class Forged(support.Case):
+    def setUp(self):
+        super().setUp()
+        self.run_text("sample", "octopus", "--vertices", "700", "-o", "m.off")
+
+    def guard(self, *words, model="m.off"):
+        self.run_text("guard", model, "-o", "g.json", *words)
+        return json.loads(self.read("g.json"))
+
+    def honest(self, result, *guards, model="m.off"):
+        """The result with these of its guards alone: what they see told by verify's own claims."""
+        chosen = [result["guards"][i] for i in guards]
+        self.write("places.txt", "".join("{} {} {}\n".format(*g["position"]) for g in chosen))
+        seen = self.guard("--method", "ilp", "--candidates", "places.txt", model=model)
+        self.assertEqual(len(seen["guards"]), len(chosen))
+        seen["options"] = dict(result["options"])
+        seen["candidates"] = result["candidates"]
+        return seen
+
+    def refused(self, result, *texts, model="m.off"):
+        """Each text is of a claim that fails; no other claim does."""
+        self.write("forged.json", json.dumps(result))
+        out, _ = self.run_text("verify", model, "forged.json", status=4)
+        failed = [line for line in out.splitlines() if "FAILED" in line]
+        for line in failed:
+            self.assertTrue(any(text in line for text in texts), line)
+        for text in texts:
+            self.assertTrue(any(text in line for line in failed), f"{text!r} is in none of {failed}")
+
+    # ---- guards ----
+
+    def test_coverable_faces_that_are_only_those_seen(self):
+        result = self.guard("--method", "ilp")
+        forged = self.honest(result, 0)
+        forged.update(lower_bound=1, optimal=True)
+        self.assertLess(forged["coverage"]["area"], 0.9)
+        for options in [{}, {"clearance": 0.001}]:
+            forged["options"].update(options)
+            self.refused(forged, "can be seen: more can")
+        # nothing is known of candidates that were given
+        forged["options"]["candidates"] = "given"
+        self.write("given.json", json.dumps(forged))
+        out, _ = self.run_text("verify", "m.off", "given.json")
+        self.assertIn("cannot be seen: the candidates were given", out)
+
+    def test_duplicates_of_guards(self):
+        result = self.guard("--method", "ilp")
+        forged = json.loads(json.dumps(result))
+        forged["guards"] += forged["guards"]
+        forged["coverage"]["curve"] += [forged["coverage"]["curve"][-1]] * len(result["guards"])
+        forged.update(lower_bound=len(forged["guards"]), optimal=True)
+        self.refused(forged, "the lower bound")
+
+    def test_needless_guard(self):
+        result = self.guard("--method", "ilp")
+        count = len(result["guards"])
+        more = json.loads(json.dumps(result["guards"][0]))
+        more["position"][0] += 1e-7
+        self.write("places.txt", "".join("{} {} {}\n".format(*g["position"])
+                                         for g in result["guards"] + [more]))
+        seen = self.guard("--method", "greedy", "--candidates", "places.txt", "--redundancy", "2")
+        self.assertEqual(len(seen["guards"]), count + 1)
+        seen["options"].update(candidates=result["options"]["candidates"], redundancy=1)
+        seen.update(lower_bound=count + 1, optimal=True, candidates=result["candidates"])
+        self.refused(seen, "the lower bound")
+
+    def test_more_guards_than_the_part_needs(self):
+        forged = self.guard("--method", "ilp")
+        one = next(i for i, point in enumerate(forged["coverage"]["curve"], 1) if point[1] > 0.3)
+        forged["options"]["coverage"] = 0.3
+        self.assertLess(one, len(forged["guards"]))
+        forged.update(lower_bound=len(forged["guards"]), optimal=True)
+        self.refused(forged, "the lower bound")
+
+    def test_redundancy_of_a_single_cover(self):
+        forged = self.guard("--method", "ilp", "--no-refine")
+        forged["options"]["redundancy"] = 2
+        self.refused(forged, "what fewer than 2 guards see")
+
+    def test_fewer_candidates_than_guards(self):
+        forged = self.guard()
+        forged["candidates"] = len(forged["guards"]) - 1
+        self.refused(forged, "candidates")
+
+    def test_levels(self):
+        result = self.guard("--no-refine", "--coarsest", "100", "--step", "200")
+        self.assertGreater(len(result["levels"]), 2)
+        self.run_text("verify", "m.off", "g.json")
+        last = len(result["levels"]) - 1
+
+        def beyond(r):
+            r["guards"][0]["level"] = last + 1
+
+        def elsewhere(r):
+            r["levels"][last]["guards"][0][0] += 1e-9
+
+        def larger(r):
+            r["levels"][last]["vertices"] += 1
+
+        def keep(r):
+            r["levels"][0]["kept"] = 1
+
+        for forge in [beyond, elsewhere, larger, keep]:
+            forged = json.loads(json.dumps(result))
+            forge(forged)
+            self.refused(forged, "levels grow")
+        forged = json.loads(json.dumps(result))
+        forged["levels"][0]["guards"].append([9, 9, 9])
+        self.refused(forged, "the guards of levels are strictly inside")
+
+    def test_curve(self):
+        forged = self.guard()
+        forged["coverage"]["curve"][0][1] += 1e-6
+        self.refused(forged, "the curve")
+
+    # ---- pieces ----
+
+    def decompose(self, *words, model="m.off"):
+        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", *words)
+        return json.loads(self.read("p.json"))
+
+    def refused_pieces(self, report, text, model="m.off"):
+        self.write("forged.json", json.dumps(report))
+        out, _ = self.run_text("verify", model, "p.vtk", "forged.json", status=4)
+        self.assertTrue(any(text in line for line in out.splitlines() if "FAILED" in line), out)
+
+    def test_radius_and_flattest(self):
+        report = self.decompose()
+        self.run_text("verify", "m.off", "p.vtk", "p.json")
+        for change in [1 + 1e-6, 0.5, -1]:
+            forged = json.loads(json.dumps(report))
+            forged["pieces"][0]["radius"] *= change
+            self.refused_pieces(forged, "as far from the planes")
+        for change in [1 + 1e-6, 2]:
+            forged = json.loads(json.dumps(report))
+            forged["flattest"] *= change
+            self.refused_pieces(forged, "the flattest tetrahedron")
+
+    def test_pieces_of_another_model(self):
+        self.run_text("sample", "star", "--vertices", "300", "-o", "other.off")
+        report = self.decompose(model="other.off")
+        for distance in [100, 1e99]:
+            report.update(surface="approximated", distance=distance, distance_back=distance)
+            self.refused_pieces(report, "a part of the diagonal")
+        del report["distance_back"]
+        self.refused_pieces(report, "a part of the diagonal")
+
+    # ---- what is not checked, and what is genuine ----
+
+    def test_not_checked(self):
+        result = self.guard("--method", "ilp")
+        found = self.run_json("verify", "m.off", "g.json")["results"][0]["not_checked"]
+        out, _ = self.run_text("verify", "m.off", "g.json")
+        for text in [f"that there were {result['candidates']} candidates",
+                     f"no fewer than {result['lower_bound']}"]:
+            self.assertTrue(any(text in line for line in found), found)
+            self.assertIn(text, out)
+        self.assertEqual(out.count("  not checked: "), len(found))
+
+    def test_genuine_guards(self):
+        self.write("places.txt", PLACES)
+        for model in MODELS:
+            self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
+            for question in QUESTIONS:
+                with self.subTest(model=model, question=question):
+                    self.guard(*question.split())
+                    self.run_text("verify", "m.off", "g.json")
+
+    def test_genuine_pieces(self):
+        for model in MODELS:
+            self.run_text("sample", model, "--vertices", "300", "-o", "m.off")
+            for words in [(), ("--mode", "paper")]:
+                with self.subTest(model=model, words=words):
+                    self.decompose(*words)
+                    self.run_text("verify", "m.off", "p.vtk", "p.json")
+
+
+if __name__ == "__main__":
+    support.main()
