@@ -284,7 +284,7 @@ static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *s
     }
     status = starg_fail(s->context, STARG_ERROR_SOLVER, STAGE,
                         "the solid is too thin to be filled: no lattice of at most %zu points has "
-                        "one inside; thicken it, or cut it where it is thin",
+                        "one inside; thicken it",
                         LATTICE_LIMIT);
 done:
     return status;

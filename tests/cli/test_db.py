@@ -170,7 +170,7 @@ class Usage(Database):
         self.usage_error("help", "db", "lst", says="did you mean 'list'?")
         self.usage_error("db", "list", says="too few")
         self.usage_error("db", "add", "x.db", says="too few")
-        self.usage_error("db", "matrix", "x.db", says="name an output")
+        self.usage_error("db", "matrix", "x.db", says="no output; add")
         self.usage_error("db", "matrix", "x.db", "-o", "x.txt", says=".csv")
         self.usage_error("db", "evaluate", "x.db", "--distance", "d3", says="did you mean 'd2'?")
         self.usage_error("db", "query", "x.db", "m.off", "-k", "0", says="from 1")

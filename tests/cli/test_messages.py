@@ -5,7 +5,7 @@ import math
 import support
 from support import TETRAHEDRON
 
-HEADINGS = {"Commands", "Options", "Options of every command", "Examples"}
+HEADINGS = {"Commands", "Options", "Common options", "Examples"}
 
 
 def parse(text):
