@@ -134,7 +134,7 @@ class Skeleton(support.Case):
 
     def test_formats(self):
         torus = self.sample("torus")
-        for ending in ("obj", "cg"):
+        for extension in ("obj", "cg"):
             name = "s." + extension
             report = self.run_json("skeleton", torus, "-o", name, "--nodes", "60")
             nodes, edges = self.graph(name)

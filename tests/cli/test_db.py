@@ -200,11 +200,11 @@ class Harm(Database):
 
     def test_no_database(self):
         self.write("text.db", "nothing of the kind " * 100)
-        self.all_fail("text.db", "no starguard database")
+        self.all_fail("text.db", "not a starguard database")
         self.write("empty.db", "")
-        self.all_fail("empty.db", "no starguard database")
+        self.all_fail("empty.db", "not a starguard database")
         sqlite3.connect(self.path("foreign.db")).executescript("CREATE TABLE x (y); INSERT INTO x VALUES (1)")
-        self.all_fail("foreign.db", "no starguard database")
+        self.all_fail("foreign.db", "not a starguard database")
 
     def test_other_versions(self):
         for version, says in (0, "create a new one"), (9, "newer"):
@@ -215,7 +215,7 @@ class Harm(Database):
     def test_exists(self):
         self.write("mine.txt", "precious")
         _, err = self.run_text("db", "create", "mine.txt", status=3)
-        self.assertIn("exists already", err)
+        self.assertIn("already exists", err)
         self.assertEqual(self.read("mine.txt"), b"precious")
         self.assertEqual(self.names(), ["mine.txt"])
 
