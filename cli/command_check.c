@@ -16,8 +16,7 @@ typedef struct values {
 static const cli_option options[] = {
     CLI_TEXT_OPTION(
         "marks", marks, "FILE.ply",
-        "Write the model with the faces of each finding in a colour of its own. This file is "
-        "written for unusable models as well (those need it most)."),
+        "Write the model with one colour per kind of finding, also for unusable models."),
 };
 
 /* Elements one by one ("3, 8, 9") or in pairs ("3-7, 8-9"). */
@@ -178,7 +177,7 @@ static void judge(cli_session *session, const starg_check *check) {
     char list[256] = "";
     size_t used = 0;
     if (check->usable && check->findings[STARG_FINDING_SELF_INTERSECTION].count > 0)
-        cli_warn(session, "warning: '%s' is closed but passes through itself", name);
+        cli_warn(session, "warning: '%s' is closed but intersects itself", name);
     if (check->usable)
         return;
     for (size_t i = 0; i < sizeof serious / sizeof *serious && used < sizeof list; i++) {
@@ -188,10 +187,10 @@ static void judge(cli_session *session, const starg_check *check) {
                                      used == 0 ? "" : ", ", starg_finding_name(serious[i]), count);
     }
     cli_warn(session, "'%s' is not a usable solid: %s; %s", name,
-             used > 0 ? list : "it bounds no volume",
+             used > 0 ? list : "it encloses no volume",
              check->one_sided_faces > 0 && check->one_sided_faces == check->faces
-                 ? "nothing can mend it, as its surfaces have one side only"
-                 : "'starguard repair' may mend it");
+                 ? "its surfaces are one-sided, which cannot be repaired"
+                 : "try 'starguard repair'");
     session->outcome = CLI_EXIT_INPUT;
 }
 
@@ -218,16 +217,16 @@ done:
 const cli_command cli_command_check = {
     .name = "check",
     .usage = "MODEL [--marks FILE.ply] [options]",
-    .summary = "is a model a usable solid; if not, what is wrong where",
+    .summary = "test whether a model is a usable solid and list its defects",
     .description =
-        "Examines a mesh: is it closed, manifold and consistently oriented, does it pass through "
-        "or touch itself, has it degenerate or duplicate parts? Every finding comes with its count "
-        "and the first elements, counted from 0. Exact: nothing depends on a tolerance.\n"
-        "Exit status 0 if the model can be used as a solid (with a warning if it passes through "
-        "itself), 2 if not.",
-    .examples = "# what is wrong with it\n"
+        "Tests whether a mesh is closed, manifold, consistently oriented and free of "
+        "self-intersections, degenerate and duplicate parts. Reports each kind of defect with its "
+        "count and the first indices (from 0). All tests are exact, without tolerances.\n"
+        "Exit status 0 if the model is a usable solid (with a warning if it intersects itself), 2 "
+        "if not.",
+    .examples = "# list the defects\n"
                 "starguard check model.obj\n"
-                "# show where\n"
+                "# show them in a mesh viewer\n"
                 "starguard check model.obj --marks findings.ply\n"
                 "# for a script\n"
                 "starguard check model.obj --json | jq .findings",

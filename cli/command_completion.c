@@ -23,7 +23,7 @@ static starg_status run(cli_session *session, void *values) {
         shell++;
     if (shell == SHELLS)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "completion is there for bash, zsh and fish, not for '%.100s'", word);
+                        "completion supports bash, zsh and fish, not '%.100s'", word);
     FILE *stream = open_memstream(&script, &size);
     if (stream == NULL)
         return cli_fail_memory(session);
@@ -44,13 +44,13 @@ static starg_status run(cli_session *session, void *values) {
 const cli_command cli_command_completion = {
     .name = "completion",
     .usage = "bash|zsh|fish",
-    .summary = "write what a shell needs to complete command lines",
+    .summary = "write a completion script for a shell",
     .description =
-        "Writes a script that teaches a shell the commands, the options and their words. An "
-        "installed starguard has put it where shells look; this is for one that is not.",
-    .examples = "# for this bash\n"
+        "Writes a script that completes commands, options and their values. An installed starguard "
+        "needs it only for shells that do not search the installation folder.",
+    .examples = "# in the current bash\n"
                 "source <(starguard completion bash)\n"
-                "# for every fish of yours\n"
+                "# in every fish session\n"
                 "starguard completion fish > ~/.config/fish/completions/starguard.fish",
     CLI_OPERANDS(1, 1),
     .operand_word = shell_word,

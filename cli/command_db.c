@@ -10,17 +10,16 @@ static const cli_command *const members[] = {
 const cli_command cli_command_db = {
     .name = "db",
     .usage = "COMMAND DB ... [options]",
-    .summary = "store shapes, find similar ones, measure how well that works",
+    .summary = "store shapes, find similar ones, evaluate retrieval",
     .description =
-        "Keeps signatures of models in a database, an SQLite file (docs/formats.md), finds "
-        "the stored models most like a given one, and measures how well distances tell "
-        "classes of shapes apart (docs/retrieval.md). 'starguard db COMMAND --help' tells "
-        "all about one.",
-    .examples = "# a database of some models, and what is most like another one\n"
+        "Stores signatures of models in an SQLite database (docs/formats.md), finds the models "
+        "most similar to a given one, and evaluates how well distances separate classes of shapes "
+        "(docs/retrieval.md). 'starguard db COMMAND --help' explains one command.",
+    .examples = "# make a database and find the models most similar to another one\n"
                 "starguard db create shapes.db\n"
                 "starguard db add shapes.db models/*.off\n"
                 "starguard db query shapes.db new.off -k 5\n"
-                "# how well do distances find models of the same class (cat_1.off: class cat)\n"
+                "# evaluate retrieval by class (cat_1.off: class cat)\n"
                 "starguard db evaluate shapes.db --classes by-prefix",
     .members = members,
 };

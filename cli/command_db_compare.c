@@ -25,11 +25,10 @@ static void report_head(cli_session *session, const values *v, const char *forma
 /* ---- matrix ---- */
 
 static const cli_option matrix_options[] = {
-    CLI_OUTPUT_OPTION("FILE.csv",
-                      "Where to write the distances: a row and a column for each model, "
-                      "by file name; '-' writes to standard output."),
+    CLI_OUTPUT_OPTION("FILE.csv", "Distance matrix, one row and column per model, sorted by file "
+                                  "name; '-' writes to standard output."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
-                    "Draw them: black where models are alike, white where they differ most."),
+                    "Matrix as a picture: black is similar, white is different."),
     CLI_DISTANCE_OPTION,
 };
 
@@ -38,7 +37,7 @@ static starg_status prepare_matrix(cli_session *session, void *data) {
     starg_status status = STARG_OK;
     if (v->output == NULL && v->picture == NULL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "name an output: -o FILE.csv, --picture FILE.png, or both");
+                        "no output; add -o FILE.csv, --picture FILE.png, or both");
     CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".csv"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
 done:
@@ -88,13 +87,11 @@ done:
 const cli_command cli_command_db_matrix = {
     .name = "db matrix",
     .usage = "DB -o FILE.csv [--picture FILE.png] [options]",
-    .summary = "all distances, as a table and a picture",
-    .description =
-        "Computes the distance of every stored model to every other, in the order of their "
-        "file names.",
-    .examples = "# a table, and the picture of it\n"
+    .summary = "compute all pairwise distances",
+    .description = "Computes the distance between each pair of stored models, sorted by file name.",
+    .examples = "# as a table and a picture\n"
                 "starguard db matrix shapes.db -o distances.csv --picture distances.png\n"
-                "# by what guards see\n"
+                "# with another distance\n"
                 "starguard db matrix shapes.db -o seen.csv --distance star",
     .options = matrix_options,
     .option_count = sizeof matrix_options / sizeof *matrix_options,
@@ -109,13 +106,13 @@ const cli_command cli_command_db_matrix = {
 static const cli_option evaluate_options[] = {
     CLI_INPUT_OPTION(
         "classes", classes, "by-prefix|FILE",
-        "Which models belong together: by-prefix (default) takes the file name up to the "
-        "last '_'; a FILE has lines 'MODEL CLASS', and models it does not name are left "
-        "out."),
+        "Classes of the models: by-prefix (default) takes the file name up to the last '_'; a FILE "
+        "has lines 'MODEL CLASS', and models it does not name are left out."),
     CLI_DISTANCE_OPTION,
-    CLI_OUTPUT_OPTION("FILE.csv", "Where to write precision by recall, overall and by class; '-' "
-                                  "writes to standard output."),
-    CLI_TEXT_OPTION("picture", picture, "FILE.svg", "Draw the same."),
+    CLI_OUTPUT_OPTION(
+        "FILE.csv",
+        "Precision-recall curves, overall and per class; '-' writes to standard output."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.svg", "Precision-recall curves as a picture."),
 };
 
 static starg_status prepare_evaluate(cli_session *session, void *data) {
@@ -238,7 +235,7 @@ static starg_status deliver(cli_session *session, const values *v, evaluation *e
         e->recall[i] = (double)(i + 1) / STARG_RECALL_LEVELS;
     tell_evaluation(session, e);
     if (e->overall->queries == 0)
-        cli_warn(session, "warning: no class has two models; there is nothing to find");
+        cli_warn(session, "warning: no class has two models; all measures are undefined");
     if (session->report != NULL)
         report_evaluation(session, v, e);
     if (v->picture != NULL)
@@ -276,16 +273,14 @@ done:
 const cli_command cli_command_db_evaluate = {
     .name = "db evaluate",
     .usage = "DB [--classes by-prefix|FILE] [options]",
-    .summary = "how well do distances find models of the same class",
-    .description = "Takes every stored model as a query in turn, ranks the others by distance and "
-                   "measures how "
-                   "far in front those of its class stand: nearest neighbour, first and second "
-                   "tier, E-measure "
-                   "and discounted cumulative gain, by class and overall, each in [0, 1] "
-                   "(docs/retrieval.md). Models alone in their class are ranked but ask nothing.",
+    .summary = "evaluate retrieval by class",
+    .description = "Takes each stored model as a query, ranks the others by distance and computes "
+                   "nearest neighbour, first and second tier, E-measure and discounted cumulative "
+                   "gain, per class and overall, each in [0, 1] (docs/retrieval.md). Models that "
+                   "are alone in their class are ranked but not used as queries.",
     .examples = "# classes by name: cat_1.off, cat_2.off, dog_1.off ...\n"
                 "starguard db evaluate shapes.db\n"
-                "# another distance, and its precision and recall\n"
+                "# another distance, with its precision-recall curves\n"
                 "starguard db evaluate shapes.db --distance d2 -o d2.csv --picture d2.svg",
     .options = evaluate_options,
     .option_count = sizeof evaluate_options / sizeof *evaluate_options,

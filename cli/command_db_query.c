@@ -10,7 +10,7 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    {CLI_OPTION("count", STARG_FIELD_COUNT, count, "N", "How many models to list."), .letter = 'k',
+    {CLI_OPTION("count", STARG_FIELD_COUNT, count, "N", "Number of models to list."), .letter = 'k',
      .least = 1, .most = UINT32_MAX, .initial = 10},
     CLI_DISTANCE_OPTION,
 };
@@ -63,13 +63,12 @@ done:
 const cli_command cli_command_db_query = {
     .name = "db query",
     .usage = "DB MODEL [-k N] [options]",
-    .summary = "which stored models are most like this one",
-    .description =
-        "Compares a model, which need not be stored, with all that are, and lists the "
-        "nearest ones with their distances. Distances of different kinds do not compare.",
-    .examples = "# the five nearest\n"
+    .summary = "find the stored models most similar to a given one",
+    .description = "Lists the stored models nearest to MODEL with their distances. MODEL itself "
+                   "need not be stored. Distances of different kinds are not comparable.",
+    .examples = "# the five nearest models\n"
                 "starguard db query shapes.db new.off -k 5\n"
-                "# the nearest by what guards see, for a script\n"
+                "# the nearest one by another distance, for a script\n"
                 "starguard db query shapes.db new.off -k 1 --distance star --json | jq .models[0]",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),

@@ -26,9 +26,9 @@ static starg_status create(cli_session *session, void *data) {
 const cli_command cli_command_db_create = {
     .name = "db create",
     .usage = "DB [options]",
-    .summary = "make an empty database",
-    .description = "Makes an empty database. A file that exists is never overwritten.",
-    .examples = "# a database of some models\n"
+    .summary = "create an empty database",
+    .description = "Creates an empty database. Existing files are never overwritten.",
+    .examples = "# create a database and add models\n"
                 "starguard db create shapes.db\n"
                 "starguard db add shapes.db models/*.off",
     CLI_OPERANDS(1, 1),
@@ -58,9 +58,9 @@ static json_t *result_json(cli_session *session, const char *file,
 static void tell_added(cli_session *session, const starg_database_report *r) {
     for (size_t i = 0; i < r->count; i++)
         if (r->results[i].outcome == STARG_DATABASE_KNOWN)
-            cli_say(session, "%s: stored already, as %s\n", session->operands[i + 1],
+            cli_say(session, "%s: already stored as %s\n", session->operands[i + 1],
                     r->results[i].text);
-    cli_say(session, "%zu added, %zu stored already, %zu refused\n", r->added, r->known,
+    cli_say(session, "%zu added, %zu already stored, %zu rejected\n", r->added, r->known,
             r->refused);
     for (size_t i = 0; i < r->count; i++)
         if (r->results[i].outcome == STARG_DATABASE_REFUSED)
@@ -100,18 +100,17 @@ done:
 const cli_command cli_command_db_add = {
     .name = "db add",
     .usage = "DB MODEL... [options]",
-    .summary = "store models with their signatures",
+    .summary = "add models with their signatures",
     .description =
-        "Describes models and stores them under their paths as given. Contents that are stored "
-        "already are skipped, whatever the file is called. A file that cannot be used does not "
-        "keep the others from being stored: such files are told of at the end, and the exit status "
-        "is 3. Several processes may add to one database at once. After an interruption what was "
-        "stored so far is there; the same command goes on from there.",
-    .examples = "# all models of a folder\n"
-                "starguard db add shapes.db models/*.off\n"
-                "# what was refused, for a script\n"
-                "starguard db add shapes.db *.stl --json | jq '.files[] | select(.outcome == "
-                "\"refused\")'",
+        "Computes signatures of models and stores them under the given paths. Files with stored "
+        "content are skipped, whatever their name. Unusable files do not stop the others from "
+        "being added: they are listed at the end, and the exit status is 3. Several processes may "
+        "add to one database at once. After an interruption, repeat the command to continue.",
+    .examples =
+        "# add all models of a folder\n"
+        "starguard db add shapes.db models/*.off\n"
+        "# list the rejected files, for a script\n"
+        "starguard db add shapes.db *.stl --json | jq '.files[] | select(.outcome == \"refused\")'",
     CLI_OPERANDS(2, SIZE_MAX),
     .run = add,
 };
@@ -137,11 +136,10 @@ done:
 const cli_command cli_command_db_remove = {
     .name = "db remove",
     .usage = "DB MODEL... [options]",
-    .summary = "take models out",
+    .summary = "remove models",
     .description =
-        "Removes models, all that are named or none. A model is named by its path as it was "
-        "added, by the file name at the end of it, or as id:N with the number that 'db "
-        "list' shows.",
+        "Removes all named models, or none if one of them is not found. Name a model by the path "
+        "under which it was added, by its file name, or as id:N with its number from 'db list'.",
     .examples = "# by name\n"
                 "starguard db remove shapes.db cat_1.off\n"
                 "# by path, and by number\n"
@@ -187,11 +185,11 @@ done:
 const cli_command cli_command_db_list = {
     .name = "db list",
     .usage = "DB [options]",
-    .summary = "what is stored",
-    .description = "Lists the models of a database by their file names.",
-    .examples = "# what is in it\n"
+    .summary = "list the stored models",
+    .description = "Lists the stored models, sorted by file name.",
+    .examples = "# list all models\n"
                 "starguard db list shapes.db\n"
-                "# the file names, for a script\n"
+                "# only the file names, for a script\n"
                 "starguard db list shapes.db --json | jq -r '.models[].name'",
     CLI_OPERANDS(1, 1),
     .run = list,

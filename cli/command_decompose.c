@@ -22,29 +22,27 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION(
-        "PIECES.vtk",
-        "Where to write the tetrahedra, each with the number of its piece: a VTK unstructured "
-        "grid (ParaView opens it); '-' writes to standard output."),
-    CLI_TEXT_OPTION(
-        "report", report, "PIECES.json",
-        "Where to write the guard, size and proof of each piece, and which pieces touch "
-        "over what area (docs/formats.md)."),
+    CLI_OUTPUT_OPTION("PIECES.vtk", "Tetrahedra, labelled by piece, as a VTK unstructured grid "
+                                    "(for ParaView); '-' writes to standard output."),
+    CLI_TEXT_OPTION("report", report, "PIECES.json",
+                    "Guard, size and proof of each piece, and the contact areas between pieces "
+                    "(docs/formats.md)."),
     CLI_INPUT_OPTION(
         "guards", guards, "GUARDS.json",
-        "Guards to begin with: a result of 'starguard guard', a skeleton, or text of three numbers "
-        "a line. Default for --mode paper: those that 'starguard guard' places."),
+        "Initial guards: a result of 'starguard guard', a skeleton, or text with three numbers per "
+        "line. Default for --mode paper: the guards of 'starguard guard'."),
     CLI_INPUT_OPTION("tets", tets, "FILE",
-                     "Read the solid as tetrahedra from this file, in place of MODEL: MEDIT .mesh, "
-                     ".vtk, Gmsh .msh, or TetGen .node with its .ele beside it."),
+                     "Read tetrahedra from this file instead of MODEL: MEDIT .mesh, .vtk, Gmsh "
+                     ".msh, or TetGen .node with its .ele beside it."),
     CLI_TEXT_OPTION(
         "surfaces", surfaces, "DIR",
-        "Write the closed surface of each piece into this folder, which is made if need "
-        "be: piece_0000.ply and so on, coloured, and all of them as groups of "
-        "pieces.obj."),
-    CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the pieces in colours, a little apart."),
-    CLI_FLAG_OPTION("binary", binary,
-                    "Write PIECES.vtk in binary: smaller, faster to read, the same numbers."),
+        "Write the closed surface of each piece into this folder (created if missing): "
+        "piece_0000.ply, piece_0001.ply, ..., in colour, and all of them as groups of pieces.obj."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png",
+                    "Coloured, slightly exploded view of the pieces."),
+    CLI_FLAG_OPTION(
+        "binary", binary,
+        "Write PIECES.vtk in binary: smaller and faster to read, with the same numbers."),
 };
 
 /* ---- the model ---- */
@@ -64,7 +62,7 @@ static void subject_free(subject *s) {
 static starg_status read_subject(cli_session *session, const values *v, subject *s) {
     if ((session->operand_count == 0) == (v->tets == NULL))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "name what to cut: either MODEL, a surface or tetrahedra, or --tets FILE");
+                        "give either MODEL (a surface or tetrahedra) or --tets FILE");
     s->file = v->tets != NULL ? v->tets : session->operands[0];
     if (v->tets != NULL)
         return starg_tetmesh_read(session->context, s->file, &s->tets);
@@ -82,8 +80,8 @@ static starg_status cut(cli_session *session, const subject *s,
     /* a surface with holes is filled with what it winds around; faults without a place have none */
     if (status == STARG_ERROR_MESH && starg_context_error(session->context)->index_count > 0) {
         cli_log(session, STARG_LOG_WARNING,
-                "%s; isosurface stuffing fills what the surface winds around, and closes holes "
-                "of its own accord",
+                "%s; isosurface stuffing fills the region whose winding number exceeds 1/2 and "
+                "thereby closes holes",
                 starg_context_error(session->context)->message);
         return starg_decompose_open_mesh(session->context, s->surface, wanted, out);
     }
@@ -114,7 +112,7 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
         cli_say(session, "surface       within %.3g of the model's, which is within %.3g of it\n",
                 d->tetra.distance, d->tetra.distance_back);
     if (d->time_limited)
-        cli_say(session, "time limit    reached; this is the best that was found\n");
+        cli_say(session, "time limit    reached; this is the best result found\n");
 }
 
 /* What the file holds, and what is of the run. */
@@ -281,7 +279,7 @@ done:
 static starg_status announce_files(cli_session *session, const values *v) {
     starg_status status = STARG_OK;
     if (v->output == NULL)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o PIECES.vtk");
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "no output; add -o PIECES.vtk");
     CLI_TRY(cli_announce(session, v->output));
     CLI_TRY(cli_announce(session, v->report));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
@@ -364,25 +362,25 @@ done:
 const cli_command cli_command_decompose = {
     .name = "decompose",
     .usage = "MODEL -o PIECES.vtk [options]",
-    .summary = "cut a solid into few pieces, each seen as a whole from its guard",
+    .summary = "cut a solid into few star-shaped pieces",
     .description =
-        "Fills the solid with tetrahedra and parts them into star-shaped pieces: each has a guard "
-        "that sees all of it. With --mode strict every piece is proven so by exact arithmetic: its "
-        "guard is strictly on the inner side of each of its faces. MODEL is a surface, or "
-        "tetrahedra of your own; the content tells which.\n"
-        "The surface is kept, face by face, where the program tetgen can be had. Surfaces that "
-        "pass through themselves or have holes are filled by isosurface stuffing instead, with a "
-        "warning, and how far its surface is from the model's is told.\n"
-        "The search ends when it finds nothing better, at the latest after a fixed amount of work "
-        "(some 15 seconds), so that the same input gives the same bytes. --effort counts trials "
-        "instead; with --time-limit the search goes on until then and gives the best it has.",
-    .examples = "# pieces with their proofs, and what they look like\n"
+        "Tetrahedralizes the solid and partitions the tetrahedra into star-shaped pieces: each "
+        "piece has a guard that sees all of it. With --mode strict, exact arithmetic proves that "
+        "each guard is strictly on the inner side of all faces of its piece. MODEL is a surface or "
+        "a tetrahedral mesh, recognized by content.\n"
+        "If the program tetgen is installed, the surface is preserved face by face. Surfaces with "
+        "self-intersections or holes are filled by isosurface stuffing instead, with a warning and "
+        "the distance between both surfaces.\n"
+        "By default the search stops after a fixed amount of work (about 15 seconds), so that the "
+        "same input gives the same bytes. --effort sets the number of trials instead; with "
+        "--time-limit the search continues until that time and returns the best result.",
+    .examples = "# pieces with their proofs and a picture\n"
                 "starguard decompose model.off -o pieces.vtk --report pieces.json \\\n"
                 "    --picture pieces.png\n"
-                "# as in the paper, from guards that were placed before\n"
+                "# the published method, from given guards\n"
                 "starguard guard model.off -o guards.json\n"
                 "starguard decompose model.off -o pieces.vtk --mode paper --guards guards.json\n"
-                "# tetrahedra of your own; the surface of each piece as a file\n"
+                "# your own tetrahedra; the surface of each piece as a file\n"
                 "starguard decompose --tets solid.msh -o pieces.vtk --surfaces pieces",
     CLI_OPTIONS(options),
     CLI_LIBRARY(starg_decompose_options_fields, wanted),

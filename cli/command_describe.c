@@ -18,14 +18,13 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("FILE.json", "Where to write the descriptor (docs/formats.md); '-' writes "
-                                   "to standard output."),
+    CLI_OUTPUT_OPTION("FILE.json", "Descriptor (docs/formats.md); '-' writes to standard output."),
     CLI_TEXT_OPTION("reconstruct", reconstruct, "FILE.ply",
-                    "Write the boundary as the descriptor knows it: a point where each look ends."),
-    CLI_TEXT_OPTION("picture", picture, "FILE.png", "Draw the model and its guards."),
+                    "Boundary as sampled by the descriptor: one point per ray."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png", "Picture of the model and its guards."),
     CLI_TEXT_OPTION("histograms", histograms, "FILE.svg",
-                    "Draw what the guards of the eight largest pieces see: in which part of all "
-                    "directions the boundary is nearer than that."),
+                    "Chart of the eight largest pieces: the fraction of directions in which the "
+                    "boundary is nearer than a given distance."),
 };
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -51,7 +50,7 @@ static void tell(cli_session *session, const starg_descriptor *d, const starg_re
             "surface       within %.3g %% of the diagonal of a point, %.3g %% on average\n",
             100 * r->from_largest, 100 * r->from_mean);
     if (d->time_limited)
-        cli_say(session, "time limit    reached; another run may differ\n");
+        cli_say(session, "time limit    reached; other runs may differ\n");
 }
 
 /* What the file holds, and what is of the run. */
@@ -160,8 +159,8 @@ static starg_status draw_histograms(cli_session *session, const starg_descriptor
         curves[c] = (starg_curve){.name = names[c], .x = x, .y = x + width, .count = width};
     }
     starg_status status =
-        starg_chart_write(session->context, curves, count, "distance, by the largest", "directions",
-                          cli_outputs_place(&session->outputs, name));
+        starg_chart_write(session->context, curves, count, "distance relative to the largest",
+                          "directions", cli_outputs_place(&session->outputs, name));
     free(numbers);
     return status;
 }
@@ -202,14 +201,13 @@ done:
 const cli_command cli_command_describe = {
     .name = "describe",
     .usage = "MODEL -o FILE.json [options]",
-    .summary = "describe a shape by its guards and what they see",
-    .description =
-        "Parts the solid into star-shaped pieces, quickly, and writes down their guards, which of "
-        "the pieces touch, and how far it is from each guard to the boundary in all directions. "
-        "That is what 'starguard match' compares. The surface can be had back of it: how far the "
-        "points that guards see are from the surface, and the surface from them, is told.",
+    .summary = "compute a shape descriptor from guards and what they see",
+    .description = "Computes a fast star decomposition and stores its guards, the adjacency of its "
+                   "pieces, and the distance from each guard to the boundary in all directions. "
+                   "'starguard match' compares descriptors. Reports the distance between the "
+                   "sampled points and the surface, both ways.",
     .examples =
-        "# a descriptor, and what it knows of the surface\n"
+        "# a descriptor and its samples of the surface\n"
         "starguard describe model.off -o model.json --reconstruct points.ply\n"
         "# a finer one\n"
         "starguard describe model.off -o model.json --detail 0 --directions 2048 --effort 2000",

@@ -14,11 +14,11 @@ typedef struct values {
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("FILE.glb|.vtu|.ply|.obj",
-                      "Where to write, by the file extension (docs/formats.md); '-' writes .glb to "
-                      "standard output."),
+                      "Output; its extension selects the format (docs/formats.md); '-' writes .glb "
+                      "to standard output."),
     CLI_INPUT_OPTION("model", model, "FILE",
-                     "The model that results are about. By default the one that they name, from "
-                     "where you stand or beside the result."),
+                     "Model of the results. Default: the model that they name, relative to the "
+                     "current folder or to the result."),
 };
 
 static starg_status choose_format(cli_session *session, const char *name,
@@ -45,13 +45,13 @@ done:
 
 static starg_status check_kinds(cli_session *session, const starg_page *page) {
     if (page->frame_count > 0)
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "a morph is no part of a scene; 'starguard morph --glb FILE' writes it as "
-                        "an animation");
+        return cli_fail(
+            session, STARG_ERROR_ARGUMENT,
+            "a scene cannot contain a morph; 'starguard morph --glb FILE' writes an animation");
     if (page->shape_count > 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "a table of shapes is no part of a scene; 'starguard db matrix' writes it "
-                        "as a table and a picture");
+                        "a scene cannot contain a table of shapes; 'starguard db matrix' writes a "
+                        "table and a picture");
     return STARG_OK;
 }
 
@@ -107,24 +107,23 @@ done:
 const cli_command cli_command_export = {
     .name = "export",
     .usage = "RESULT... [--model FILE] -o FILE.glb|.vtu|.ply|.obj [options]",
-    .summary = "a model with guards, pieces and skeleton in one file for other programs",
-    .description =
-        "Writes results and the model that they are about into one file. The content of each file "
-        "tells what it is, and any mix will do, one of each kind: GUARDS.json, PIECES.vtk and "
-        "PIECES.json, a skeleton (.obj, .cg, .vtk), a model.\n"
-        ".glb (Blender, browsers, three.js): a named node for the model, each guard, each piece, "
-        "and the skeleton; what is known about a guard or piece is in its extras.\n"
-        ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; data of the cells "
-        "tell parts, pieces, and the guard that sees a face.\n"
-        ".ply (MeshLab): faces in the colours of pieces, or of the guards that see them.\n"
-        ".obj: an object for each part.",
+    .summary = "export a model with guards, pieces and skeleton for other programs",
+    .description = "Writes results and their model into one file. Inputs are recognized by "
+                   "content, at most one of each kind: GUARDS.json, PIECES.vtk and PIECES.json, a "
+                   "skeleton (.obj, .cg, .vtk), a model.\n"
+                   ".glb (Blender, browsers, three.js): a named node for the model, each guard, "
+                   "each piece and the skeleton; extras hold the data of guards and pieces.\n"
+                   ".vtu (ParaView, VTK): one grid of faces, tetrahedra, points and lines; cell "
+                   "data give the part, the piece, and the guard that sees a face.\n"
+                   ".ply (MeshLab): faces coloured by piece, or by the guard that sees them.\n"
+                   ".obj: one object per part.",
     .examples = "# guards and pieces of a model for Blender\n"
                 "starguard guard horse.off -o guards.json\n"
                 "starguard decompose horse.off -o pieces.vtk --report pieces.json\n"
                 "starguard export guards.json pieces.vtk pieces.json -o horse.glb\n"
                 "# which guard sees which face, for ParaView\n"
                 "starguard export guards.json -o guards.vtu\n"
-                "# a skeleton in its model\n"
+                "# a model with its skeleton\n"
                 "starguard skeleton horse.off -o skeleton.vtk\n"
                 "starguard export skeleton.vtk --model horse.off -o skeleton.glb",
     CLI_OPTIONS(options),

@@ -29,20 +29,17 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION(
-        "GUARDS.json",
-        "Where to write the guards (docs/formats.md); '-' writes to standard output."),
-    CLI_INPUT_OPTION(
-        "candidates", candidates, "skeleton|medial|interior|FILE",
-        "Where guards may stand: on the curve skeleton (default), on the medial axis, on a "
-        "lattice inside, or at the points of a file: three numbers a line, a skeleton of "
-        "'starguard skeleton', or another GUARDS.json."),
+    CLI_OUTPUT_OPTION("GUARDS.json", "Guards (docs/formats.md); '-' writes to standard output."),
+    CLI_INPUT_OPTION("candidates", candidates, "skeleton|medial|interior|FILE",
+                     "Candidate positions: on the curve skeleton (default), on the medial axis, on "
+                     "an interior lattice, or from a file: text with three numbers per line, a "
+                     "skeleton of 'starguard skeleton', or another GUARDS.json."),
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
-        "Draw the model half transparent with its guards; uncovered faces are dark red."),
+        "Picture of the translucent model with its guards; uncovered faces are dark red."),
     CLI_TEXT_OPTION("marks", marks, "FILE.ply",
-                    "Write the model with each face in the colour of the first guard that sees it; "
-                    "uncovered faces are dark red."),
+                    "Model with each face in the colour of the first guard that sees it; uncovered "
+                    "faces are dark red."),
 };
 
 /* ---- what was asked for ---- */
@@ -82,7 +79,7 @@ static void say_bound(cli_session *session, const starg_guards *g) {
     size_t gap = g->count - g->lower_bound;
     cli_say(session, "lower bound   %zu", g->lower_bound);
     if (g->optimal)
-        cli_say(session, " (optimal: no fewer of the candidates do)\n");
+        cli_say(session, " (optimal for these candidates)\n");
     else
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
@@ -105,7 +102,7 @@ static void say_guards(cli_session *session, const starg_guards *g) {
                 cli_count_of(hidden, "face", "faces").text);
     cli_say(session, "\ncandidates    %zu\n", g->candidate_count);
     if (g->time_limited)
-        cli_say(session, "time limit    reached; this is the best that was found\n");
+        cli_say(session, "time limit    reached; this is the best result found\n");
 }
 
 /* What the file holds, and what is of the run. */
@@ -215,18 +212,18 @@ const cli_command cli_command_guard = {
     .usage = "MODEL -o GUARDS.json [options]",
     .summary = "place the fewest guards that together see the whole boundary",
     .description =
-        "Makes candidate points inside the solid, computes exactly which faces each sees, and "
-        "chooses the fewest that together see every face that can be seen. The result holds the "
-        "guards, what they cover, and a proven lower bound: no choice of fewer candidates covers "
-        "as much. Faces that nothing sees are listed, and are no error.\n"
-        "With --time-limit the best that was found is written, with its bound.",
-    .examples = "# the fewest guards for a model, and the proof\n"
+        "Generates candidate points inside the solid, computes exactly which faces each one sees, "
+        "and chooses the fewest that together see every visible face. The result contains the "
+        "guards, their coverage, and a proven lower bound: no choice of fewer candidates covers as "
+        "much. Faces that no candidate sees are listed; they are not an error.\n"
+        "With --time-limit the best result so far is written with its bound.",
+    .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"
                 "starguard verify model.off guards.json\n"
-                "# 99 % of the area is enough; guards 0.1 from the walls; a picture\n"
+                "# cover 99 % of the area, keep guards 0.1 from the walls, draw a picture\n"
                 "starguard guard room.obj -o guards.json --coverage 0.99 --clearance 0.1 \\\n"
                 "    --picture guards.png\n"
-                "# the best places for five cameras that see 20 units far\n"
+                "# the best places for five cameras with a range of 20 units\n"
                 "starguard guard hall.stl -o cameras.json --max-guards 5 --range 20",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),

@@ -32,7 +32,7 @@ static void tell(cli_session *session, const starg_kernel_result *result) {
             cli_say(session, "\n");
         break;
     case STARG_KERNEL_UNDECIDED:
-        cli_say(session, "undecided: the kernel is empty or about as small as rounding errors\n");
+        cli_say(session, "undecided: the kernel is empty or as small as rounding errors\n");
         break;
     }
 }
@@ -63,15 +63,15 @@ done:
 const cli_command cli_command_kernel = {
     .name = "kernel",
     .usage = "MODEL [options]",
-    .summary = "is a solid star-shaped, and from where is all of it seen",
-    .description =
-        "Finds the kernel of a solid, the set of points that see all of it, and the largest ball "
-        "in it. Both answers are proven in exact arithmetic: a solid is star-shaped when its guard "
-        "is strictly on the inner side of every face, and it is not when up to four faces are "
-        "named that no point is strictly inside of all at once. Exit status 0 either way.",
-    .examples = "# is it star-shaped\n"
+    .summary = "test whether a solid is star-shaped and find its kernel",
+    .description = "Computes the kernel of a solid (the set of points that see all of it) and the "
+                   "largest ball inside it. Exact arithmetic proves either answer: the solid is "
+                   "star-shaped if a guard is strictly on the inner side of every face, and not "
+                   "star-shaped if up to four faces have no point strictly on the inner side of "
+                   "all of them. Exit status 0 in both cases.",
+    .examples = "# test a model\n"
                 "starguard kernel model.off\n"
-                "# the guard, for a script\n"
+                "# print the guard, for a script\n"
                 "starguard kernel model.off --json | jq .guard",
     CLI_OPERANDS(1, 1),
     .input = CLI_INPUT_SOLID,

@@ -10,13 +10,11 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("MAP.json", "Where to write the map (docs/formats.md); '-' writes to "
-                                  "standard output."),
+    CLI_OUTPUT_OPTION("MAP.json", "Map (docs/formats.md); '-' writes to standard output."),
     CLI_INPUT_OPTION(
         "landmarks", landmarks, "FILE",
-        "Vertices that shall meet: a pair a line, as two vertex numbers (from 0), a of "
-        "A and one of B, or as six coordinates, of which the nearest vertices are "
-        "taken."),
+        "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
+        "of B; or six coordinates, which select the nearest vertices."),
 };
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -25,7 +23,7 @@ static starg_status prepare(cli_session *session, void *data) {
 }
 
 static void say_map(cli_session *session, const starg_map *map) {
-    static const char *const kinds[] = {"the same faces: vertex to vertex", "by the sphere",
+    static const char *const kinds[] = {"the same faces: vertex to vertex", "via the sphere",
                                         "given"};
     cli_say(session, "map           %s\n", kinds[map->kind]);
     cli_say(session, "vertices      %zu\n", map->vertex_count);
@@ -80,13 +78,13 @@ done:
 const cli_command cli_command_map = {
     .name = "map",
     .usage = "A B [--landmarks FILE] -o MAP.json",
-    .summary = "a bijection between two surfaces, by landmarks or by their shapes",
+    .summary = "compute a bijection between two surfaces",
     .description =
-        "Finds for each vertex of A its place on B: a face and barycentric coordinates. Surfaces "
-        "with the same faces, as poses of one model have them, are mapped vertex to vertex. Others "
-        "must be closed, in one part and of genus 0: both are spread over the sphere, laid on one "
-        "another, and warped until the landmarks are met exactly. Without landmarks the surfaces' "
-        "principal axes decide, which can lay a head on a tail; a few landmarks help much.",
+        "Maps each vertex of A to a point of B: a face and barycentric coordinates. Surfaces with "
+        "the same faces, such as poses of one model, are mapped vertex to vertex. Other surfaces "
+        "must be closed, connected and of genus 0: both are mapped to the sphere, aligned, and "
+        "warped until the landmarks coincide exactly. Without landmarks the alignment uses the "
+        "principal axes, which can map a head to a tail; a few landmarks prevent that.",
     .examples = "# two poses, then two animals with landmarks\n"
                 "starguard map horse_0.off horse_1.off -o poses.json\n"
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json",

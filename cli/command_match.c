@@ -11,10 +11,9 @@ typedef struct values {
 
 static const cli_option options[] = {CLI_CHOICE_OPTION(
     "distance", distance, cli_distance_words, STARG_SIGNATURE_STAR, "star|paper|shape-dna|d2",
-    "star: what is seen from the pieces and how they conduct, whatever the pose. paper: "
-    "the deformation of one guarding "
-    "graph into the other. shape-dna: the spectrum of the surface. d2: the distances between "
-    "points of the surface.")};
+    "star: what guards see and how pieces conduct, independent of pose. paper: cost of deforming "
+    "one guarding graph into the other. shape-dna: Laplace-Beltrami spectrum. d2: distances "
+    "between random surface points.")};
 
 static starg_status make_signature(cli_session *session, const char *file,
                                    starg_signature_kind kind, starg_signature **out) {
@@ -64,15 +63,14 @@ done:
 const cli_command cli_command_match = {
     .name = "match",
     .usage = "A B [--distance star|paper|shape-dna|d2]",
-    .summary = "how unlike are two shapes",
-    .description =
-        "Prints the distance of two shapes: 0 for a shape and itself, larger for shapes that are "
-        "less alike. A and B are models, or descriptors that 'starguard describe' has written "
-        "(for star and paper), all with the same options. Distances of different kinds do not "
-        "compare (docs/retrieval.md).",
-    .examples = "# what guards see, whatever the pose\n"
+    .summary = "compute the distance between two shapes",
+    .description = "Prints the distance between two shapes: 0 for identical shapes, larger for "
+                   "less similar ones. A and B are models, or descriptors from 'starguard "
+                   "describe' (for star and paper), all with the same options. Distances of "
+                   "different kinds are not comparable (docs/retrieval.md).",
+    .examples = "# independent of pose\n"
                 "starguard match cat.off dog.off\n"
-                "# the distance of the paper, of descriptors made before\n"
+                "# the published distance, from stored descriptors\n"
                 "starguard match cat.json dog.json --distance paper",
     CLI_OPTIONS(options),
     CLI_OPERANDS(2, 2),

@@ -26,27 +26,25 @@ static const double SECONDS = 2; /* of an animation */
 static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off and so on; it is made if it is not there."),
+    CLI_OUTPUT_OPTION("DIR", "Folder for frame_0000.off, frame_0001.off, ...; created if missing."),
     CLI_COUNT_OPTION("frames", frames, "N", 2, 10000, 21, NULL,
-                     "Number of frames with both ends, evenly in time."),
+                     "Number of frames, evenly spaced in time, including both ends."),
     CLI_INPUT_OPTION("map", map, "FILE",
-                     "A map of 'starguard map'; by default one is made, as that command does."),
-    CLI_INPUT_OPTION("landmarks", landmarks, "FILE", "Landmarks for a map that is made."),
+                     "Map from 'starguard map'. Default: computed as by that command."),
+    CLI_INPUT_OPTION("landmarks", landmarks, "FILE", "Landmarks for the computed map."),
     CLI_TEXT_OPTION("glb", glb, "FILE.glb",
-                    "The frames as one animation of two seconds (glTF, morph targets)."),
+                    "Frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
-                    "Draw five moments by the methods star, arap and linear, a row each."),
-    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "The axis that points up in --picture."),
+                    "Picture of five time steps, one row each for star, arap and linear."),
+    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture."),
     CLI_FLAG_OPTION(
         "guards", guards,
-        "Write guards_a.json and guards_b.json into DIR as well, guards of A and of the "
-        "last frame that correspond one by one, and tell how many each shape alone "
-        "would need (star and spherical)."),
-    CLI_FLAG_OPTION(
-        "pieces", pieces,
-        "Cut both solids into the same star-shaped pieces and write pieces_a.vtk, pieces_a.json, "
-        "pieces_b.vtk and pieces_b.json into DIR as well, for A and for the last frame. Neither "
-        "may intersect itself; needs TetGen."),
+        "Also write guards_a.json and guards_b.json into DIR: corresponding guards of A and of the "
+        "last frame. Reports how many each shape needs alone (star and spherical)."),
+    CLI_FLAG_OPTION("pieces", pieces,
+                    "Also cut both solids into compatible star-shaped pieces: pieces_a.vtk and "
+                    "pieces_a.json for A, pieces_b.vtk and pieces_b.json for the last frame, in "
+                    "DIR. Neither may intersect itself; needs TetGen."),
 };
 
 static const char *method_word(const values *v) {
@@ -99,19 +97,17 @@ static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     if (v->output == NULL)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name a folder for the frames: -o DIR");
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "no output folder; add -o DIR");
     if (strcmp(v->output, "-") == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "the frames are several files: -o must name a folder");
+                        "-o must name a folder, since a morph has several frames");
     if (v->map != NULL && v->landmarks != NULL)
-        return cli_fail(
-            session, STARG_ERROR_ARGUMENT,
-            "--landmarks are for a map that is made, --map gives one; name one of them");
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--map and --landmarks exclude each other; give one of them");
     if (v->guards && v->wanted.method != STARG_MORPH_STAR &&
         v->wanted.method != STARG_MORPH_SPHERICAL)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "--guards: the method %s has no guards; take star or spherical",
-                        method_word(v));
+                        "--guards: method %s has no guards; use star or spherical", method_word(v));
     CLI_TRY(cli_announce_with_extension(session, "--glb", v->glb, ".glb"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     if (v->glb != NULL && v->frames > STARG_ANIMATION_FRAMES)
@@ -501,24 +497,22 @@ done:
 const cli_command cli_command_morph = {
     .name = "morph",
     .usage = "A B [--map FILE] --frames N -o DIR [options]",
-    .summary = "the shapes between two surfaces, by pieces about corresponding guards",
+    .summary = "interpolate between two surfaces",
     .description =
-        "Writes frames that lead from A to B in A's connectivity: the first is A, the last one B. "
-        "With the method star, guards are placed in both shapes so that each pair of them sees "
-        "corresponding pieces; pieces turn and stretch about their guards, what rigid motion "
-        "cannot explain is added evenly, and folds of the map come last. For each frame the faces "
-        "that pass through one another "
-        "and the drift of the volume are told.",
+        "Writes frames from A to B with the connectivity of A: the first is A, the last is B. The "
+        "method star places guards in both shapes so that each pair sees corresponding pieces; "
+        "pieces rotate and stretch about their guards, and the non-rigid residual is interpolated "
+        "linearly. Reports self-intersecting faces per frame and the volume drift.",
     .examples = "# two poses of one model\n"
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames\n"
-                "# with the guards that correspond; both files verify\n"
+                "# with corresponding guards; verify both files\n"
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames --guards\n"
                 "starguard verify horse_0.off frames/guards_a.json\n"
                 "starguard verify horse_1.off frames/guards_b.json\n"
-                "# both solids in the same star-shaped pieces\n"
+                "# with compatible star-shaped pieces\n"
                 "starguard morph horse_0.off horse_1.off --frames 21 -o frames --pieces\n"
                 "starguard verify horse_1.off frames/pieces_b.vtk frames/pieces_b.json\n"
-                "# two animals by a map of landmarks, and the plain method to compare with\n"
+                "# two animals with a landmark map, and linear interpolation for comparison\n"
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json\n"
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o frames\n"
                 "starguard morph cat.off dog.off --map cat_dog.json --frames 21 -o plain \\\n"

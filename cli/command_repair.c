@@ -13,9 +13,7 @@ typedef struct values {
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION(
-        "FILE",
-        "Where to write the mended mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
-        "output."),
+        "FILE", "Repaired mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard output."),
 };
 
 /* What was done, for people and for programs. */
@@ -84,15 +82,15 @@ done:
 const cli_command cli_command_repair = {
     .name = "repair",
     .usage = "MODEL -o FILE [options]",
-    .summary = "make a usable solid of a model that is nearly one",
+    .summary = "turn a defective model into a usable solid",
     .description =
-        "Merges and drops vertices, drops degenerate and duplicate faces, turns faces, fills holes "
-        "and resolves local self-intersections, and says what was done and how far vertices moved. "
-        "Exit status 2 if no usable solid comes of it; then nothing is written.",
-    .examples = "# mend and look at what remains\n"
+        "Merges and drops vertices, drops degenerate and duplicate faces, flips faces, fills holes "
+        "and resolves local self-intersections. Reports all changes and the largest move of a "
+        "vertex. Exit status 2, without output, if the result is not a usable solid.",
+    .examples = "# repair, then list remaining defects\n"
                 "starguard repair scan.stl -o solid.off\n"
                 "starguard check solid.off\n"
-                "# close gaps of up to a thousandth of the diagonal, leave big holes open\n"
+                "# close gaps of up to 0.001 of the diagonal, keep large holes open\n"
                 "starguard repair scan.ply -o solid.ply --merge-distance 0.001 --max-hole-edges 50",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),

@@ -13,10 +13,8 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION(
-        "FILE", "Where to write the mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard "
-                "output."),
-    CLI_FLAG_OPTION("list", list, "List the samples and their numbers of poses."),
+    CLI_OUTPUT_OPTION("FILE", "Mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard output."),
+    CLI_FLAG_OPTION("list", list, "List the samples and their poses."),
 };
 
 static const char *sample_word(size_t index) {
@@ -64,9 +62,9 @@ static starg_status run(cli_session *session, void *data) {
     if (v->list)
         return list_samples(session);
     if (session->operand_count == 0 || v->output == NULL)
-        return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "name a sample and an output: starguard sample NAME -o FILE; --list "
-                        "lists the names");
+        return cli_fail(
+            session, STARG_ERROR_ARGUMENT,
+            "give a sample and an output: starguard sample NAME -o FILE; --list lists the names");
     const char *name = session->operands[0];
     CLI_TRY(check_name(session, name));
     CLI_TRY(cli_mesh_format(session, v->output, &format));
@@ -84,15 +82,14 @@ done:
 const cli_command cli_command_sample = {
     .name = "sample",
     .usage = "[NAME] -o FILE [--pose K] [--vertices N] [--list]",
-    .summary = "write a procedural solid",
-    .description =
-        "Makes a closed solid to try things on: animals and a person in several poses, and rooms "
-        "and machine parts. The same options give the same file.",
-    .examples = "# what there is\n"
+    .summary = "generate a sample solid",
+    .description = "Generates a closed solid for experiments: animals and a person in several "
+                   "poses, rooms and machine parts. The same options give the same file.",
+    .examples = "# list the samples\n"
                 "starguard sample --list\n"
                 "# a horse in its third pose with about 20,000 vertices\n"
                 "starguard sample horse --pose 2 --vertices 20000 -o horse.off\n"
-                "# straight into another command\n"
+                "# piped into another command\n"
                 "starguard sample gallery -o - | starguard check -",
     CLI_OPTIONS(options),
     CLI_OPERANDS(0, 1),

@@ -17,12 +17,11 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION(
-        "FILE.obj|.cg|.vtk",
-        "Where to write the skeleton, by the file extension: OBJ lines, a curve graph, or VTK "
-        "with radii (docs/formats.md); '-' writes VTK to standard output."),
+    CLI_OUTPUT_OPTION("FILE.obj|.cg|.vtk",
+                      "Skeleton; the extension selects OBJ lines, a curve graph, or VTK with radii "
+                      "(docs/formats.md); '-' writes VTK to standard output."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
-                    "Draw the model half transparent with its skeleton."),
+                    "Picture of the translucent model with its skeleton."),
 };
 
 static starg_status choose_format(cli_session *session, const char *name,
@@ -119,17 +118,17 @@ done:
 const cli_command cli_command_skeleton = {
     .name = "skeleton",
     .usage = "MODEL -o FILE.obj|.cg|.vtk [options]",
-    .summary = "the curve along the middle of a solid, with its topology",
+    .summary = "compute the curve skeleton of a solid",
     .description =
-        "Finds the curve skeleton by erosion of the medial axis: a graph of points strictly inside "
-        "that has as many parts and loops as the solid (a solid with cavities has no such curve, "
-        "which is told). Each node comes with its distance from the surface.",
+        "Computes the curve skeleton by eroding the medial axis: a graph of interior points with "
+        "as many components and loops as the solid. A solid with cavities has no such curve and "
+        "gets a warning. Each node has its distance from the surface.",
     .examples =
-        "# a skeleton to load into a mesh viewer\n"
+        "# for a mesh viewer\n"
         "starguard skeleton horse.off -o horse.obj\n"
         "# few nodes, only long branches, and a picture\n"
         "starguard skeleton horse.off -o horse.vtk --nodes 100 --prune 3 --picture horse.png\n"
-        "# parts, loops, joints and ends as JSON\n"
+        "# components, loops, joints and ends as JSON\n"
         "starguard skeleton horse.off -o horse.cg --json",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),

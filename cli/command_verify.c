@@ -84,21 +84,21 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
         if (place == NULL)
             continue;
         if (*place != 0)
-            return cli_fail(session, STARG_ERROR_ARGUMENT,
-                            "'%.200s' and '%.200s' are of two decompositions; verify one at a time",
-                            session->operands[*place], session->operands[i]);
+            return cli_fail(
+                session, STARG_ERROR_ARGUMENT,
+                "'%.200s' and '%.200s' belong to two decompositions; verify them separately",
+                session->operands[*place], session->operands[i]);
         *place = i;
     }
     if (found->report != 0 && found->pieces == 0)
         return cli_fail(session, STARG_ERROR_READ,
-                        "'%.200s' only reports on a decomposition; name the PIECES.vtk that it "
-                        "belongs to as well",
+                        "'%.200s' is a report without tetrahedra; add its PIECES.vtk",
                         session->operands[found->report]);
     if (found->pieces != 0 && found->report == 0)
-        cli_warn(session,
-                 "without its PIECES.json, guards and numbers of '%.200s' are not known: only its "
-                 "tetrahedra are checked",
-                 session->operands[found->pieces]);
+        cli_warn(
+            session,
+            "'%.200s' has no PIECES.json: checking only its tetrahedra, not guards and numbers",
+            session->operands[found->pieces]);
     return STARG_OK;
 }
 
@@ -181,25 +181,24 @@ done:
 const cli_command cli_command_verify = {
     .name = "verify",
     .usage = "MODEL RESULT... [options]",
-    .summary = "check results by independent means",
+    .summary = "check results independently",
     .description =
-        "Checks what results claim about the model with code that shares nothing with the code "
-        "that "
-        "made them; signs are exact. The content of a file tells what it is. Exit status 4 if a "
-        "claim does not hold.\n"
-        "GUARDS.json, of 'starguard guard': every guard is inside, sees as many faces as it says, "
-        "the coverage and the uncovered faces are right, and counts and bounds agree. Faces that "
-        "could be seen, and guards that would do alone, refute claims about candidates; what then "
-        "remains of these is told as not checked.\n"
-        "PIECES.vtk and PIECES.json, of 'starguard decompose', in either order: the tetrahedra are "
-        "positive, conforming and labelled, fill the model and do not overlap; every piece is "
-        "connected, has the size and the contacts that are claimed, and is star-shaped about its "
-        "guard where it is called so. MODEL may then be a tetrahedral mesh. PIECES.vtk alone is "
-        "checked without its guards.",
+        "Checks the claims of result files with independent geometry and exact signs; "
+        "only the readers of the model and of GUARDS.json are shared with the solver. "
+        "Files are recognized by content. Exit status 4 if a claim is false.\n"
+        "GUARDS.json of 'starguard guard': every guard is inside and sees as many faces "
+        "as stated; coverage, uncovered faces, counts and bounds are right. Claims about "
+        "candidates are refuted by counterexamples; otherwise they are listed as not "
+        "checked.\n"
+        "PIECES.vtk and PIECES.json of 'starguard decompose', in any order: tetrahedra "
+        "are positive, conforming and labelled, fill the model and do not overlap; each "
+        "piece is connected, has the stated size and contacts, and is star-shaped about "
+        "its guard where this is stated. MODEL may also be a tetrahedral mesh. For "
+        "PIECES.vtk alone, guards are not checked.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
                 "# several at once, for a script\n"
-                "starguard verify model.off ilp.json greedy.json --quiet && echo all good\n"
+                "starguard verify model.off ilp.json greedy.json --quiet && echo verified\n"
                 "# a star decomposition\n"
                 "starguard verify model.off pieces.json pieces.vtk",
     CLI_OPERANDS(2, SIZE_MAX),

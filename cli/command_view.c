@@ -12,10 +12,10 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_OUTPUT_OPTION("PAGE.html", "Where to write the page; '-' writes to standard output."),
+    CLI_OUTPUT_OPTION("PAGE.html", "Page; '-' writes to standard output."),
     CLI_INPUT_OPTION("model", model, "FILE",
-                     "The model that results are about. By default the one that they name, from "
-                     "where you stand or beside the result."),
+                     "Model of the results. Default: the model that they name, relative to the "
+                     "current folder or to the result."),
     CLI_DISTANCE_OPTION,
 };
 
@@ -73,21 +73,21 @@ done:
 const cli_command cli_command_view = {
     .name = "view",
     .usage = "RESULT... [--model FILE] -o PAGE.html [options]",
-    .summary = "a page to look at results, for any browser",
+    .summary = "write an interactive page of results for any browser",
     .description =
-        "Writes one HTML file with everything in it; it opens in any browser, without network. The "
-        "content of each file tells what it is, and any mix will do, one of each kind:\n"
-        "GUARDS.json: guards in the half transparent model, what each sees when it is clicked, and "
-        "the coverage curve. The model is the one that the file names.\n"
-        "PIECES.vtk and PIECES.json: pieces in colours of their own, which can be moved apart.\n"
-        "A skeleton (.obj, .cg, .vtk of 'starguard skeleton'), with its radii.\n"
-        "A morph (the folder of 'starguard morph', or its .glb), with a slider for the time.\n"
-        "A database, or a table of 'starguard db matrix': distances, names and small pictures.\n"
-        "A model by itself is shown as well. In the page, press ? for the keys.",
+        "Writes one self-contained HTML file; it needs no network. Inputs are recognized by "
+        "content, at most one of each kind:\n"
+        "GUARDS.json: guards in the translucent model; click one to see what it covers; the "
+        "coverage curve. The file names its model.\n"
+        "PIECES.vtk and PIECES.json: coloured pieces, which can be exploded.\n"
+        "A skeleton (.obj, .cg, .vtk of 'starguard skeleton') with its radii.\n"
+        "A morph (the folder of 'starguard morph', or its .glb) with a time slider.\n"
+        "A database, or a table of 'starguard db matrix': distances, names and thumbnails.\n"
+        "A model alone. In the page, press ? for the keys.",
     .examples = "# guards and what they see\n"
                 "starguard guard horse.off -o guards.json\n"
                 "starguard view guards.json -o guards.html\n"
-                "# guards and star-shaped pieces of a model, and its skeleton, in one page\n"
+                "# guards, star-shaped pieces and skeleton of a model in one page\n"
                 "starguard view guards.json pieces.vtk pieces.json skeleton.vtk -o horse.html\n"
                 "# a morph; the shapes of a database\n"
                 "starguard view frames -o morph.html\n"

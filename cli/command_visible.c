@@ -17,20 +17,15 @@ typedef struct values {
 } values;
 
 static const cli_option options[] = {
-    CLI_POINTS_OPTION(
-        "from", from, "X,Y,Z",
-        "A point to look from, in coordinates of the model. May be given many times."),
+    CLI_POINTS_OPTION("from", from, "X,Y,Z", "Viewpoint, in model coordinates. Repeatable."),
     CLI_BOXES_OPTION("box", boxes, "X0,Y0,Z0,X1,Y1,Z1",
-                     "Instead of points: a box to look from, by two opposite corners. Told is what "
-                     "is potentially visible: what is left out is hidden from every point of the "
-                     "box inside the solid, for certain; some of what is told may be hidden as "
-                     "well, the less the smaller the box. May be given many times."),
+                     "View box, by two opposite corners, instead of points. Reports the "
+                     "potentially visible set: everything else is proven hidden from all interior "
+                     "points of the box. The smaller the box, the tighter the set. Repeatable."),
     CLI_OUTPUT_OPTION(
         "FILE.ply",
-        "Write the model with each face in the colour of the first point or box that sees it; "
-        "faces "
-        "that none sees are grey. With --target vertices a face counts whose vertices one "
-        "point sees."),
+        "Model with each face in the colour of the first point or box that sees it; unseen faces "
+        "are grey. With --target vertices, a face counts if one point sees all its vertices."),
 };
 
 /* Everything about one call. */
@@ -141,12 +136,11 @@ static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
     if (v->from.count == 0 && v->boxes.count == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "name a point to look from: --from X,Y,Z, or a box: --box "
-                        "X0,Y0,Z0,X1,Y1,Z1");
+                        "no viewpoint; add --from X,Y,Z or --box X0,Y0,Z0,X1,Y1,Z1");
     if (v->from.count > 0 && v->boxes.count > 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "--from and --box do not go together: what points see is exact, what boxes "
-                        "see is not");
+                        "--from and --box exclude each other: visibility from points is exact, "
+                        "from boxes conservative");
     return cli_announce_with_extension(session, "-o", v->output, ".ply");
 }
 
@@ -194,21 +188,20 @@ done:
 const cli_command cli_command_visible = {
     .name = "visible",
     .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1 [-o FILE.ply] [...]",
-    .summary = "which faces do points inside a solid see, or boxes in it",
+    .summary = "compute which faces are visible from points or boxes",
     .description =
-        "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is seen "
-        "when the segment from the point to it meets the boundary nowhere else; a face, when its "
-        "three vertices are and the point lies on its inner side. A point that is not inside sees "
-        "nothing. --json lists the faces, counted from 0 in the order of the file. From a box it "
-        "tells what is potentially visible: all that any point of the box inside the solid sees, "
-        "and perhaps more.",
-    .examples = "# how much of the room does one see from here\n"
+        "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is "
+        "visible if the segment from the point to it meets the boundary nowhere else; a face, if "
+        "its three vertices are and the point is on its inner side. A point that is not inside "
+        "sees nothing. --json lists the face indices (from 0, in file order). From a box, the "
+        "result is conservative: all that any interior point of the box sees, and possibly more.",
+    .examples = "# how much of the room is visible from here\n"
                 "starguard visible room.off --from 1,1.7,2\n"
-                "# two points, and a picture for a mesh viewer\n"
+                "# two points, and a coloured model for a mesh viewer\n"
                 "starguard visible room.off --from 1,1.7,2 --from 6,1.7,2 -o seen.ply\n"
-                "# all that anybody can see from this part of the room\n"
+                "# all that is visible from any point of a box\n"
                 "starguard visible room.off --box 0.5,0.5,0.5,1.5,1.5,1.5\n"
-                "# indices of the faces that are seen wholly, within 5 units\n"
+                "# indices of the faces that are entirely visible, within 5 units\n"
                 "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),

@@ -72,7 +72,7 @@ void completion_fish(FILE *stream) {
           stream);
     fish_table(stream, "", cli_commands);
     fish_begin(stream, "--next");
-    fish_word(stream, "help", "all about a command");
+    fish_word(stream, "help", "explain a command");
     fish_table(stream, "help", cli_commands);
     completion_visit_commands(stream, cli_commands, fish_command);
 }

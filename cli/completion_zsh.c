@@ -73,7 +73,7 @@ void completion_zsh(FILE *stream) {
           "        commands=(\n",
           stream);
     zsh_summaries(stream, cli_commands);
-    fputs("            'help:all about a command'\n"
+    fputs("            'help:explain a command'\n"
           "        )\n"
           "        _describe command commands\n"
           "        return\n"

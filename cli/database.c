@@ -48,7 +48,7 @@ starg_status cli_table_make(cli_session *session, const char *file, int kind, cl
     CLI_TRY(starg_database_signatures(t->database, (starg_signature_kind)kind, &t->models));
     if (t->models->count == 0) {
         status = cli_fail(session, STARG_ERROR_FORMAT,
-                          "'%s' has no models; 'starguard db add' adds some", file);
+                          "'%s' has no models; add some with 'starguard db add'", file);
         goto done;
     }
     CLI_TRY(make_distances(session, t));

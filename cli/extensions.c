@@ -38,13 +38,13 @@ starg_status cli_format_by_extension(cli_session *session, const char *name,
         }
     list_extensions(known, count, list, sizeof list);
     return cli_fail(session, STARG_ERROR_ARGUMENT,
-                    "'%.200s' does not tell a format; end the name with %s", name, list);
+                    "'%.200s' has no known format; use a name that ends in %s", name, list);
 }
 
 starg_status cli_announce_with_extension(cli_session *session, const char *option, const char *name,
                                          const char *extension) {
     if (name != NULL && strcmp(name, "-") != 0 && !cli_has_extension(name, extension))
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "%s writes a file that ends in %s, not '%.200s'", option, extension, name);
+                        "%s needs a name that ends in %s, not '%.200s'", option, extension, name);
     return cli_announce(session, name);
 }

@@ -8,26 +8,24 @@
 enum { WIDTH = 79, OPTION_INDENT = 24 };
 
 const char *const cli_about_program =
-    "Places the fewest guards inside a solid that together see its whole boundary (the art "
-    "gallery problem in 3D), with exact visibility and a proven bound on how few could do.";
+    "Places the fewest guards inside a solid that together see its whole boundary (the art gallery "
+    "problem in 3D), with exact visibility and a proven lower bound.";
 const char *const cli_about_files =
-    "A MODEL is a triangle mesh: OFF, OBJ, PLY or STL, known by its content. '-' reads "
-    "standard input, or writes standard output. Coordinates have whatever unit the model "
-    "has; lengths in options are in the same unit. An output file appears whole or not at "
-    "all, and only when the command has done its work.";
+    "A MODEL is a triangle mesh: OFF, OBJ, PLY or STL, recognized by content. '-' is standard "
+    "input or standard output. Lengths in options are in the unit of the model's coordinates. "
+    "Output files are written completely or not at all, and only after the command succeeds.";
 const char *const cli_first_steps =
-    "# a horse of 5,000 vertices, its guards, a picture of them, and the proof\n"
+    "# a horse, its guards, a picture of them, and the check of the result\n"
     "starguard sample horse -o horse.off\n"
     "starguard guard horse.off -o guards.json --picture guards.png\n"
     "starguard verify horse.off guards.json";
 
 const cli_exit_text cli_exit_texts[] = {
     {CLI_EXIT_DONE, "done"},
-    {CLI_EXIT_USAGE, "the command line is wrong"},
-    {CLI_EXIT_INPUT, "an input is missing, unreadable or not usable"},
-    {CLI_EXIT_UNFINISHED,
-     "could not finish: output unwritable, disk full, out of memory, or time over with nothing "
-     "found"},
+    {CLI_EXIT_USAGE, "invalid command line"},
+    {CLI_EXIT_INPUT, "input missing, unreadable or unusable"},
+    {CLI_EXIT_UNFINISHED, "not finished: output unwritable, disk full, out of memory, or time "
+                          "limit reached without a result"},
     {CLI_EXIT_FAILED, "verification failed"},
     {CLI_EXIT_CANCELLED, "cancelled"},
 };
@@ -92,7 +90,8 @@ static void print_commands(FILE *stream, const cli_command *const *table) {
 void cli_help_short(FILE *stream) {
     fprintf(stream, "Usage: starguard COMMAND ... [options]\n\nCommands:\n");
     print_commands(stream, cli_commands);
-    fprintf(stream, "\n'starguard help' tells more, 'starguard help COMMAND' all about one.\n");
+    fprintf(stream, "\n"
+                    "'starguard help' explains more, 'starguard help COMMAND' one command.\n");
 }
 
 /* Lines that begin with '#' say what the next one does. */
@@ -116,8 +115,8 @@ void cli_help_program(FILE *stream) {
     wrap(stream, cli_about_program, 0, 0);
     heading(stream, "Commands");
     print_commands(stream, cli_commands);
-    fprintf(stream, "  %-10s %s\n", "help", "all about a command: starguard help COMMAND");
-    print_options(stream, "Options of every command", NULL);
+    fprintf(stream, "  %-10s %s\n", "help", "explain a command: starguard help COMMAND");
+    print_options(stream, "Common options", NULL);
     heading(stream, "Models and files");
     wrap(stream, cli_about_files, 2, 0);
     heading(stream, "First steps");
@@ -134,7 +133,7 @@ void cli_help_command(FILE *stream, const cli_command *command) {
         print_commands(stream, command->members);
     }
     print_options(stream, "Options", command);
-    print_options(stream, "Options of every command", NULL);
+    print_options(stream, "Common options", NULL);
     heading(stream, "Examples");
     print_examples(stream, command->examples);
 }

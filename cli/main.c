@@ -83,7 +83,7 @@ static bool find_topic(int argc, char **argv, const cli_command **command, int *
 
 static int print_table(int argc) {
     if (argc > 0) {
-        fputs("starguard help --json: takes nothing more\n", stderr);
+        fputs("starguard help --json: takes no further argument\n", stderr);
         return CLI_EXIT_USAGE;
     }
     if (!cli_help_json(stdout)) {

@@ -158,7 +158,7 @@ static void put_exit_status(FILE *stream) {
 }
 
 static void put_common_options(FILE *stream) {
-    put_section(stream, "OPTIONS OF EVERY COMMAND");
+    put_section(stream, "COMMON OPTIONS");
     put_options(stream, NULL);
 }
 
@@ -178,7 +178,10 @@ static void put_program(FILE *stream) {
     put_examples(stream, cli_first_steps);
     put_exit_status(stream);
     put_section(stream, "ENVIRONMENT");
-    fputs(".TP\n\\fBNO_COLOR\\fR\nNo colours, if it is set and not empty.\n", stream);
+    fputs(".TP\n"
+          "\\fBNO_COLOR\\fR\n"
+          "Disables colours if set and not empty.\n",
+          stream);
 }
 
 static void put_command(FILE *stream, const cli_command *command) {

@@ -60,7 +60,7 @@ static starg_status grow_head(cli_session *session, const char *name, size_t *ca
                               input_head *head) {
     if (*capacity > MOST)
         return cli_fail(session, STARG_ERROR_READ,
-                        "'%.200s' is larger than 2 GiB, the most that is read", name);
+                        "'%.200s' is larger than 2 GiB, the limit for input files", name);
     char *more = realloc(head->bytes, 2 * *capacity);
     if (more == NULL)
         return cli_fail_memory(session);

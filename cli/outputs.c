@@ -43,7 +43,7 @@ static cli_file_id id_of(const struct stat *info) {
 
 static bool fail_clash(cli_outputs *outputs, const char *name) {
     outputs->clash = true;
-    return fail(outputs, name, "it is an input of this run as well; name another file");
+    return fail(outputs, name, "it is also an input; choose another file");
 }
 
 /* What a new file would be called with the links in its folder's name followed. */
@@ -76,7 +76,7 @@ static bool inspect(cli_outputs *outputs, cli_output *output) {
     if (!exists && errno != ENOENT)
         return fail(outputs, output->name, strerror(errno));
     if (exists && S_ISDIR(info.st_mode))
-        return fail(outputs, output->name, "it is a directory; name a file in it");
+        return fail(outputs, output->name, "it is a directory; choose a file in it");
     if (exists && access(output->name, W_OK) != 0)
         return fail(outputs, output->name, strerror(errno));
     output->device = exists && !S_ISREG(info.st_mode);
@@ -138,11 +138,11 @@ bool cli_outputs_add(cli_outputs *outputs, const char *name) {
     output->staged = staged_name(base, size, outputs->count);
     outputs->count++;
     if (taken)
-        return fail(outputs, name, "two outputs are this file");
+        return fail(outputs, name, "two outputs have this name");
     if (output->staged == NULL)
         return fail(outputs, name, "out of memory");
     if (name[folder_size(name)] == '\0')
-        return fail(outputs, name, "it is a directory; name a file in it");
+        return fail(outputs, name, "it is a directory; choose a file in it");
     if (!is_writable(base, size))
         return fail(outputs, name, strerror(errno));
     return !is_input(outputs, output) || fail_clash(outputs, name);

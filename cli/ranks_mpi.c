@@ -126,8 +126,7 @@ int cli_ranks_serve(void) {
     if (status == STARG_OK)
         status = starg_database_ranks_serve(context, &ranks);
     if (status != STARG_OK) {
-        fprintf(stderr, "starguard: rank %d gives up: %s\n", ranks.rank,
-                starg_status_string(status));
+        fprintf(stderr, "starguard: rank %d failed: %s\n", ranks.rank, starg_status_string(status));
         MPI_Abort(MPI_COMM_WORLD, CLI_EXIT_UNFINISHED);
     }
     starg_context_free(context);

@@ -16,18 +16,17 @@
 typedef cli_common values;
 
 const cli_option cli_common_options[] = {
-    CLI_COUNT_OPTION("threads", threads, "N", 0, 1024, 0, "0, all that the machine has",
-                     "Threads to use. Results do not depend on it."),
-    CLI_COUNT_OPTION("seed", seed, "N", 0, UINT64_MAX, 1, NULL, "Where random choices come from."),
+    CLI_COUNT_OPTION("threads", threads, "N", 0, 1024, 0, "0, all cores",
+                     "Number of threads. Results do not depend on it."),
+    CLI_COUNT_OPTION("seed", seed, "N", 0, UINT64_MAX, 1, NULL, "Seed for random numbers."),
     CLI_POSITIVE_OPTION("time-limit", time_limit, "S", 1e9, 0, "none",
-                        "Stop after S seconds: a search gives the best that it has found, what has "
-                        "nothing to show by then ends with status 3."),
-    CLI_FLAG_OPTION("quiet", quiet,
-                    "Only warnings and errors: no text, no notices, no progress bar."),
+                        "Stop after S seconds. Searches return their best result; without one, the "
+                        "exit status is 3."),
+    CLI_FLAG_OPTION("quiet", quiet, "Print only warnings and errors."),
     CLI_FLAG_OPTION("json", json,
-                    "One JSON object on standard output and nothing else there (docs/formats.md)."),
-    {CLI_OPTION("help", STARG_FIELD_FLAG, help, NULL, "This text."), .letter = 'h'},
-    CLI_FLAG_OPTION("version", version, "The version."),
+                    "Print one JSON object to standard output instead of text (docs/formats.md)."),
+    {CLI_OPTION("help", STARG_FIELD_FLAG, help, NULL, "Show this help."), .letter = 'h'},
+    CLI_FLAG_OPTION("version", version, "Show the version."),
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
 
@@ -135,11 +134,10 @@ starg_status cli_announce(cli_session *session, const char *name) {
     if (strcmp(name, "-") == 0) {
         if (session->common.json)
             return cli_fail(session, STARG_ERROR_ARGUMENT,
-                            "--json and an output '-' would both write to standard output; name "
-                            "a file");
+                            "--json and output '-' both use standard output; give a file name");
         if (session->stdout_taken)
             return cli_fail(session, STARG_ERROR_ARGUMENT,
-                            "only one output can be '-' (standard output)");
+                            "only one output may be '-' (standard output)");
         session->stdout_taken = true;
         return STARG_OK;
     }
@@ -148,7 +146,7 @@ starg_status cli_announce(cli_session *session, const char *name) {
 
 starg_status cli_announce_needed(cli_session *session, const char *name, const char *form) {
     if (name == NULL)
-        return cli_fail(session, STARG_ERROR_ARGUMENT, "name an output: -o %s", form);
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "no output; add -o %s", form);
     return cli_announce(session, name);
 }
 

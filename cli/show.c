@@ -78,7 +78,7 @@ static kind kind_of(const char *name) {
 
 static starg_status fail_twice(cli_session *session, const char *what, const char *file) {
     return cli_fail(session, STARG_ERROR_ARGUMENT,
-                    "'%.300s' is a second %s; a page shows one of each kind", file, what);
+                    "'%.300s' is a second %s; give at most one of each kind", file, what);
 }
 
 static starg_status take_result(cli_session *session, size_t operand, cli_show *show) {
@@ -90,16 +90,16 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
     starg_page *page = &show->page;
     if (result->guards != NULL) {
         if (page->guards != NULL)
-            return fail_twice(session, "file of guards", file);
+            return fail_twice(session, "guards file", file);
         page->guards = result->guards;
         show->guards_file = file;
     } else if (result->pieces != NULL) {
         if (page->pieces != NULL)
-            return fail_twice(session, "file of pieces", file);
+            return fail_twice(session, "pieces file", file);
         page->pieces = result->pieces;
     } else {
         if (page->report != NULL)
-            return fail_twice(session, "report of pieces", file);
+            return fail_twice(session, "pieces report", file);
         page->report = result->report;
         show->report_file = file;
     }
@@ -137,7 +137,7 @@ static starg_status take_operand(cli_session *session, size_t operand, int dista
     case KIND_DATABASE:
     case KIND_TABLE:
         if (show->shape_count > 0)
-            return fail_twice(session, "table of shapes", file);
+            return fail_twice(session, "shape table", file);
         return found == KIND_TABLE ? cli_show_table(session, file, show)
                                    : cli_show_database(session, file, distance, show);
     }
@@ -215,7 +215,7 @@ static starg_status take_model(cli_session *session, const char *model, cli_show
         status = read_model(session, found, show);
     else if (found == NULL && show->page.guards != NULL)
         status = cli_fail(session, STARG_ERROR_READ,
-                          "the model '%.200s' of '%.200s' is not found; name it with --model FILE",
+                          "model '%.200s' of '%.200s' not found; give it with --model FILE",
                           named != NULL ? named : "-", result);
     free(found);
     return status;
@@ -230,8 +230,8 @@ static starg_status check_model(cli_session *session, const cli_show *show) {
     if (g->vertex_count == vertices && g->face_count == faces)
         return STARG_OK;
     return cli_fail(session, STARG_ERROR_FORMAT,
-                    "'%.200s' is for a model of %zu vertices and %zu faces, but this one has %zu "
-                    "and %zu; name the right one with --model FILE",
+                    "'%.200s' belongs to a model with %zu vertices and %zu faces, but this one has "
+                    "%zu and %zu; give the right one with --model FILE",
                     show->guards_file, g->vertex_count, g->face_count, vertices, faces);
 }
 
@@ -250,8 +250,8 @@ static starg_status see(cli_session *session, cli_show *show) {
     for (size_t i = 0; i < g->count; i++)
         if (starg_bits_count(show->seen, i) != g->seen_faces[i]) {
             cli_warn(session,
-                     "warning: guard %zu sees %zu faces, but '%.200s' says %zu; is this the right "
-                     "model? 'starguard verify' tells more",
+                     "warning: guard %zu sees %zu faces, but '%.200s' says %zu; this may be the "
+                     "wrong model (check with 'starguard verify')",
                      i, starg_bits_count(show->seen, i), show->guards_file, g->seen_faces[i]);
             break;
         }
@@ -308,8 +308,7 @@ starg_status cli_show_read(cli_session *session, const char *model, int distance
     CLI_TRY(take_operands(session, distance, &model, show));
     if (show->page.report != NULL && show->page.pieces == NULL) {
         status = cli_fail(session, STARG_ERROR_READ,
-                          "'%.200s' only reports on a decomposition; name the PIECES.vtk that it "
-                          "belongs to as well",
+                          "'%.200s' is a report without tetrahedra; add its PIECES.vtk",
                           show->report_file);
         goto done;
     }

@@ -52,7 +52,7 @@ static void tell_missing(cli_session *session, const cli_show *show) {
         missing += show->shapes[i].png == NULL;
     if (missing > 0)
         cli_log(session, STARG_LOG_NOTICE,
-                "%zu of %zu models are not where the table says: shown without picture", missing,
+                "%zu of %zu models not found at their stored paths: shown without picture", missing,
                 show->shape_count);
 }
 
@@ -65,7 +65,7 @@ starg_status cli_show_database(cli_session *session, const char *file, int dista
     const starg_database_models *models = show->table.models;
     if (models->count > MOST_SHAPES)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
-                        "'%.200s' has %zu models; a page shows %d at most", file, models->count,
+                        "'%.200s' has %zu models; a page shows at most %d", file, models->count,
                         MOST_SHAPES);
     CLI_TRY(make_room(session, models->count, show));
     for (size_t i = 0; i < models->count; i++) {
@@ -95,7 +95,7 @@ static starg_status reject(const reading *r, const char *what) {
 static starg_status append_name(reading *r, const char *name) {
     cli_show *show = r->show;
     if (show->shape_count == MOST_SHAPES)
-        return reject(r, "more models than a page shows");
+        return reject(r, "too many models for a page");
     char **names = realloc(show->names, (show->shape_count + 1) * sizeof *names);
     if (names == NULL)
         return cli_fail_memory(r->session);
@@ -111,7 +111,7 @@ static starg_status read_names(reading *r, char *line) {
     starg_status status = STARG_OK;
     char *at = line, *field = cli_csv_field(&at);
     if (field == NULL || strcmp(field, "model") != 0)
-        return reject(r, "a table of distances begins with 'model' and the models' names, as "
+        return reject(r, "a distance table must begin with 'model' and the models' names, as "
                          "'starguard db matrix -o' writes it");
     while ((field = cli_csv_field(&at)) != NULL && status == STARG_OK)
         status = append_name(r, field);
@@ -125,14 +125,14 @@ static starg_status read_row(reading *r, char *line, size_t row) {
     size_t count = show->shape_count;
     char *at = line, *field = cli_csv_field(&at);
     if (row >= count || field == NULL || strcmp(field, show->names[row]) != 0)
-        return reject(r, "the models of the lines are not those of the first line");
+        return reject(r, "row names differ from the names in the first line");
     for (size_t k = 0; k < count; k++) {
         field = cli_csv_field(&at);
         double *distance = &show->distances[row * count + k];
         if (field == NULL || !cli_number_real(field, distance) || *distance < 0)
-            return reject(r, "there must be a distance to each model, a number of 0 or more");
+            return reject(r, "each row needs one distance (0 or more) per model");
     }
-    return cli_csv_field(&at) == NULL ? STARG_OK : reject(r, "there are more numbers than models");
+    return cli_csv_field(&at) == NULL ? STARG_OK : reject(r, "more numbers than models");
 }
 
 static starg_status read_lines(reading *r, FILE *stream) {
@@ -155,7 +155,7 @@ static starg_status read_lines(reading *r, FILE *stream) {
     }
     free(line);
     if (status == STARG_OK && (rows == 0 || rows != r->show->shape_count))
-        status = reject(r, "a line for each model must follow");
+        status = reject(r, "one row per model must follow");
     return status;
 }
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A matrix of bits, stored by rows of 64-bit words: what each point sees, and what a cover is
- * chosen from. Bit j of row i is bit j % 64 of word j / 64; the bits behind the last column are
- * zero. */
+/* A bit matrix in rows of 64-bit words: what each point sees, and the input of set cover. Bit j of
+ * row i is bit j % 64 of word j / 64; bits after the last column are zero. */
 #ifndef STARGUARD_BITS_H
 #define STARGUARD_BITS_H
 
@@ -17,7 +16,7 @@ extern "C" {
 
 typedef struct starg_bits starg_bits;
 
-/* Makes a matrix of zeros. Errors: MEMORY. */
+/* Creates a zero matrix. Errors: MEMORY. */
 STARG_API starg_status starg_bits_create(starg_context *context, size_t rows, size_t columns,
                                          starg_bits **out);
 STARG_API void starg_bits_free(starg_bits *bits);
@@ -28,7 +27,7 @@ STARG_API size_t starg_bits_columns(const starg_bits *bits);
 STARG_API size_t starg_bits_words(const starg_bits *bits);
 STARG_API const uint64_t *starg_bits_row(const starg_bits *bits, size_t row);
 STARG_API bool starg_bits_test(const starg_bits *bits, size_t row, size_t column);
-/* Sets one bit; only for a matrix that is still being filled by its maker. */
+/* Sets one bit; only while the creator fills the matrix. */
 STARG_API void starg_bits_set(starg_bits *bits, size_t row, size_t column);
 /* Number of ones in a row. */
 STARG_API size_t starg_bits_count(const starg_bits *bits, size_t row);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is a mesh the boundary of a solid? What is wrong with it, and where. */
+/* Tests whether a mesh bounds a solid, and lists its defects. */
 #ifndef STARGUARD_CHECK_H
 #define STARGUARD_CHECK_H
 
@@ -14,20 +14,21 @@
 extern "C" {
 #endif
 
-/* What can be found. The first five make a mesh unusable as a solid; the others are told. */
+/* Kinds of findings. The first five make a mesh unusable as a solid; the others are only reported.
+ */
 typedef enum starg_finding_kind {
     STARG_FINDING_OPEN_EDGE = 0,          /* an edge of one face                               */
     STARG_FINDING_NONMANIFOLD_EDGE = 1,   /* an edge of three or more faces                    */
     STARG_FINDING_NONMANIFOLD_VERTEX = 2, /* its faces form more than one fan                  */
-    STARG_FINDING_INCONSISTENT_EDGE = 3,  /* its two faces run along it the same way           */
-    STARG_FINDING_REPEATED_CORNER = 4,    /* a face that names a vertex twice                  */
-    STARG_FINDING_INWARD_COMPONENT = 5,   /* a shell that must be turned; told by its first face */
+    STARG_FINDING_INCONSISTENT_EDGE = 3,  /* its two faces traverse it in the same direction */
+    STARG_FINDING_REPEATED_CORNER = 4,    /* a face with a repeated vertex */
+    STARG_FINDING_INWARD_COMPONENT = 5,   /* a shell to be reversed; listed by its first face */
     STARG_FINDING_DEGENERATE_FACE = 6,    /* three different corners on one line: no area      */
     STARG_FINDING_DUPLICATE_FACE = 7,     /* the same three corners as an earlier face         */
     STARG_FINDING_DUPLICATE_VERTEX = 8,   /* at the position of an earlier vertex              */
-    STARG_FINDING_ISOLATED_VERTEX = 9,    /* of no face                                        */
-    STARG_FINDING_SELF_INTERSECTION = 10, /* a pair of faces that pass through one another     */
-    STARG_FINDING_SELF_CONTACT = 11,      /* a pair that touches where it shares no vertex     */
+    STARG_FINDING_ISOLATED_VERTEX = 9,    /* a vertex without faces */
+    STARG_FINDING_SELF_INTERSECTION = 10, /* a pair of intersecting faces */
+    STARG_FINDING_SELF_CONTACT = 11,      /* a pair that touches away from shared vertices */
     STARG_FINDING_KINDS = 12
 } starg_finding_kind;
 
@@ -42,26 +43,26 @@ typedef struct starg_finding {
 typedef struct starg_check {
     size_t vertices, faces, edges;
     size_t components;      /* connected by edges                                           */
-    size_t cavities;        /* shells that bound a hole inside the solid                    */
+    size_t cavities;        /* shells that bound a void inside the solid */
     bool closed;            /* every edge has two faces                                     */
     bool manifold;          /* every edge at most two faces, every vertex one fan           */
-    bool oriented;          /* neighbours agree; turned shells do not matter                */
+    bool oriented;          /* neighbours agree; inward shells are allowed */
     bool embedded;          /* no degenerate face, intersection or contact                  */
     bool usable;            /* closed, manifold, oriented, with faces and positive volume   */
     int64_t genus;          /* sum over components; -1 unless closed and manifold           */
     double area, volume;    /* volume after turning inward shells; 0 unless usable          */
     double diagonal;        /* of the bounding box                                          */
-    size_t one_sided_faces; /* of parts with one side, like a Moebius strip: they bound nothing */
+    size_t one_sided_faces; /* faces of one-sided surfaces such as a Moebius strip */
     starg_finding findings[STARG_FINDING_KINDS];
     uint8_t *face_marks; /* per face: 0, or 1 + the first kind (in enum order) that marks it */
 } starg_check;
 
-/* Examines a mesh. Errors: MEMORY, CANCELLED; a bad mesh is a result, not an error. */
+/* Checks a mesh. Errors: MEMORY, CANCELLED; a defective mesh is a result, not an error. */
 STARG_API starg_status starg_mesh_check(starg_context *context, const starg_mesh *mesh,
                                         starg_check **out);
 STARG_API void starg_check_free(starg_context *context, starg_check *check);
 
-/* A phrase for a kind in the plural, for example "open edges"; static. */
+/* The plural name of a kind, for example "open edges"; static. */
 STARG_API const char *starg_finding_name(starg_finding_kind kind);
 
 #ifdef __cplusplus

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The context: what every call shares (memory, threads, seed, callbacks) and the detail of the
- * last error.
+/* The context shared by all calls (memory, threads, seed, callbacks) and the details of the last
+ * error.
  *
- * Thread rule: one thread at a time may use a context; different contexts are independent.
- * starg_context_cancel is the exception: any thread and any signal handler may call it.
- * Finished objects (meshes, matrices, results) are immutable and may be shared freely. An object
- * must be freed before the context that made it, because it returns its memory there. */
+ * Threads: only one thread at a time may use a context; different contexts are independent.
+ * Exception: starg_context_cancel may be called from any thread and any signal handler. Finished
+ * objects (meshes, matrices, results) are immutable and may be shared freely. Free an object before
+ * the context that created it, because its memory returns there. */
 #ifndef STARGUARD_CONTEXT_H
 #define STARGUARD_CONTEXT_H
 
@@ -37,15 +37,15 @@ typedef enum starg_log_level { STARG_LOG_NOTICE = 0, STARG_LOG_WARNING = 1 } sta
 typedef void starg_log_fn(void *user, starg_log_level level, const char *message);
 
 /* Called on the calling thread while a stage runs. `stage` is a static lower-case name. `fraction`
- * is 0 when the stage begins, 1 when it ends, and ascends in between. Stages nest: what begins
- * inside of a stage ends there, and until then the calls are about it. Returning false cancels:
- * the call returns STARG_ERROR_CANCELLED soon. */
+ * is 0 when the stage begins, increases, and is 1 when it ends. Stages nest: an inner stage ends
+ * before its outer stage continues. Return false to cancel: the call soon returns
+ * STARG_ERROR_CANCELLED. */
 typedef bool starg_progress_fn(void *user, const char *stage, double fraction);
 
 typedef struct starg_context_options {
     starg_allocator allocator; /* all zero: malloc and free                                   */
-    int threads;               /* 0: as many as the machine has; at most 1024                 */
-    uint64_t seed;             /* every random choice comes from it                           */
+    int threads;               /* 0: all cores; at most 1024 */
+    uint64_t seed;             /* of all random numbers */
     starg_log_fn *log;         /* NULL: notices and warnings are dropped                      */
     void *log_user;
     starg_progress_fn *progress; /* NULL: none                                                */
@@ -55,33 +55,33 @@ typedef struct starg_context_options {
 /* Fills `options` with the defaults: malloc, all threads, seed 1, no callbacks. */
 STARG_API void starg_context_options_default(starg_context_options *options);
 
-/* Makes a context. `options` may be NULL for the defaults. *out is NULL on failure.
- * Errors: ARGUMENT (threads below 0 or above 1024, only one memory hook set), MEMORY. */
+/* Creates a context. `options` may be NULL for the defaults. *out is NULL on failure. Errors:
+ * ARGUMENT (threads below 0 or above 1024, only one memory hook set), MEMORY. */
 STARG_API starg_status starg_context_create(const starg_context_options *options,
                                             starg_context **out);
 
-/* Frees the context; NULL is fine. */
+/* Frees the context; NULL is allowed. */
 STARG_API void starg_context_free(starg_context *context);
 
-/* Frees a text that a function gave; NULL is fine. */
+/* Frees a text returned by a function; NULL is allowed. */
 STARG_API void starg_text_free(starg_context *context, char *text);
 
-/* Asks the running call to stop, or the next one if none runs. Async-signal-safe. */
+/* Stops the running call, or the next one if none is running. Async-signal-safe. */
 STARG_API void starg_context_cancel(starg_context *context);
 
-/* Forgets an earlier cancellation, so that the context can be used again. */
+/* Clears a cancellation so that the context can be used again. */
 STARG_API void starg_context_reset(starg_context *context);
 
-/* Wall-clock limit for all calls that follow, in seconds from now; 0 or less means none.
- * A search that the limit stops returns the best it has found and says so in its result; what has
- * nothing to show before it is done (a check, a skeleton, a map) returns STARG_ERROR_TIME. */
+/* Wall-clock limit for all following calls, in seconds from now; 0 or less: none. A search that
+ * reaches the limit returns its best result, marked as time-limited; a call without a partial
+ * result (a check, a skeleton, a map) returns STARG_ERROR_TIME. */
 STARG_API void starg_context_set_time_limit(starg_context *context, double seconds);
 
-/* Memory that the context has handed out: bytes at the peak, and blocks not yet returned. */
+/* Memory allocated by the context: peak bytes, and blocks not yet released. */
 STARG_API size_t starg_context_peak_bytes(const starg_context *context);
 STARG_API size_t starg_context_live_blocks(const starg_context *context);
 
-/* What the indices of an error count. */
+/* The kind of element that indices of an error refer to. */
 typedef enum starg_element {
     STARG_ELEMENT_NONE = 0,
     STARG_ELEMENT_VERTEX = 1,
@@ -96,7 +96,7 @@ typedef enum starg_element {
 
 enum { STARG_ERROR_INDICES = 8 };
 
-/* Detail of the last failed call on a context. */
+/* Details of the last failed call on a context. */
 typedef struct starg_error {
     starg_status status;
     const char *stage;   /* static lower-case name of the part that failed */
@@ -106,8 +106,8 @@ typedef struct starg_error {
     uint64_t indices[STARG_ERROR_INDICES];
 } starg_error;
 
-/* The detail of the last failure; status is STARG_OK if none has happened yet.
- * Owned by the context and valid until its next call. */
+/* Details of the last failure; status is STARG_OK if there was none. Owned by the context and valid
+ * until its next call. */
 STARG_API const starg_error *starg_context_error(const starg_context *context);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Star decomposition: cuts a solid into few pieces, each wholly visible from its guard. */
+/* Star decomposition: cuts a solid into few pieces, each entirely visible from its guard. */
 #ifndef STARGUARD_DECOMPOSE_H
 #define STARGUARD_DECOMPOSE_H
 
@@ -18,16 +18,16 @@ extern "C" {
 #endif
 
 typedef enum starg_decompose_mode {
-    STARG_DECOMPOSE_STRICT = 0, /* every piece is proven to be star-shaped          */
+    STARG_DECOMPOSE_STRICT = 0, /* every piece is proven star-shaped */
     STARG_DECOMPOSE_PAPER = 1   /* section 4 of [YL11]: pieces are nearly star-shaped */
 } starg_decompose_mode;
 
-/* One piece. Its guard is strictly inside its kernel whenever `star` is true: strictly on the inner
- * side of each face of the piece's boundary, which winds around the guard once (both exact). */
+/* One piece. If `star` is true, its guard is strictly inside its kernel, by exact tests: strictly
+ * on the inner side of each boundary face, and the boundary winds around it once. */
 typedef struct starg_piece {
     double guard[3];
-    double radius; /* distance of the guard to the nearest plane of a boundary face, negative where
-                      it is behind that plane; rounded */
+    double radius; /* distance from the guard to the nearest plane of a boundary face, negative
+                      behind it; rounded */
     size_t tetrahedra;
     double volume;
     bool star;
@@ -39,93 +39,90 @@ typedef struct starg_piece_contact {
     double area;
 } starg_piece_contact;
 
-/* A solid in pieces. Every tetrahedron belongs to one piece, none is empty. */
+/* A partitioned solid. Every tetrahedron belongs to one piece; no piece is empty. */
 typedef struct starg_decomposition {
-    char *file; /* the model's path in the report that was read; else NULL */
+    char *file; /* the model's path if read from a report; else NULL */
     starg_decompose_mode mode;
-    /* Size of the model that was cut: a surface (no tetrahedra) or a tetrahedral mesh (no faces).
-     */
+    /* Size of the model: a surface (no tetrahedra) or a tetrahedral mesh (no faces). */
     size_t model_vertices, model_faces, model_tetrahedra;
-    starg_tetra_report tetra; /* how the model was filled; given tetrahedra keep the surface. Of
-                                 what was read: whether it was kept, and distances */
+    starg_tetra_report tetra; /* how the model was filled; given tetrahedra preserve the surface. If
+                                 read from files: only whether it was preserved, and distances */
     starg_tetmesh *mesh;
     size_t tetrahedra; /* of the mesh */
     int32_t *labels;   /* one per tetrahedron: its piece */
     size_t piece_count;
     starg_piece *pieces;
     size_t contact_count;
-    starg_piece_contact *contacts; /* ascending; the guarding graph's edges */
-    size_t strictly_star;          /* pieces that are star-shaped, proven */
-    double visible_vertices; /* fraction of the vertices of tetrahedra that the guard of each piece
-                                that they belong to sees (counted once per piece) */
-    double flattest; /* least height over longest edge of a tetrahedron (0.816: the regular one) */
-    double flattest_given; /* the same for the tetrahedra to begin with */
-    bool time_limited;     /* the time limit cut the search short: another run may differ */
+    starg_piece_contact *contacts; /* ascending; the edges of the guarding graph */
+    size_t strictly_star;          /* number of pieces proven star-shaped */
+    double visible_vertices; /* fraction of tetrahedron vertices visible from the guard of their
+                                piece (counted once per piece) */
+    double
+        flattest; /* smallest ratio of height to longest edge of a tetrahedron (regular: 0.816) */
+    double flattest_given; /* the same for the initial tetrahedra */
+    bool time_limited;     /* the time limit stopped the search: another run may differ */
 } starg_decomposition;
 
-/* A density of tetrahedra that leaves the choice to the mode: few for STRICT, which makes its own
- * in the end, and that of [YL11] for PAPER. */
+/* Default density of tetrahedra: low for STRICT, which remeshes the result, and that of [YL11] for
+ * PAPER. */
 #define STARG_DECOMPOSE_DENSITY (-1.0)
 
 typedef struct starg_decompose_options {
     starg_decompose_mode mode;
-    starg_tetra_options tetra; /* how tetrahedra are made */
-    /* STRICT: the search ends when there are no more than that. PAPER: no more than that, at the
-     * cost of vertices that their guards do not see (but one for each part of the model).
-     * 0: as few as can be found. */
+    starg_tetra_options tetra; /* how to tetrahedralize */
+    /* STRICT: stop the search at this number of pieces. PAPER: at most this number, at the cost of
+     * visibility (but one for each component). 0: as few as possible. */
     size_t max_pieces;
-    const double *guards; /* guard_count x 3, or NULL. PAPER: to grow from; NULL: those of
-                             starg_guard. STRICT: points that are tried as guards first */
+    const double *guards; /* guard_count x 3, or NULL. PAPER: seeds of the pieces; NULL: those of
+                             starg_guard. STRICT: tried as guards first */
     size_t guard_count;
-    /* STRICT: trials after which the search ends. 0: a fixed amount of work, the same on every
-     * machine and at any number of threads; no bound where the context has a time limit */
+    /* STRICT: number of trials of the search. 0: a fixed amount of work, the same on every machine
+     * and for any number of threads; unlimited if the context has a time limit */
     uint64_t effort;
-    /* starg_decompose_open_mesh: fill the surface even where what it winds around is far from it */
+    /* starg_decompose_open_mesh: fill the surface even if the filled volume is far from it */
     bool fill;
 } starg_decompose_options;
 
-/* STRICT, tetrahedra as they come, as few pieces as can be found. */
+/* STRICT, default tetrahedra, as few pieces as possible. */
 STARG_API void starg_decompose_options_default(starg_decompose_options *options);
 
-/* What each option is called, may hold and means. */
+/* Names, ranges and descriptions of the options. */
 STARG_API const starg_fields *starg_decompose_options_fields(void);
 
-/* Cuts a solid; its tetrahedra are made as the options say. The search stops at the time limit of
- * the context with the best that it has. `options` may be NULL.
- * Errors: ARGUMENT, SOLVER (no tetrahedra could be made), MEMORY, CANCELLED, TIME (with nothing
- * valid yet). */
+/* Cuts a solid after tetrahedralizing it. At the context's time limit the search returns its best
+ * result. `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization failed), MEMORY,
+ * CANCELLED, TIME (no valid result yet). */
 STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out);
 
-/* Cuts what a tetrahedral mesh fills. STRICT gives tetrahedra of its own in return, whose boundary
- * is that of the mesh, possibly subdivided; PAPER labels those of the mesh (a copy). Errors: as of
- * starg_decompose, and MESH (STRICT: a tetrahedron so thin that no point is found in it). */
+/* Cuts a tetrahedral mesh. STRICT returns new tetrahedra with the boundary of the mesh, possibly
+ * subdivided; PAPER labels a copy of the mesh. Errors: as for starg_decompose, and MESH (STRICT: a
+ * tetrahedron too thin to contain a point). */
 STARG_API starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
                                                const starg_decompose_options *options,
                                                starg_decomposition **out);
 
-/* How far the surface of what a mesh with holes winds around may be from the mesh, either way, as a
- * fraction of the diagonal of its box, unless `fill` is said. */
+/* Largest distance between a mesh with holes and the boundary of its filled volume, either way, as
+ * a fraction of the diagonal, unless `fill` is set. */
 #define STARG_DECOMPOSE_FILL_MOST 0.2
 
-/* Cuts what a mesh with holes winds around (starg_tetmesh_from_open_mesh). Errors: as of
- * starg_decompose, and MESH, also when that is farther from the mesh than it may be. */
+/* Cuts the volume that fills a mesh with holes (starg_tetmesh_from_open_mesh). Errors: as for
+ * starg_decompose, and MESH, also if the volume is too far from the mesh. */
 STARG_API starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                                  const starg_decompose_options *options,
                                                  starg_decomposition **out);
 STARG_API void starg_decomposition_free(starg_context *context, starg_decomposition *decomposition);
 
-/* The closed outward surface of each piece, one after the other in one mesh, each with vertices of
- * its own, which follow one another likewise: `first_face` receives piece_count + 1 face numbers
- * (free with starg_tetmesh_map_free). Errors: ARGUMENT (more faces than can be numbered), MEMORY.
- */
+/* The closed outward surfaces of all pieces in one mesh, in order, without shared vertices;
+ * `first_face` receives piece_count + 1 face indices (free with starg_tetmesh_map_free). Errors:
+ * ARGUMENT (too many faces), MEMORY. */
 STARG_API starg_status starg_decomposition_surfaces(starg_context *context,
                                                     const starg_decomposition *decomposition,
                                                     starg_mesh **out, uint32_t **first_face);
 
-/* Writes the surfaces of all pieces as OBJ, a group for each: "g piece_0000" and so on. Errors:
- * ARGUMENT, WRITE, MEMORY, CANCELLED. */
+/* Writes the surfaces of all pieces as OBJ, one group each: "g piece_0000", ... Errors: ARGUMENT,
+ * WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_decomposition_write_groups(starg_context *context,
                                                         const starg_decomposition *decomposition,
                                                         const char *path);
@@ -135,19 +132,18 @@ STARG_API starg_status starg_decomposition_write(starg_context *context,
                                                  const starg_decomposition *decomposition,
                                                  const char *path, bool binary);
 
-/* Writes PIECES.json; `model_file` is stored as the model's path, NULL leaves it empty. */
+/* Writes PIECES.json; `model_file` is stored as the model's path and may be NULL. */
 STARG_API starg_status starg_decomposition_write_report(starg_context *context,
                                                         const starg_decomposition *decomposition,
                                                         const char *model_file, const char *path);
 
-/* The same in memory, with one zero byte behind the end. Free with starg_text_free. Errors: MEMORY.
- */
+/* The same in memory, followed by a zero byte. Free with starg_text_free. Errors: MEMORY. */
 STARG_API starg_status starg_decomposition_write_report_memory(
     starg_context *context, const starg_decomposition *decomposition, const char *model_file,
     char **text, size_t *size);
 
-/* Reads both files back: writing the result gives the same bytes. Errors: READ, FORMAT (also where
- * the files are not of one decomposition), MEMORY, CANCELLED, and those of starg_tetmesh_read. */
+/* Reads both files; writing the result gives the same bytes. Errors: READ, FORMAT (also if the
+ * files belong to different decompositions), MEMORY, CANCELLED, and those of starg_tetmesh_read. */
 STARG_API starg_status starg_decomposition_read(starg_context *context, const char *pieces_path,
                                                 const char *report_path, starg_decomposition **out);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The descriptor of a shape by its guards [YL11, section 5.1]: a graph of guards, and from each of
- * them the distances to the boundary in all directions. */
+/* A shape descriptor based on guards [YL11, section 5.1]: a graph of guards with the distances from
+ * each guard to the boundary in all directions. */
 #ifndef STARGUARD_DESCRIPTOR_H
 #define STARGUARD_DESCRIPTOR_H
 
@@ -27,7 +27,7 @@ typedef struct starg_descriptor_guard {
 typedef struct starg_descriptor_edge {
     uint32_t first, second; /* first < second; edges ascend           */
     double area;            /* of the shared faces                    */
-    double gate[3];         /* their centroid: the way between guards */
+    double gate[3];         /* their centroid */
 } starg_descriptor_edge;
 
 enum {
@@ -38,28 +38,27 @@ enum {
 };
 
 typedef struct starg_descriptor {
-    char *file; /* as given to the writer; NULL if there is none */
+    char *file; /* as given to the writer, or NULL */
     size_t model_vertices, model_faces;
     double diagonal;   /* of the model's bounding box             */
-    size_t detail;     /* vertices that the model was brought down to; 0: described as it is */
-    uint64_t effort;   /* trials that the decomposition was given */
-    bool time_limited; /* the time limit cut it short             */
+    size_t detail;     /* vertices after simplification; 0: not simplified */
+    uint64_t effort;   /* trials of the decomposition */
+    bool time_limited; /* the time limit stopped the search */
     size_t guard_count;
     starg_descriptor_guard *guards;
     size_t edge_count;
     starg_descriptor_edge *edges;
     size_t direction_count;
     double *distances; /* guard_count x direction_count: to the first point of the boundary */
-    /* What is seen from points spread evenly over the solid: row k holds quantiles, over the
-     * points, of the k-th quantile of a point's distances to the boundary. Rows and columns ascend.
-     */
+    /* Visibility statistics of points evenly distributed in the solid: row k holds quantiles, over
+     * the points, of the k-th quantile of a point's distances to the boundary. Rows and columns
+     * ascend. */
     double views[STARG_DESCRIPTOR_VIEW][STARG_DESCRIPTOR_SPREAD];
-    /* The smallest eigenvalues behind 0 of the Laplacian of the boundary, times its area,
-     * ascending. */
+    /* The smallest nonzero eigenvalues of the Laplace-Beltrami operator of the boundary, times its
+     * area, ascending. */
     double surface_spectrum[STARG_DESCRIPTOR_EIGENVALUES];
-    /* Wave kernel signature, where the boundary vibrates: row k holds quantiles, over the surface,
-     * of how strong vibrations of about the k-th energy are at a point, 1 on average. Rows ascend.
-     */
+    /* Wave kernel signature of the boundary: row k holds its quantiles over the surface at the k-th
+     * energy, normalized to mean 1. Rows ascend. */
     double wave_kernel[STARG_DESCRIPTOR_ENERGIES][STARG_DESCRIPTOR_SPREAD];
 } starg_descriptor;
 
@@ -71,42 +70,40 @@ enum {
 
 typedef struct starg_descriptor_options {
     size_t direction_count; /* 12 to 65536                                        */
-    uint64_t effort;        /* trials of the strict decomposition, 1 or more: more give fewer
-                               guards, and take longer */
-    size_t detail;          /* vertices: the model is smoothed, brought down to no more than that,
-                               and mended where it meets itself, so that noise and resolution count
-                               little. 0: it is described as it is. Default 3,000 */
+    uint64_t effort; /* trials of the strict decomposition, 1 or more: more trials give fewer guards
+                        and take longer */
+    size_t detail;   /* vertices after smoothing, simplifying and repairing the model, which reduces
+                        the influence of noise and resolution; 0: keep the model. Default 3,000 */
 } starg_descriptor_options;
 
 STARG_API void starg_descriptor_options_default(starg_descriptor_options *options);
 
-/* What each option is called, may hold and means. */
+/* Names, ranges and descriptions of the options. */
 STARG_API const starg_fields *starg_descriptor_options_fields(void);
 
-/* Direction `index` of `count` that cover the sphere evenly: points of a Fibonacci lattice. */
+/* Direction `index` of `count` evenly distributed directions: points of a Fibonacci lattice. */
 STARG_API void starg_descriptor_direction(size_t count, size_t index, double out[3]);
 
-/* Describes a model. A mesh with holes is described as it is, whatever `detail` says, and filled
- * with what it winds around, as starg_decompose does. `options` may be NULL. Errors: ARGUMENT, MESH
- * (encloses nothing), SOLVER, MEMORY, CANCELLED, TIME. */
+/* Describes a model. A mesh with holes is never simplified, and is filled as by
+ * starg_decompose_open_mesh. `options` may be NULL. Errors: ARGUMENT, MESH (encloses nothing),
+ * SOLVER, MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_descriptor_create(starg_context *context, const starg_mesh *mesh,
                                                const starg_descriptor_options *options,
                                                starg_descriptor **out);
 STARG_API void starg_descriptor_free(starg_context *context, starg_descriptor *descriptor);
 
-/* Writes DESCRIPTOR.json (docs/formats.md); `model_file` is stored as the model's path, NULL
- * leaves it empty. "-" is standard output. Errors: WRITE, MEMORY. */
+/* Writes DESCRIPTOR.json (docs/formats.md); `model_file` is stored as the model's path and may be
+ * NULL. "-" is standard output. Errors: WRITE, MEMORY. */
 STARG_API starg_status starg_descriptor_write(starg_context *context,
                                               const starg_descriptor *descriptor,
                                               const char *model_file, const char *path);
-/* The same in memory, with one zero byte behind the end. Free with starg_text_free. Errors: MEMORY.
- */
+/* The same in memory, followed by a zero byte. Free with starg_text_free. Errors: MEMORY. */
 STARG_API starg_status starg_descriptor_write_memory(starg_context *context,
                                                      const starg_descriptor *descriptor,
                                                      const char *model_file, char **text,
                                                      size_t *size);
 
-/* Reads it back. Errors: READ, FORMAT, MEMORY. */
+/* Reads a descriptor. Errors: READ, FORMAT, MEMORY. */
 STARG_API starg_status starg_descriptor_read(starg_context *context, const char *path,
                                              starg_descriptor **out);
 /* The same from memory; `name` is used in messages. */
@@ -114,7 +111,7 @@ STARG_API starg_status starg_descriptor_read_memory(starg_context *context, cons
                                                     size_t size, const char *name,
                                                     starg_descriptor **out);
 
-/* Is it a descriptor that these bytes begin: a JSON object? No model begins like that. */
+/* Whether these bytes may begin a descriptor, that is, a JSON object. No model begins so. */
 STARG_API bool starg_descriptor_recognized(const void *bytes, size_t size);
 
 /* ---- reconstruction ---- */

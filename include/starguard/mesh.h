@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Triangle surface meshes: an immutable indexed face set, and files of it. */
+/* Triangle surface meshes: an immutable indexed face set, with readers and writers. */
 #ifndef STARGUARD_MESH_H
 #define STARGUARD_MESH_H
 
@@ -13,8 +13,8 @@ extern "C" {
 #endif
 
 /* A mesh owns vertex_count x 3 coordinates and face_count x 3 vertex indices. Every coordinate is
- * finite and below 1e100 in magnitude, every index is below vertex_count. Nothing else is
- * promised: whether it bounds a solid is what starg_mesh_check tells. */
+ * finite and below 1e100 in magnitude; every index is below vertex_count. Use starg_mesh_check to
+ * test whether it bounds a solid. */
 typedef struct starg_mesh starg_mesh;
 
 /* Copies the arrays: `vertices` is vertex_count x 3 doubles, `faces` is face_count x 3 indices,
@@ -34,7 +34,7 @@ STARG_API const uint32_t *starg_mesh_faces(const starg_mesh *mesh);
 
 /* Lower and upper corner of the bounding box of all vertices; zeros for an empty mesh. */
 STARG_API void starg_mesh_bounds(const starg_mesh *mesh, double lower[3], double upper[3]);
-/* Sum of the face areas, in squared units of the coordinates. */
+/* Sum of the face areas. */
 STARG_API double starg_mesh_area(const starg_mesh *mesh);
 /* Signed volume by the divergence theorem: positive when faces point outward. */
 STARG_API double starg_mesh_volume(const starg_mesh *mesh);
@@ -49,14 +49,13 @@ typedef enum starg_mesh_format {
     STARG_MESH_STL_BINARY = 6
 } starg_mesh_format;
 
-/* Reads a mesh; path "-" is standard input. The content tells the format, and only if it does not
- * the file extension. Polygons are cut into triangles in place (the faces that result keep the
- * file's order): by the fan about the first corner, or by clipping ears where that fan does not do
- * (then of at most 4,096 corners). STL corners at exactly equal positions become one vertex. Faces
- * with repeated corners are kept. Normals, colours and materials are ignored, and no other file is
- * opened. A file without faces is an error.
- * Errors: READ, FORMAT (with the line of a text or the byte of a binary file), RANGE (with the
- * vertex), MEMORY, CANCELLED. Messages of all but MEMORY and CANCELLED name the file. */
+/* Reads a mesh; path "-" is standard input. The format is recognized by content, else by the file
+ * extension. Polygons are triangulated in place (faces keep the file's order): as a fan about the
+ * first corner, or by ear clipping if that fan is invalid (at most 4,096 corners). STL corners at
+ * exactly equal positions become one vertex. Faces with repeated corners are kept. Normals, colours
+ * and materials are ignored, and no other file is opened. A file without faces is an error. Errors:
+ * READ, FORMAT (with the line of a text or the byte of a binary file), RANGE (with the vertex),
+ * MEMORY, CANCELLED. Messages other than MEMORY and CANCELLED name the file. */
 STARG_API starg_status starg_mesh_read(starg_context *context, const char *path, starg_mesh **out);
 
 /* The same from `size` bytes in memory (NULL if 0); `name` is used in messages and as a format
@@ -64,7 +63,7 @@ STARG_API starg_status starg_mesh_read(starg_context *context, const char *path,
 STARG_API starg_status starg_mesh_read_memory(starg_context *context, const void *bytes,
                                               size_t size, const char *name, starg_mesh **out);
 
-/* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY and OFF keep them. */
+/* Colours for starg_mesh_write: one RGB triple per face, or NULL. Only PLY and OFF store them. */
 typedef struct starg_mesh_write_options {
     starg_mesh_format format;
     const uint8_t *face_colors; /* face_count x 3, or NULL */
@@ -72,11 +71,10 @@ typedef struct starg_mesh_write_options {
 
 STARG_API void starg_mesh_write_options_default(starg_mesh_write_options *options);
 
-/* Writes a mesh; path "-" is standard output, for which a format must be named. A file appears
- * whole or not at all. Reals are written with 17 significant digits (binary STL holds single
- * precision only, by its definition). By name, .ply and .stl become binary. `options` may be NULL.
- * Errors: ARGUMENT (no known file extension), RANGE (a coordinate beyond single precision, binary
- * STL only), WRITE, MEMORY, CANCELLED. */
+/* Writes a mesh; path "-" is standard output and needs a format. The file is written completely or
+ * not at all. Reals have 17 significant digits (binary STL: single precision). By name, .ply and
+ * .stl are binary. `options` may be NULL. Errors: ARGUMENT (unknown file extension), RANGE (a
+ * coordinate exceeds single precision, binary STL only), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_mesh_write(starg_context *context, const starg_mesh *mesh,
                                         const char *path, const starg_mesh_write_options *options);
 

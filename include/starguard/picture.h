@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures of meshes with points in them, drawn by a small software renderer into a PNG. */
+/* Pictures of meshes and points, drawn by a small software renderer. */
 #ifndef STARGUARD_PICTURE_H
 #define STARGUARD_PICTURE_H
 
@@ -16,9 +16,9 @@ extern "C" {
 
 typedef struct starg_picture_options {
     size_t width, height;       /* pixels, 16 to 8192 each                                    */
-    double azimuth, elevation;  /* degrees; where the camera stands as seen from the centre   */
+    double azimuth, elevation;  /* degrees; direction of the camera from the centre */
     int up;                     /* axis that points up: 0, 1 or 2                             */
-    double opacity;             /* of the surface, 0 to 1; 1 hides what is inside             */
+    double opacity;             /* of the surface, 0 to 1 */
     const uint8_t *face_colors; /* face_count x 3 RGB, or NULL for a neutral grey             */
     const double *points;       /* point_count x 3; drawn as shaded balls                     */
     size_t point_count;
@@ -35,28 +35,26 @@ STARG_API void starg_picture_options_default(starg_picture_options *options);
 STARG_API starg_status starg_picture_write(starg_context *context, const starg_mesh *mesh,
                                            const starg_picture_options *options, const char *path);
 
-/* The same into a new block, to be freed with starg_picture_bytes_free. Errors: ARGUMENT, MEMORY,
- * CANCELLED. */
+/* The same in memory; free with starg_picture_bytes_free. Errors: ARGUMENT, MEMORY, CANCELLED. */
 STARG_API starg_status starg_picture_encode(starg_context *context, const starg_mesh *mesh,
                                             const starg_picture_options *options, uint8_t **png,
                                             size_t *size);
 STARG_API void starg_picture_bytes_free(starg_context *context, uint8_t *png);
 
-/* Draws rows x columns meshes, row by row, each as starg_picture_write does, side by side into one
- * PNG of at most 16384 pixels a side. Errors: ARGUMENT, WRITE, MEMORY, CANCELLED. */
+/* Draws rows x columns meshes, row by row, into one PNG of at most 16384 pixels per side. Errors:
+ * ARGUMENT, WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_picture_sheet_write(starg_context *context,
                                                  const starg_mesh *const *meshes, size_t rows,
                                                  size_t columns,
                                                  const starg_picture_options *options,
                                                  const char *path);
 
-/* The i-th of a sequence of colours that are easy to tell apart; used for guards and pieces. */
+/* The i-th of a sequence of distinct colours, used for guards and pieces. */
 STARG_API void starg_distinct_color(size_t index, uint8_t rgb[3]);
 
-/* Draws a square table of distances as a PNG, a cell an entry: black where none is smaller, white
- * where none is larger, grey by rank between them, so that the contrast does not depend on how the
- * distances are spread. Errors: ARGUMENT (over 8192 rows, an entry that is no number), WRITE,
- * MEMORY, CANCELLED. */
+/* Draws a square distance matrix as a PNG, one cell per entry: the smallest is black, the largest
+ * white, and greys follow the rank, so that the contrast does not depend on the distribution.
+ * Errors: ARGUMENT (over 8192 rows, an entry that is not a number), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_matrix_picture_write(starg_context *context, const double *values,
                                                   size_t rows, const char *path);
 
@@ -65,7 +63,7 @@ typedef struct starg_curve {
     const char *name; /* for the legend */
     const double *x, *y;
     size_t count;
-    bool strong; /* drawn thick and black, above the others */
+    bool strong; /* drawn thick and black, on top */
 } starg_curve;
 
 /* Draws curves over axes from 0 to 1 as an SVG. Errors: WRITE, MEMORY. */

@@ -26,17 +26,16 @@ STARG_API const starg_sample_info *starg_sample_at(size_t index);
 
 typedef struct starg_sample_options {
     int pose;            /* 0 to poses - 1                                                  */
-    size_t vertex_count; /* 500 to 1,000,000; met within a few per cent (rigid polyhedra
-                            come in steps of their own)                                     */
+    size_t vertex_count; /* 500 to 1,000,000; approximate (rigid polyhedra have fixed sizes) */
 } starg_sample_options;
 
 /* Pose 0, 5,000 vertices. */
 STARG_API void starg_sample_options_default(starg_sample_options *options);
 
-/* What each option is called, may hold and means. */
+/* Names, ranges and descriptions of the options. */
 STARG_API const starg_fields *starg_sample_options_fields(void);
 
-/* Makes the sample called `name`: a closed, outward, embedded mesh. `options` may be NULL.
+/* Generates the sample `name`: a closed, outward oriented, embedded mesh. `options` may be NULL.
  * Errors: ARGUMENT (unknown name, pose or size out of range), MEMORY, CANCELLED. */
 STARG_API starg_status starg_sample_create(starg_context *context, const char *name,
                                            const starg_sample_options *options, starg_mesh **out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A model with results about it in one file for other programs: guards, pieces, skeleton. */
+/* Exports a model with guards, pieces and skeleton for other programs. */
 #ifndef STARGUARD_SCENE_H
 #define STARGUARD_SCENE_H
 
@@ -14,32 +14,30 @@
 extern "C" {
 #endif
 
-/* What the file holds. Every part may be missing (NULL), not all of them. */
+/* Contents of a scene. Parts may be NULL, but not all. */
 typedef struct starg_scene {
     const starg_mesh *model;
     const starg_guards *guards;
-    const starg_bits
-        *seen; /* with guards and model: a row for each guard, a column for each face */
+    const starg_bits *seen; /* with guards and model: one row per guard, one column per face */
     const starg_pieces_mesh *pieces;
     const starg_pieces_report *report; /* of the pieces */
-    const starg_skeleton *skeleton;    /* positions, edges and radii count; radii may be NULL */
+    const starg_skeleton *skeleton;    /* uses positions, edges and radii; radii may be NULL */
 } starg_scene;
 
 typedef enum starg_scene_format {
     STARG_SCENE_AUTO = 0, /* by name                                                            */
-    STARG_SCENE_GLB = 1,  /* binary glTF 2.0: a named node for each guard and each piece        */
-    STARG_SCENE_VTU = 2,  /* VTK unstructured grid: cells of all kinds, with their parts as data */
+    STARG_SCENE_GLB = 1,  /* binary glTF 2.0: one named node per guard and piece */
+    STARG_SCENE_VTU = 2,  /* VTK unstructured grid with parts as cell data */
     STARG_SCENE_PLY = 3,  /* coloured faces, and edges                                          */
-    STARG_SCENE_OBJ = 4   /* an object for the model, each guard, each piece, the skeleton      */
+    STARG_SCENE_OBJ = 4   /* one object each for model, guards, pieces, skeleton */
 } starg_scene_format;
 
-/* Writes a scene (docs/formats.md); path "-" is standard output, for which a format must be named.
- * A file appears whole or not at all; the same input gives the same bytes. With pieces, whose
- * surfaces hold the model's, the model stands in VTU only. Coordinates are doubles, in GLB single
- * precision about the middle of all.
- * Errors: ARGUMENT (no known file extension; nothing to write; parts that do not fit one another:
- * which), RANGE (GLB: a coordinate beyond single precision), MESH (GLB: over 4 GiB), WRITE, MEMORY,
- * CANCELLED. */
+/* Writes a scene (docs/formats.md); path "-" is standard output and needs a format. The file is
+ * written completely or not at all; the same input gives the same bytes. If there are pieces, whose
+ * surfaces include the model's, only VTU contains the model. Coordinates are doubles; GLB stores
+ * single precision relative to the common centre. Errors: ARGUMENT (unknown file extension; no
+ * content; inconsistent parts), RANGE (GLB: a coordinate exceeds single precision), MESH (GLB: over
+ * 4 GiB), WRITE, MEMORY, CANCELLED. */
 STARG_API starg_status starg_scene_write(starg_context *context, const starg_scene *scene,
                                          const char *path, starg_scene_format format);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Everything. Each header also stands alone. */
+/* Includes all headers. Each header also compiles alone. */
 #ifndef STARGUARD_STARGUARD_H
 #define STARGUARD_STARGUARD_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Independent checks of results: arithmetic and algorithms of their own, slow and simple. */
+/* Independent checks of results with separate, slow and simple arithmetic and algorithms. */
 #ifndef STARGUARD_VERIFY_H
 #define STARGUARD_VERIFY_H
 
@@ -19,7 +19,7 @@ extern "C" {
 
 /* One claim that was checked. */
 typedef struct starg_claim {
-    char text[256]; /* what was checked, and what was found where it does not hold */
+    char text[256]; /* what was checked, and what is wrong if it does not hold */
     bool holds;
 } starg_claim;
 
@@ -36,20 +36,20 @@ typedef struct starg_verdict {
     starg_unchecked *not_checked;
 } starg_verdict;
 
-/* Checks everything that a guards result claims about a mesh and that can be checked without its
- * candidates: counts, every guard strictly inside with its clearance, what each guard sees, the
- * coverage, the uncovered faces, and that bounds and counts are consistent. What the result says of
- * candidates is refuted where points just above unseen faces see them, where fewer guards of the
- * result would do, or where redundancy is far from kept; else it is `not_checked`. The mesh is the
- * model as read (inward shells are turned here as well).
- * Errors: MESH (not closed and oriented), MEMORY, CANCELLED; a claim that fails is no error. */
+/* Checks all claims of a guarding result that do not depend on its candidates: counts, every guard
+ * strictly inside with its clearance, what each guard sees, the coverage, the uncovered faces, and
+ * the consistency of bounds and counts. Claims about candidates are refuted where points just above
+ * uncovered faces see them, where fewer guards of the result suffice, or where redundancy is not
+ * met; otherwise they are listed in `not_checked`. The mesh is the model as read (inward shells are
+ * reversed here as well). Errors: MESH (not closed and oriented), MEMORY, CANCELLED; a false claim
+ * is not an error. */
 STARG_API starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
                                            const starg_guards *guards, starg_verdict **out);
 STARG_API void starg_verdict_free(starg_context *context, starg_verdict *verdict);
 
 /* ---- star decompositions ---- */
 
-/* Labelled tetrahedra as they stand in PIECES.vtk; nothing about them is taken for granted. */
+/* Labelled tetrahedra as read from PIECES.vtk, without any guarantee. */
 typedef struct starg_pieces_mesh {
     size_t vertex_count, count;
     double *vertices;     /* vertex_count x 3           */
@@ -57,7 +57,7 @@ typedef struct starg_pieces_mesh {
     int32_t *labels;      /* count: the piece of each   */
 } starg_pieces_mesh;
 
-/* What PIECES.json says about them. */
+/* The contents of PIECES.json. */
 typedef struct starg_pieces_report {
     char *file; /* the model's path as given; NULL if there is none */
     starg_decompose_mode mode;
@@ -68,16 +68,15 @@ typedef struct starg_pieces_report {
     starg_piece_contact *contacts;
     size_t strictly_star;
     double visible_vertices;
-    bool approximated;    /* the boundary is near the model's surface only; then: */
-    double distance;      /* no point of the boundary is farther from the model's surface ...   */
-    double distance_back; /* ... and no point of the surface from it; infinite when not told    */
-    double flattest;      /* least height over longest edge of a tetrahedron; 0: not told         */
+    bool approximated;    /* the boundary only approximates the model's surface; then: */
+    double distance;      /* largest distance from the boundary to the model's surface */
+    double distance_back; /* and back; infinite if not given */
+    double flattest;      /* least height over longest edge of a tetrahedron; 0: not given */
 } starg_pieces_report;
 
-/* Reads PIECES.vtk with code of its own: a legacy VTK unstructured grid of tetrahedra with the
- * integers `piece` (docs/formats.md), text or binary; `name` is used in messages.
- * Errors: FORMAT (with line or byte, or the tetrahedron), RANGE (with the vertex), MEMORY,
- * CANCELLED. */
+/* Reads PIECES.vtk with a separate reader: a legacy VTK unstructured grid of tetrahedra with the
+ * integers `piece` (docs/formats.md), text or binary; `name` is used in messages. Errors: FORMAT
+ * (with line or byte, or the tetrahedron), RANGE (with the vertex), MEMORY, CANCELLED. */
 STARG_API starg_status starg_pieces_mesh_read_memory(starg_context *context, const void *bytes,
                                                      size_t size, const char *name,
                                                      starg_pieces_mesh **out);
@@ -89,18 +88,18 @@ STARG_API starg_status starg_pieces_report_read_memory(starg_context *context, c
                                                        starg_pieces_report **out);
 STARG_API void starg_pieces_report_free(starg_context *context, starg_pieces_report *report);
 
-/* Checks all that a decomposition claims about a model: tetrahedra positive, conforming and
- * labelled, pieces connected, boundary and volume those of the model, no overlap; and, with a
- * report (NULL: none), its numbers, and for each piece that is called star-shaped the certificate,
- * exactly. What a piece's guard sees is found for all vertices, or for 20,000 drawn at random.
- * The mesh is the model as read (inward shells are turned here as well).
- * Errors: ARGUMENT (an index out of range, more than 2^29 tetrahedra), RANGE, MESH (the model is
- * not closed and oriented), MEMORY, CANCELLED; a claim that fails is no error. */
+/* Checks all claims of a decomposition: tetrahedra are positive, conforming and labelled, pieces
+ * are connected, boundary and volume match the model, nothing overlaps; and, with a report (may be
+ * NULL), its numbers, and for each piece called star-shaped the exact certificate. Visibility from
+ * guards is checked for all vertices, or for a random sample of 20,000. The mesh is the model as
+ * read (inward shells are reversed here as well). Errors: ARGUMENT (an index out of range, more
+ * than 2^29 tetrahedra), RANGE, MESH (the model is not closed and oriented), MEMORY, CANCELLED; a
+ * false claim is not an error. */
 STARG_API starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model,
                                            const starg_pieces_mesh *pieces,
                                            const starg_pieces_report *report, starg_verdict **out);
 
-/* The same where the model is a tetrahedral mesh: against its boundary. */
+/* The same for a tetrahedral model, against its boundary. */
 STARG_API starg_status starg_verify_pieces_of_tetmesh(starg_context *context,
                                                       const starg_tetmesh *model,
                                                       const starg_pieces_mesh *pieces,
@@ -116,7 +115,7 @@ typedef struct starg_result {
     starg_pieces_report *report;
 } starg_result;
 
-/* Reads GUARDS.json, PIECES.vtk or PIECES.json; the content tells which. "-" is standard input.
+/* Reads GUARDS.json, PIECES.vtk or PIECES.json, recognized by content. "-" is standard input.
  * Errors: READ, and those of the readers. */
 STARG_API starg_status starg_result_read(starg_context *context, const char *path,
                                          starg_result **out);

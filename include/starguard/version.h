@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Version of the library and the header that it was compiled with. */
+/* Version of the library and of this header. */
 #ifndef STARGUARD_VERSION_H
 #define STARGUARD_VERSION_H
 
@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-/* "major.minor.patch" of the library that is linked. Static string; any thread. */
+/* "major.minor.patch" of the linked library. Static; any thread. */
 STARG_API const char *starg_version(void);
 
 #ifdef __cplusplus

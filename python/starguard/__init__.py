@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""starguard: the fewest guards inside a solid that see its whole boundary, and star-shaped pieces.
+"""starguard: fewest guards that see the whole boundary of a solid, and star-shaped pieces.
 
     >>> import starguard
     >>> room = starguard.sample("gallery", vertices=1000)
@@ -7,9 +7,9 @@
     >>> starguard.verify(room, guards).passed
     True
 
-A model is a Mesh, the name of a file, a pair (vertices, faces), or an object of trimesh, meshio or
-PyVista. Arrays are NumPy's: vertices (n, 3) float64, faces (m, 3) of any integer type. Those that
-come back are read-only views of the library's memory, without a copy. Errors are exceptions derived
+A model is a Mesh, a file name, a pair (vertices, faces), or an object of trimesh, meshio or
+PyVista. Arrays are NumPy arrays: vertices (n, 3) float64, faces (m, 3) of any integer type.
+Returned arrays are read-only views of the library's memory, without a copy. Errors are exceptions derived
 from `Error`. Slow calls take `threads`, `seed`, `time_limit` and `progress`; Ctrl-C interrupts them.
 """
 from ._library import version as __version__

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays to the library and back, copied only where types differ."""
+"""Conversion of arrays, copied only if types differ."""
 from __future__ import annotations
 
 import os
@@ -16,7 +16,7 @@ _MOST_INDEX = 2**32 - 1
 
 
 def reals(value: ArrayLike, columns: int, what: str) -> Array:
-    """Rows of `columns` doubles; C-contiguous float64 is passed on as it is, all else is copied."""
+    """Rows of `columns` doubles; C-contiguous float64 is passed without a copy."""
     try:
         array = np.ascontiguousarray(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -35,8 +35,8 @@ def points(value: ArrayLike, what: str, columns: int = 3) -> Array:
 
 
 def indices(value: ArrayLike, columns: int, what: str) -> Array:
-    """Rows of `columns` uint32. Contiguous uint32 is passed on as it is, and so is int32, whose bits
-    are the same where nothing is negative; other integers are copied."""
+    """Rows of `columns` uint32. Contiguous uint32 and nonnegative int32 (same bits) are passed
+    without a copy; other integers are copied."""
     array = np.asarray(value)
     if array.size == 0:
         return np.empty((0, columns), np.uint32)
@@ -56,7 +56,7 @@ def whole_numbers(value: ArrayLike, what: str) -> Array:
         return np.ascontiguousarray(array)
     low, high = int(array.min()), int(array.max())
     if low < 0 or high > _MOST_INDEX:
-        raise ArgumentError(f"{what} must lie between 0 and {_MOST_INDEX}; there is "
+        raise ArgumentError(f"{what} must be between 0 and {_MOST_INDEX}, not "
                             f"{low if low < 0 else high}")
     if array.dtype == np.int32:
         return np.ascontiguousarray(array).view(np.uint32)
@@ -75,12 +75,12 @@ def colors(value: ArrayLike | None, count: int, what: str) -> Any:
 
 
 def pointer(kind: str, array: Array) -> Any:
-    """A C array that is the memory of `array`, and keeps it alive."""
+    """A C array that shares the memory of `array` and keeps it alive."""
     return ffi.from_buffer(kind, array) if array.size > 0 else ffi.NULL
 
 
 class _Memory:
-    """Memory of the library, as NumPy takes it; arrays keep it alive, and it the owner."""
+    """Library memory for NumPy; arrays keep it alive, and it keeps its owner alive."""
 
     def __init__(self, owner: Any, address: int, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
         self.owner = owner
@@ -89,7 +89,7 @@ class _Memory:
 
 
 def view(owner: Any, block: Any, shape: tuple[int, ...], dtype: Any) -> Array:
-    """A read-only array over memory of the library that `owner` keeps; no copy."""
+    """A read-only view of library memory that `owner` keeps alive."""
     kind = np.dtype(dtype)
     if block == ffi.NULL or 0 in shape:
         empty = np.empty(shape if 0 in shape else (0,) + shape[1:], kind)
@@ -101,7 +101,7 @@ def view(owner: Any, block: Any, shape: tuple[int, ...], dtype: Any) -> Array:
 
 
 def copy(block: Any, shape: tuple[int, ...], dtype: Any) -> Array:
-    """A copy of memory of the library."""
+    """A copy of library memory."""
     return np.array(view(None, block, shape, dtype))
 
 
@@ -124,13 +124,13 @@ def record(kind: str) -> np.dtype[Any]:
 
 
 def records(owner: Any, block: Any, count: int) -> Array:
-    """A read-only structured array over `count` structs of the library; no copy."""
+    """A read-only structured view of `count` structs of the library."""
     return view(owner, block, (count,), record(ffi.typeof(block).item.cname))
 
 
 def path(value: PathLike) -> bytes:
-    """A file name as the library takes it."""
+    """A file name as bytes for the library."""
     name = os.fsencode(value)
     if b"\0" in name:
-        raise ArgumentError("a file name with a zero byte names no file")
+        raise ArgumentError("a file name must not contain a zero byte")
     return name

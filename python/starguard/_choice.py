@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options of C: words that stand for the values of an enum, and fields that the caller has named."""
+"""C options: words for enum values, and fields given by the caller."""
 from __future__ import annotations
 
 from typing import Any, Mapping
@@ -21,7 +21,7 @@ def word_of(value: int, words: Mapping[str, int]) -> str:
 
 
 def give(options: Any, **values: Any) -> None:
-    """Sets those fields of an options struct that the caller has named."""
+    """Sets the fields of an options struct that the caller has given."""
     for name, value in values.items():
         if value is None:
             continue

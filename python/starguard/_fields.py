@@ -9,7 +9,7 @@ T = TypeVar("T")
 
 
 def fill(kind: type[T], struct: Any, /, **given: Any) -> T:
-    """A dataclass whose fields are those of a C struct by name, unless given."""
+    """A dataclass whose fields default to those of a C struct."""
     names = [field.name for field in dataclasses.fields(kind)]
     values = {name: getattr(struct, name) for name in names if name not in given}
     return kind(**values, **given)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shared libraries, which lie beside this module, and its declarations."""
+"""The shared libraries beside this module, and their declarations."""
 from __future__ import annotations
 
 import glob
@@ -17,12 +17,12 @@ def _open(name: str) -> Any:
     return ffi.dlopen(path)
 
 
-_base: Any = _open("libstarguard")  # first: the loader takes it for what the other one needs
-lib: Any = _open("libstarguard-shapes")  # whose functions are found here as well
+_base: Any = _open("libstarguard")  # first, because the other one needs it
+lib: Any = _open("libstarguard-shapes")  # its functions are found here as well
 
 
 def text(pointer: Any) -> str:
-    """A C string; "" for NULL. Paths need not be UTF-8, and come back as os.fsencode takes them."""
+    """A C string; "" for NULL. Paths need not be UTF-8; os.fsencode restores them."""
     return "" if pointer == ffi.NULL else os.fsdecode(ffi.string(pointer))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options of calls: keyword arguments, range checks and docstrings, all of the library's field tables
+"""Keyword arguments, range checks and docstrings of options, derived from the library's field tables
 (starguard/fields.h). A new row there is a new keyword here."""
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Field:
 
     def __init__(self, row: Any) -> None:
         self._row, self.kind = row, row.kind
-        #: That of the command line, with _ for -; a flag without "no".
+        #: As on the command line, with _ for -; flags without "no".
         name = text(row.option) or text(row.key)
         self._cleared = self.kind == lib.STARG_FIELD_FLAG and name.startswith("no-")
         if self._cleared:
@@ -50,7 +50,7 @@ class Field:
         return ArgumentError(f"the {self.name.replace('_', ' ')} is {value!r}; it must be {what}")
 
     def get(self, struct: Any) -> Any:
-        """The value as a caller would give it; None for what no number stands for."""
+        """The value as a caller would give it; None if it has no number."""
         if self.kind == lib.STARG_FIELD_REAL:
             return self._at(struct, "double *")[0]
         if self.kind == lib.STARG_FIELD_TEXT:
@@ -63,13 +63,13 @@ class Field:
         return value if self._row.least <= value <= self._row.most else None
 
     def set(self, struct: Any, value: Any) -> Any:
-        """Sets it; what comes back must live as long as the struct."""
+        """Sets it; the returned object must live as long as the struct."""
         fits, keep = False, None
         try:
             if self.kind == lib.STARG_FIELD_REAL:
                 number = math.nan if isinstance(value, (str, bytes)) else float(value)
                 fits = (lib.starg_field_set_real(self._row, struct, number)
-                        or number == self._row.standard)  # beyond the range, and there already
+                        or number == self._row.standard)  # a default outside the range
             elif self.kind == lib.STARG_FIELD_TEXT:
                 keep = ffi.new("char[]", _arrays.path(value))
                 self._at(struct, "char **")[0] = keep
@@ -88,7 +88,7 @@ class Field:
         return keep
 
     def explain(self) -> str:
-        """A line for a docstring: what it may be, means, and is by default."""
+        """A line for a docstring: values, meaning and default."""
         values = self._text(lib.starg_field_expectation)
         if self.kind == lib.STARG_FIELD_CHOICE:
             values = ", ".join(f'"{word}"' for word in self.words)
@@ -104,15 +104,14 @@ class Field:
 
 
 class Struct:
-    """A filled options struct, and what it points to."""
+    """A filled options struct and the memory it refers to."""
 
     def __init__(self, pointer: Any, keep: list[Any]) -> None:
         self.pointer, self._keep = pointer, keep
 
 
 class Options:
-    """The options of a call, those of a struct. `old` has names of the last version with those that
-    they have now."""
+    """The options of a call. `old` maps names of the last version to current names."""
 
     def __init__(self, kind: str, old: Mapping[str, str] = {}) -> None:
         self._kind, self._old = kind, dict(old)
@@ -128,18 +127,18 @@ class Options:
         for name, value in given.items():
             now = self._old.get(name, name)
             if now not in self.fields:
-                raise TypeError(f"there is no option {name!r}")
+                raise TypeError(f"unknown option {name!r}")
             if now in values:
                 raise TypeError(f"{now!r} is given twice, once by its old name")
             if now != name:
-                warnings.warn(f"{name}= is now called {now}=; the old name goes with the next version",
+                warnings.warn(f"{name}= is now called {now}=; the next version removes the old name",
                               DeprecationWarning, stacklevel=4)
             values[now] = value
         return values
 
     def make(self, given: Mapping[str, Any]) -> Struct:
-        """The struct with its defaults, but for what is given and not None. Called by the public
-        function itself, whose caller a warning is about."""
+        """The struct with defaults and the given values that are not None. Must be called by the
+        public function itself, because warnings refer to its caller."""
         pointer = ffi.new(f"{self._kind} *")
         getattr(lib, f"{self._kind}_default")(pointer)
         keep = [self.fields[name].set(pointer, value)
@@ -183,8 +182,8 @@ def _explained(doc: str | None, fields: list[Field]) -> str:
 
 
 def takes(options: Options) -> Callable[[T], T]:
-    """Of a function with `**options`, or a class: its signature and its docstring name them all, but
-    for those that it has as parameters and explains itself."""
+    """Adds all options to the signature and docstring of a function with `**options`, or a
+    class, except its own parameters."""
 
     def decorate(thing: T) -> T:
         function: Any = thing.__init__ if inspect.isclass(thing) else thing

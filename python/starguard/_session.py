@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calls of the library: a context for each, off the main thread, so that they can be interrupted.
+"""Library calls, each with its own context and off the main thread, so that they can be interrupted.
 
-A call works with a context of its own, so that any thread may call anything at any time. What it
-makes keeps that context alive, because memory returns to where it came from.
+Each call has its own context, so that any thread may call anything at any time. Created objects
+keep their context alive, because their memory returns there.
 
-Python runs signal handlers on the main thread, between its own instructions: not while a C function
-runs there. So the main thread lets a helper thread run the C function (cffi drops the interpreter
-lock for that), waits, and stays open to Ctrl-C. It then asks the library to cancel, waits until the
-call has returned (its arrays must outlive it), and lets the KeyboardInterrupt go on. The progress
-callback runs on the waiting thread too, so that what it raises arrives where the call was made.
+Python runs signal handlers on the main thread between instructions, not while a C function runs
+there. So a helper thread runs the C function (cffi releases the interpreter lock), while the main
+thread waits and can receive Ctrl-C. It then cancels the library call, waits until the call has
+returned (its arrays must outlive it), and re-raises the KeyboardInterrupt. The progress callback also
+runs on the waiting thread, so that its exceptions are raised at the call.
 """
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ from ._types import Progress
 
 logger = logging.getLogger("starguard")
 _LEVELS = {lib.STARG_LOG_NOTICE: logging.INFO, lib.STARG_LOG_WARNING: logging.WARNING}
-_TICK = 0.05  # seconds between looks at signals and reports of progress
+_TICK = 0.05  # seconds between checks for signals and progress
 
 
 @dataclass
 class Defaults:
-    """What calls use that are not told otherwise; `starguard.defaults` is the one in force.
+    """Default arguments of all calls; `starguard.defaults` is the current one.
 
     >>> import starguard
     >>> starguard.defaults
     Defaults(threads=0, seed=1)
     """
 
-    #: Threads of a call; 0: as many as the machine has. Results do not depend on it.
+    #: Threads of a call; 0: all cores. Results do not depend on it.
     threads: int = 0
-    #: Where every random choice comes from.
+    #: Seed for random numbers.
     seed: int = 1
 
 
@@ -47,7 +47,7 @@ defaults = Defaults()
 
 
 class _Listener:
-    """Hears the library's callbacks, on whatever thread they come."""
+    """Receives the library's callbacks, on any thread."""
 
     def __init__(self) -> None:
         self.reports: collections.deque[tuple[str, float]] | None = None
@@ -73,10 +73,9 @@ def _whole(name: str, value: SupportsIndex, most: int) -> int:
     return number
 
 
-# What objects and contexts need when they are freed, by address. It stands here and not in a closure,
-# because an object may die as a part of cyclic garbage, in which the collector clears functions
-# before it frees what would have called them, and in no order. What is here is never garbage, so a
-# context outlives all that was made with it.
+# What objects and contexts need when they are freed, by address. A closure would not work: in cyclic
+# garbage the collector clears functions in any order before it frees the objects that call them. This
+# table is never garbage, so a context outlives all of its objects.
 _owned: dict[int, tuple[Any, Any, bool]] = {}
 _callbacks: dict[int, Any] = {}
 
@@ -102,7 +101,7 @@ def _release_context(context: Any, callbacks: dict[int, Any] = _callbacks, addre
 
 
 class Session:
-    """A context, and how to call functions with it. One thread at a time."""
+    """A context and calls with it. One thread at a time."""
 
     def __init__(self, threads: int | None = None, seed: int | None = None) -> None:
         options = ffi.new("starg_context_options *")
@@ -126,8 +125,8 @@ class Session:
 
     def call(self, function: Any, *arguments: Any, progress: Progress | None = None,
              time_limit: float | None = None, brief: bool = False) -> None:
-        """Calls a function that returns a status; raises what that says. One that is brief is not
-        worth a thread."""
+        """Calls a function that returns a status; raises on failure. Brief calls do not need a
+        thread."""
         lib.starg_context_set_time_limit(self.context, _seconds(time_limit))
         on_main_thread = threading.current_thread() is threading.main_thread()
         if brief or (progress is None and not on_main_thread):
@@ -139,7 +138,7 @@ class Session:
 
     def _call_aside(self, function: Any, arguments: tuple[Any, ...],
                     progress: Progress | None) -> int:
-        """Runs the call on a thread of its own and waits for it, come what may."""
+        """Runs the call on a separate thread and always waits for it."""
         begun, done = threading.Event(), threading.Event()
         outcome: list[Any] = []
         reports: collections.deque[tuple[str, float]] = collections.deque()
@@ -156,7 +155,7 @@ class Session:
         interruption: BaseException | None = None
         try:
             threading.Thread(target=work, name="starguard", daemon=True).start()
-        except BaseException as error:  # a signal, most likely when the thread had begun
+        except BaseException as error:  # a signal, probably after the thread has started
             lib.starg_context_cancel(self.context)
             if not begun.wait(1):
                 raise
@@ -172,7 +171,7 @@ class Session:
             try:
                 lib.starg_context_cancel(self.context)
                 done.wait()
-            except BaseException:  # asked again: it is under way
+            except BaseException:  # checked again: already finishing
                 continue
         self._listener.reports = None
         lib.starg_context_reset(self.context)
@@ -182,7 +181,7 @@ class Session:
             try:
                 raise interruption
             finally:
-                del interruption, outcome  # which would hold this frame, and it them
+                del interruption, outcome  # break the reference cycle with this frame
         return int(outcome[0])
 
     def _deliver(self, reports: collections.deque[tuple[str, float]],
@@ -197,17 +196,17 @@ class Session:
     def make(self, kind: str, free: Any, function: Any, *arguments: Any, shared: bool = False,
              progress: Progress | None = None, time_limit: float | None = None,
              brief: bool = False) -> Any:
-        """Calls a function whose last parameter receives a new `kind`, and owns what comes."""
+        """Calls a function whose last parameter receives a new `kind`, and owns the result."""
         out = ffi.new(f"{kind} **")
         try:
             self.call(function, *arguments, out, progress=progress, time_limit=time_limit,
                       brief=brief)
-        finally:  # a call that was interrupted may have finished all the same
+        finally:  # an interrupted call may still have finished
             handle = self.own(out[0], free, shared) if out[0] else None
         return handle
 
     def own(self, pointer: Any, free: Any, shared: bool = False) -> Any:
-        """A handle that frees its object in the end; `shared`: with the context as first argument."""
+        """A handle that frees its object; `shared`: with the context as first argument."""
         _owned[_address(pointer)] = free, self.context, shared
         return ffi.gc(pointer, _release)
 

@@ -7,10 +7,10 @@ from typing import Any, Callable, Optional, Union
 
 from numpy.typing import NDArray
 
-#: A NumPy array; what it holds stands beside it.
+#: A NumPy array; its contents are documented beside it.
 Array = NDArray[Any]
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 
-#: Takes the name of a stage and its done fraction; returning False cancels the call.
+#: Receives the name of a stage and its completed fraction; return False to cancel the call.
 Progress = Callable[[str, float], Optional[bool]]

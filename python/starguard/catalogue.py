@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Procedural solids to try things with."""
+"""Procedural sample solids."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class SampleInfo:
 
     name: str
     description: str
-    #: 1 for rigid solids; poses of one sample have the same faces.
+    #: 1 for rigid solids; all poses of a sample have the same faces.
     poses: int
 
 
@@ -42,7 +42,7 @@ def samples() -> list[SampleInfo]:
 
 @takes(_OPTIONS)
 def sample(name: str, *, progress: Progress | None = None, **options: Unpack[SampleOptions]) -> Mesh:
-    """Makes the sample of that name: a closed, outward, embedded mesh.
+    """Generates a sample: a closed, outward oriented, embedded mesh.
 
     >>> import starguard
     >>> starguard.sample("dog", pose=2, vertices=1000)

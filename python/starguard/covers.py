@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Set cover on bit rows: the fewest rows whose union holds every column, with a proven bound."""
+"""Set cover on bit rows: the fewest rows whose union contains every column, with a proven bound."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -22,9 +22,9 @@ _METHODS = {"greedy": lib.STARG_COVER_GREEDY, "ilp": lib.STARG_COVER_ILP, "lp": 
 
 @dataclass(frozen=True, eq=False)
 class Cover:
-    """A cover, and what is proven about it."""
+    """A cover and its proven bounds."""
 
-    #: The chosen rows, the one that adds most first. No copy.
+    #: The chosen rows, largest gain first. No copy.
     rows: Array
     weight: int
     #: No choice of as many rows covers more than this.
@@ -35,7 +35,7 @@ class Cover:
     target_reached: bool
     time_limited: bool
     nodes: int
-    #: Of the columns, where they were asked for; else None. No copy.
+    #: Prices of the columns if requested, else None. No copy.
     prices: Array | None
     _handle: Any = field(repr=False)
 
@@ -45,11 +45,11 @@ def cover(matrix: Bits | ArrayLike, *, method: str | None = None, weights: Array
           given: ArrayLike | None = None, max_nodes: int | None = None, prices: bool = False,
           threads: int | None = None, time_limit: float | None = None,
           progress: Progress | None = None) -> Cover:
-    """The fewest rows that hold every column which any row holds.
+    """Finds the fewest rows that contain every column of any row.
 
-    `method` is "ilp", "lp" or "greedy". `weights` (whole numbers) count columns, `target` is the
-    weight to reach; every column is held `redundancy` times as far as can be; `max_rows` asks for
-    the most weight of so many rows; the rows `given` are in the cover in any case.
+    `method` is "ilp", "lp" or "greedy". `weights` (whole numbers) are column weights, `target` is
+    the weight to cover; every column is covered `redundancy` times if possible; `max_rows` maximizes
+    the weight of that many rows; the rows `given` are always in the cover.
 
     >>> import starguard
     >>> found = starguard.cover([[1, 1, 0, 0], [0, 1, 1, 0], [0, 0, 1, 1]])

@@ -22,12 +22,12 @@ _OUTCOMES = {"added": lib.STARG_DATABASE_ADDED, "known": lib.STARG_DATABASE_KNOW
 
 @dataclass(frozen=True)
 class Added:
-    """What became of one file."""
+    """The outcome for one file."""
 
     file: str
     #: "added", "known" (the same content is stored) or "refused".
     outcome: str
-    #: The name that the content is stored under, or why it was refused; else "".
+    #: The name of the stored content, or the reason for refusal; else "".
     text: str
 
 
@@ -42,14 +42,14 @@ class StoredModel:
     hash: str
     vertices: int
     faces: int
-    #: Of a query: to what was asked for.
+    #: Distance to the query.
     distance: float
-    #: Where signatures were asked for.
+    #: If signatures were requested.
     signature: Signature | None
 
 
 class Models(Sequence[StoredModel]):
-    """Models of a database, by file name or by distance."""
+    """Models of a database, sorted by file name or by distance."""
 
     def __init__(self, handle: Any) -> None:
         self._handle = handle
@@ -70,8 +70,8 @@ class Models(Sequence[StoredModel]):
         return f"Models({[m.name for m in self._items]})"
 
     def classes(self, file: PathLike | None = None) -> list[str | None]:
-        """The class of each: its file name up to the last '_', or as lines "MODEL CLASS" of a file
-        say (None for those that no line names)."""
+        """The class of each model: its file name up to the last '_', or from the lines "MODEL CLASS"
+        of a file (None for models not listed)."""
         names, numbers = self._classes(file)
         return [None if n == NO_CLASS else names[n] for n in numbers]
 
@@ -89,8 +89,8 @@ class Models(Sequence[StoredModel]):
 
 
 class Database:
-    """An open database; a context manager that closes it. Several processes may have one file open.
-    A Database may be shared among threads: one of them works with it at a time.
+    """An open database and context manager. Several processes may open the same file. Threads may
+    share a Database; they use it one at a time.
 
     >>> import starguard
     >>> for name in ("l-room", "star"):
@@ -114,13 +114,13 @@ class Database:
     @classmethod
     def create(cls, path: PathLike, *, threads: int | None = None,
                seed: int | None = None) -> Database:
-        """Makes an empty database and opens it. A file that exists is never overwritten."""
+        """Creates an empty database and opens it. Existing files are never overwritten."""
         session = Session()
         session.call(lib.starg_database_create, session.context, _arrays.path(path))
         return cls(path, threads=threads, seed=seed)
 
     def close(self) -> None:
-        """Closes the file; the models that were read stay."""
+        """Closes the file; models already read remain valid."""
         with self._lock:
             if self._handle is not None:
                 ffi.release(self._handle)
@@ -147,8 +147,8 @@ class Database:
                 *arguments, shared=True, progress=progress))
 
     def add(self, files: Iterable[PathLike], *, progress: Progress | None = None) -> list[Added]:
-        """Stores models with their signatures, under their paths as given. A file that cannot be
-        used does not keep the others from being stored."""
+        """Stores models with their signatures under the given paths. Unusable files do not stop the
+        others."""
         names = [_arrays.path(file) for file in files]
         words = [ffi.new("char[]", name) for name in names]
         if not words:
@@ -174,23 +174,23 @@ class Database:
         return self._models(lib.starg_database_list)
 
     def signatures(self, kind: str = "shape-dna") -> Models:
-        """The same with their signatures of a kind."""
+        """All models with signatures of one kind."""
         return self._models(lib.starg_database_signatures, choose("kind", kind, KINDS))
 
     def query(self, wanted: Any, count: int = 10, kind: str = "shape-dna", *,
               progress: Progress | None = None) -> Models:
-        """The models nearest to a model or a Signature, the nearest first."""
+        """The models nearest to a model or a Signature, nearest first."""
         asked = wanted if isinstance(wanted, Signature) else signature(wanted, kind, progress=progress)
         return self._models(lib.starg_database_query, asked._handle, count)
 
     def distances(self, kind: str = "shape-dna") -> Array:
-        """All distances, in the order of `models()`."""
+        """The distance matrix, in the order of `models()`."""
         return self.signatures(kind)._distances()
 
     def evaluate(self, classes: PathLike | None = None,
                  kind: str = "shape-dna") -> tuple[Retrieval, dict[str, Retrieval]]:
-        """How well the database finds models of the same class: over all, and by class. The class
-        is the file name up to the last '_', or as the lines "MODEL CLASS" of a file say."""
+        """Retrieval measures, overall and by class. The class is the file name up to the last '_', or
+        given by the lines "MODEL CLASS" of a file."""
         models = self.signatures(kind)
         names, numbers = models._classes(classes)
         return _measure(models._distances(), numbers, names)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The descriptor of a shape by its guards, and signatures by which shapes compare."""
+"""Shape descriptors based on guards, signatures, and retrieval measures."""
 from __future__ import annotations
 
 import os
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
 _OPTIONS = Options("starg_descriptor_options")
 KINDS = {text(lib.starg_signature_name(kind)): kind for kind in range(lib.STARG_SIGNATURE_KINDS)}
 
-#: What stands for "no class" in `retrieval`.
+#: Marks "no class" in `retrieval`.
 NO_CLASS = 2**32 - 1
 
-_HEAD = 4096  # bytes of a file that tell whether it is a descriptor
+_HEAD = 4096  # bytes that identify a descriptor
 
 
 @dataclass(frozen=True)
 class Reconstruction:
-    """How close the points of a descriptor come to a model, by its diagonal."""
+    """Distances between the points of a descriptor and a model, relative to its diagonal."""
 
     points: int
     samples: int
@@ -48,10 +48,10 @@ class Reconstruction:
 
 @dataclass(frozen=True, eq=False)
 class Descriptor:
-    """A graph of guards, and from each the distances to the boundary in all directions. The arrays
+    """A graph of guards with the distances from each to the boundary in all directions. The arrays
     are read-only views of the library's memory."""
 
-    #: The model's path as given; None if there is none.
+    #: The model's path as given, or None.
     file: str | None
     model_vertices: int
     model_faces: int
@@ -94,7 +94,7 @@ class Descriptor:
 
     @classmethod
     def from_bytes(cls, data: bytes, name: str = "memory") -> Descriptor:
-        """Reads the bytes of a DESCRIPTOR.json; `name` stands in messages."""
+        """Reads the bytes of a DESCRIPTOR.json; `name` is used in messages."""
         session = Session()
         return cls._of(session.make(
             "starg_descriptor", lib.starg_descriptor_free, lib.starg_descriptor_read_memory,
@@ -109,7 +109,7 @@ class Descriptor:
                      _arrays.path(name) if name is not None else ffi.NULL, _arrays.path(path))
 
     def points(self) -> Array:
-        """The boundary as the descriptor knows it: (guards, directions, 3).
+        """The boundary points sampled by the descriptor: (guards, directions, 3).
 
         >>> import starguard
         >>> room = starguard.sample("l-room", vertices=500)
@@ -122,7 +122,7 @@ class Descriptor:
         return _arrays.view(owner, owner, self.distances.shape + (3,), np.float64)
 
     def reconstruct(self, model: Any) -> Reconstruction:
-        """Measures how close these points come to a model."""
+        """Measures the distances between these points and a model."""
         mesh = as_mesh(model)
         session = Session()
         out = ffi.new("starg_reconstruction *")
@@ -131,7 +131,7 @@ class Descriptor:
         return fill(Reconstruction, out)
 
     def signature(self, kind: str = "star") -> Signature:
-        """A signature of a kind that is made of descriptors: "star" or "paper"."""
+        """A signature computed from this descriptor: "star" or "paper"."""
         session = Session()
         return Signature._of(session.make(
             "starg_signature", lib.starg_signature_free, lib.starg_signature_of_descriptor,
@@ -142,7 +142,7 @@ class Descriptor:
 def describe(model: Any, *, threads: int | None = None, seed: int | None = None,
              time_limit: float | None = None, progress: Progress | None = None,
              **options: Unpack[DescribeOptions]) -> Descriptor:
-    """Describes a shape by the guards of a quick star decomposition and what they see.
+    """Computes a descriptor from the guards of a fast star decomposition and what they see.
 
     >>> import starguard
     >>> d = starguard.describe(starguard.sample("l-room", vertices=500))
@@ -158,7 +158,7 @@ def describe(model: Any, *, threads: int | None = None, seed: int | None = None,
 
 
 def directions(count: int = 256) -> Array:
-    """The directions in which the guards of a descriptor look, (count, 3).
+    """The ray directions of the guards of a descriptor, (count, 3).
 
     >>> import numpy, starguard
     >>> bool(numpy.allclose(numpy.linalg.norm(starguard.directions(12), axis=1), 1))
@@ -175,7 +175,7 @@ def directions(count: int = 256) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Signature:
-    """What a model is compared by: numbers of a kind ("d2", "shape-dna", "star" or "paper")."""
+    """A signature of a model: numbers of a kind ("d2", "shape-dna", "star" or "paper")."""
 
     kind: str
     version: int
@@ -192,7 +192,7 @@ class Signature:
 
     @classmethod
     def restore(cls, kind: str, version: int, numbers: ArrayLike) -> Signature:
-        """A signature of numbers that were stored.
+        """Restores a signature from stored numbers.
 
         >>> import starguard
         >>> a = starguard.signature(starguard.sample("star", vertices=500), "d2")
@@ -214,7 +214,7 @@ class Signature:
 def signature(model: Any, kind: str = "star", *, threads: int | None = None,
               seed: int | None = None, time_limit: float | None = None,
               progress: Progress | None = None) -> Signature:
-    """Computes a signature. It does not change when the model is moved, turned, scaled or mirrored.
+    """Computes a signature, invariant to translation, rotation, scaling and reflection.
 
     >>> import starguard
     >>> starguard.signature(starguard.sample("star", vertices=500), "shape-dna").numbers.shape
@@ -231,7 +231,7 @@ def signature(model: Any, kind: str = "star", *, threads: int | None = None,
 def signatures(model: Any, *, threads: int | None = None, seed: int | None = None,
                time_limit: float | None = None,
                progress: Progress | None = None) -> dict[str, Signature]:
-    """The signatures of all kinds, for which a descriptor is made once.
+    """Computes signatures of all kinds with a single descriptor.
 
     >>> import starguard
     >>> sorted(starguard.signatures(starguard.sample("l-room", vertices=500)))
@@ -250,7 +250,7 @@ def signatures(model: Any, *, threads: int | None = None, seed: int | None = Non
 
 
 def current_version(kind: str) -> int:
-    """The version of the signatures of a kind that the library makes.
+    """The current version of a signature kind.
 
     >>> import starguard
     >>> starguard.current_version("d2")
@@ -293,8 +293,8 @@ def is_descriptor(path: PathLike) -> bool:
 def match(a: Comparable, b: Comparable, kind: str = "star", *, threads: int | None = None,
           seed: int | None = None, time_limit: float | None = None,
           progress: Progress | None = None) -> float:
-    """How unlike two shapes are, from 0 on. Each is a model, a Descriptor, a Signature, or a file of
-    a model or a descriptor. `kind` is "star" (what guards see, whatever the pose), "paper",
+    """Computes the distance between two shapes, 0 or more. Each is a model, a Descriptor, a
+    Signature, or a file of a model or a descriptor. `kind` is "star" (independent of pose), "paper",
     "shape-dna" or "d2".
 
     >>> import starguard
@@ -313,7 +313,7 @@ def match(a: Comparable, b: Comparable, kind: str = "star", *, threads: int | No
 
 def distances(signatures: Sequence[Signature], *, threads: int | None = None,
               progress: Progress | None = None) -> Array:
-    """All distances between signatures of one kind: a symmetric matrix.
+    """The symmetric distance matrix of signatures of one kind.
 
     >>> import starguard
     >>> rooms = [starguard.sample("l-room", vertices=n) for n in (500, 700)]
@@ -335,7 +335,7 @@ def distances(signatures: Sequence[Signature], *, threads: int | None = None,
 
 @dataclass(frozen=True, eq=False)
 class Retrieval:
-    """Means over queries, each in [0, 1]; 1 is perfect."""
+    """Retrieval measures averaged over queries, each in [0, 1]; 1 is perfect."""
 
     models: int
     queries: int
@@ -344,13 +344,13 @@ class Retrieval:
     second_tier: float
     e_measure: float
     dcg: float
-    #: Largest precision at or beyond the recalls 1/20, 2/20, ..., 1.
+    #: Interpolated precision at recall 1/20, 2/20, ..., 1.
     precision: Array
 
 
 def retrieval(distances: ArrayLike, classes: Sequence[Any]) -> tuple[Retrieval, dict[Any, Retrieval]]:
-    """How well distances (n, n) find the models of the same class: over all, and by class. A model
-    whose class is None is neither a query nor ranked.
+    """Retrieval measures of a distance matrix (n, n), overall and by class. Models with class None
+    are neither queries nor ranked.
 
     >>> import starguard
     >>> d = [[0, 1, 5, 6], [1, 0, 7, 8], [5, 7, 0, 2], [6, 8, 2, 0]]
@@ -360,7 +360,7 @@ def retrieval(distances: ArrayLike, classes: Sequence[Any]) -> tuple[Retrieval, 
     """
     matrix = np.ascontiguousarray(distances, dtype=np.float64)
     if matrix.ndim != 2 or matrix.shape != (len(classes), len(classes)):
-        raise ArgumentError(f"distances of {len(classes)} models have the shape ({len(classes)}, "
+        raise ArgumentError(f"distances of {len(classes)} models must have the shape ({len(classes)}, "
                             f"{len(classes)}), not {matrix.shape}")
     names = sorted({c for c in classes if c is not None})
     numbers = np.array([NO_CLASS if c is None else names.index(c) for c in classes], np.uint32)

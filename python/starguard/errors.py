@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can go wrong: an exception for each status of the library."""
+"""Exceptions, one per status of the library."""
 from __future__ import annotations
 
 import numpy as np
@@ -26,7 +26,7 @@ class Error(Exception):
     #: What `elements` counts: "vertex", "face", "edge", "line" (of a text file, from 1), "byte",
     #: "guard", "candidate", "tetrahedron", or "none".
     element: str
-    #: Indices of the first elements concerned, at most eight numbers; edges are rows of two.
+    #: Indices of the first affected elements, at most eight numbers; edges are rows of two.
     elements: Array
 
     def __init__(self, message: str, stage: str = "", element: str = "none",
@@ -42,7 +42,7 @@ class ArgumentError(Error, ValueError):
 
 
 class OutOfMemoryError(Error, MemoryError):
-    """Memory is out."""
+    """Out of memory."""
 
 
 class ReadError(Error, OSError):
@@ -66,11 +66,11 @@ class RangeError(Error, ValueError):
 
 
 class SolverError(Error, RuntimeError):
-    """A solver gave up without a usable answer."""
+    """A solver failed without a usable result."""
 
 
 class TimeLimitError(Error, TimeoutError):
-    """The time limit struck before anything was found."""
+    """The time limit was reached without a result."""
 
 
 class CancelledError(Error, RuntimeError):
@@ -92,7 +92,7 @@ _CLASSES: dict[int, type[Error]] = {
 
 
 def of_status(status: int, context: object) -> Error:
-    """The exception for a failed call on a context (NULL: none could be made)."""
+    """The exception for a failed call on a context (NULL: creation failed)."""
     kind = _CLASSES.get(status, Error)
     phrase = text(lib.starg_status_string(status))
     detail = lib.starg_context_error(context) if context else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The main job: few points inside a solid that together see its whole boundary, and a bound."""
+"""Guarding: few points inside a solid that together see its whole boundary, with a proven bound."""
 from __future__ import annotations
 
 import os
@@ -31,59 +31,59 @@ _CANDIDATES = {word: number for number, word in enumerate(_OPTIONS.fields["candi
 
 @dataclass(frozen=True, eq=False)
 class GuardLevel:
-    """The guards of one level of detail, which see all of it that some candidate sees."""
+    """The guards of one level of detail; they cover all that some candidate sees."""
 
     vertex_count: int
     face_count: int
     #: (n, 3), those kept from the coarser level first. No copy.
     positions: Array
-    #: How many were kept.
+    #: Number of guards kept.
     kept: int
 
 
 @dataclass(frozen=True, eq=False)
 class Guards:
-    """A set of guards and what is known about it. Faces are indices into the model. The arrays are
-    read-only views of the library's memory."""
+    """A guarding result. Faces are indices into the model. The arrays are read-only views of the
+    library's memory."""
 
-    #: The model's path as given; None if there is none.
+    #: The model's path as given, or None.
     file: str | None
     vertex_count: int
     face_count: int
     #: (k, 3).
     positions: Array
-    #: (k, 3), where each looks; None without a cone of view.
+    #: Viewing directions, (k, 3); None without a cone.
     directions: Array | None
-    #: Faces that each guard sees, (k,).
+    #: Number of faces visible from each guard, (k,).
     seen_faces: Array
-    #: Level of detail that asked for the guard, (k,); 0: the coarsest.
+    #: Level of detail at which each guard was chosen, (k,); 0: the coarsest.
     levels: Array
-    #: With method "pilp", before refinement; the coarsest first.
+    #: With method "pilp": the levels before refinement, coarsest first.
     level_list: list[GuardLevel]
-    #: Seen fraction of all faces, and of their area.
+    #: Covered fraction of all faces, and of their area.
     coverage_faces: float
     coverage_area: float
-    #: Faces that some candidate sees.
+    #: Number of faces that some candidate sees.
     coverable_faces: int
     #: Faces that no guard sees, ascending.
     uncovered: Array
-    #: The same of vertices, only with target "vertices".
+    #: The same for vertices, only with target "vertices".
     coverage_vertices: float
     coverable_vertices: int
     uncovered_vertices: Array
-    #: Seen fraction of all faces, and of their area, by the first 1, 2, ... guards.
+    #: Fractions of faces and of area covered by the first 1, 2, ... guards.
     curve_faces: Array
     curve_area: Array
     candidate_count: int
     lines_tested: int
-    #: No fewer candidates see as much: proven.
+    #: Proven: no fewer candidates cover as much.
     lower_bound: int
-    #: As many guards as the bound.
+    #: The number of guards equals the bound.
     optimal: bool
-    #: With max_guards: no choice of so many sees a larger fraction of all area.
+    #: With max_guards: upper bound on the area fraction that so many guards cover.
     area_bound: float
     time_limited: bool
-    #: The options of `guard` that were in force.
+    #: The options of `guard` that were used.
     options: dict[str, Any]
     _handle: Any = field(repr=False)
     _owner: Any = field(repr=False)
@@ -97,7 +97,7 @@ class Guards:
 
     @classmethod
     def _of(cls, g: Any, file: PathLike | None = None, owner: Any = None) -> Guards:
-        """Of a handle; or of what another object owns, which is kept then."""
+        """Wraps a handle, or an object that `owner` keeps alive."""
         keeper, count = g if owner is None else owner, g.count
         levels = [
             GuardLevel(v.vertex_count, v.face_count,
@@ -132,15 +132,15 @@ class Guards:
 
     @classmethod
     def from_bytes(cls, data: bytes, name: str = "memory") -> Guards:
-        """Reads the bytes of a GUARDS.json; `name` stands in messages."""
+        """Reads the bytes of a GUARDS.json; `name` is used in messages."""
         session = Session()
         return cls._of(session.make(
             "starg_guards", lib.starg_guards_free, lib.starg_guards_read_memory, session.context,
             ffi.from_buffer(data) if data else ffi.NULL, len(data), _arrays.path(name), shared=True))
 
     def write(self, path: PathLike, model_file: PathLike | None = None) -> None:
-        """Writes GUARDS.json. `model_file` stands in it as the model's path; without it the one
-        that the model was read from, if any."""
+        """Writes GUARDS.json with `model_file` as the model's path. Default: the file that the model
+        was read from, if any."""
         session = Session()
         name = model_file if model_file is not None else self.file
         session.call(lib.starg_guards_write, session.context, self._handle,
@@ -151,11 +151,11 @@ class Guards:
 def guard(model: Any, *, candidates: str | ArrayLike | None = None, threads: int | None = None,
           seed: int | None = None, time_limit: float | None = None,
           progress: Progress | None = None, **options: Unpack[GuardOptions]) -> Guards:
-    """Places guards that together see the whole boundary, as few as can be found.
+    """Places few guards that together see the whole boundary.
 
-    `candidates` tells where guards may stand: on the curve "skeleton" (default), on the "medial"
-    axis, on a lattice in the "interior", or at points of shape (n, 3). Faces that nothing can see
-    are no error: they are listed in `uncovered`.
+    `candidates` selects candidate positions: on the curve "skeleton" (default), on the "medial"
+    axis, on a lattice in the "interior", or points of shape (n, 3). Faces that no candidate sees
+    are listed in `uncovered` and are not an error.
 
     >>> import starguard
     >>> guards = starguard.guard(starguard.sample("l-room", vertices=500))
@@ -187,7 +187,7 @@ def name_of(file: PathLike | None) -> str | None:
 def candidate_points(model: Any, source: str = "skeleton", count: int = 1000, *,
                      clearance: float = 0.0, threads: int | None = None, seed: int | None = None,
                      time_limit: float | None = None, progress: Progress | None = None) -> Array:
-    """Points where guards may stand, of shape (n, 3): "skeleton", "medial" or "interior".
+    """Candidate points of shape (n, 3): "skeleton", "medial" or "interior".
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -207,8 +207,8 @@ def candidate_points(model: Any, source: str = "skeleton", count: int = 1000, *,
 
 
 def read_points(path: PathLike) -> Array:
-    """Reads points: text of three numbers a line, the nodes of a skeleton (OBJ, CG, VTK), or the positions
-    of a GUARDS.json.
+    """Reads points: text with three numbers per line, the nodes of a skeleton (OBJ, CG, VTK), or the
+    positions of a GUARDS.json.
 
     >>> import pathlib, starguard
     >>> _ = pathlib.Path("places.txt").write_text("1.5 1.7 2 # hall\\n4 1.7 2\\n")
@@ -221,7 +221,7 @@ def read_points(path: PathLike) -> Array:
 
 
 def points_from_bytes(data: bytes, name: str = "memory") -> Array:
-    """The same from the bytes of such a file; `name` stands in messages.
+    """The same from the bytes of such a file; `name` is used in messages.
 
     >>> import starguard
     >>> starguard.points_from_bytes(b"1 2 3")

@@ -19,25 +19,25 @@ _VERDICTS = {"interior": lib.STARG_KERNEL_INTERIOR, "empty": lib.STARG_KERNEL_EM
 
 @dataclass(frozen=True, eq=False)
 class Kernel:
-    """Is a solid star-shaped, and from where is all of it seen?"""
+    """The kernel of a solid and the verdict whether it is star-shaped."""
 
     #: "interior" (star-shaped: proven), "empty" (not star-shaped: proven) or "undecided".
     verdict: str
     #: Centre of the largest ball in the kernel, (3,), and its radius.
     guard: Array
     radius: float
-    #: When empty: at most four faces of which no point is strictly on the inner side of all.
+    #: When empty: at most four faces such that no point is strictly on the inner side of all.
     witness: Array
 
     @property
     def star(self) -> bool | None:
-        """The verdict as yes or no; None when undecided."""
+        """The verdict as bool; None when undecided."""
         return {"interior": True, "empty": False}.get(self.verdict)
 
 
 def kernel(model: Any, *, trust_closed: bool = False, threads: int | None = None,
            time_limit: float | None = None, progress: Progress | None = None) -> Kernel:
-    """Finds the kernel of a closed, outward oriented mesh; both verdicts are exact proofs.
+    """Computes the kernel of a closed, outward oriented mesh; both verdicts are exact proofs.
 
     >>> import starguard
     >>> room = starguard.kernel(starguard.sample("l-room", vertices=500))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Triangle surface meshes: files of them, what is wrong with them, and simpler versions."""
+"""Triangle surface meshes: files, checks, repair and simplification."""
 from __future__ import annotations
 
 import os
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ._keywords import RepairOptions
     from .solid import Solid
 
-#: What stands in a vertex map for a vertex of no face.
+#: Marks vertices without faces in a vertex map.
 NO_VERTEX = 2**32 - 1
 
 _REPAIR = Options("starg_repair_options", old={"max_rounds": "rounds"})
@@ -39,8 +39,8 @@ class Mesh:
     """An immutable triangle mesh: vertices and faces, counter-clockwise seen from outside.
 
     `vertices` has the shape (n, 3), `faces` the shape (m, 3) and any integer type. Both are copied
-    once, into memory of the library; the attributes are read-only views of that memory, without a
-    copy. Every coordinate must be finite and below 1e100 in magnitude.
+    once, into library memory; the attributes are read-only views of that memory. Every coordinate
+    must be finite and below 1e100 in magnitude.
 
     >>> import starguard
     >>> mesh = starguard.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -64,7 +64,7 @@ class Mesh:
         self._handle: Any = handle
         self._owner: Any = handle if owner is None else owner
         self._solid: Callable[[], Solid | None] = lambda: None
-        self.file: PathLike | None = file  #: where it was read from, or None
+        self.file: PathLike | None = file  #: its file, or None
         vertex_count = lib.starg_mesh_vertex_count(handle)
         face_count = lib.starg_mesh_face_count(handle)
         #: (n, 3) float64, read-only.
@@ -77,7 +77,7 @@ class Mesh:
 
     @classmethod
     def _of(cls, handle: Any, file: PathLike | None = None, owner: Any = None) -> Mesh:
-        """Of a handle; or of what another object owns, which is kept then."""
+        """Wraps a handle, or an object that `owner` keeps alive."""
         return cls.__new__(cls)._adopt(handle, file, owner)
 
     def __repr__(self) -> str:
@@ -90,7 +90,7 @@ class Mesh:
 
     @classmethod
     def read(cls, path: PathLike) -> Mesh:
-        """Reads OFF, OBJ, PLY or STL; the content tells which. "-" is standard input.
+        """Reads OFF, OBJ, PLY or STL, recognized by content. "-" is standard input.
 
         >>> import starguard
         >>> starguard.sample("l-room", vertices=500).write("room.off")
@@ -103,7 +103,7 @@ class Mesh:
 
     @classmethod
     def from_bytes(cls, data: bytes, name: str = "memory") -> Mesh:
-        """Reads the bytes of a mesh file; `name` stands in messages and may tell the format.
+        """Reads the bytes of a mesh file; `name` is used in messages and as a format hint.
 
         >>> import starguard
         >>> starguard.Mesh.from_bytes(b"OFF 3 1 0  0 0 0  1 0 0  0 1 0  3 0 1 2")
@@ -117,7 +117,7 @@ class Mesh:
     def write(self, path: PathLike, *, format: str = "auto",
               face_colors: ArrayLike | None = None) -> None:
         """Writes OFF, OBJ, PLY or STL, by the file extension or by `format`: "off", "obj", "ply",
-        "ply-ascii", "stl" or "stl-ascii". `face_colors` is (m, 3), 0 to 255; PLY and OFF keep it.
+        "ply-ascii", "stl" or "stl-ascii". `face_colors` is (m, 3), 0 to 255; PLY and OFF store it.
 
         >>> import starguard
         >>> mesh = starguard.sample("l-room", vertices=500)
@@ -153,7 +153,7 @@ class Mesh:
 
     @property
     def solid(self) -> Solid:
-        """The solid that the mesh bounds, made at the first use. Raises MeshError for others."""
+        """The solid that the mesh bounds, created on first use. Raises MeshError if there is none."""
         from .solid import Solid
 
         made = self._solid()
@@ -162,10 +162,10 @@ class Mesh:
             self._solid = lambda: made
         return made
 
-    # ---- what is wrong, and what can be done ----
+    # ---- check, repair, simplify ----
 
     def check(self, *, progress: Progress | None = None) -> Check:
-        """Is the mesh the boundary of a solid? What is wrong with it, and where.
+        """Tests whether the mesh bounds a solid, and lists its defects.
 
         >>> import starguard
         >>> check = starguard.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]).check()
@@ -180,8 +180,7 @@ class Mesh:
     @takes(_REPAIR)
     def repair(self, *, progress: Progress | None = None,
                **options: Unpack[RepairOptions]) -> tuple[Mesh, RepairReport]:
-        """Mends what can be mended: the new mesh, and what was done. Raises MeshError when the
-        result would still not be usable.
+        """Returns the repaired mesh and a report. Raises MeshError if the result is not usable.
 
         >>> import starguard
         >>> open_mesh = starguard.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
@@ -204,8 +203,8 @@ class Mesh:
     def simplify(self, vertex_count: int, *, allow_intersections: bool = False,
                  threads: int | None = None, time_limit: float | None = None,
                  progress: Progress | None = None) -> tuple[Mesh, Array]:
-        """A mesh of fewer vertices and the same topology, and for each vertex of this mesh the one
-        that it has become there (or NO_VERTEX).
+        """Returns a mesh with fewer vertices and the same topology, and for each vertex of this mesh
+        the one into which it was merged (or NO_VERTEX).
 
         >>> import starguard
         >>> mesh, vertex_map = starguard.sample("dog", vertices=1000).simplify(300)
@@ -226,9 +225,9 @@ class Mesh:
     def levels(self, coarsest: int = 5000, step: int | None = 10000, *,
                allow_intersections: bool = False, threads: int | None = None,
                time_limit: float | None = None, progress: Progress | None = None) -> list[Level]:
-        """Levels of detail of about `coarsest`, `coarsest` + `step`, ... vertices, the last one a
-        copy of the mesh; with None as the step each level has a quarter of the vertices of the next
-        finer one.
+        """Levels of detail with about `coarsest`, `coarsest` + `step`, ... vertices; the last is a
+        copy of the mesh. With step None, each level has a quarter of the vertices of the next finer
+        one.
 
         >>> import starguard
         >>> [len(level.mesh.vertices) for level in starguard.sample("dog").levels(1000, 2000)]
@@ -256,9 +255,8 @@ class Mesh:
 
 
 def as_mesh(model: Any) -> Mesh:
-    """A Mesh of whatever holds one: a Mesh or a Solid, the name of a file, a pair (vertices, faces),
-    an object with `vertices` and `faces` as of trimesh, or with `points` and triangles as of meshio
-    and PyVista.
+    """Converts to a Mesh: a Mesh or Solid, a file name, a pair (vertices, faces), an object with
+    `vertices` and `faces` (trimesh), or with `points` and triangles (meshio, PyVista).
 
     >>> import starguard
     >>> class Like:
@@ -285,11 +283,11 @@ def as_mesh(model: Any) -> Mesh:
         faces = np.asarray(model.faces)
         if faces.ndim == 1:
             if faces.size % 4 != 0 or np.any(faces[::4] != 3):
-                raise ArgumentError("the model has faces that are no triangles; triangulate it first")
+                raise ArgumentError("the model has faces other than triangles; triangulate it first")
             faces = faces.reshape(-1, 4)[:, 1:]
         return Mesh(model.points, faces)
-    raise ArgumentError(f"a {type(model).__name__} is no mesh; give a starguard.Mesh, a file name, a "
-                        "pair (vertices, faces), or an object that has vertices and faces")
+    raise ArgumentError(f"a {type(model).__name__} is not a mesh; give a starguard.Mesh, a file name, a "
+                        "pair (vertices, faces), or an object with vertices and faces")
 
 
 @dataclass(frozen=True)
@@ -297,14 +295,14 @@ class Level:
     """One level of detail."""
 
     mesh: Mesh
-    #: For each vertex of the next finer level its vertex of this one, or NO_VERTEX; None for the
+    #: For each vertex of the next finer level its vertex in this one, or NO_VERTEX; None for the
     #: finest.
     vertex_map: Array | None
 
 
 @dataclass(frozen=True)
 class Finding:
-    """Elements of a mesh in which something was found."""
+    """Elements of a mesh with one kind of finding."""
 
     count: int
     #: What `first` counts: "vertex", "face" or "edge" (pairs of vertices).
@@ -320,7 +318,7 @@ _ELEMENTS = {lib.STARG_ELEMENT_VERTEX: "vertex", lib.STARG_ELEMENT_FACE: "face",
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """What a check has found; docs/formats.md explains the kinds of findings."""
+    """The result of a check; docs/formats.md explains the kinds of findings."""
 
     vertices: int
     faces: int
@@ -338,7 +336,7 @@ class Check:
     area: float
     volume: float
     diagonal: float
-    #: By name, only those of which there are any.
+    #: By name, only nonempty kinds.
     findings: dict[str, Finding]
     #: Per face: 0, or 1 + the first kind of finding that marks it. No copy.
     face_marks: Array
@@ -361,7 +359,7 @@ class Check:
 
 @dataclass(frozen=True)
 class RepairReport:
-    """What a repair has done."""
+    """Changes made by a repair."""
 
     vertices_merged: int
     vertices_dropped: int

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two surfaces: a map from one to the other, and the shapes between them."""
+"""Maps and morphs between two surfaces."""
 from __future__ import annotations
 
 import threading
@@ -30,16 +30,16 @@ _MAP_KINDS = {"same": lib.STARG_MAP_SAME, "sphere": lib.STARG_MAP_SPHERE, "given
 
 @dataclass(frozen=True, eq=False)
 class SurfaceMap:
-    """Where each vertex of A lies on B. The arrays are read-only views of the library's memory."""
+    """The image of each vertex of A on B. The arrays are read-only views of the library's memory."""
 
-    #: "same" (vertex i goes to vertex i), "sphere", or "given" (read from a file).
+    #: "same" (vertex i maps to vertex i), "sphere", or "given" (read from a file).
     kind: str
     target_vertices: int
     target_faces: int
     #: Per vertex of A a face of B, and barycentric coordinates in it, (n, 3).
     faces: Array
     coordinates: Array
-    #: How many landmarks it meets.
+    #: Number of satisfied landmarks.
     landmark_count: int
     #: 1 is best.
     mean_angle_distortion: float
@@ -104,7 +104,7 @@ def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *
 
 
 def read_landmarks(path: PathLike, a: Any, b: Any) -> Array:
-    """Reads landmarks: a pair a line, two vertex numbers or six coordinates. Shape (k, 2).
+    """Reads landmarks, one pair per line: two vertex indices or six coordinates. Shape (k, 2).
 
     >>> import pathlib, starguard
     >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
@@ -125,28 +125,28 @@ def read_landmarks(path: PathLike, a: Any, b: Any) -> Array:
 
 @dataclass(frozen=True)
 class FrameMeasures:
-    """What a frame is like."""
+    """Quality of a frame."""
 
-    #: Pairs of faces that pass through one another.
+    #: Pairs of intersecting faces.
     intersections: int
-    #: Faces flipped over.
+    #: Flipped faces.
     inverted: int
-    #: Faces of less than a millionth of their area at the ends.
+    #: Faces with less than a millionth of their area at the ends.
     collapsed: int
     volume: float
     area: float
-    #: Relative to the ends' values interpolated in t.
+    #: Relative to linear interpolation of the ends.
     volume_drift: float
     area_drift: float
 
 
 @takes(_OPTIONS)
 class Morph:
-    """The way from A to another shape of the same faces, ready for any moment. Several threads may
-    share one: one of them works with it at a time.
+    """A morph from A to another shape with the same faces, for evaluation at any time. Threads may
+    share it; they use it one at a time.
 
-    `target` is where A's vertices go: a SurfaceMap, positions (n, 3), or a model B, onto which A is
-    then mapped.
+    `target` gives the images of A's vertices: a SurfaceMap, positions (n, 3), or a model B, onto
+    which A is then mapped.
 
     >>> import starguard
     >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
@@ -170,16 +170,16 @@ class Morph:
             self.mesh._handle, _arrays.pointer("double[]", images), wanted.pointer, progress=progress,
             time_limit=time_limit)
         m, count = self._handle, lib.starg_morph_guard_count(self._handle)
-        #: Guards of A and their counterparts, (k, 3) each; none for other methods than star and
+        #: Guards of A and their counterparts, (k, 3) each; empty for methods other than star and
         #: spherical. Read-only, without a copy.
         self.guards: tuple[Array, Array] = (
             _arrays.view(m, lib.starg_morph_guards(m, 0), (count, 3), np.float64),
             _arrays.view(m, lib.starg_morph_guards(m, 1), (count, 3), np.float64))
         pieces = lib.starg_morph_pieces(m)
-        #: Per face of A the guard of its piece, or None.
+        #: The guard of each face of A, or None.
         self.pieces: Array | None = (
             _arrays.view(m, pieces, (len(self.mesh.faces),), np.uint32) if pieces else None)
-        #: Faces whose guard is not seen to be on their inner side at both ends.
+        #: Number of faces that no candidate sees from their inner side at both ends.
         self.unguarded: int = lib.starg_morph_unguarded(m)
 
     def _images(self, target: Any, **options: Any) -> Array:
@@ -207,7 +207,7 @@ class Morph:
         return Mesh(self.positions(t), self.mesh.faces)
 
     def measure(self, t: float, positions: ArrayLike | None = None) -> FrameMeasures:
-        """What the shape at time t is like; `positions` (n, 3) stand in for those of `positions(t)`."""
+        """Quality of the shape at time t; `positions` (n, 3) replace those of `positions(t)`."""
         rows = self.positions(t) if positions is None else _arrays.reals(positions, 3, "positions")
         if len(rows) != len(self.mesh.vertices):
             raise ArgumentError(f"A has {len(self.mesh.vertices)} vertices, not {len(rows)}")
@@ -218,7 +218,7 @@ class Morph:
         return fill(FrameMeasures, out)
 
     def write_animation(self, path: PathLike, frames: int = 21, seconds: float = 2.0) -> None:
-        """Writes a .glb that plays the morph.
+        """Writes an animated .glb of the morph.
 
         >>> import starguard
         >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
@@ -230,7 +230,7 @@ class Morph:
 
 def write_animation(path: PathLike, model: Any, frames: Sequence[ArrayLike],
                     seconds: float = 2.0) -> None:
-    """Writes a .glb of a mesh whose vertices move: frames of shape (n, 3), in equal steps.
+    """Writes an animated .glb of a mesh: frames of shape (n, 3), in equal steps.
 
     >>> import starguard
     >>> star = starguard.sample("star", vertices=500)
@@ -248,7 +248,7 @@ def write_animation(path: PathLike, model: Any, frames: Sequence[ArrayLike],
 
 
 def read_animation(path: PathLike) -> list[Mesh]:
-    """Reads the frames of such a file: meshes of the same faces.
+    """Reads the frames of such a file: meshes with the same faces.
 
     >>> import starguard
     >>> star = starguard.sample("star", vertices=500)
@@ -261,7 +261,7 @@ def read_animation(path: PathLike) -> list[Mesh]:
 
 
 def animation_from_bytes(data: bytes, name: str = "memory") -> list[Mesh]:
-    """The same from the bytes of such a file; `name` stands in messages.
+    """The same from the bytes of such a file; `name` is used in messages.
 
     >>> import pathlib, starguard
     >>> star = starguard.sample("star", vertices=500)

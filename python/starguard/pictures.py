@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of meshes with points in them, of tables and of curves."""
+"""Pictures of meshes with points, of matrices and of curves."""
 from __future__ import annotations
 
 from typing import Any, Mapping, Sequence
@@ -20,7 +20,7 @@ def _options(keep: list[Any], face_count: int, size: tuple[int, int] | None,
              azimuth: float | None, elevation: float | None, up: int | None,
              opacity: float | None, face_colors: ArrayLike | None, points: ArrayLike | None,
              point_colors: ArrayLike | None, point_radius: float | None) -> Any:
-    """starg_picture_options; `keep` holds what must live as long."""
+    """starg_picture_options; `keep` holds objects that must live as long."""
     options = ffi.new("starg_picture_options *")
     lib.starg_picture_options_default(options)
     if size is not None:
@@ -44,7 +44,7 @@ def write_picture(path: PathLike, model: Any, *, size: tuple[int, int] | None = 
                   face_colors: ArrayLike | None = None, points: ArrayLike | None = None,
                   point_colors: ArrayLike | None = None, point_radius: float | None = None,
                   progress: Progress | None = None) -> None:
-    """Draws a mesh, half transparent, with points as balls, into a PNG. Angles are in degrees, `up`
+    """Draws a translucent mesh, with points as balls, as a PNG. Angles are in degrees, `up`
     is the axis that points up, `point_radius` a fraction of the diagonal.
 
     >>> import starguard
@@ -66,7 +66,7 @@ def picture(model: Any, *, size: tuple[int, int] | None = None, azimuth: float |
             face_colors: ArrayLike | None = None, points: ArrayLike | None = None,
             point_colors: ArrayLike | None = None, point_radius: float | None = None,
             progress: Progress | None = None) -> bytes:
-    """The same picture as the bytes of a PNG, for example to be shown in a notebook.
+    """The same picture as PNG bytes, for example for a notebook.
 
     >>> import starguard
     >>> starguard.picture(starguard.sample("star", vertices=500), size=(160, 120))[1:4]
@@ -91,7 +91,7 @@ def write_picture_sheet(path: PathLike, models: Sequence[Sequence[Any]], *,
                         size: tuple[int, int] | None = None, azimuth: float | None = None,
                         elevation: float | None = None, up: int | None = None,
                         opacity: float | None = None, progress: Progress | None = None) -> None:
-    """Draws rows of meshes side by side into one PNG; `size` is that of one of them.
+    """Draws rows of meshes side by side into one PNG; `size` is that of one mesh.
 
     >>> import starguard
     >>> poses = [starguard.sample("dog", pose=pose, vertices=500) for pose in range(3)]
@@ -100,7 +100,7 @@ def write_picture_sheet(path: PathLike, models: Sequence[Sequence[Any]], *,
     meshes = [[as_mesh(model) for model in row] for row in models]
     columns = len(meshes[0]) if meshes else 0
     if any(len(row) != columns for row in meshes):
-        raise ArgumentError("the rows of a sheet must be of one length")
+        raise ArgumentError("all rows of a sheet must have the same length")
     session = Session()
     options = _options([], 0, size, azimuth, elevation, up, opacity, None, None, None, None)
     handles = ffi.new("starg_mesh *[]", [mesh._handle for row in meshes for mesh in row])
@@ -109,14 +109,14 @@ def write_picture_sheet(path: PathLike, models: Sequence[Sequence[Any]], *,
 
 
 def write_matrix_picture(path: PathLike, values: ArrayLike) -> None:
-    """Draws a square table of distances as a PNG, grey by rank.
+    """Draws a square distance matrix as a PNG, grey by rank.
 
     >>> import starguard
     >>> starguard.write_matrix_picture("matrix.png", [[0, 1], [1, 0]])
     """
     matrix = np.ascontiguousarray(values, dtype=np.float64)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1]:
-        raise ArgumentError(f"the table must be square, not {matrix.shape}")
+        raise ArgumentError(f"the matrix must be square, not {matrix.shape}")
     session = Session()
     session.call(lib.starg_matrix_picture_write, session.context,
                  _arrays.pointer("double[]", matrix), len(matrix), _arrays.path(path))
@@ -124,7 +124,7 @@ def write_matrix_picture(path: PathLike, values: ArrayLike) -> None:
 
 def write_chart(path: PathLike, curves: Mapping[str, tuple[ArrayLike, ArrayLike]], x_label: str,
                 y_label: str, *, strong: str | None = None) -> None:
-    """Draws named curves (x, y) in the unit square as an SVG; the `strong` one stands out.
+    """Draws named curves (x, y) in the unit square as an SVG; `strong` ones are emphasized.
 
     >>> import starguard
     >>> starguard.write_chart("c.svg", {"by chance": ([0, 1], [0, 1])}, "recall", "precision")
@@ -144,7 +144,7 @@ def write_chart(path: PathLike, curves: Mapping[str, tuple[ArrayLike, ArrayLike]
 
 
 def distinct_colors(count: int) -> Array:
-    """Colours that are easy to tell apart, (count, 3) uint8; those of guards and pieces.
+    """Distinct colours, (count, 3) uint8, as used for guards and pieces.
 
     >>> import starguard
     >>> starguard.distinct_colors(5).shape

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Star decomposition: few pieces, each wholly visible from its guard."""
+"""Star decomposition: few pieces, each entirely visible from its guard."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -29,13 +29,13 @@ OPTIONS = Options("starg_decompose_options")
 
 @dataclass(frozen=True, eq=False)
 class Decomposition:
-    """A solid in pieces. The arrays are read-only views of the library's memory."""
+    """A partitioned solid. The arrays are read-only views of the library's memory."""
 
-    #: The model's path as given; None if there is none.
+    #: The model's path as given, or None.
     file: str | None
     #: "strict" or "paper".
     mode: str
-    #: Size of the model that was cut.
+    #: Size of the model.
     model_vertices: int
     model_faces: int
     model_tetrahedra: int
@@ -48,9 +48,9 @@ class Decomposition:
     pieces: Array
     #: Pieces that share faces, structured: `first`, `second`, `area`.
     contacts: Array
-    #: Pieces that are proven to be star-shaped.
+    #: Number of pieces proven star-shaped.
     strictly_star: int
-    #: Fraction of the vertices that the guards of their pieces see.
+    #: Fraction of the vertices visible from the guards of their pieces.
     visible_vertices: float
     flattest: float
     flattest_given: float
@@ -95,7 +95,7 @@ class Decomposition:
 
     @classmethod
     def read(cls, pieces: PathLike, report: PathLike) -> Decomposition:
-        """Reads PIECES.vtk and PIECES.json (docs/formats.md) back.
+        """Reads PIECES.vtk and PIECES.json (docs/formats.md).
 
         >>> import starguard
         >>> room = starguard.sample("l-room", vertices=500)
@@ -134,15 +134,15 @@ class Decomposition:
                      _arrays.path(path), binary)
 
     def write_report(self, path: PathLike, model_file: PathLike | None = None) -> None:
-        """Writes PIECES.json. `model_file` stands in it as the model's path; without it the one that
-        the model was read from, if any."""
+        """Writes PIECES.json with `model_file` as the model's path. Default: the file that the model
+        was read from, if any."""
         session = Session()
         name = model_file if model_file is not None else self.file
         session.call(lib.starg_decomposition_write_report, session.context, self._handle,
                      _arrays.path(name) if name is not None else ffi.NULL, _arrays.path(path))
 
     def write_groups(self, path: PathLike) -> None:
-        """Writes the surfaces of all pieces as OBJ, a group for each."""
+        """Writes the surfaces of all pieces as OBJ, one group each."""
         session = Session()
         session.call(lib.starg_decomposition_write_groups, session.context, self._handle,
                      _arrays.path(path))
@@ -153,13 +153,13 @@ def decompose(model: Any, *, guards: ArrayLike | None = None, threads: int | Non
               seed: int | None = None, time_limit: float | None = None,
               progress: Progress | None = None,
               **options: Unpack[DecomposeOptions]) -> Decomposition:
-    """Cuts a solid into few pieces that each one guard sees as a whole.
+    """Cuts a solid into few star-shaped pieces, each entirely visible from its guard.
 
-    The model is what `as_mesh` takes, or a TetMesh; a surface with holes is filled with what it
-    winds around, with a notice, if that is near the surface or `fill` is true. `guards` (n, 3) are
-    points to grow from or to try first. The search stops after `effort` trials, or by default after
-    a fixed amount of work (some 15 seconds), which gives the same result everywhere. With
-    `time_limit` and no `effort` it goes on until then, with the best that it has.
+    The model is anything `as_mesh` accepts, or a TetMesh. A surface with holes is filled, with a
+    notice, if the filled volume is near the surface or `fill` is true. `guards` (n, 3) are seeds, or
+    points to try first. The search stops after `effort` trials, or by default after a fixed amount
+    of work (about 15 seconds), which gives the same result everywhere. With `time_limit` and no
+    `effort` it continues until that time and returns its best result.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -182,16 +182,16 @@ def decompose(model: Any, *, guards: ArrayLike | None = None, threads: int | Non
 
 
 def _subject(shape: Mesh | TetMesh) -> tuple[Any, Any]:
-    """What cuts a shape, and what it takes."""
+    """The function that cuts a shape, and its argument."""
     if isinstance(shape, TetMesh):
         return lib.starg_decompose_tetmesh, shape._handle
     try:
         return lib.starg_decompose, shape.solid._handle
     except MeshError as error:
-        if len(error.elements) == 0:  # nothing is inside
+        if len(error.elements) == 0:  # encloses nothing
             raise
-        logger.info("%s; isosurface stuffing fills what the surface winds around, and closes holes "
-                    "of its own accord", error)
+        logger.info("%s; isosurface stuffing fills the region whose winding number exceeds 1/2 "
+                    "and thereby closes holes", error)
         return lib.starg_decompose_open_mesh, shape._handle
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The curve skeleton of a solid: a graph that runs along its middle and has its topology."""
+"""The curve skeleton of a solid: an interior graph along its centre with the same topology."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
@@ -33,20 +33,20 @@ class Skeleton:
 
     #: (n, 3).
     positions: Array
-    #: Distance of each node from the surface, (n,); None where a file does not tell.
+    #: Distance of each node from the surface, (n,); None if not in the file.
     radii: Array | None
     #: (m, 2) uint32.
     edges: Array
-    #: Of each of the solid's vertices: the node that stands for it; none when read from a file.
+    #: The node of each of the solid's vertices; empty if read from a file.
     vertex_nodes: Array
     components: int
     loops: int
-    #: Nodes of three or more edges; of one.
+    #: Nodes with three or more edges; with one.
     joints: int
     ends: int
     cuts: int
     mends: int
-    #: Parts and loops are those of the solid.
+    #: Whether components and loops are those of the solid.
     homotopic: bool
     _handle: Any = field(repr=False)
 
@@ -64,7 +64,7 @@ class Skeleton:
 
     @classmethod
     def read(cls, path: PathLike) -> Skeleton:
-        """Reads what `write` has written; the content tells the format.
+        """Reads a file of `write`, recognized by content.
 
         >>> import starguard
         >>> torus = starguard.sample("torus", vertices=500)
@@ -79,7 +79,7 @@ class Skeleton:
 
     @classmethod
     def from_bytes(cls, data: bytes, name: str = "memory") -> Skeleton:
-        """Reads the bytes of such a file; `name` stands in messages."""
+        """Reads the bytes of such a file; `name` is used in messages."""
         session = Session()
         return cls._of(session.make(
             "starg_skeleton", lib.starg_skeleton_free, lib.starg_skeleton_read_memory,
@@ -101,7 +101,7 @@ class Skeleton:
 def skeleton(model: Any, *, threads: int | None = None, seed: int | None = None,
              time_limit: float | None = None, progress: Progress | None = None,
              **options: Unpack[SkeletonOptions]) -> Skeleton:
-    """Finds the curve skeleton.
+    """Computes the curve skeleton.
 
     >>> import starguard
     >>> s = starguard.skeleton(starguard.sample("torus", vertices=500), nodes=50)

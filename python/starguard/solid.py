@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Solids: meshes that have passed the check, and the search structures over them."""
+"""Solids: checked meshes with search structures."""
 from __future__ import annotations
 
 import weakref
@@ -16,10 +16,10 @@ from .mesh import Check, Mesh, as_mesh
 
 
 class Solid:
-    """A solid, made of a closed mesh; inward shells are turned, with a notice (see `logger`).
+    """A solid bounded by a closed mesh; inward shells are reversed, with a notice (see `logger`).
 
-    Functions that take a model make one where they need it; make it yourself to use it often.
-    Raises MeshError for a mesh that is open, not manifold or not oriented, with the elements.
+    Functions that take a model create one if needed; create it once to use it often. Raises
+    MeshError, with the elements, for a mesh that is open, not manifold or not oriented.
 
     >>> import starguard
     >>> solid = starguard.Solid(starguard.sample("l-room", vertices=500))
@@ -36,20 +36,20 @@ class Solid:
         self._handle: Any = session.make("starg_solid", lib.starg_solid_free, lib.starg_solid_create,
                                     session.context, given._handle, progress=progress)
         inner = lib.starg_solid_mesh(self._handle)
-        #: The mesh, with every shell turned outward.
+        #: The mesh, with every shell oriented outward.
         self.mesh: Mesh = Mesh._of(inner, given.file, owner=self._handle)
-        self.mesh._solid = weakref.ref(self)  # which has it
+        self.mesh._solid = weakref.ref(self)  # a Mesh caches its solid
 
     def __repr__(self) -> str:
         return f"Solid({len(self.mesh.vertices)} vertices, {len(self.mesh.faces)} faces)"
 
     @property
     def check(self) -> Check:
-        """What the check has found, before shells were turned."""
+        """The check of the mesh before shells were reversed."""
         return Check._of(self._handle, lib.starg_solid_check(self._handle), len(self.mesh.faces))
 
     def contains(self, points: ArrayLike) -> Array:
-        """Which points are strictly inside: exact. Shape (n,), bool."""
+        """Whether each point is strictly inside; exact. Shape (n,), bool."""
         rows = _arrays.points(points, "points")
         return np.array([lib.starg_solid_contains(self._handle, ffi.from_buffer("double[3]", row))
                          for row in rows], bool)
@@ -67,5 +67,5 @@ class Solid:
 
 
 def as_solid(model: Any) -> Solid:
-    """The solid of whatever `as_mesh` takes."""
+    """The solid of anything `as_mesh` accepts."""
     return model if isinstance(model, Solid) else as_mesh(model).solid

@@ -23,24 +23,24 @@ if TYPE_CHECKING:
 
     from ._keywords import TetraOptions
 
-#: What stands for a neighbour beyond the boundary.
+#: Marks the missing neighbour across a boundary face.
 NO_NEIGHBOUR = 2**32 - 1
 
 _OPTIONS = Options("starg_tetra_options")
-_HEAD = 1 << 16  # bytes of a file that tell what it holds
+_HEAD = 1 << 16  # bytes that identify a file
 
 
 @dataclass(frozen=True)
 class TetraReport:
-    """How tetrahedra were made."""
+    """How tetrahedra were generated."""
 
     #: "tetgen" or "stuffing".
     generator: str
     #: The boundary is the solid's surface, face by face.
     surface_kept: bool
-    #: Of the lattice; 0 if there is none.
+    #: Lattice spacing; 0 without a lattice.
     spacing: float
-    #: Greatest distances found from the boundary to the surface and back, to within `step`.
+    #: Largest sampled distances from the boundary to the surface and back, to within `step`.
     to_surface: float
     from_surface: float
     step: float
@@ -53,8 +53,8 @@ class TetraReport:
 class TetMesh:
     """An immutable conforming tetrahedral mesh: `vertices` (n, 3), `tetrahedra` (m, 4).
 
-    Tetrahedra that are turned the wrong way are turned, with a notice. `regions` are labels that are
-    kept. The attributes are read-only views of the library's memory.
+    Negative tetrahedra are reoriented, with a notice. `regions` are labels, which are only stored.
+    The attributes are read-only views of the library's memory.
 
     >>> import starguard
     >>> tets = starguard.TetMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2, 3]])
@@ -81,8 +81,8 @@ class TetMesh:
                owner: Any = None) -> TetMesh:
         self._handle: Any = handle
         self._owner = owner = handle if owner is None else owner
-        self.file: PathLike | None = file  #: where it was read from, or None
-        self.report: TetraReport | None = report  #: how it was made, if by `tetrahedralize`
+        self.file: PathLike | None = file  #: its file, or None
+        self.report: TetraReport | None = report  #: how `tetrahedralize` generated it, or None
         count, vertex_count = lib.starg_tetmesh_count(handle), lib.starg_tetmesh_vertex_count(handle)
         #: (n, 3) float64, read-only.
         self.vertices: Array = _arrays.view(owner, lib.starg_tetmesh_vertices(handle),
@@ -102,7 +102,7 @@ class TetMesh:
     @classmethod
     def _of(cls, handle: Any, file: PathLike | None = None, report: TetraReport | None = None,
             owner: Any = None) -> TetMesh:
-        """Of a handle; or of what another object owns, which is kept then."""
+        """Wraps a handle, or an object that `owner` keeps alive."""
         return cls.__new__(cls)._adopt(handle, file, report, owner)
 
     def __repr__(self) -> str:
@@ -114,7 +114,7 @@ class TetMesh:
 
     @classmethod
     def read(cls, path: PathLike) -> TetMesh:
-        """Reads MEDIT, legacy VTK, Gmsh or TetGen files; the content tells which.
+        """Reads MEDIT, legacy VTK, Gmsh or TetGen files, recognized by content.
 
         >>> import starguard
         >>> cube = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]
@@ -160,11 +160,11 @@ class TetMesh:
 
     @property
     def turned(self) -> int:
-        """How many tetrahedra had to be turned."""
+        """Number of reoriented tetrahedra."""
         return int(lib.starg_tetmesh_turned(self._handle))
 
     def surface(self) -> tuple[Mesh, Array]:
-        """The boundary, outward oriented, and for each of its vertices the index in this mesh."""
+        """The outward oriented boundary, and the index in this mesh of each of its vertices."""
         session = Session()
         out, numbers = ffi.new("starg_mesh **"), ffi.new("uint32_t **")
         try:
@@ -180,7 +180,7 @@ class TetMesh:
 @takes(_OPTIONS)
 def tetrahedralize(model: Any, *, threads: int | None = None, time_limit: float | None = None,
                    progress: Progress | None = None, **options: Unpack[TetraOptions]) -> TetMesh:
-    """Fills a solid with tetrahedra, or what a mesh with holes winds around.
+    """Fills a solid, or a mesh with holes, with tetrahedra.
 
     >>> import starguard
     >>> tets = starguard.tetrahedralize(starguard.sample("l-room", vertices=500),
@@ -195,7 +195,7 @@ def tetrahedralize(model: Any, *, threads: int | None = None, time_limit: float 
     function, handle = lib.starg_tetmesh_from_solid, None
     try:
         handle = mesh.solid._handle
-    except MeshError:  # holes: what the surface winds around is filled
+    except MeshError:  # holes: filled by winding number
         if wanted.pointer.generator == lib.STARG_TETRA_TETGEN:
             raise
         function, handle = lib.starg_tetmesh_from_open_mesh, mesh._handle
@@ -205,7 +205,7 @@ def tetrahedralize(model: Any, *, threads: int | None = None, time_limit: float 
 
 
 def is_tetrahedral(path: PathLike) -> bool:
-    """Does the content of a file (for TetGen's, the name) say that it holds tetrahedra?
+    """Whether a file contains tetrahedra, by its content (TetGen: by its name).
 
     >>> import starguard
     >>> starguard.sample("l-room", vertices=500).write("room.off")
@@ -219,7 +219,7 @@ def is_tetrahedral(path: PathLike) -> bool:
 
 
 def as_shape(model: Any) -> Mesh | TetMesh:
-    """A TetMesh, or a Mesh of what `as_mesh` takes; the content of a file tells which."""
+    """A TetMesh, or a Mesh of anything `as_mesh` accepts; files are recognized by content."""
     if isinstance(model, TetMesh):
         return model
     if isinstance(model, (str, bytes, os.PathLike)) and os.path.isfile(model) and is_tetrahedral(model):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Independent checks of results: arithmetic and algorithms of their own, slow and simple."""
+"""Independent checks of results with separate, slow and simple algorithms."""
 from __future__ import annotations
 
 import os
@@ -29,7 +29,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Verdict:
-    """All claims of a result; true when every one holds."""
+    """All claims of a result; true if every one holds."""
 
     passed: bool
     claims: list[Claim]
@@ -42,7 +42,7 @@ class Verdict:
 
 @dataclass(frozen=True, eq=False)
 class PiecesMesh:
-    """Labelled tetrahedra as they stand in PIECES.vtk; nothing about them is taken for granted."""
+    """Labelled tetrahedra as read from PIECES.vtk, without any guarantee."""
 
     vertices: Array
     tetrahedra: Array
@@ -59,23 +59,23 @@ class PiecesMesh:
 
     @classmethod
     def from_bytes(cls, data: bytes, name: str = "memory") -> PiecesMesh:
-        """Reads the bytes of a PIECES.vtk, with code that shares nothing with `TetMesh.read`."""
+        """Reads the bytes of a PIECES.vtk, independently of `TetMesh.read`."""
         return cls._of(_read(data, name, "starg_pieces_mesh", lib.starg_pieces_mesh_free,
                              lib.starg_pieces_mesh_read_memory))
 
 
 @dataclass(frozen=True, eq=False)
 class PiecesReport:
-    """What PIECES.json says about them."""
+    """The contents of PIECES.json."""
 
     mode: str
     tetrahedra: int
-    #: Structured, as of a Decomposition.
+    #: Structured, as in a Decomposition.
     pieces: Array
     contacts: Array
     strictly_star: int
     visible_vertices: float
-    #: The boundary is near the model's surface only; then how near, and back.
+    #: Whether the boundary only approximates the model's surface; distances to it and back.
     approximated: bool
     distance: float
     distance_back: float
@@ -109,7 +109,7 @@ Result = Union[Guards, Decomposition, PiecesMesh, PiecesReport]
 
 
 def read_result(path: PathLike) -> Guards | PiecesMesh | PiecesReport:
-    """Reads GUARDS.json, PIECES.vtk or PIECES.json; the content tells which.
+    """Reads GUARDS.json, PIECES.vtk or PIECES.json, recognized by content.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -129,9 +129,9 @@ def read_result(path: PathLike) -> Guards | PiecesMesh | PiecesReport:
 
 def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
            seed: int | None = None, progress: Progress | None = None) -> Verdict:
-    """Checks what results claim about a model, by means that share nothing with those that made
-    them. A result is what `guard` or `decompose` gave, or the name of a file; a PIECES.vtk and its
-    PIECES.json are checked together.
+    """Checks the claims of results about a model with independent algorithms. A result is an object
+    from `guard` or `decompose`, or a file name; a PIECES.vtk and its PIECES.json are checked
+    together.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -142,7 +142,7 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     shape = as_shape(model)
     given = [read_result(r) if isinstance(r, (str, bytes, os.PathLike)) else r for r in results]
     if not given:
-        raise ArgumentError("name a result to verify")
+        raise ArgumentError("give a result to verify")
     session = Session(threads, seed)
     claims: list[Claim] = []
     rest: list[str] = []
@@ -168,13 +168,13 @@ def _judge(session: Session, function: Any, shape: Any, *arguments: Any, claims:
 
 
 def _decompositions(results: list[Any]) -> list[tuple[Any, Any]]:
-    """Tetrahedra with their report: of Decompositions, and of the two files of one."""
+    """Pairs tetrahedra with their reports: Decompositions, and files."""
     meshes = [r for r in results if isinstance(r, PiecesMesh)]
     reports = [r for r in results if isinstance(r, PiecesReport)]
     if len(meshes) > 1 or len(reports) > 1:
-        raise ArgumentError("these are files of several decompositions; verify one at a time")
+        raise ArgumentError("these files belong to several decompositions; verify them separately")
     if reports and not meshes:
-        raise ArgumentError("a PIECES.json only reports; give the PIECES.vtk that it belongs to too")
+        raise ArgumentError("a PIECES.json has no tetrahedra; add its PIECES.vtk")
     pairs = [(pieces_mesh_of(r), pieces_report_of(r)) for r in results if isinstance(r, Decomposition)]
     if meshes:
         pairs.append((meshes[0]._handle, reports[0]._handle if reports else ffi.NULL))
@@ -182,7 +182,7 @@ def _decompositions(results: list[Any]) -> list[tuple[Any, Any]]:
 
 
 def pieces_mesh_of(d: Decomposition) -> Any:
-    """The tetrahedra of a decomposition as the verifier takes them: the same arrays."""
+    """The tetrahedra of a decomposition for the verifier, with the same arrays."""
     mesh = ffi.new("starg_pieces_mesh *")
     mesh.vertex_count = len(d.mesh.vertices)
     mesh.count = len(d.labels)
@@ -193,7 +193,7 @@ def pieces_mesh_of(d: Decomposition) -> Any:
 
 
 def pieces_report_of(d: Decomposition) -> Any:
-    """What a decomposition says about itself, as the verifier takes it."""
+    """The report of a decomposition for the verifier."""
     own = d._handle
     report = ffi.new("starg_pieces_report *")
     report.mode = own.mode

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results to look at: a page for browsers, and files for other programs."""
+"""Interactive pages for browsers, and exports for other programs."""
 from __future__ import annotations
 
 from typing import Any, Mapping, Sequence
@@ -25,7 +25,7 @@ _FORMATS = {"auto": lib.STARG_SCENE_AUTO, "glb": lib.STARG_SCENE_GLB, "vtu": lib
 
 
 def _seen(mesh: Mesh, guards: Guards) -> Bits:
-    """What every guard sees, by the options that they were placed with."""
+    """What each guard sees with the options of the result."""
     names = ("faces", "range", "cone")
     return visible(mesh, guards.positions, directions=guards.directions,
                    **{name: guards.options[name] for name in names})
@@ -34,7 +34,7 @@ def _seen(mesh: Mesh, guards: Guards) -> Bits:
 def _fill(target: Any, model: Any, guards: Guards | None,
           pieces: Decomposition | PiecesMesh | None, report: PiecesReport | None,
           skeleton: Skeleton | None) -> list[Any]:
-    """Fills the parts that a page and a scene have in common; what comes back must live as long."""
+    """Fills the parts common to pages and scenes; the returned objects must live as long."""
     keep: list[Any] = []
     if model is not None:
         mesh = as_mesh(model)
@@ -60,7 +60,7 @@ def _fill(target: Any, model: Any, guards: Guards | None,
 def write_scene(path: PathLike, model: Any = None, *, guards: Guards | None = None,
                 pieces: Decomposition | PiecesMesh | None = None, report: PiecesReport | None = None,
                 skeleton: Skeleton | None = None, format: str = "auto") -> None:
-    """Writes a model and results in one file, by the file extension or by `format`: "glb" (Blender,
+    """Writes a model and results to one file, by the file extension or by `format`: "glb" (Blender,
     browsers), "vtu" (ParaView), "ply" (MeshLab) or "obj" (docs/formats.md).
 
     >>> import starguard
@@ -77,7 +77,7 @@ def write_scene(path: PathLike, model: Any = None, *, guards: Guards | None = No
 
 
 def page_available() -> bool:
-    """Was the viewer there when the library was built? If not, no page can be written.
+    """Whether the library was built with the viewer. Without it, no page can be written.
 
     >>> import starguard
     >>> starguard.page_available() in (True, False)
@@ -91,9 +91,8 @@ def write_page(path: PathLike, model: Any = None, *, title: str | None = None,
                report: PiecesReport | None = None, skeleton: Skeleton | None = None,
                frames: Sequence[Any] = (), shapes: Mapping[str, bytes] | None = None,
                distances: ArrayLike | None = None, progress: Progress | None = None) -> None:
-    """Writes one HTML file to look at results in any browser, without network (docs/viewer.md).
-    `frames` are the shapes of a morph; `shapes` are names with small pictures (PNG, or b""), and
-    `distances` those between them.
+    """Writes one self-contained HTML page of results (docs/viewer.md). `frames` are the shapes of a
+    morph; `shapes` are names with thumbnails (PNG, or b""), and `distances` their matrix.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -115,10 +114,10 @@ def write_page(path: PathLike, model: Any = None, *, title: str | None = None,
 
 
 def _fill_shapes(page: Any, shapes: Mapping[str, bytes], distances: ArrayLike | None) -> list[Any]:
-    """Fills the table of shapes; what comes back must live as long."""
+    """Fills the shape table; the returned objects must live as long."""
     matrix = np.ascontiguousarray(np.empty((0, 0)) if distances is None else distances, np.float64)
     if matrix.shape != (len(shapes), len(shapes)):
-        raise ArgumentError(f"distances of {len(shapes)} shapes have the shape ({len(shapes)}, "
+        raise ArgumentError(f"distances of {len(shapes)} shapes must have the shape ({len(shapes)}, "
                             f"{len(shapes)}), not {matrix.shape}")
     if not shapes:
         return []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What points inside a solid see, as rows of bits."""
+"""Visibility from points inside a solid, as rows of bits."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,7 @@ _OPTIONS = Options("starg_visibility_options", old={"face_rule": "faces"})
 
 
 class Bits:
-    """A matrix of bits, packed; `bits[i]` is row i as bools, `numpy.asarray(bits)` is all of it.
+    """A packed bit matrix; `bits[i]` is row i as bools, `numpy.asarray(bits)` the whole matrix.
 
     >>> import starguard
     >>> bits = starguard.Bits.of([[True, False, True], [False, True, True]])
@@ -46,7 +46,7 @@ class Bits:
         """Packs a matrix of bools."""
         given = np.asarray(matrix, bool)
         if given.ndim != 2:
-            raise ArgumentError(f"a matrix of bits has two dimensions, not {given.ndim}")
+            raise ArgumentError(f"a bit matrix has two dimensions, not {given.ndim}")
         session = Session()
         handle = session.make("starg_bits", lib.starg_bits_free, lib.starg_bits_create,
                               session.context, *given.shape, brief=True)
@@ -60,7 +60,7 @@ class Bits:
         return self.shape[0]
 
     def __getitem__(self, key: Any) -> Any:
-        """A row, or what else NumPy takes for a key of rows and columns."""
+        """A row, or any NumPy index of rows and columns."""
         if isinstance(key, tuple):
             rows, columns = key
             if isinstance(rows, (int, np.integer)) and isinstance(columns, (int, np.integer)):
@@ -90,7 +90,7 @@ class Bits:
 
 
 def _fill(handle: Any, packed: Array) -> None:
-    """Sets the bits of a matrix that was just made, so that nobody else has seen it."""
+    """Sets the bits of a new matrix that is not shared yet."""
     bytes_per_row = 8 * lib.starg_bits_words(handle)
     rows = np.zeros((len(packed), bytes_per_row), np.uint8)
     rows[:, :packed.shape[1]] = packed
@@ -103,9 +103,9 @@ def _fill(handle: Any, packed: Array) -> None:
 def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = None,
             threads: int | None = None, time_limit: float | None = None,
             progress: Progress | None = None, **options: Unpack[VisibleOptions]) -> Bits:
-    """Which faces (or, with target="vertices", vertices) of a solid each point sees, exactly.
+    """Computes exactly which faces (or, with target="vertices", vertices) each point sees.
 
-    A point that is not inside sees nothing. A `cone` needs `directions`, one for each point.
+    A point that is not inside sees nothing. A `cone` needs `directions`, one per point.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -124,7 +124,7 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
         pointer = _arrays.pointer("double[]", looks)
         wanted.pointer.directions = pointer
     elif wanted.pointer.cone < 360:
-        raise ArgumentError("a cone needs directions, one for each point")
+        raise ArgumentError("a cone needs one direction per point")
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility, session.context,
                              solid._handle, _arrays.pointer("double[]", rows), len(rows),
                              wanted.pointer, progress=progress, time_limit=time_limit))
@@ -133,11 +133,10 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
 def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
                      range: float | None = None, threads: int | None = None,
                      time_limit: float | None = None, progress: Progress | None = None) -> Bits:
-    """Which faces (or vertices) are potentially visible from each box of a solid.
+    """Computes which faces (or vertices) are potentially visible from each box in a solid.
 
-    A box is given by its lower and its upper corner, six numbers. What is left out is hidden from
-    every point of the box that is inside, for certain; some of the others may be hidden as well, the
-    fewer the smaller the box.
+    A box is given by its lower and upper corner, six numbers. All other faces are proven hidden from
+    every interior point of the box; smaller boxes give tighter results.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -156,7 +155,7 @@ def visible_from_box(model: Any, boxes: ArrayLike, *, target: str | None = None,
 
 
 def cone_cosine(degrees: float) -> float:
-    """The cosine of half an opening angle: the number that decides what a cone holds.
+    """The cosine of half an opening angle, as used for cones.
 
     >>> import starguard
     >>> round(starguard.cone_cosine(90), 6)

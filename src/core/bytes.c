@@ -37,7 +37,7 @@ starg_status starg_bytes_take_block(starg_context *context, starg_bytes_reader *
     *out = NULL;
     if (size != 0 && count > reader->left / size)
         return starg_fail(context, STARG_ERROR_RANK, STAGE,
-                          "a message of another process is short");
+                          "truncated message from another process");
     uint8_t *block = starg_allocate(context, count * size + 1, 1);
     if (block == NULL)
         return starg_fail_memory(context, STAGE);

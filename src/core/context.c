@@ -44,7 +44,7 @@ const char *starg_status_string(starg_status status) {
     case STARG_ERROR_CANCELLED:
         return "cancelled";
     case STARG_ERROR_RANK:
-        return "another process is lost";
+        return "lost connection to another process";
     }
     return "unknown status";
 }
@@ -200,7 +200,7 @@ starg_status starg_fail_memory(starg_context *context, const char *stage) {
 
 starg_status starg_fail_time(starg_context *context, const char *stage) {
     return starg_fail(context, STARG_ERROR_TIME, stage,
-                      "the time limit struck in the stage '%s', before there was a result", stage);
+                      "time limit reached in stage '%s' without a result; allow more time", stage);
 }
 
 starg_status starg_check_cancel(starg_context *context, const char *stage) {

@@ -38,7 +38,7 @@ static starg_status slurp(starg_context *context, const char *stage, const char 
         STARG_TRY(starg_check_cancel(context, stage));
         if (capacity > STARG_FILE_LIMIT) {
             status = starg_fail(context, STARG_ERROR_READ, stage,
-                                "'%s' is larger than 2 GiB, the most that is read", path);
+                                "'%s' is larger than 2 GiB, the limit for input files", path);
             goto done;
         }
         char *grown = starg_reallocate(context, block, count, 2 * capacity, 1);
@@ -75,12 +75,12 @@ starg_status starg_file_read(starg_context *context, const char *stage, const ch
         status = fail_errno(context, STARG_ERROR_READ, stage, "open", path, errno);
     } else if (S_ISDIR(info.st_mode)) {
         status = starg_fail(context, STARG_ERROR_READ, stage,
-                            "'%s' is a directory; name a file in it", path);
+                            "'%s' is a directory; choose a file in it", path);
     } else if (S_ISREG(info.st_mode)) {
         expected = (size_t)info.st_size;
         if (expected > STARG_FILE_LIMIT)
             status = starg_fail(context, STARG_ERROR_READ, stage,
-                                "'%s' is larger than 2 GiB, the most that is read", path);
+                                "'%s' is larger than 2 GiB, the limit for input files", path);
     }
     if (status == STARG_OK)
         status = slurp(context, stage, path, file, expected, bytes, size);

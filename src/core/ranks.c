@@ -17,7 +17,7 @@ uint64_t starg_context_helped_items(const starg_context *context) {
 
 static starg_status fail_lost(starg_context *context) {
     return starg_fail(context, STARG_ERROR_RANK, STAGE,
-                      "the way to another process of this run is broken");
+                      "the connection to another process of this run is broken");
 }
 
 starg_status ranks_send(starg_context *context, const starg_ranks *ranks, int to,

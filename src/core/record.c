@@ -256,7 +256,7 @@ static starg_status read_fields(reader *r, json_t *object, const starg_fields *f
 starg_status record_reject(starg_context *context, const char *name, const starg_fields *fields,
                            const char *key, const char *expected) {
     return starg_fail(context, STARG_ERROR_FORMAT, fields->name,
-                      "'%.200s' is no valid %s: \"%s\" must be %s", name, fields->name, key,
+                      "'%.200s' is not a valid %s: \"%s\" must be %s", name, fields->name, key,
                       expected);
 }
 
@@ -274,7 +274,7 @@ static place place_of(const reader *r) {
 
 static starg_status reject(const reader *r, const starg_field *f, const char *expected) {
     return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
-                      "'%.200s' is no valid %s: \"%s\"%s must be %s", r->name, r->file->name,
+                      "'%.200s' is not a valid %s: \"%s\"%s must be %s", r->name, r->file->name,
                       f->key, place_of(r).text, expected);
 }
 
@@ -434,7 +434,7 @@ static starg_status check_form(const reader *r, json_t *value, const starg_field
     if (fields->form == STARG_FORM_TUPLE)
         snprintf(expected, sizeof expected, "an array of %zu values", fields->count);
     return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
-                      "'%.200s' is no valid %s: %s%s must be %s", r->name, r->file->name, what,
+                      "'%.200s' is not a valid %s: %s%s must be %s", r->name, r->file->name, what,
                       place_of(r).text, expected);
 }
 
@@ -519,8 +519,7 @@ static starg_status read_constant(const reader *r, json_t *value, const starg_fi
     if (f->value != NULL)
         snprintf(text, sizeof text, "\"%s\"", f->value);
     else if (oldest == f->initial)
-        snprintf(text, sizeof text, "%llu, the only one that is known",
-                 (unsigned long long)f->initial);
+        snprintf(text, sizeof text, "%llu, the only supported one", (unsigned long long)f->initial);
     else
         snprintf(text, sizeof text, "%llu to %llu", (unsigned long long)oldest,
                  (unsigned long long)f->initial);
@@ -557,7 +556,7 @@ static starg_status read_field(reader *r, json_t *value, const starg_field *f, v
     }
     if (value == NULL)
         return starg_fail(r->context, STARG_ERROR_FORMAT, r->file->name,
-                          "'%.200s' is no valid %s: key \"%s\"%s is missing", r->name,
+                          "'%.200s' is not a valid %s: key \"%s\"%s is missing", r->name,
                           r->file->name, f->key, place_of(r).text);
     if (json_is_null(value) && (f->flags & STARG_FIELD_NULLABLE)) {
         set_none(f, record);

@@ -43,11 +43,11 @@ static starg_status check(starg_context *context, const starg_cover_problem *pro
         return starg_fail(context, STARG_ERROR_ARGUMENT, "cover", "the problem has no rows");
     if (problem->rows->rows >= UINT32_MAX || problem->rows->columns >= UINT32_MAX)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
-                          "%zu rows and %zu columns are too many: 4294967294 of each is the limit",
+                          "%zu rows and %zu columns are too many; the limit is 4294967294 each",
                           problem->rows->rows, problem->rows->columns);
     if (problem->redundancy < 1 || problem->redundancy > MOST_REDUNDANCY)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "cover",
-                          "redundancy is %u; it must lie between 1 and %d", problem->redundancy,
+                          "redundancy is %u; it must be between 1 and %d", problem->redundancy,
                           MOST_REDUNDANCY);
     for (size_t k = 0; k < problem->given_count; k++)
         if (problem->given[k] >= problem->rows->rows)

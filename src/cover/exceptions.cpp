@@ -29,8 +29,8 @@ static void find_memory() {
     } else if (own != nullptr) {
         own();
     } else if (is_inside) {
-        std::fputs("starguard: memory is out within the solver library, which cannot go on; take "
-                   "fewer candidates, or --method greedy\n",
+        std::fputs("starguard: out of memory in the solver library, which cannot recover; use "
+                   "fewer candidates or --method greedy\n",
                    stderr);
         std::_Exit(OUT_OF_MEMORY);
     } else {

@@ -34,8 +34,8 @@ static starg_status check(starg_context *context, animation *a) {
                           a->count, a->seconds, STARG_ANIMATION_FRAMES);
     if (a->indices == 0 || a->count * a->vertices * 12 + a->indices * 4 > UINT32_MAX / 2)
         return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                          "%zu frames of %zu vertices are none, or too many for the format",
-                          a->count, a->vertices);
+                          "%zu frames of %zu vertices: empty, or too many for the format", a->count,
+                          a->vertices);
     starg_mesh_bounds(a->mesh, lower, upper);
     for (int k = 0; k < 3; k++)
         a->center[k] = 0.5 * lower[k] + 0.5 * upper[k];
@@ -43,8 +43,7 @@ static starg_status check(starg_context *context, animation *a) {
         for (size_t i = 0; i < 3 * a->vertices; i++)
             if (!(fabs(a->frames[f][i] - a->center[i % 3]) < GLB_LIMIT))
                 return starg_fail(context, STARG_ERROR_RANGE, STAGE,
-                                  "frame %zu has a coordinate that single precision cannot hold",
-                                  f);
+                                  "a coordinate of frame %zu exceeds single precision", f);
     return STARG_OK;
 }
 

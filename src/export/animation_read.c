@@ -36,7 +36,8 @@ typedef struct span {
 } span;
 
 static starg_status reject(const reader *r, const char *what) {
-    return starg_fail(r->context, STARG_ERROR_FORMAT, STAGE, "'%s' is no morph: %s", r->name, what);
+    return starg_fail(r->context, STARG_ERROR_FORMAT, STAGE, "'%s' is not a morph: %s", r->name,
+                      what);
 }
 
 static uint32_t load_word(const uint8_t *at) {
@@ -99,7 +100,7 @@ static starg_status open_accessor(const reader *r, json_int_t index, size_t part
     if (view_at < 0 || inner < 0 || length < 0 || count < 0 || (size_t)view_at > limit ||
         (size_t)length > limit - (size_t)view_at || inner > length ||
         (size_t)count > (size_t)(length - inner) / unit)
-        return reject(r, "numbers that it describes are not in it");
+        return reject(r, "numbers are missing");
     if (json_object_get(accessor, "sparse") != NULL ||
         (number(view, "byteStride", (json_int_t)unit) != (json_int_t)unit))
         return reject(r, "its numbers are sparse or not packed");

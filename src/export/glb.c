@@ -33,8 +33,7 @@ starg_status glb_write(starg_context *context, const char *stage, const char *pa
         return starg_fail_memory(context, stage);
     if (bytes > UINT32_MAX - 2 * HEADER - 2 * CHUNK_HEADER - length)
         return starg_fail(context, STARG_ERROR_MESH, stage,
-                          "%zu bytes of numbers are more than a file of this format can hold",
-                          bytes);
+                          "%zu bytes of numbers exceed the limit of this format", bytes);
     STARG_NEW(context, stage, text, length);
     json_dumpb(json, text, length, JSON_COMPACT);
     STARG_TRY(starg_output_open(context, stage, path, &output));

@@ -50,11 +50,12 @@ starg_status starg_matrix_picture_write(starg_context *context, const double *va
     size_t entries = rows * rows;
     if (rows == 0 || rows > MOST_ROWS)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a table of %zu rows cannot be drawn, only of 1 to %d", rows, MOST_ROWS);
+                          "a matrix of %zu rows cannot be drawn; it needs 1 to %d", rows,
+                          MOST_ROWS);
     for (size_t i = 0; i < entries; i++)
         if (isnan(values[i]))
             return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                              "row %zu, column %zu is no number", i / rows, i % rows);
+                              "row %zu, column %zu is not a number", i / rows, i % rows);
     size_t cell = WIDTH / rows < LARGEST_CELL ? WIDTH / rows : LARGEST_CELL;
     cell = cell > 0 ? cell : 1;
     size_t width = rows * cell;

@@ -57,17 +57,16 @@ static starg_status check_guards(starg_context *context, const starg_page *p) {
                           "%zu guards are too many for a page", g->count);
     if (p->model != NULL && (g->face_count != starg_mesh_face_count(p->model) ||
                              g->vertex_count != starg_mesh_vertex_count(p->model)))
-        return starg_fail(
-            context, STARG_ERROR_ARGUMENT, STAGE,
-            "the guards are for a model of %zu vertices and %zu faces, but this one has "
-            "%zu and %zu; name the model that they were made for",
-            g->vertex_count, g->face_count, starg_mesh_vertex_count(p->model),
-            starg_mesh_face_count(p->model));
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the guards belong to a model with %zu vertices and %zu faces, but this "
+                          "one has %zu and %zu; give the right model",
+                          g->vertex_count, g->face_count, starg_mesh_vertex_count(p->model),
+                          starg_mesh_face_count(p->model));
     if (p->seen != NULL && (p->model == NULL || starg_bits_rows(p->seen) != g->count ||
                             starg_bits_columns(p->seen) != g->face_count))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "what guards see must have a row for each guard and a column for each "
-                          "face of the model");
+        return starg_fail(
+            context, STARG_ERROR_ARGUMENT, STAGE,
+            "visibility needs one row per guard and one column per face of the model");
     return STARG_OK;
 }
 
@@ -75,11 +74,11 @@ static starg_status check_pieces(starg_context *context, const starg_page *p,
                                  const starg_piece_surfaces *surfaces) {
     if (p->report != NULL && p->pieces == NULL)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a report of pieces needs the tetrahedra that it belongs to");
+                          "a pieces report needs its tetrahedra");
     if (p->report != NULL && p->report->piece_count != surfaces->piece_count)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the report is of %zu pieces, but the tetrahedra are of %zu; name two "
-                          "files of the same decomposition",
+                          "the report has %zu pieces, the tetrahedra have %zu; give two files of "
+                          "the same decomposition",
                           p->report->piece_count, surfaces->piece_count);
     return STARG_OK;
 }
@@ -87,7 +86,7 @@ static starg_status check_pieces(starg_context *context, const starg_page *p,
 static starg_status check_frames(starg_context *context, const starg_page *p) {
     if (p->frame_count == 1)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a morph of one frame; there must be two at least");
+                          "the morph has one frame; it needs at least two");
     for (size_t i = 1; i < p->frame_count; i++) {
         const starg_mesh *a = p->frames[0], *b = p->frames[i];
         size_t faces = starg_mesh_face_count(a);
@@ -95,8 +94,8 @@ static starg_status check_frames(starg_context *context, const starg_page *p) {
             faces != starg_mesh_face_count(b) ||
             memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * faces * sizeof(uint32_t)) != 0)
             return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                              "frame %zu has other vertices or faces than frame 0; all frames must "
-                              "be of one morph",
+                              "frame %zu and frame 0 differ in vertices or faces; all frames must "
+                              "belong to one morph",
                               i);
     }
     return STARG_OK;
@@ -106,7 +105,7 @@ static starg_status check_shapes(starg_context *context, const starg_page *p) {
     for (size_t i = 0; i < p->shape_count * p->shape_count; i++)
         if (!isfinite(p->distances[i]))
             return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                              "the distance of shapes %zu and %zu is no finite number",
+                              "the distance of shapes %zu and %zu is not finite",
                               i / p->shape_count, i % p->shape_count);
     return STARG_OK;
 }
@@ -116,7 +115,7 @@ static starg_status check(starg_context *context, const book *b) {
     const starg_page *p = b->page;
     if (p->model == NULL && p->guards == NULL && p->pieces == NULL && p->skeleton == NULL &&
         p->frame_count == 0 && p->shape_count == 0)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "the page has nothing to show");
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "the page has no content");
     STARG_TRY(check_guards(context, p));
     STARG_TRY(check_pieces(context, p, &b->surfaces));
     STARG_TRY(check_frames(context, p));

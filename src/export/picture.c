@@ -43,8 +43,8 @@ static starg_status check_options(starg_context *context, const starg_picture_op
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "up axis %d; it must be 0 (x), 1 (y) or 2 (z)", o->up);
     if (!(o->opacity >= 0 && o->opacity <= 1))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "opacity %g; it must lie in [0, 1]",
-                          o->opacity);
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "opacity is %g; it must be in [0, 1]", o->opacity);
     if (!(o->point_radius > 0 && o->point_radius <= 1))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "point radius %g; it must be above 0 and at most 1, as a fraction of the "
@@ -237,8 +237,7 @@ static starg_status check_sheet(starg_context *context, size_t rows, size_t colu
         return STARG_OK;
     return starg_fail(
         context, STARG_ERROR_ARGUMENT, STAGE,
-        "a sheet of %zu x %zu pictures; there must be one at least, and each side may "
-        "have at most %d pixels",
+        "a sheet of %zu x %zu pictures; it needs at least one, and at most %d pixels per side",
         columns, rows, MAX_SIDE);
 }
 

@@ -26,17 +26,16 @@ static starg_status check_guards(starg_context *context, const starg_scene *s) {
     if (g != NULL && s->model != NULL &&
         (g->face_count != starg_mesh_face_count(s->model) ||
          g->vertex_count != starg_mesh_vertex_count(s->model)))
-        return starg_fail(
-            context, STARG_ERROR_ARGUMENT, STAGE,
-            "the guards are for a model of %zu vertices and %zu faces, but this one has "
-            "%zu and %zu; name the model that they were made for",
-            g->vertex_count, g->face_count, starg_mesh_vertex_count(s->model),
-            starg_mesh_face_count(s->model));
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the guards belong to a model with %zu vertices and %zu faces, but this "
+                          "one has %zu and %zu; give the right model",
+                          g->vertex_count, g->face_count, starg_mesh_vertex_count(s->model),
+                          starg_mesh_face_count(s->model));
     if (s->seen != NULL && (g == NULL || s->model == NULL || starg_bits_rows(s->seen) != g->count ||
                             starg_bits_columns(s->seen) != starg_mesh_face_count(s->model)))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "what guards see must have a row for each guard and a column for each "
-                          "face of the model");
+        return starg_fail(
+            context, STARG_ERROR_ARGUMENT, STAGE,
+            "visibility needs one row per guard and one column per face of the model");
     return STARG_OK;
 }
 
@@ -46,11 +45,11 @@ static starg_status check_report(starg_context *context, const scene_job *job) {
         return STARG_OK;
     if (job->scene->pieces == NULL)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a report of pieces needs the tetrahedra that it belongs to");
+                          "a pieces report needs its tetrahedra");
     if (report->piece_count != job->surfaces.piece_count)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the report is of %zu pieces, but the tetrahedra are of %zu; name two "
-                          "files of the same decomposition",
+                          "the report has %zu pieces, the tetrahedra have %zu; give two files of "
+                          "the same decomposition",
                           report->piece_count, job->surfaces.piece_count);
     return STARG_OK;
 }
@@ -68,7 +67,7 @@ static starg_status check(starg_context *context, const scene_job *job) {
     starg_status status = STARG_OK;
     if (job->model_vertices + job->guards + job->surfaces.vertex_count + job->nodes == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "there is nothing to write: no model, guards, pieces or skeleton");
+                          "nothing to write: no model, guards, pieces or skeleton");
     STARG_TRY(check_guards(context, job->scene));
     STARG_TRY(check_report(context, job));
     STARG_TRY(check_skeleton(context, job));
@@ -187,9 +186,9 @@ static starg_status choose_format(starg_context *context, const char *path,
         *format = format_of(path);
     if (*format != STARG_SCENE_AUTO)
         return STARG_OK;
-    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                      "'%.300s' does not tell a format; end the name with .glb, .vtu, .ply or .obj",
-                      path);
+    return starg_fail(
+        context, STARG_ERROR_ARGUMENT, STAGE,
+        "'%.300s' has no known format; use a name that ends in .glb, .vtu, .ply or .obj", path);
 }
 
 static starg_status write_as(starg_context *context, const scene_job *job, const char *path,
@@ -206,7 +205,7 @@ static starg_status write_as(starg_context *context, const scene_job *job, const
     case STARG_SCENE_AUTO:
         break;
     }
-    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "there is no format %d", (int)format);
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "unknown format %d", (int)format);
 }
 
 starg_status starg_scene_write(starg_context *context, const starg_scene *scene, const char *path,

@@ -107,10 +107,10 @@ static size_t view_bytes(const glb_scene *s, view_kind kind) {
 static starg_status check_range(starg_context *context, const glb_scene *s) {
     if (s->job->size < GLB_LIMIT)
         return STARG_OK;
-    return starg_fail(context, STARG_ERROR_RANGE, STAGE,
-                      "a side of %g is more than the single precision of this format holds; write "
-                      ".vtu, .ply or .obj",
-                      s->job->size);
+    return starg_fail(
+        context, STARG_ERROR_RANGE, STAGE,
+        "an extent of %g exceeds the single precision of this format; write .vtu, .ply or .obj",
+        s->job->size);
 }
 
 /* ---- JSON ---- */

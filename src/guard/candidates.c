@@ -58,7 +58,7 @@ static starg_status skeletal_candidates(starg_context *context, const candidate_
     starg_status status = starg_skeleton_create(context, shape->proxy, &options, &skeleton);
     if (status == STARG_ERROR_MESH) {
         starg_log(context, STARG_LOG_NOTICE,
-                  "there is no curve skeleton (%s): candidates are taken from the medial axis",
+                  "no curve skeleton (%s): using candidates on the medial axis",
                   starg_context_error(context)->message);
         return medial_candidates(context, shape, wanted, points);
     }
@@ -145,10 +145,10 @@ starg_status candidates_check(starg_context *context, starg_candidates source, s
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "given candidates are not made: pass them in the options");
     if (wanted == 0 || wanted > 10000000 || !(clearance >= 0))
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "1 to 10000000 candidates can be asked for, with a clearance of zero "
-                          "or more; got %zu and %g",
-                          wanted, clearance);
+        return starg_fail(
+            context, STARG_ERROR_ARGUMENT, STAGE,
+            "candidates must be 1 to 10000000 and clearance zero or more, not %zu and %g", wanted,
+            clearance);
     return STARG_OK;
 }
 

@@ -35,8 +35,7 @@ starg_status candidates_turn(starg_context *context, const candidate_points *poi
     size_t most = MOST / directions, used = count < most ? count : most;
     if (used < count)
         starg_log(context, STARG_LOG_NOTICE,
-                  "%zu of %zu candidates are used, that each can look in %zu directions", used,
-                  count, directions);
+                  "using %zu of %zu candidates, each with %zu directions", used, count, directions);
     for (size_t i = 0; i < used; i++)
         for (size_t k = 0; k < directions; k++) {
             double direction[3];

@@ -54,7 +54,7 @@ static starg_status take_given(const guard_problem *problem, candidate_points *p
     }
     if (dropped > 0)
         starg_log(problem->context, STARG_LOG_WARNING,
-                  "%zu of %zu given candidates are left out: not inside, or too close to the wall",
+                  "ignoring %zu of %zu given candidates: not inside, or too close to the boundary",
                   dropped, options->point_count);
 done:
     return status;
@@ -113,10 +113,10 @@ done:
 static starg_status fail_without_candidates(starg_context *context, bool time_limited) {
     if (time_limited)
         return starg_fail(context, STARG_ERROR_TIME, STAGE,
-                          "the time limit struck before any candidate was looked at");
+                          "time limit reached before any candidate was evaluated; allow more time");
     return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                      "there is no point inside the solid from which anything is seen; a smaller "
-                      "clearance, a larger range or other candidates may help");
+                      "no candidate inside the solid sees anything; try a smaller clearance, a "
+                      "larger range or other candidates");
 }
 
 static starg_status find_pool(const guard_problem *problem, const guard_detail *detail,
@@ -279,8 +279,8 @@ static starg_status choose_all(const guard_problem *problem, const guard_pool *p
     }
     if (given == 0 || out->chosen.count != given)
         status = starg_fail(problem->context, STARG_ERROR_ARGUMENT, STAGE,
-                            "%zu of %zu given guards are strictly inside the solid; there must be "
-                            "guards, and all of them inside",
+                            "%zu of %zu given guards are strictly inside the solid; give at least "
+                            "one guard, all of them inside",
                             out->chosen.count, given);
 done:
     return status;

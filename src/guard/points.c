@@ -36,9 +36,9 @@ static starg_status reject_count(const starg_scan *scan, size_t line, size_t cou
     if (count == 6)
         return starg_source_fail(scan->source, starg_at_line(line),
                                  "six numbers, a position and a direction: directions of "
-                                 "candidates are not supported yet; write three numbers a line");
+                                 "candidates are not supported; write three numbers per line");
     return starg_source_fail(scan->source, starg_at_line(line),
-                             "a point has three coordinates, not %zu; write three numbers a line",
+                             "a point has three coordinates, not %zu; write three numbers per line",
                              count);
 }
 
@@ -124,7 +124,7 @@ starg_status starg_points_read_memory(starg_context *context, const void *bytes,
         STARG_TRY(scan_text(&source, &found));
     if (found.data.count == 0) {
         status = starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                            "'%s' holds no points; write three numbers a line", name);
+                            "'%s' has no points; write three numbers per line", name);
         goto done;
     }
     *points = found.data.data;

@@ -81,10 +81,10 @@ starg_status starg_builder_corner(starg_mesh_builder *builder, int64_t vertex, s
     starg_status status = STARG_OK;
     size_t count = starg_builder_vertex_count(builder);
     if (vertex < 0 || (uint64_t)vertex >= count || vertex > UINT32_MAX)
-        return starg_source_fail(builder->source, place,
-                                 "a face names vertex %lld (counted from 0), but there are only "
-                                 "%zu vertices",
-                                 (long long)vertex, count);
+        return starg_source_fail(
+            builder->source, place,
+            "a face refers to vertex %lld (counted from 0), but there are only %zu vertices",
+            (long long)vertex, count);
     STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->corners, (uint32_t)vertex);
 done:
     return status;
@@ -117,10 +117,10 @@ starg_status starg_builder_face(starg_mesh_builder *builder, starg_place place) 
     uint32_t *triangles = builder->faces.data + builder->faces.count;
     if (!starg_polygon_fan(builder->vertices.data, corners, count, triangles)) {
         if (count > MAX_CONCAVE_CORNERS)
-            return starg_source_fail(builder->source, place,
-                                     "a face that is not convex has %zu corners; up to %d can be "
-                                     "cut into triangles, so cut it up before",
-                                     count, MAX_CONCAVE_CORNERS);
+            return starg_source_fail(
+                builder->source, place,
+                "a nonconvex face has %zu corners, more than the limit of %d; triangulate it first",
+                count, MAX_CONCAVE_CORNERS);
         STARG_TRY(starg_polygon_clip(builder->source->context, builder->vertices.data, corners,
                                      count, triangles));
     }
@@ -140,8 +140,7 @@ starg_status starg_builder_tick(starg_mesh_builder *builder, size_t done) {
 starg_status starg_builder_finish(starg_mesh_builder *builder, starg_mesh **out) {
     if (builder->faces.count == 0)
         return starg_source_fail(builder->source, starg_at_file(),
-                                 "the file has no faces; a surface of triangles or polygons is "
-                                 "needed");
+                                 "the file has no faces; it must contain triangles or polygons");
     starg_status status = starg_mesh_adopt(builder->source->context, builder->vertices.data,
                                            builder->vertices.count / 3, builder->faces.data,
                                            builder->faces.count / 3, out);

@@ -10,8 +10,7 @@
 static starg_status check_counts(starg_context *context, size_t vertex_count, size_t face_count) {
     if (vertex_count > STARG_MESH_LIMIT || face_count > STARG_MESH_LIMIT)
         return starg_fail(context, STARG_ERROR_ARGUMENT, "mesh",
-                          "%zu vertices and %zu faces are more than the 2147483647 of each that a "
-                          "mesh can hold",
+                          "%zu vertices and %zu faces are too many; the limit is 2147483647 each",
                           vertex_count, face_count);
     return STARG_OK;
 }
@@ -36,7 +35,7 @@ static starg_status check_faces(starg_context *context, const uint32_t *faces, s
             continue;
         uint64_t face = i / 3;
         return starg_fail_at(context, STARG_ERROR_ARGUMENT, "mesh", STARG_ELEMENT_FACE, &face, 1,
-                             "face %zu names vertex %u, but there are only %zu vertices", i / 3,
+                             "face %zu refers to vertex %u, but there are only %zu vertices", i / 3,
                              faces[i], vertex_count);
     }
     return STARG_OK;
@@ -131,9 +130,8 @@ starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, c
     if (extent == 0 || extent >= STARG_EXTENT_LEAST)
         return STARG_OK;
     return starg_fail(context, STARG_ERROR_RANGE, stage,
-                      "the model is only %.3g wide, and areas and volumes of anything below %g "
-                      "vanish in floating point: multiply its coordinates, by a power of two to "
-                      "keep them exact",
+                      "the model is only %.3g wide; areas and volumes below a width of %g "
+                      "underflow: scale its coordinates, by a power of two to keep them exact",
                       extent, STARG_EXTENT_LEAST);
 }
 

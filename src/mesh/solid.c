@@ -25,14 +25,12 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                                  starg_finding_name(FATAL[i]), finding->count);
     }
     if (first != NULL)
-        return starg_fail_at(context, STARG_ERROR_MESH, "solid", first->element, first->first,
-                             first->shown,
-                             "the mesh does not bound a solid (%s); 'starguard check' shows where, "
-                             "%s",
-                             list,
-                             check->one_sided_faces == check->faces
-                                 ? "and nothing can mend it: its surfaces have one side only"
-                                 : "'starguard repair' may mend it");
+        return starg_fail_at(
+            context, STARG_ERROR_MESH, "solid", first->element, first->first, first->shown,
+            "the mesh does not bound a solid (%s); 'starguard check' shows where; %s", list,
+            check->one_sided_faces == check->faces
+                ? "its surfaces are one-sided, which cannot be repaired"
+                : "try 'starguard repair'");
     if (check->faces == 0)
         return starg_fail(context, STARG_ERROR_MESH, "solid", "the mesh has no faces");
     return starg_fail(context, STARG_ERROR_MESH, "solid",
@@ -70,10 +68,10 @@ static starg_status weld_if_closed(starg_context *context, starg_solid *solid,
     STARG_TRY(mesh_examine(context, copy, &welded));
     if (!welded.check->usable)
         goto done;
-    starg_log(context, STARG_LOG_NOTICE,
-              "%zu vertices have the position of an earlier one, which stands for them: only so is "
-              "the surface closed",
-              count);
+    starg_log(
+        context, STARG_LOG_NOTICE,
+        "merged %zu vertices with earlier ones at the same position, which closes the surface",
+        count);
     mesh_examination open = *all;
     starg_mesh *given = solid->mesh;
     *all = welded;

@@ -175,7 +175,7 @@ static starg_status find_candidates(guarding *g, size_t wanted) {
     }
     if (g->morph->candidate_count == 0)
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,
-                            "no node of A's skeleton has a counterpart inside of B; the map may be "
+                            "no node of A's skeleton has a counterpart inside B; the map may be "
                             "too distorted. --method arap needs no guards");
 done:
     starg_release(context, own);

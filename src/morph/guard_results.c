@@ -11,7 +11,7 @@ static starg_status check_method(const starg_morph *m) {
     if (morph_has_guards(m))
         return STARG_OK;
     return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE,
-                      "the methods arap and linear have no guards; take star or spherical");
+                      "the methods arap and linear have no guards; use star or spherical");
 }
 
 starg_status starg_morph_guards_result(const starg_morph *m, int end, starg_guards **out) {

@@ -204,8 +204,8 @@ starg_status landmarks_contradict(sphere *from, const sphere *to, const landmark
             worst = i;
     uint64_t vertex = landmarks->from[worst];
     return starg_fail_at(from->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, &vertex, 1,
-                         "the landmarks cannot all be met without folding the surface; the worst "
-                         "is pair %zu (vertices %u and %u). They may contradict one another, or "
-                         "mirror the model: check their order, or leave that pair out",
+                         "the landmarks cannot all be satisfied without folding the surface; the "
+                         "worst is pair %zu (vertices %u and %u). They may contradict one another, "
+                         "or mirror the model: check their order, or omit that pair",
                          worst, landmarks->from[worst], landmarks->to[worst]);
 }

@@ -100,7 +100,7 @@ starg_status starg_landmarks_read(starg_context *context, const char *path, cons
         if (found != 2 && found != VALUES_MOST)
             STARG_TRY(fail_line(context, path, number, "is not a pair"));
         if (!find_pair(a, b, values, found, pair))
-            STARG_TRY(fail_line(context, path, number, "names a vertex that there is not"));
+            STARG_TRY(fail_line(context, path, number, "refers to a missing vertex"));
         STARG_PUSH(context, STAGE, &list, pair[0]);
         STARG_PUSH(context, STAGE, &list, pair[1]);
     }

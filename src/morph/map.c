@@ -76,8 +76,7 @@ starg_status map_identity(starg_context *context, const starg_mesh *b, starg_map
         uint64_t vertex = v;
         if (map->faces[v] == UINT32_MAX)
             return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, &vertex, 1,
-                                 "vertex %zu is of no face, so it lies nowhere on the surface; "
-                                 "'starguard repair' takes it out",
+                                 "vertex %zu belongs to no face; remove it with 'starguard repair'",
                                  v);
     }
     return STARG_OK;
@@ -92,7 +91,7 @@ starg_status map_unit_copy(starg_context *context, const starg_mesh *mesh, starg
         extent = fmax(extent, upper[k] - lower[k]);
     *out = NULL;
     if (!(extent > 0))
-        return starg_fail(context, STARG_ERROR_MESH, STAGE, "a mesh has no extent");
+        return starg_fail(context, STARG_ERROR_MESH, STAGE, "all vertices of a mesh coincide");
     STARG_NEW(context, STAGE, vertices, 3 * mesh->vertex_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
         vertices[i] = (mesh->vertices[i] - lower[i % 3]) / extent -
@@ -121,20 +120,20 @@ static starg_status check_surface(starg_context *context, const starg_check *che
                                   const char *name) {
     const starg_finding *isolated = &check->findings[STARG_FINDING_ISOLATED_VERTEX];
     if (isolated->count > 0)
-        return starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX,
-                             isolated->first, isolated->shown,
-                             "surface %s has %zu vertices of no face; 'starguard repair' takes "
-                             "them out",
-                             name, isolated->count);
+        return starg_fail_at(
+            context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_VERTEX, isolated->first,
+            isolated->shown,
+            "surface %s has %zu vertices without faces; remove them with 'starguard repair'", name,
+            isolated->count);
     if (check->components != 1)
         return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                          "surface %s has %zu parts; surfaces with different faces can be mapped "
-                          "only in one part. Give a map with --map, or map the parts singly",
+                          "surface %s has %zu components; surfaces with different faces must be "
+                          "connected. Give a map with --map, or map the components separately",
                           name, check->components);
     if (check->genus != 0)
         return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                          "surface %s has genus %lld; surfaces with different faces are mapped by "
-                          "way of the sphere, which needs genus 0. Give a map with --map",
+                          "surface %s has genus %lld; surfaces with different faces are mapped via "
+                          "the sphere, which requires genus 0. Give a map with --map",
                           name, (long long)check->genus);
     return STARG_OK;
 }
@@ -144,7 +143,7 @@ static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
     const uint32_t *pairs = options->landmarks;
     if (options->landmark_count > STARG_LANDMARKS_MOST)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "%zu landmarks are too many; at most %d", options->landmark_count,
+                          "%zu landmarks are too many; the limit is %d", options->landmark_count,
                           STARG_LANDMARKS_MOST);
     for (size_t i = 0; i < options->landmark_count; i++) {
         const uint32_t *own = pairs + 2 * i;
@@ -157,8 +156,8 @@ static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
         for (size_t j = 0; j < i; j++)
             if (pairs[2 * j] == own[0] || pairs[2 * j + 1] == own[1])
                 return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                                  "landmarks %zu and %zu name the same vertex; each may stand in "
-                                  "one pair only",
+                                  "landmarks %zu and %zu use the same vertex; each vertex may be "
+                                  "in one pair only",
                                   j, i);
     }
     return STARG_OK;
@@ -170,16 +169,15 @@ static starg_status map_same(starg_context *context, const starg_mesh *a, const 
                              size_t different, const starg_map_options *options, starg_map **out) {
     starg_status status = STARG_OK;
     if (different > 0)
-        starg_log(
-            context, STARG_LOG_NOTICE,
-            "%zu of %zu faces differ; the surfaces are taken as poses of one model, vertex by "
-            "vertex",
-            different, a->face_count);
+        starg_log(context, STARG_LOG_NOTICE,
+                  "%zu of %zu faces differ; treating the surfaces as poses of one model, vertex by "
+                  "vertex",
+                  different, a->face_count);
     for (size_t i = 0; i < options->landmark_count; i++)
         if (options->landmarks[2 * i] != options->landmarks[2 * i + 1])
             return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                              "the surfaces have the same faces, so that vertex i goes to vertex "
-                              "i, but landmark %zu pairs %u with %u",
+                              "the surfaces have the same faces, which maps vertex i to vertex i, "
+                              "but landmark %zu pairs %u with %u",
                               i, options->landmarks[2 * i], options->landmarks[2 * i + 1]);
     STARG_TRY(map_make(context, a, b, STARG_MAP_SAME, out));
     STARG_TRY(map_identity(context, b, *out));

@@ -33,8 +33,7 @@ static const starg_field MAP[] = {
      RESULT(kind),
      .words = KINDS,
      .initial = STARG_MAP_GIVEN,
-     .help = "same: vertex i goes to vertex i; sphere: both surfaces were spread over the sphere; "
-             "given: read from a file."},
+     .help = "same: vertex i maps to vertex i; sphere: via the sphere; given: read from a file."},
     {.key = "vertices",
      .kind = STARG_FIELD_COUNT,
      .flags = STARG_FIELD_OPTIONAL,
@@ -70,7 +69,7 @@ static const starg_field MAP[] = {
      .flags = STARG_FIELD_OPTIONAL,
      RESULT(landmark_count),
      .most = STARG_MESH_LIMIT,
-     .help = "That it meets."},
+     .help = "Number of satisfied landmarks."},
 };
 static const starg_fields MAP_TABLE = {.name = "map", FIELD_ROWS(MAP)};
 
@@ -140,8 +139,8 @@ static starg_status check_map(starg_context *context, const starg_mesh *a, const
     starg_status status = STARG_OK;
     if (map->vertex_count != a->vertex_count)
         return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                          "the map has %zu entries in \"points\", but A has %zu vertices; it is of "
-                          "another pair of models",
+                          "the map has %zu entries in \"points\", but A has %zu vertices; it "
+                          "belongs to another pair of models",
                           map->vertex_count, a->vertex_count);
     map->kind = STARG_MAP_GIVEN;
     map->target_vertices = b->vertex_count;

@@ -33,9 +33,8 @@ static const starg_field OPTIONS[] = {
      .words = METHODS,
      .initial = STARG_MORPH_STAR,
      .value = "star|arap|linear|spherical",
-     .help = "star: pieces about guards that correspond; arap: as rigid as possible without "
-             "guards; linear: each vertex on a line; spherical: spherical coordinates about the "
-             "guards."},
+     .help = "star: pieces about corresponding guards; arap: as rigid as possible, without guards; "
+             "linear: straight vertex paths; spherical: spherical coordinates about the guards."},
     {.key = "candidates",
      .option = "candidates",
      .kind = STARG_FIELD_COUNT,
@@ -44,7 +43,7 @@ static const starg_field OPTIONS[] = {
      .most = CANDIDATES_MOST,
      .initial = CANDIDATES,
      .value = "N",
-     .help = "About how many places are tried for guards."},
+     .help = "Approximate number of guard candidates."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "morph options", .size = sizeof(starg_morph_options), FIELD_ROWS(OPTIONS)};
@@ -69,7 +68,8 @@ static starg_status check_input(starg_context *context, const starg_mesh *a, con
         uint64_t vertex = i / 3;
         if (!(fabs(images[i]) < STARG_COORDINATE_LIMIT))
             return starg_fail_at(context, STARG_ERROR_RANGE, STAGE, STARG_ELEMENT_VERTEX, &vertex,
-                                 1, "the image of vertex %zu is not finite and below 1e100", i / 3);
+                                 1, "the image of vertex %zu must be finite and below 1e100",
+                                 i / 3);
     }
     return STARG_OK;
 }
@@ -216,8 +216,8 @@ starg_status starg_morph_frame(const starg_morph *m, double t, double *positions
     starg_status status = STARG_OK;
     size_t count = 3 * m->mesh->vertex_count;
     if (!(t >= 0 && t <= 1))
-        return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE, "time %g; it must lie in [0, 1]",
-                          t);
+        return starg_fail(m->context, STARG_ERROR_ARGUMENT, STAGE,
+                          "time is %g; it must be in [0, 1]", t);
     starg_time_rule former = starg_time_begin(m->context, STARG_TIME_FAILS);
     STARG_TRY(starg_check_cancel(m->context, STAGE));
     if (t == 0 || t == 1) {

@@ -123,8 +123,8 @@ starg_status sphere_insert(sphere *s, sphere_work *work) {
         uint64_t vertex = b;
         return starg_fail_at(s->context, STARG_ERROR_SOLVER, STAGE, STARG_ELEMENT_VERTEX, &vertex,
                              1,
-                             "vertex %u finds no room on the sphere in double precision; "
-                             "'starguard repair' or a more even triangulation may help",
+                             "vertex %u does not fit on the sphere in double precision; try "
+                             "'starguard repair' or a more even triangulation",
                              b);
     }
     s->alive[s->rings->left - 1] = b;
@@ -202,7 +202,7 @@ starg_status sphere_create(starg_context *context, const starg_mesh *mesh, spher
     STARG_TRY(refine(s, &work));
     if (!sphere_is_positive(s)) {
         status = starg_fail(context, STARG_ERROR_SOLVER, STAGE,
-                            "the surface cannot be spread over the sphere in double precision");
+                            "the surface cannot be mapped to the sphere in double precision");
         goto done;
     }
     *out = s;

@@ -57,7 +57,7 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_sample_options, pose),
      .most = 1000,
      .value = "K",
-     .help = "Which pose. All poses of a sample have the same faces."},
+     .help = "Pose. All poses of a sample have the same faces."},
     {.key = "vertex_count",
      .option = "vertices",
      .kind = STARG_FIELD_COUNT,
@@ -66,7 +66,7 @@ static const starg_field OPTIONS[] = {
      .most = MAX_VERTICES,
      .initial = 5000,
      .value = "N",
-     .help = "About how many vertices."},
+     .help = "Approximate number of vertices."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "sample options", .size = sizeof(starg_sample_options), FIELD_ROWS(OPTIONS)};
@@ -96,8 +96,7 @@ starg_status starg_sample_create(starg_context *context, const char *name,
     const entry *e = find_entry(name);
     if (e == NULL)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "there is no sample called '%s'; the list of samples has the names",
-                          name);
+                          "unknown sample '%s'; see the list of samples", name);
     if (o->pose < 0 || o->pose >= e->info.poses)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "'%s' has no pose %d; its poses are 0 to %d", name, o->pose,

@@ -44,7 +44,7 @@ starg_status database_fail(starg_database *d) {
                           "'%s' is held by another process; try again later", d->path);
     case SQLITE_NOTADB:
         return starg_fail(context, STARG_ERROR_FORMAT, DATABASE_STAGE,
-                          "'%s' is no starguard database", d->path);
+                          "'%s' is not a starguard database", d->path);
     case SQLITE_CORRUPT:
     case SQLITE_ERROR:
     case SQLITE_CONSTRAINT:
@@ -173,7 +173,7 @@ static starg_status check_schema(starg_database *d) {
                           &programs));
     if (application != APPLICATION)
         status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
-                            "'%s' is no starguard database", d->path);
+                            "'%s' is not a starguard database", d->path);
     else if (version != SCHEMA_VERSION)
         status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
                             "'%s' has schema version %d, this program knows version %d; %s",
@@ -181,11 +181,10 @@ static starg_status check_schema(starg_database *d) {
                             version > SCHEMA_VERSION ? "use a newer starguard"
                                                      : "create a new one and add the models again");
     else if (programs > 0)
-        status =
-            starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
-                       "'%s' has views or triggers, which no starguard database has; it is not "
-                       "opened, because they would run",
-                       d->path);
+        status = starg_fail(d->context, STARG_ERROR_FORMAT, DATABASE_STAGE,
+                            "'%s' has views or triggers, unlike starguard databases; not opened, "
+                            "because they would run",
+                            d->path);
 done:
     return status;
 }
@@ -197,7 +196,7 @@ starg_status starg_database_open(starg_context *context, const char *path, starg
     if (access(path, R_OK) != 0)
         return errno == ENOENT
                    ? starg_fail(context, STARG_ERROR_READ, DATABASE_STAGE,
-                                "there is no database '%s'; 'starguard db create' makes one", path)
+                                "no database '%s'; create it with 'starguard db create'", path)
                    : starg_fail(context, STARG_ERROR_READ, DATABASE_STAGE, "cannot open '%s': %s",
                                 path, strerror(errno));
     STARG_TRY(connect(context, path, path, &d));
@@ -236,7 +235,7 @@ done:
 static starg_status fail_create(starg_context *context, const char *path, int error) {
     return error == EEXIST
                ? starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE,
-                            "'%s' exists already; a database is never overwritten", path)
+                            "'%s' already exists; databases are never overwritten", path)
                : starg_fail(context, STARG_ERROR_WRITE, DATABASE_STAGE, "cannot write '%s': %s",
                             path, strerror(error));
 }

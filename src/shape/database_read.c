@@ -305,10 +305,10 @@ static starg_status find_model(starg_database *d, const starg_database_models *m
         if (!means(&models->items[i], word))
             continue;
         if (found++ > 0)
-            return starg_fail(d->context, STARG_ERROR_ARGUMENT, DATABASE_STAGE,
-                              "'%s' is the name of several models, among them id:%lld and id:%lld; "
-                              "name one of these",
-                              word, (long long)*id, (long long)models->items[i].id);
+            return starg_fail(
+                d->context, STARG_ERROR_ARGUMENT, DATABASE_STAGE,
+                "'%s' is the name of several models, such as id:%lld and id:%lld; give an id", word,
+                (long long)*id, (long long)models->items[i].id);
         *id = models->items[i].id;
     }
     if (found == 0)

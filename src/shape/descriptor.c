@@ -46,7 +46,7 @@ static const starg_field OPTIONS[] = {
      .most = MOST_DIRECTIONS,
      .initial = STARG_DESCRIPTOR_DIRECTIONS,
      .value = "N",
-     .help = "In how many directions each guard looks, evenly spread."},
+     .help = "Number of ray directions per guard, evenly distributed."},
     {.key = "effort",
      .option = "effort",
      .kind = STARG_FIELD_COUNT,
@@ -55,7 +55,7 @@ static const starg_field OPTIONS[] = {
      .most = INT64_MAX,
      .initial = STARG_DESCRIPTOR_EFFORT,
      .value = "N",
-     .help = "Trials of the star decomposition that places the guards: more give fewer guards."},
+     .help = "Trials of the star decomposition; more trials give fewer guards."},
     {.key = "detail",
      .option = "detail",
      .kind = STARG_FIELD_COUNT,
@@ -63,9 +63,8 @@ static const starg_field OPTIONS[] = {
      .most = STARG_MESH_LIMIT / 8,
      .initial = STARG_DESCRIPTOR_DETAIL,
      .value = "N",
-     .help = "Bring the model down to N vertices first, smooth and free of local "
-             "self-intersections, so that noise and resolution count little; 0 describes it as "
-             "it is."},
+     .help = "Simplify the model to N vertices first, to reduce the influence of noise and "
+             "resolution; 0 keeps the model."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "descriptor options", .size = sizeof(starg_descriptor_options), FIELD_ROWS(OPTIONS)};
@@ -140,8 +139,8 @@ static starg_status decompose(starg_context *context, const starg_mesh *mesh,
         out->surface = NULL;
     if (!closed && status == STARG_OK)
         starg_log(context, STARG_LOG_WARNING,
-                  "the surface bounds no solid; what it winds around is described, its holes "
-                  "closed by isosurface stuffing");
+                  "the surface bounds no solid; isosurface stuffing closes its holes, and the "
+                  "filled solid is described");
 done:
     return status;
 }
@@ -259,8 +258,7 @@ done:
 static starg_status check_options(starg_context *context, const starg_descriptor_options *o) {
     if (o->detail != 0 && o->detail < LEAST_DETAIL)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a detail of %zu vertices was asked for; choose %d or more, or 0 to "
-                          "describe the model as it is",
+                          "detail is %zu vertices; it must be %d or more, or 0 to keep the model",
                           o->detail, LEAST_DETAIL);
     return fields_check(context, STAGE, &OPTIONS_TABLE, o);
 }

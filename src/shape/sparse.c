@@ -74,9 +74,9 @@ static starg_status fill_factors(sparse_factors *f, const char *stage, const spa
     if (ldl_l_numeric(f->size, a->starts, a->rows, a->values, f->starts, m->parents, m->sizes,
                       f->rows, f->values, f->diagonal, m->row, m->pattern, m->flags, f->order,
                       m->inverse) != f->size)
-        status = starg_fail(f->context, STARG_ERROR_SOLVER, stage,
-                            "a system of the faces cannot be solved: their shapes are too extreme; "
-                            "'starguard repair' may help");
+        status = starg_fail(
+            f->context, STARG_ERROR_SOLVER, stage,
+            "a linear system cannot be solved: some faces are too thin; try 'starguard repair'");
 done:
     return status;
 }

@@ -118,9 +118,9 @@ static starg_status sort_modes(starg_context *context, const iteration *it, mode
     for (size_t i = 0; i < wanted; i++) {
         modes[i] = (mode){.eigenvalue = 1 / eigenvalues[i] - SHIFT, .column = i};
         if (!(isfinite(modes[i].eigenvalue) && modes[i].eigenvalue > -0.5 * SHIFT))
-            return starg_fail(context, STARG_ERROR_SOLVER, STAGE,
-                              "the spectrum cannot be found: the faces' shapes are too extreme; "
-                              "'starguard repair' may help");
+            return starg_fail(
+                context, STARG_ERROR_SOLVER, STAGE,
+                "the spectrum cannot be computed: some faces are too thin; try 'starguard repair'");
     }
     qsort(modes, wanted, sizeof *modes, by_eigenvalue);
     for (size_t i = 0; i < wanted; i++) {

@@ -40,7 +40,7 @@ done:
 static starg_status push_end(reader *r, int64_t node, int64_t base) {
     starg_status status = STARG_OK;
     if (node < base || (uint64_t)(node - base) >= UINT32_MAX)
-        return reject(r, r->scan.line, "an edge names a node that cannot be");
+        return reject(r, r->scan.line, "an edge has an impossible node");
     STARG_PUSH(r->source->context, STAGE, &r->edges, (uint32_t)(node - base));
 done:
     return status;
@@ -76,7 +76,8 @@ static starg_status read_lines(reader *r) {
         else if (starg_word_is(word, "l") || starg_word_is(word, "e"))
             STARG_TRY(read_line(r));
         else if (starg_word_is(word, "f"))
-            return reject(r, word.line, "faces are of a surface; a skeleton has nodes and edges");
+            return reject(r, word.line,
+                          "faces belong to a surface; a skeleton has only nodes and edges");
         starg_scan_next_line(&r->scan);
     }
 done:
@@ -89,7 +90,7 @@ static starg_status expect(reader *r, const char *keyword) {
     starg_word word;
     starg_status status = starg_scan_expect(&r->scan, keyword, &word);
     if (status == STARG_OK && !starg_word_is(word, keyword))
-        return starg_source_fail(r->source, starg_at_line(word.line), "'%s' stands where %s should",
+        return starg_source_fail(r->source, starg_at_line(word.line), "found '%s' instead of %s",
                                  starg_word_excerpt(word).text, keyword);
     return status;
 }
@@ -172,7 +173,7 @@ static starg_status read_vtk(reader *r) {
             STARG_TRY(read_vtk_radii(r));
         else
             return starg_source_fail(r->source, starg_at_line(word.line),
-                                     "'%s' is no part of a skeleton",
+                                     "'%s' is not part of a skeleton",
                                      starg_word_excerpt(word).text);
     }
 done:
@@ -223,7 +224,7 @@ static starg_status finish(reader *r, starg_skeleton *s) {
     for (size_t i = 0; i < r->edges.count; i++)
         if (r->edges.data[i] >= s->node_count)
             return starg_source_fail(r->source, starg_at_file(),
-                                     "edge %zu names a node that is not there", i / 2);
+                                     "edge %zu refers to a missing node", i / 2);
     s->positions = r->points.data;
     s->edges = r->edges.data;
     s->radii = r->radii.data;

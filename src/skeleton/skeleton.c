@@ -166,7 +166,7 @@ static starg_status find_graph(starg_context *context, const starg_solid *solid,
     STARG_TRY(find_best(context, solid, a));
     if (a->complex->node_count == 0)
         STARG_TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
-                             "the solid is too flat for tetrahedra inside it"));
+                             "the solid is too flat for interior tetrahedra"));
     STARG_TRY(mend(context, solid, a));
 done:
     return status;
@@ -205,24 +205,23 @@ static void tell(starg_context *context, const starg_solid *solid, const starg_s
     const starg_check *check = solid->check;
     if (skeleton->mends > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "%zu parts and loops were taken from the skeleton that the solid has not; its "
-                  "surface is too thin in places, or crosses itself",
+                  "removed %zu components and loops from the skeleton that the solid does not "
+                  "have; its surface is too thin in places or intersects itself",
                   skeleton->mends);
     if (!is_as_expected(check, skeleton->components, skeleton->loops))
         starg_log(context, STARG_LOG_WARNING,
-                  "the skeleton has %zu parts and %zu loops where the solid has %zu and %lld; its "
-                  "surface is too coarse, too thin or crosses itself",
+                  "the skeleton has %zu components and %zu loops, the solid has %zu and %lld; its "
+                  "surface is too coarse, too thin or intersects itself",
                   skeleton->components, skeleton->loops, check->components - check->cavities,
                   (long long)check->genus);
     else if (check->cavities > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "the solid has %zu %s, which no curve can surround; the skeleton is that of "
-                  "the solid with walls cut open",
+                  "the solid has %zu %s, which no curve can represent; the skeleton is that of the "
+                  "solid with cut walls",
                   check->cavities, check->cavities == 1 ? "cavity" : "cavities");
     else if (skeleton->cuts > 0)
         starg_log(context, STARG_LOG_WARNING,
-                  "%zu %s cut open that do not shrink to a curve: tiny voids, or tunnels "
-                  "with a knot",
+                  "%zu %s cut that do not shrink to a curve: tiny voids or knotted tunnels",
                   skeleton->cuts, skeleton->cuts == 1 ? "wall was" : "walls were");
 }
 
@@ -235,7 +234,7 @@ static const starg_field OPTIONS[] = {
      .most = MAX_NODES,
      .initial = 1000,
      .value = "N",
-     .help = "About how many nodes; joints, ends and what loops need are kept in any case."},
+     .help = "Approximate number of nodes; joints, ends and loops are always kept."},
     {.key = "prune",
      .option = "prune",
      .kind = STARG_FIELD_REAL,
@@ -244,8 +243,8 @@ static const starg_field OPTIONS[] = {
      .high = 1e6,
      .standard = 1.5,
      .value = "X",
-     .help = "A branch must reach X times as far from its joint as the solid is wide there (half "
-             "its width). 1 keeps the most branches."},
+     .help = "Remove branches shorter than X times the local half-width of the solid at their "
+             "joint; 1 keeps the most branches."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "skeleton options", .size = sizeof(starg_skeleton_options), FIELD_ROWS(OPTIONS)};

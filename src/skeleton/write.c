@@ -72,7 +72,8 @@ starg_status starg_skeleton_write(starg_context *context, const starg_skeleton *
         format = format_of(path);
     if (format < STARG_SKELETON_OBJ || format > STARG_SKELETON_VTK)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "'%s' does not tell a format; end the name with .obj, .cg or .vtk", path);
+                          "'%s' has no known format; use a name that ends in .obj, .cg or .vtk",
+                          path);
     STARG_TRY(starg_c_locale_enter(context, &locale));
     STARG_TRY(starg_output_open(context, STAGE, path, &output));
     write_format(output.stream, skeleton, format);

@@ -20,9 +20,9 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_decompose_options, mode),
      .words = decompose_mode_words,
      .value = "strict|paper",
-     .help = "strict: every piece is proven to be star-shaped. paper: growth from guards as Yu and "
-             "Li published it; nearly all vertices are seen by their guards, and the report says "
-             "which pieces are star-shaped."},
+     .help = "strict: every piece is proven star-shaped. paper: region growing from guards as "
+             "published by Yu and Li; nearly all vertices are visible from their guards, and the "
+             "report lists the star-shaped pieces."},
     {.key = "density",
      .option = "density",
      .kind = STARG_FIELD_REAL,
@@ -31,33 +31,31 @@ static const starg_field OPTIONS[] = {
      .high = 1e6,
      .standard = STARG_DECOMPOSE_DENSITY,
      .value = "T",
-     .help = "Tetrahedra to begin with for each vertex of the surface; 0: as few as can be.",
-     .default_text = "0 for strict, which makes its own in the end, and 17.5 for paper, as in the "
-                     "paper"},
+     .help = "Initial tetrahedra per surface vertex; 0: as few as possible.",
+     .default_text = "0 for strict, 17.5 (as published) for paper"},
     {.key = "max_pieces",
      .option = "max-pieces",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, max_pieces),
      .most = UINT32_MAX,
      .value = "N",
-     .help = "strict: stop searching once there are no more than N pieces. paper: no more than N "
-             "pieces, at the cost of what their guards see.",
-     .default_text = "0, as few as can be found"},
+     .help = "strict: stop the search at N pieces or fewer. paper: at most N pieces, at the cost "
+             "of visibility.",
+     .default_text = "0, as few as possible"},
     {.key = "effort",
      .option = "effort",
      .kind = STARG_FIELD_COUNT,
      FIELD_MEMBER(starg_decompose_options, effort),
      .most = INT64_MAX,
      .value = "N",
-     .help = "strict: trials after which the search ends.",
-     .default_text = "0, a fixed amount of work, the same on every machine, of some 15 seconds; no "
-                     "bound with --time-limit"},
+     .help = "strict: number of trials of the search.",
+     .default_text = "0, a fixed amount of work (about 15 seconds); unlimited with --time-limit"},
     {.key = "fill",
      .option = "fill",
      .kind = STARG_FIELD_FLAG,
      FIELD_MEMBER(starg_decompose_options, fill),
-     .help = "Fill a surface with holes even where what it winds around is farther from it than a "
-             "fifth of its diagonal, which is refused otherwise."},
+     .help = "Fill a surface with holes even if the filled volume is farther from it than a fifth "
+             "of its diagonal."},
     TETRA_FIELDS(starg_decompose_options, tetra.),
 };
 static const starg_fields OPTIONS_TABLE = {
@@ -147,11 +145,11 @@ static starg_status check_filling(starg_context *context, const starg_mesh *surf
     double share = off / vec3_distance(lower, upper);
     if (share <= STARG_DECOMPOSE_FILL_MOST)
         return STARG_OK;
-    return starg_fail(context, STARG_ERROR_MESH, STAGE,
-                      "what the surface winds around is up to %.2g of its diagonal away from it, "
-                      "more than %g: its holes are too large to be filled so; close them with "
-                      "'starguard repair', or ask for it with --fill",
-                      share, STARG_DECOMPOSE_FILL_MOST);
+    return starg_fail(
+        context, STARG_ERROR_MESH, STAGE,
+        "the volume that fills the surface is up to %.2g of its diagonal away from it, more than "
+        "%g: its holes are too large; close them with 'starguard repair', or set --fill",
+        share, STARG_DECOMPOSE_FILL_MOST);
 }
 
 static starg_status decompose_filled(starg_context *context, const starg_solid *solid,

@@ -75,9 +75,8 @@ static starg_status take_labels(starg_context *context, const starg_file_bytes *
         if (label < 0 || (size_t)label >= d->piece_count || left[label]-- == 0)
             status = starg_fail_at(context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON,
                                    &index, 1,
-                                   "tetrahedron %zu has the label %d, of which '%.200s' does not "
-                                   "say that there are so many; the files are not of one "
-                                   "decomposition",
+                                   "tetrahedron %zu has the label %d, which does not match "
+                                   "'%.200s'; the files belong to different decompositions",
                                    t, label, report->name);
     }
 done:

@@ -318,11 +318,11 @@ static starg_status check_closed(starg_context *context, const starg_mesh *mesh)
         if (balanced)
             continue;
         uint64_t edge[2] = {a, b};
-        status = starg_fail_at(context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, edge, 2,
-                               "the mesh is not closed: at the edge between vertices %u and %u its "
-                               "faces do not match; 'starguard check' shows where, 'starguard "
-                               "repair' may mend it",
-                               a, b);
+        status = starg_fail_at(
+            context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_EDGE, edge, 2,
+            "the mesh is not closed: the faces at the edge between vertices %u and %u do not "
+            "match; run 'starguard check' for details, or try 'starguard repair'",
+            a, b);
         goto done;
     }
 done:

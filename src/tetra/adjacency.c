@@ -86,8 +86,8 @@ static starg_status fail_face(const starg_tetmesh *mesh, const entry *first, siz
     if (count > 2)
         return starg_fail_at(mesh->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
                              tetrahedra, count,
-                             "%zu tetrahedra (first: %llu, %llu and %llu) share one face; at most "
-                             "two can, so that others overlap",
+                             "%zu tetrahedra (first: %llu, %llu and %llu) share one face and "
+                             "overlap; at most two may share a face",
                              count, (unsigned long long)tetrahedra[0],
                              (unsigned long long)tetrahedra[1], (unsigned long long)tetrahedra[2]);
     return starg_fail_at(mesh->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,

@@ -30,10 +30,10 @@ starg_status tet_builder_add(tet_builder *builder, const int64_t corners[4], int
     const starg_source *source = builder->points.source;
     for (int k = 0; k < 4; k++) {
         if (corners[k] < 0 || corners[k] > (int64_t)STARG_MESH_LIMIT)
-            return starg_source_fail(source, place,
-                                     "tetrahedron %zu names vertex %lld (both counted from 0), "
-                                     "which cannot be",
-                                     tet_builder_count(builder), (long long)corners[k]);
+            return starg_source_fail(
+                source, place,
+                "tetrahedron %zu has the impossible vertex %lld (both counted from 0)",
+                tet_builder_count(builder), (long long)corners[k]);
         STARG_PUSH(source->context, STAGE, &builder->tetrahedra, (uint32_t)corners[k]);
     }
     STARG_PUSH(source->context, STAGE, &builder->regions, (int32_t)(uint32_t)(uint64_t)region);
@@ -42,10 +42,10 @@ done:
 }
 
 starg_status tet_builder_refuse(tet_builder *builder, const char *what, starg_place place) {
-    return starg_source_fail(builder->points.source, place,
-                             "there is %s among the cells; only tetrahedra of four vertices are "
-                             "read, so split the others into those",
-                             what);
+    return starg_source_fail(
+        builder->points.source, place,
+        "the cells include %s; only four-vertex tetrahedra are supported, so split other cells",
+        what);
 }
 
 starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out) {
@@ -58,11 +58,10 @@ starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out) {
         if (builder->tetrahedra.data[i] < vertices)
             continue;
         uint64_t tetrahedron = i / 4;
-        return starg_fail_at(source->context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON,
-                             &tetrahedron, 1,
-                             "'%s': tetrahedron %zu names vertex %u, but there are only %zu "
-                             "(counted from 0)",
-                             source->name, i / 4, builder->tetrahedra.data[i], vertices);
+        return starg_fail_at(
+            source->context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_TETRAHEDRON, &tetrahedron, 1,
+            "'%s': tetrahedron %zu refers to vertex %u, but there are only %zu (counted from 0)",
+            source->name, i / 4, builder->tetrahedra.data[i], vertices);
     }
     starg_status status =
         tetmesh_adopt(source->context, builder->points.vertices.data, vertices,
@@ -104,7 +103,7 @@ static starg_status take_bits(tet_numbers *numbers, tet_type type, const char *w
     size_t size = type_bytes(type);
     if ((size_t)(numbers->scan.end - numbers->scan.at) < size)
         return starg_source_fail(numbers->scan.source, tet_place(numbers),
-                                 "the file ends where %s should stand; it seems to be cut off",
+                                 "the file ends where %s is expected; it seems to be truncated",
                                  what);
     *bits = 0;
     for (size_t i = 0; i < size; i++) {
@@ -158,7 +157,7 @@ starg_status tet_check_count(const tet_numbers *numbers, int64_t count, size_t b
     if (count >= 0 && (uint64_t)count <= left / bytes)
         return STARG_OK;
     return starg_source_fail(numbers->scan.source, tet_place(numbers),
-                             "%lld %s are announced, which the %zu bytes that follow cannot hold; "
-                             "the count is wrong or the file is cut off",
+                             "the file declares %lld %s, too many for the %zu bytes that follow; "
+                             "the count is wrong or the file is truncated",
                              (long long)count, what, left - 1);
 }

@@ -18,24 +18,24 @@ extern const char *const tetra_generator_words[];
      FIELD_MEMBER(T, PREFIX generator),                                                            \
      .words = tetra_generator_words,                                                               \
      .value = "auto|tetgen|stuffing",                                                              \
-     .help = "How tetrahedra are made: by the program tetgen, which keeps the surface, by "        \
-             "isosurface stuffing, or by the one that can."},                                      \
+     .help = "Tetrahedra generator: the program tetgen, which preserves the surface, isosurface "  \
+             "stuffing, or whichever is applicable."},                                             \
         {.key = "target",                                                                          \
          .kind = STARG_FIELD_COUNT,                                                                \
          FIELD_MEMBER(T, PREFIX target),                                                           \
          .most = TETMESH_LIMIT,                                                                    \
          .value = "N",                                                                             \
-         .help = "Tetrahedra that are aimed at; above 0 it stands in for the density."},           \
+         .help = "Target number of tetrahedra; above 0 it replaces the density."},                 \
         {.key = "tetgen",                                                                          \
          .kind = STARG_FIELD_TEXT,                                                                 \
          FIELD_MEMBER(T, PREFIX tetgen),                                                           \
          .value = "FILE",                                                                          \
-         .help = "The program tetgen.",                                                            \
-         .default_text = "that of the search path"},                                               \
+         .help = "Path of the program tetgen.",                                                    \
+         .default_text = "found on the search path"},                                              \
     {                                                                                              \
         .key = "tetgen_limit", .kind = STARG_FIELD_REAL, .flags = STARG_FIELD_ABOVE,               \
         FIELD_MEMBER(T, PREFIX tetgen_limit), .high = 1e100, .standard = 30, .value = "S",         \
-        .help = "Seconds that tetgen may take."                                                    \
+        .help = "Time limit of tetgen in seconds."                                                 \
     }
 
 #endif

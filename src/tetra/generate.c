@@ -25,7 +25,7 @@ static const starg_field OPTIONS[] = {
      .high = 1e6,
      .standard = TETRA_PAPER_DENSITY,
      .value = "T",
-     .help = "Tetrahedra for each vertex of the surface; 0: as few as can be."},
+     .help = "Tetrahedra per surface vertex; 0: as few as possible."},
     TETRA_FIELDS(starg_tetra_options, ),
 };
 static const starg_fields OPTIONS_TABLE = {
@@ -79,9 +79,9 @@ static const char *unfit_for_tetgen(const starg_solid *solid) {
     const starg_finding *found = solid->check->findings;
     if (found[STARG_FINDING_SELF_INTERSECTION].count > 0 ||
         found[STARG_FINDING_SELF_CONTACT].count > 0)
-        return "the surface meets itself";
+        return "the surface intersects itself";
     if (found[STARG_FINDING_DEGENERATE_FACE].count > 0)
-        return "the surface has faces without area";
+        return "the surface has degenerate faces";
     return NULL;
 }
 
@@ -90,7 +90,7 @@ static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
                                starg_tetmesh **out) {
     const char *reason = unfit_for_tetgen(solid);
     if (reason != NULL)
-        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "%s, which TetGen does not take",
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "%s, which TetGen does not support",
                           reason);
     return by_tetgen(context, solid, o, report, out);
 }
@@ -110,8 +110,7 @@ static void tell_stuffing(starg_context *context, const starg_solid *solid) {
     char thin[96];
     snprintf(thin, sizeof thin, "the solid is very thin (about %.2g)", thickness_of(solid));
     starg_log(context, STARG_LOG_WARNING,
-              "%s; isosurface stuffing makes the tetrahedra instead, and their surface is only "
-              "near the model's",
+              "%s; using isosurface stuffing instead, whose surface only approximates the model's",
               is_thin(solid) ? thin : starg_context_error(context)->message);
 }
 
@@ -186,9 +185,8 @@ starg_status starg_tetmesh_from_open_mesh(starg_context *context, const starg_me
     STARG_TRY(tetra_is_hollow(context, mesh, &hollow));
     if (hollow || shape.volume == 0) {
         status = starg_fail(context, STARG_ERROR_MESH, STAGE,
-                            "nothing is inside of the surface: it has no faces, lies in a plane, "
-                            "or its faces cancel each other; give a surface that encloses a "
-                            "volume");
+                            "the surface encloses no volume: it has no faces, is planar, or its "
+                            "faces cancel out; give a surface that encloses a volume");
         goto done;
     }
     STARG_TRY(bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &tree));

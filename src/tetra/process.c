@@ -48,7 +48,7 @@ static void become(const char *const *arguments) {
 static starg_status explain(starg_context *context, const char *stage, const char *program,
                             int status) {
     if (WIFSIGNALED(status))
-        return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was ended by signal %d",
+        return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was terminated by signal %d",
                           program, WTERMSIG(status));
     if (WEXITSTATUS(status) == NOT_FOUND)
         return starg_fail(context, STARG_ERROR_SOLVER, stage,
@@ -118,10 +118,10 @@ starg_status starg_scratch_create(starg_context *context, const char *stage, cha
     memcpy(*path, parent, length);
     memcpy(*path + length, name, sizeof name);
     if (mkdtemp(*path) == NULL) {
-        status = starg_fail(context, STARG_ERROR_WRITE, stage,
-                            "cannot make a temporary folder in '%s': %s; set TMPDIR to one that "
-                            "can be written",
-                            parent, strerror(errno));
+        status = starg_fail(
+            context, STARG_ERROR_WRITE, stage,
+            "cannot create a temporary folder in '%s': %s; set TMPDIR to a writable folder", parent,
+            strerror(errno));
         starg_release(context, *path);
         *path = NULL;
     }

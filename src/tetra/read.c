@@ -55,8 +55,8 @@ static starg_status read_source(const starg_source *source, const starg_source *
         format = detect(source);
         if (format == NULL) {
             status = starg_source_fail(source, starg_at_file(),
-                                       "the format is unknown; tetrahedra are read from MEDIT "
-                                       ".mesh, legacy .vtk, Gmsh .msh, and TetGen .node and .ele");
+                                       "unknown format; use MEDIT .mesh, legacy .vtk, Gmsh .msh, "
+                                       "or TetGen .node and .ele");
             goto done;
         }
         STARG_TRY(format->read(&builder));

@@ -69,10 +69,9 @@ static starg_status read_format(gmsh_reader *gmsh) {
     STARG_TRY(starg_scan_integer(scan, "the data size", &bytes));
     gmsh->version4 = version >= 4.1 && version < 5;
     if (!gmsh->version4 && !(version >= 2 && version < 3))
-        return starg_source_fail(source_of(gmsh), starg_at_line(scan->line),
-                                 "Gmsh's version %g is not read; save the mesh in version 4.1 or "
-                                 "2.2",
-                                 version);
+        return starg_source_fail(
+            source_of(gmsh), starg_at_line(scan->line),
+            "Gmsh version %g is not supported; save the mesh in version 4.1 or 2.2", version);
     if ((binary != 0 && binary != 1) || (binary == 1 && bytes != 8 && bytes != 4))
         return starg_source_fail(source_of(gmsh), starg_at_line(scan->line),
                                  "file type %lld with numbers of %lld bytes is not read",
@@ -211,7 +210,7 @@ static starg_status find_node(gmsh_reader *gmsh, int64_t tag, int64_t *index) {
         found = bsearch(&key, gmsh->nodes.data, gmsh->nodes.count, sizeof key, compare_nodes);
     if (found == NULL)
         return starg_source_fail(source_of(gmsh), tet_place(&gmsh->numbers),
-                                 "an element names node %lld, which there is not", (long long)tag);
+                                 "an element refers to the missing node %lld", (long long)tag);
     *index = (int64_t)found->index;
     return STARG_OK;
 }
@@ -308,7 +307,7 @@ static starg_status skip_section(gmsh_reader *gmsh, starg_word name) {
             return STARG_OK;
     }
     return starg_source_fail(source_of(gmsh), starg_at_line(name.line),
-                             "the section %s has no end; the file seems to be cut off",
+                             "the section %s has no end; the file seems to be truncated",
                              starg_word_excerpt(name).text);
 }
 
@@ -324,7 +323,7 @@ static starg_status read_section(gmsh_reader *gmsh, starg_word name) {
         return skip_section(gmsh, name);
     } else {
         return starg_source_fail(source_of(gmsh), tet_place(&gmsh->numbers),
-                                 "'%s' stands where a section should begin",
+                                 "found '%s' where a section should begin",
                                  starg_word_excerpt(name).text);
     }
 done:
@@ -342,9 +341,9 @@ starg_status tet_gmsh_read(tet_builder *builder) {
         if (word.length > 4 && memcmp(word.text, "$End", 4) == 0)
             continue;
         if (starg_word_is(word, "$NOD")) {
-            status = starg_source_fail(builder->points.source, starg_at_line(word.line),
-                                       "Gmsh's version 1 is not read; save the mesh in version 4.1 "
-                                       "or 2.2");
+            status = starg_source_fail(
+                builder->points.source, starg_at_line(word.line),
+                "Gmsh version 1 is not supported; save the mesh in version 4.1 or 2.2");
             goto done;
         }
         if (starg_word_is(word, "$MeshFormat")) {

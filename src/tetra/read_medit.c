@@ -17,10 +17,10 @@ static starg_status read_header(tet_numbers *numbers) {
     int64_t version;
     STARG_TRY(starg_scan_expect(&numbers->scan, "MeshVersionFormatted", &word));
     if (!starg_word_is(word, "MeshVersionFormatted"))
-        return starg_source_fail(numbers->scan.source, starg_at_line(word.line),
-                                 "'%s' stands where MeshVersionFormatted should; only MEDIT's text "
-                                 "format is read",
-                                 starg_word_excerpt(word).text);
+        return starg_source_fail(
+            numbers->scan.source, starg_at_line(word.line),
+            "found '%s' instead of MeshVersionFormatted; only MEDIT's text format is supported",
+            starg_word_excerpt(word).text);
     STARG_TRY(starg_scan_integer(&numbers->scan, "the version", &version));
 done:
     return status;

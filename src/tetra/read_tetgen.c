@@ -50,7 +50,7 @@ static starg_status read_elements(tet_builder *builder, const starg_source *elem
     STARG_TRY(tet_check_count(&numbers, count, LEAST_BYTES, "tetrahedra"));
     if (nodes != 4 || attributes < 0)
         return starg_source_fail(elements, tet_place(&numbers),
-                                 "tetrahedra of %lld nodes are not read, only those of four",
+                                 "tetrahedra with %lld nodes are not supported; use four nodes",
                                  (long long)nodes);
     STARG_TRY(tet_builder_reserve(builder, 0, (size_t)count));
     for (int64_t i = 0; i < count; i++) {

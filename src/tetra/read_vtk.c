@@ -44,7 +44,7 @@ static starg_status expect(vtk_reader *vtk, const char *keyword) {
     STARG_TRY(starg_scan_expect(&vtk->numbers.scan, keyword, &word));
     if (!is(word, keyword))
         return starg_source_fail(source_of(vtk), starg_at_line(word.line),
-                                 "'%s' stands where %s should", starg_word_excerpt(word).text,
+                                 "found '%s' instead of %s", starg_word_excerpt(word).text,
                                  keyword);
 done:
     return status;
@@ -79,7 +79,7 @@ static starg_status read_header(vtk_reader *vtk) {
         vtk->numbers.encoding = TET_BIG;
     else if (!is(word, "ASCII"))
         return starg_source_fail(source_of(vtk), starg_at_line(word.line),
-                                 "'%s' stands where ASCII or BINARY should",
+                                 "found '%s' instead of ASCII or BINARY",
                                  starg_word_excerpt(word).text);
     STARG_TRY(expect(vtk, "DATASET"));
     STARG_TRY(starg_scan_expect(scan, "a kind of data set", &word));
@@ -297,8 +297,7 @@ done:
 static starg_status guess_types(vtk_reader *vtk) {
     starg_status status = STARG_OK;
     starg_log(source_of(vtk)->context, STARG_LOG_WARNING,
-              "'%s' does not tell the types of its cells; those of four corners are taken for "
-              "tetrahedra",
+              "'%s' has no cell types; treating cells with four corners as tetrahedra",
               source_of(vtk)->name);
     for (size_t cell = 0; cell + 1 < vtk->starts.count; cell++) {
         size_t corners = vtk->starts.data[cell + 1] - vtk->starts.data[cell];

@@ -116,7 +116,7 @@ static starg_status run_program(run *r, double volume) {
 /* ---- output ---- */
 
 static starg_status refuse(run *r, const char *what) {
-    return starg_fail(r->context, STARG_ERROR_SOLVER, STAGE, "TetGen's result is not used: %s",
+    return starg_fail(r->context, STARG_ERROR_SOLVER, STAGE, "TetGen's result was rejected: %s",
                       what);
 }
 
@@ -184,7 +184,7 @@ static starg_status drop_cavities(run *r) {
         int32_t region = b->regions.data[t];
         double volume = corner_volume(b, t, center);
         if (region < 0 || (size_t)region > count) {
-            status = refuse(r, "its regions are not numbered as they should be");
+            status = refuse(r, "unexpected region numbers");
             goto done;
         }
         if (volume > largest[region]) {
@@ -198,7 +198,7 @@ static starg_status drop_cavities(run *r) {
                     4 * sizeof *b->tetrahedra.data);
     b->tetrahedra.count = 4 * kept;
     if (kept == 0)
-        status = refuse(r, "it has no tetrahedra in the solid");
+        status = refuse(r, "no tetrahedra in the solid");
 done:
     starg_release(r->context, largest);
     starg_release(r->context, inside);
@@ -232,7 +232,7 @@ static starg_status compare_surfaces(run *r, const starg_mesh *boundary, const u
     turned_face *ours = NULL, *theirs = NULL;
     size_t count = mesh->face_count;
     if (boundary->face_count != count)
-        return refuse(r, "its boundary has another number of faces than the surface");
+        return refuse(r, "its boundary and the surface differ in the number of faces");
     STARG_NEW(r->context, STAGE, ours, count);
     STARG_NEW(r->context, STAGE, theirs, count);
     for (size_t f = 0; f < count; f++) {
@@ -243,7 +243,7 @@ static starg_status compare_surfaces(run *r, const starg_mesh *boundary, const u
     qsort(ours, count, sizeof *ours, compare_faces);
     qsort(theirs, count, sizeof *theirs, compare_faces);
     if (memcmp(ours, theirs, count * sizeof *ours) != 0)
-        status = refuse(r, "its boundary is not the surface");
+        status = refuse(r, "its boundary differs from the surface");
 done:
     starg_release(r->context, ours);
     starg_release(r->context, theirs);

@@ -20,9 +20,8 @@ static starg_status check_counts(starg_context *context, size_t vertices, size_t
     if (tetrahedra > TETMESH_LIMIT || vertices > STARG_MESH_LIMIT)
         return starg_fail(
             context, STARG_ERROR_ARGUMENT, STAGE,
-            "%zu tetrahedra on %zu vertices are more than the %zu and %zu that can be "
-            "numbered",
-            tetrahedra, vertices, TETMESH_LIMIT, STARG_MESH_LIMIT);
+            "%zu tetrahedra and %zu vertices are too many; the limits are %zu and %zu", tetrahedra,
+            vertices, TETMESH_LIMIT, STARG_MESH_LIMIT);
     return STARG_OK;
 }
 
@@ -45,11 +44,10 @@ static starg_status check_indices(const starg_tetmesh *mesh) {
         if (mesh->tetrahedra[i] < mesh->vertex_count)
             continue;
         uint64_t tetrahedron = i / 4;
-        return starg_fail_at(mesh->context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_TETRAHEDRON,
-                             &tetrahedron, 1,
-                             "tetrahedron %zu names vertex %u, but there are only %zu (counted "
-                             "from 0)",
-                             i / 4, mesh->tetrahedra[i], mesh->vertex_count);
+        return starg_fail_at(
+            mesh->context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_TETRAHEDRON, &tetrahedron, 1,
+            "tetrahedron %zu refers to vertex %u, but there are only %zu (counted from 0)", i / 4,
+            mesh->tetrahedra[i], mesh->vertex_count);
     }
     return STARG_OK;
 }
@@ -77,7 +75,7 @@ static starg_status orient(starg_tetmesh *mesh) {
         return starg_fail_at(mesh->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
                              flat, flat_count,
                              "%zu of %zu tetrahedra have no volume (first: %llu); remove them or "
-                             "make the mesh again",
+                             "generate the mesh again",
                              flat_count, mesh->count, (unsigned long long)flat[0]);
     return STARG_OK;
 }
@@ -93,12 +91,11 @@ static void drop_uniform_regions(starg_tetmesh *mesh) {
 
 static void tell(const starg_tetmesh *mesh) {
     if (mesh->turned > 0)
-        starg_log(mesh->context, STARG_LOG_NOTICE,
-                  "%zu of %zu tetrahedra were ordered the wrong way and turned", mesh->turned,
-                  mesh->count);
+        starg_log(mesh->context, STARG_LOG_NOTICE, "reoriented %zu of %zu negative tetrahedra",
+                  mesh->turned, mesh->count);
     if (mesh->regions != NULL)
         starg_log(mesh->context, STARG_LOG_NOTICE,
-                  "the tetrahedra belong to several regions, which are taken as one solid");
+                  "treating several regions of tetrahedra as one solid");
 }
 
 starg_status tetmesh_adopt(starg_context *context, double *vertices, size_t vertex_count,

@@ -24,7 +24,7 @@ typedef struct reader {
 static void reject(reader *r, const char *key, const char *expected) {
     if (r->status == STARG_OK)
         r->status = starg_fail(r->context, STARG_ERROR_FORMAT, STAGE,
-                               "'%s' is no valid report of pieces: \"%s\" must be %s", r->name, key,
+                               "'%s' is not a valid pieces report: \"%s\" must be %s", r->name, key,
                                expected);
 }
 
@@ -155,7 +155,7 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     if (format == NULL || strcmp(format, "starguard-pieces") != 0)
         reject(r, "format", "\"starguard-pieces\"");
     if (read_count(r, root, "version") != 1)
-        reject(r, "version", "1, the only one that is known");
+        reject(r, "version", "1, the only supported one");
     read_model(r, json_object_get(root, "model"), report);
     report->mode = read_word(r, root, "mode", "strict", "paper") == 0 ? STARG_DECOMPOSE_STRICT
                                                                       : STARG_DECOMPOSE_PAPER;

@@ -195,7 +195,7 @@ static starg_status expect_same(reader *r, size_t expected, const char *what) {
 /* Is a binary section of so many bytes there? */
 static starg_status expect_bytes(const reader *r, size_t bytes) {
     if (r->binary && (size_t)(r->end - r->at) < bytes)
-        return reject(r, "the file is cut off in the section that begins here");
+        return reject(r, "the file is truncated in the section that begins here");
     return STARG_OK;
 }
 
@@ -208,7 +208,7 @@ static starg_status read_head(reader *r) {
     starg_status status = STARG_OK;
     char word[WORD];
     if ((size_t)(r->end - r->at) < sizeof magic - 1 || memcmp(r->at, magic, sizeof magic - 1) != 0)
-        return reject(r, "this is no legacy VTK file: \"# vtk DataFile Version\" is missing");
+        return reject(r, "not a legacy VTK file: \"# vtk DataFile Version\" is missing");
     r->at += sizeof magic - 1;
     if (r->at == r->end || *r->at < '1' || *r->at > '4')
         return reject(r, "only versions below 5 of the legacy VTK format are read");

@@ -47,8 +47,7 @@ static starg_status check_arguments(starg_context *context, const double *boxes,
                                     const starg_visibility_options *options) {
     if (options->cone != 360)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the cone is %g degrees; from a box one looks all around: 360",
-                          options->cone);
+                          "the cone is %g degrees; from boxes it must be 360", options->cone);
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < 3; k++) {
             double lower = boxes[6 * i + k], upper = boxes[6 * i + 3 + k];

@@ -19,38 +19,37 @@ extern const char *const visibility_face_rule_words[];
         .key = (KEY), .option = (OPTION), .kind = STARG_FIELD_CHOICE, FIELD_MEMBER(T, MEMBER),     \
         .words = visibility_engine_words, .initial = STARG_VISIBILITY_FASTEST,                     \
         .value = "fastest|contours|grid|bvh|sweep",                                                \
-        .help =                                                                                    \
-            "Visibility engine: counting across contours, a grid over directions, whichever of "   \
-            "the two suits the point (fastest), a bounding volume hierarchy, or the paper's "      \
-            "sweep. All are exact and agree; they differ in speed."                                \
+        .help = "Visibility engine: counting across contours, a direction grid, the faster of "    \
+                "the two per point (fastest), a bounding volume hierarchy, or the published "      \
+                "sweep. All are exact and agree; they differ in speed."                            \
     }
 #define VISIBILITY_TARGET_FIELD(T, MEMBER)                                                         \
     {                                                                                              \
         .key = "target", .option = "target", .kind = STARG_FIELD_CHOICE, FIELD_MEMBER(T, MEMBER),  \
-        .words = visibility_target_words, .value = "faces|vertices", .help = "What is to be seen." \
+        .words = visibility_target_words, .value = "faces|vertices",                               \
+        .help = "Whether to cover faces or vertices."                                              \
     }
 #define VISIBILITY_FACE_RULE_FIELD(T, MEMBER)                                                      \
     {                                                                                              \
         .key = "faces", .option = "faces", .kind = STARG_FIELD_CHOICE, FIELD_MEMBER(T, MEMBER),    \
         .words = visibility_face_rule_words, .value = "vertices|whole",                            \
-        .help =                                                                                    \
-            "When a face counts as seen: when its three vertices are, or only when every point "   \
-            "of it is (whole)."                                                                    \
+        .help = "Visibility of a face: all three vertices are visible (corners), or every point "  \
+                "of it (whole)."                                                                   \
     }
 #define VISIBILITY_RANGE_FIELD(T, MEMBER)                                                          \
     {                                                                                              \
         .key = "range", .option = "range", .kind = STARG_FIELD_REAL,                               \
         .flags = STARG_FIELD_NULLABLE | STARG_FIELD_ABOVE, FIELD_MEMBER(T, MEMBER), .high = 1e100, \
-        .standard = INFINITY, .value = "R",                                                        \
-        .help = "See no farther than R, in units of the model.", .default_text = "any distance"    \
+        .standard = INFINITY, .value = "R", .help = "Viewing range, in model units.",              \
+        .default_text = "unlimited"                                                                \
     }
 #define VISIBILITY_CONE_FIELD(T, MEMBER, OPTION)                                                   \
     {                                                                                              \
         .key = "cone", .option = (OPTION), .kind = STARG_FIELD_REAL,                               \
         .flags = STARG_FIELD_NULLABLE | STARG_FIELD_OPTIONAL | STARG_FIELD_ABOVE,                  \
         FIELD_MEMBER(T, MEMBER), .high = 360, .standard = 360, .value = "DEGREES",                 \
-        .help = "Guards look in one direction, with this full opening angle, like cameras.",       \
-        .default_text = "360, all around"                                                          \
+        .help = "Full opening angle of guards that look in one direction, like cameras.",          \
+        .default_text = "360, all directions"                                                      \
     }
 
 #endif

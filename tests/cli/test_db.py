@@ -170,7 +170,7 @@ class Usage(Database):
         self.usage_error("help", "db", "lst", says="did you mean 'list'?")
         self.usage_error("db", "list", says="too few")
         self.usage_error("db", "add", "x.db", says="too few")
-        self.usage_error("db", "matrix", "x.db", says="name an output")
+        self.usage_error("db", "matrix", "x.db", says="no output; add")
         self.usage_error("db", "matrix", "x.db", "-o", "x.txt", says=".csv")
         self.usage_error("db", "evaluate", "x.db", "--distance", "d3", says="did you mean 'd2'?")
         self.usage_error("db", "query", "x.db", "m.off", "-k", "0", says="from 1")
@@ -200,11 +200,11 @@ class Harm(Database):
 
     def test_no_database(self):
         self.write("text.db", "nothing of the kind " * 100)
-        self.all_fail("text.db", "no starguard database")
+        self.all_fail("text.db", "not a starguard database")
         self.write("empty.db", "")
-        self.all_fail("empty.db", "no starguard database")
+        self.all_fail("empty.db", "not a starguard database")
         sqlite3.connect(self.path("foreign.db")).executescript("CREATE TABLE x (y); INSERT INTO x VALUES (1)")
-        self.all_fail("foreign.db", "no starguard database")
+        self.all_fail("foreign.db", "not a starguard database")
 
     def test_other_versions(self):
         for version, says in (0, "create a new one"), (9, "newer"):
@@ -215,7 +215,7 @@ class Harm(Database):
     def test_exists(self):
         self.write("mine.txt", "precious")
         _, err = self.run_text("db", "create", "mine.txt", status=3)
-        self.assertIn("exists already", err)
+        self.assertIn("already exists", err)
         self.assertEqual(self.read("mine.txt"), b"precious")
         self.assertEqual(self.names(), ["mine.txt"])
 

@@ -51,9 +51,9 @@ class BadFiles(support.Case):
 
     def test_no_format(self):
         self.write("x.txt", "hello\n")
-        self.reject("x.txt", "format is unknown")
+        self.reject("x.txt", "unknown format")
         self.write("zero", b"\0" * 1000)
-        self.reject("zero", "format is unknown")
+        self.reject("zero", "unknown format")
 
     def test_lines_are_named(self):
         self.write("m.off", TETRAHEDRON.replace("0 0 1", "0 0 x"))

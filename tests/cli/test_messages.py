@@ -5,7 +5,7 @@ import math
 import support
 from support import TETRAHEDRON
 
-HEADINGS = {"Commands", "Options", "Options of every command", "Examples"}
+HEADINGS = {"Commands", "Options", "Common options", "Examples"}
 
 
 def parse(text):
@@ -73,7 +73,7 @@ class Messages(support.Case):
 
     def test_stage_of_a_time_limit(self):
         _, err = self.run_text("check", self.sample("sphere", 20000), "--time-limit", "1e-9", status=3)
-        self.assertIn("the time limit struck in the stage '", err)
+        self.assertIn("time limit reached in stage '", err)
         self.assertNotIn("was finished", err)
 
     def test_one_side_cannot_be_mended(self):
@@ -82,12 +82,12 @@ class Messages(support.Case):
         self.write("empty.off", "OFF\n0 0 0\n")
         for words in ["check"], ["guard", "-o", "g.json"]:
             _, err = self.run_text(*words, "strip.off", status=2)
-            self.assertNotIn("may mend", err)
-            self.assertIn("one side only", err)
+            self.assertNotIn("try 'starguard repair'", err)
+            self.assertIn("one-sided", err)
             _, err = self.run_text(*words, "band.off", status=2)
-            self.assertIn("'starguard repair' may mend it", err)
+            self.assertIn("try 'starguard repair'", err)
             _, err = self.run_text(*words, "empty.off", status=2)
-            self.assertNotIn("one side", err)
+            self.assertNotIn("one-sided", err)
         self.run_text("repair", "strip.off", "-o", "r.off", status=2)
 
     def test_one_cavity(self):

@@ -64,7 +64,7 @@ class Guard(Ranks):
         _, err = self.run_ranks(3, "guard", "none.off", "-o", "g.json", status=2)
         self.assertEqual(err.count("none.off"), 1)
         _, err = self.run_ranks(2, "guard", "none.off", status=1)
-        self.assertEqual(err.count("name an output"), 1)
+        self.assertEqual(err.count("no output; add"), 1)
         self.assertEqual(self.names(), [])
 
     def test_other_commands(self):

@@ -215,7 +215,7 @@ class Outputs(support.Case):
                     continue
                 with self.subTest(words=words, output=output), open(self.path("m.off"), "rb") as model:
                     self.refuse(*[output if "OUT" in word else word for word in words.split()],
-                                status=1, says="it is an input", stdin=model)
+                                status=1, says="it is also an input", stdin=model)
                 if output != input and output is not None:
                     os.remove(self.path(output))
 

@@ -125,7 +125,7 @@ class Mistakes(support.Case):
         for word in ["1,2,3", "1,2,3,4,5,6,7", "1,2,3,4,5,x"]:
             self.usage_error("visible", "m.off", f"--box={word}", says="--box takes a box")
         self.usage_error("visible", "m.off", "--box", "0,0,0,1,1,1", "--from", "0,0,0",
-                         says="do not go together")
+                         says="exclude each other")
 
     def test_choices(self):
         wrong = {

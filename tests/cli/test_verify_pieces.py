@@ -146,9 +146,9 @@ class Pieces(support.Case):
 
     def test_files_that_do_not_go_together(self):
         out, err = self.run_text("verify", "m.off", "p.vtk")
-        self.assertIn("without its PIECES.json", err)
+        self.assertIn("has no PIECES.json", err)
         self.assertIn("verified", out)
-        self.assertIn("name the PIECES.vtk",
+        self.assertIn("add its PIECES.vtk",
                       self.run_text("verify", "m.off", "p.json", status=2)[1])
         self.usage_error("verify", "m.off", "p.vtk", "p.json", "p.vtk", says="one at a time")
 

@@ -95,7 +95,7 @@ class View(Case):
     def test_wrong_models(self):
         self.results()
         _, err = self.run_text("view", "guards.json", "--model", "t.off", "-o", "p", status=2)
-        self.assertIn("name the right one with --model", err)
+        self.assertIn("give the right one with --model", err)
         # as many vertices and faces, but somewhere else
         text = self.read("room.off").decode().split("\n")
         for i in range(2, 2 + int(text[1].split()[0])):
@@ -103,7 +103,7 @@ class View(Case):
             text[i] = f"{x + 100:.17g} {y:.17g} {z:.17g}"
         self.write("other.off", "\n".join(text))
         _, err = self.run_text("view", "guards.json", "--model", "other.off", "-o", "p")
-        self.assertIn("is this the right model?", err)
+        self.assertIn("this may be the wrong model", err)
 
     def test_refusals(self):
         self.results()
@@ -121,7 +121,7 @@ class View(Case):
                 (["pieces.json"], "PIECES.vtk"),
                 (["none"], "frame_0000.off"),
                 (["empty.csv"], "line"),
-                (["short.csv"], "a line for each model"),
+                (["short.csv"], "one row per model"),
                 (["wrong.csv"], "line 3"),
                 (["words.csv"], "line 2"),
                 (["long.csv"], "more numbers"),

@@ -205,7 +205,7 @@ class Conventions(Case):
         like = types.SimpleNamespace(points=np.array(VERTICES, np.float32), faces=flat)
         self.assertEqual(starguard.as_mesh(like).faces.tolist(), FACES)
         like.faces = np.array([4, 0, 1, 2, 3])
-        self.fails(starguard.ArgumentError, "no triangles", starguard.as_mesh, like)
+        self.fails(starguard.ArgumentError, "other than triangles", starguard.as_mesh, like)
 
     def test_meshio(self):
         try:
@@ -221,7 +221,7 @@ class Conventions(Case):
 
     def test_what_is_none(self):
         for model in (None, 7, [1, 2], object()):
-            self.fails(starguard.ArgumentError, "is no mesh", starguard.as_mesh, model)
+            self.fails(starguard.ArgumentError, "is not a mesh", starguard.as_mesh, model)
 
 
 if __name__ == "__main__":

@@ -70,7 +70,7 @@ class Errors(Case):
         self.fails(starguard.ArgumentError, "", starguard.sample, "dog", pose=99)
         self.fails(starguard.ArgumentError, "a zero byte", starguard.Mesh.read, "a\0b")
         self.fails(starguard.ArgumentError, "", mesh.write, "mesh.xyz")
-        self.fails(starguard.ArgumentError, "name a result", starguard.verify, mesh)
+        self.fails(starguard.ArgumentError, "give a result", starguard.verify, mesh)
 
     def test_range(self):
         error = self.fails(starguard.RangeError, "", starguard.Mesh, [[0, 0, np.inf]], [])
@@ -118,7 +118,7 @@ class Cases(Case):
                    [[0, 0, 0]])
         self.fails(starguard.ArgumentError, "must be square", starguard.write_matrix_picture, "m.png",
                    [[0, 1]])
-        self.fails(starguard.ArgumentError, "one length", starguard.write_picture_sheet, "s.png",
+        self.fails(starguard.ArgumentError, "same length", starguard.write_picture_sheet, "s.png",
                    [[room], [room, room]])
         self.fails(starguard.ArgumentError, "weights", starguard.cover, [[1, 0]], weights=[1])
         self.fails(starguard.ArgumentError, "weights", starguard.cover, [[1, 0]], weights=[1, -1])
@@ -127,7 +127,7 @@ class Cases(Case):
                    descriptor, "d2")
         report = starguard.decompose(room, effort=30)
         report.write_report("pieces.json")
-        self.fails(starguard.ArgumentError, "only reports", starguard.verify, room, "pieces.json")
+        self.fails(starguard.ArgumentError, "has no tetrahedra", starguard.verify, room, "pieces.json")
 
 
 if __name__ == "__main__":

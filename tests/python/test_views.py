@@ -57,7 +57,7 @@ class Views(Case):
                    starguard.write_scene, "a.xyz", self.model)
         self.fails(starguard.ArgumentError, "format", starguard.write_scene, "a", self.model,
                    format="stl")
-        self.fails(starguard.ArgumentError, "needs the tetrahedra", starguard.write_scene, "a.glb",
+        self.fails(starguard.ArgumentError, "needs its tetrahedra", starguard.write_scene, "a.glb",
                    self.model, report=self.report())
         self.fails(starguard.ArgumentError, "guards", starguard.write_scene, "a.glb",
                    (VERTICES, FACES), guards=self.guards)

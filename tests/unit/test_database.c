@@ -350,14 +350,14 @@ static void no_databases(void **state) {
     starg_context *context = test_context(1);
     expect_refusal("missing.db", STARG_ERROR_READ, "db create");
     write_text("x.db", "");
-    expect_refusal("x.db", STARG_ERROR_FORMAT, "no starguard database");
+    expect_refusal("x.db", STARG_ERROR_FORMAT, "not a starguard database");
     write_text("x.db", "This is a text and no database, though it is longer than a header of one, "
                        "which has a hundred bytes.");
-    expect_refusal("x.db", STARG_ERROR_FORMAT, "no starguard database");
+    expect_refusal("x.db", STARG_ERROR_FORMAT, "not a starguard database");
     assert_int_equal(starg_database_create(context, path_of("x.db")), STARG_ERROR_WRITE);
     unlink(path_of("x.db"));
     run_sql(path_of("x.db"), "CREATE TABLE model (id)");
-    expect_refusal("x.db", STARG_ERROR_FORMAT, "no starguard database");
+    expect_refusal("x.db", STARG_ERROR_FORMAT, "not a starguard database");
     unlink(path_of("x.db"));
     test_ok(context, starg_database_create(context, path_of("x.db")));
     run_sql(path_of("x.db"), "PRAGMA user_version = 2");

@@ -127,7 +127,7 @@ static void off_errors(void **state) {
     static const bad_file files[] = {
         {"a.off", "4 4 6\n" OFF_VERTICES OFF_FACES, FORMAT_AT(1), "keyword OFF"},
         {"a.off", "# c\nOFFX\n", FORMAT_AT(2), "'OFFX'"},
-        {"a.off", "OFF BINARY\n", FORMAT_AT(1), "binary OFF is not read"},
+        {"a.off", "OFF BINARY\n", FORMAT_AT(1), "binary OFF is not supported"},
         {"a.off", "4OFF\n4 4 0\n", FORMAT_AT(1), "three coordinates"},
         {"a.off", "nOFF\n3\n4 4 0\n", FORMAT_AT(1), "three coordinates"},
         {"a.off", "OFF\n", FORMAT_AT(2), "the vertex count"},
@@ -137,7 +137,7 @@ static void off_errors(void **state) {
         {"a.off", "OFF\n-4 4 0\n" OFF_VERTICES OFF_FACES, FORMAT_AT(2), "-4 vertices"},
         {"a.off", "OFF\n100000000 4 0\n" OFF_VERTICES OFF_FACES, FORMAT_AT(2), "100000000"},
         {"a.off", "OFF\n4 9223372036854775807 0\n" OFF_VERTICES OFF_FACES, FORMAT_AT(2),
-         "announced"},
+         "the header declares"},
         {"a.off", "OFF\n4 99999999999999999999 0\n", FORMAT_AT(2), "not a whole number"},
         {"a.off", "OFF\n4 4 0\n0 0 0\n1,0 0 0\n0 1 0\n0 0 1\n" OFF_FACES, FORMAT_AT(4), "'1,0'"},
         {"a.off", "OFF\n4 4 0\n0 0 0\n1.0abc 0 0\n0 1 0\n0 0 1\n" OFF_FACES, FORMAT_AT(4), "abc"},
@@ -155,11 +155,11 @@ static void off_errors(void **state) {
         {"a.off", "OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1 red\n3 0 1 3\n3 1 2 3\n3 2 0 3\n",
          FORMAT_AT(7), "'red'"},
         {"a.off", "OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1 3 0 1 3\n3 1 2 3 3 2 0 3\n      ",
-         FORMAT_AT(9), "cut off"},
+         FORMAT_AT(9), "truncated"},
         {"a.off", "OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1 9 9 9 9 9\n3 1 2 3 3 2 0 3\n      ",
          FORMAT_AT(7), "more than 4"},
         {"a.off", "OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2 3\n             ",
-         FORMAT_AT(10), "cut off"},
+         FORMAT_AT(10), "truncated"},
         {"a.off", "OFF\n4 4 0\n" OFF_VERTICES OFF_FACES "3 1 2 0\n", FORMAT_AT(11),
          "'3' stands behind"},
         {"a.off", "OFF\n4 0 0\n" OFF_VERTICES, STARG_ERROR_FORMAT, STARG_ELEMENT_NONE, 0,
@@ -175,7 +175,7 @@ static void off_errors(void **state) {
          STARG_ELEMENT_VERTEX, 0, "coordinate x"},
         {"a.off", "", STARG_ERROR_FORMAT, STARG_ELEMENT_NONE, 0, "empty"},
         {"a.off", "\xEF\xBB\xBF", STARG_ERROR_FORMAT, STARG_ELEMENT_NONE, 0, "empty"},
-        {"a.txt", "hello\n", STARG_ERROR_FORMAT, STARG_ELEMENT_NONE, 0, "the format is unknown"},
+        {"a.txt", "hello\n", STARG_ERROR_FORMAT, STARG_ELEMENT_NONE, 0, "unknown format"},
     };
     expect_errors(files, COUNT(files));
 }
@@ -368,11 +368,12 @@ static void stl_errors(void **state) {
         {"a.stl", "solid x\n", FORMAT_AT(2), "facet or endsolid"},
         {"a.stl", "solid x\nendsolid x\n", STARG_ERROR_FORMAT, STARG_ELEMENT_NONE, 0, "no faces"},
         {"a.stl", "solid x\n" STL_FACETS, FORMAT_AT(30), "facet or endsolid"},
-        {"a.stl", "solid x\nfacet nromal 0 0 0\n", FORMAT_AT(2), "'nromal' stands where 'normal'"},
+        {"a.stl", "solid x\nfacet nromal 0 0 0\n", FORMAT_AT(2),
+         "found 'nromal' instead of 'normal'"},
         {"a.stl", "solid x\nfacet normal 0 0 0\nouter loop\nvertex 0 0\nvertex 0 0 1\n",
          FORMAT_AT(5), "'vertex' is not a number"},
         {"a.stl", "solid x\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 0 0 1\nendloop",
-         FORMAT_AT(6), "'endloop' stands where 'vertex'"},
+         FORMAT_AT(6), "found 'endloop' instead of 'vertex'"},
         {"a.stl", "solid x\n" STL_FACETS "endsolid x\nrubbish\n", FORMAT_AT(31), "'rubbish'"},
         {"a.stl", "solid x\nfacet normal 0 0 0\nouter loop\nvertex 0 0 nan\n", STARG_ERROR_RANGE,
          STARG_ELEMENT_VERTEX, 0, "line 4"},
@@ -382,8 +383,8 @@ static void stl_errors(void **state) {
     expect_errors(files, COUNT(files));
     unsigned char bytes[512];
     size_t size = make_binary_stl(bytes, "solid");
-    bad_file bad = {"a.stl",  (const char *)bytes, STARG_ERROR_FORMAT, STARG_ELEMENT_BYTE, 80,
-                    "cut off"};
+    bad_file bad = {"a.stl", (const char *)bytes, STARG_ERROR_FORMAT, STARG_ELEMENT_BYTE,
+                    80,      "truncated"};
     expect_error(&bad, size - 1);
     float infinite = 1e38f * 10;
     memcpy(bytes + 84 + 12 + 12, &infinite, 4);
@@ -571,8 +572,8 @@ static void ply_binary_truncations(void **state) {
     }
     test_context_free(context);
     bytes[size] = 'x';
-    const bad_file bad = {"a.ply", (const char *)bytes,   STARG_ERROR_FORMAT, STARG_ELEMENT_BYTE,
-                          size,    "1 bytes stand behind"};
+    const bad_file bad = {"a.ply", (const char *)bytes, STARG_ERROR_FORMAT, STARG_ELEMENT_BYTE,
+                          size,    "1 bytes follow"};
     expect_error(&bad, size + 1);
 }
 
@@ -607,23 +608,23 @@ static void ply_extra_values(void **state) {
 static void ply_errors(void **state) {
     (void)state;
     static const bad_file files[] = {
-        {"a.ply", "OFF_\n", FORMAT_AT(1), "says ply"},
+        {"a.ply", "OFF_\n", FORMAT_AT(1), "line 'ply'"},
         {"a.ply", "ply\n", FORMAT_AT(2), "end_header"},
         {"a.ply", "ply\nformat\n", FORMAT_AT(2), "the encoding is missing"},
         {"a.ply", "ply\nformat utf8 1.0\n", FORMAT_AT(2), "'utf8'"},
-        {"a.ply", "ply\n" PLY_VERTEX PLY_FACE "end_header\n", FORMAT_AT(9), "says the format"},
+        {"a.ply", "ply\n" PLY_VERTEX PLY_FACE "end_header\n", FORMAT_AT(9), "format line"},
         {"a.ply", PLY_TEXT "rubbish\n", FORMAT_AT(3), "'rubbish'"},
         {"a.ply", PLY_TEXT "element vertex\n", FORMAT_AT(3), "count of the element is missing"},
         {"a.ply", PLY_TEXT "element vertex x\n", FORMAT_AT(3), "'x' is not a whole number"},
         {"a.ply", PLY_TEXT "element vertex -4\n", FORMAT_AT(3), "negative"},
-        {"a.ply", PLY_TEXT "property float x\n", FORMAT_AT(3), "before the first element"},
+        {"a.ply", PLY_TEXT "property float x\n", FORMAT_AT(3), "precedes the first element"},
         {"a.ply", PLY_TEXT PLY_VERTEX "property quad w\n", FORMAT_AT(7), "'quad' is unknown"},
         {"a.ply", PLY_TEXT PLY_VERTEX "property float x\n", FORMAT_AT(7), "twice"},
         {"a.ply", PLY_TEXT PLY_VERTEX "element vertex 3\n", FORMAT_AT(7), "twice"},
-        {"a.ply", PLY_TEXT PLY_VERTEX "property list float int a\n", FORMAT_AT(7), "whole type"},
+        {"a.ply", PLY_TEXT PLY_VERTEX "property list float int a\n", FORMAT_AT(7), "integer type"},
         {"a.ply", PLY_TEXT PLY_VERTEX "property list uchar int\n", FORMAT_AT(7),
          "name of the property"},
-        {"a.ply", PLY_TEXT PLY_VERTEX PLY_FACE "end_header x\n", FORMAT_AT(9), "behind end_header"},
+        {"a.ply", PLY_TEXT PLY_VERTEX PLY_FACE "end_header x\n", FORMAT_AT(9), "after end_header"},
         {"a.ply", PLY_TEXT PLY_VERTEX "end_header\n" OFF_VERTICES, STARG_ERROR_FORMAT,
          STARG_ELEMENT_NONE, 0, "no faces"},
         {"a.ply",
@@ -639,7 +640,7 @@ static void ply_errors(void **state) {
         {"a.ply",
          PLY_TEXT PLY_VERTEX "element face 9223372036854775807\nproperty list uchar int "
                              "vertex_index\nend_header\n" OFF_VERTICES OFF_FACES,
-         FORMAT_AT(7), "announced"},
+         FORMAT_AT(7), "the header declares"},
         {"a.ply",
          PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n" OFF_VERTICES
                                       "3 0 2 1\n3 0 1 3\n3 1 2 4\n3 2 0 3\n",
@@ -664,7 +665,7 @@ static void ply_errors(void **state) {
         {"a.ply",
          PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n" OFF_VERTICES
                                       "3 0 2 1\n3 0 1 3\n3 1 2 3\n        ",
-         FORMAT_AT(17), "cut off"},
+         FORMAT_AT(17), "truncated"},
         {"a.ply", PLY_TEXT PLY_VERTEX PLY_FACE "end_header\n" OFF_VERTICES OFF_FACES "5\n",
          FORMAT_AT(18), "'5' stands behind"},
         {"a.ply",

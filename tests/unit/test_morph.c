@@ -233,7 +233,8 @@ static void test_parts(void **state) {
     starg_mesh *pair = test_mesh_of(context, &two),
                *ball = test_sample_mesh(context, "sphere", 600);
     starg_map *map;
-    expect(context, starg_map_create(context, pair, ball, NULL, &map), STARG_ERROR_MESH, "2 parts");
+    expect(context, starg_map_create(context, pair, ball, NULL, &map), STARG_ERROR_MESH,
+           "2 components");
     starg_mesh_free(pair);
     starg_mesh_free(ball);
     shape_free(&two);

@@ -489,8 +489,8 @@ static void parts_that_do_not_fit(void **state) {
     starg_guards *guards = test_guard(context, solid, NULL);
     starg_bits *bits = NULL;
     test_ok(context, starg_bits_create(context, guards->count, guards->face_count + 1, &bits));
-    expect_refused(context, &(starg_page){.title = "nothing"}, "nothing to show");
-    expect_refused(context, &(starg_page){.model = other, .guards = guards}, "for a model of");
+    expect_refused(context, &(starg_page){.title = "nothing"}, "no content");
+    expect_refused(context, &(starg_page){.model = other, .guards = guards}, "to a model with");
     expect_refused(context, &(starg_page){.model = mesh, .guards = guards, .seen = bits}, "a row");
     expect_refused(context, &(starg_page){.guards = guards, .seen = bits}, "a row");
     const starg_mesh *frames[] = {mesh, other};
@@ -498,12 +498,12 @@ static void parts_that_do_not_fit(void **state) {
     expect_refused(context, &(starg_page){.frames = frames, .frame_count = 2}, "frame 1");
     const starg_pieces_report report = {.piece_count = 2};
     expect_refused(context, &(starg_page){.report = &report, .model = mesh},
-                   "needs the tetrahedra");
+                   "needs its tetrahedra");
     const starg_page_shape shapes[2] = {{.name = "a"}, {.name = "b"}};
     const double distances[4] = {0, 1, NAN, 0};
     expect_refused(context,
                    &(starg_page){.shapes = shapes, .shape_count = 2, .distances = distances},
-                   "no finite number");
+                   "not finite");
     starg_bits_free(bits);
     starg_guards_free(context, guards);
     starg_mesh_free(other);

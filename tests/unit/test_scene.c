@@ -193,12 +193,12 @@ static void test_what_does_not_fit(void **state) {
     starg_mesh *other = test_mesh_of(s.context, &cube);
     shape_free(&cube);
     scene.model = other;
-    refuse(&s, &scene, "scene.glb", 0, "name the model");
+    refuse(&s, &scene, "scene.glb", 0, "give the right model");
     starg_mesh_free(other);
     scene = (starg_scene){.model = s.scene.model, .seen = s.seen};
-    refuse(&s, &scene, "scene.glb", 0, "a row for each guard");
+    refuse(&s, &scene, "scene.glb", 0, "one row per guard");
     scene = (starg_scene){.model = s.scene.model, .report = &s.report};
-    refuse(&s, &scene, "scene.glb", 0, "needs the tetrahedra");
+    refuse(&s, &scene, "scene.glb", 0, "needs its tetrahedra");
     starg_pieces_report fewer = s.report;
     fewer.piece_count++;
     scene = (starg_scene){.pieces = &s.mesh, .report = &fewer};

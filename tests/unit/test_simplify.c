@@ -609,7 +609,7 @@ static void test_other_meshes_are_refused(void **state) {
     cube.face_count++;
     face[0] = face[1];
     face[1] = first;
-    assert_refused(context, &cube, "same way");
+    assert_refused(context, &cube, "same direction");
     shape_free(&cube);
     shape_free(&touching);
     shape_free(&corner);

@@ -80,7 +80,7 @@ static void refusals(void **state) {
     } cases[] = {
         {"", "no nodes"},
         {"# D:3 NV:0 NE:0\n", "no nodes"},
-        {"v 0 0 0\nv 1 1 1\nl 1 3\n", "not there"},
+        {"v 0 0 0\nv 1 1 1\nl 1 3\n", "missing node"},
         {"v 0 0 0\nv 1 1 1\nl 0 1\n", "line 3"},
         {"v 0 0 0\nv 1 1 1\nl -1 -2\n", "line 3"},
         {"v 0 0 0\nv 1 1 1\nl 1\n", "two nodes"},
@@ -91,7 +91,7 @@ static void refusals(void **state) {
         {"v 0 0 x\n", "line 1"},
         {VTK_HEAD "POINTS 1 double\n0 0\n", "coordinate"},
         {VTK_HEAD "POINTS 900000000 double\n0 0 0\n", "larger than the file"},
-        {VTK_HEAD "POINTS 1 double\n0 0 0\nLINES 1 3\n2 0 1\n", "not there"},
+        {VTK_HEAD "POINTS 1 double\n0 0 0\nLINES 1 3\n2 0 1\n", "missing node"},
         {VTK_HEAD "POINTS 1 double\n0 0 0\nLINES 1 3\n2 0 -1\n", "cannot be"},
         {VTK_HEAD "POINTS 1 double\n0 0 0\nPOLYGONS 1 3\n", "no part"},
         {VTK_HEAD "POINTS 1 double\n0 0 0\nPOINT_DATA 1\nSCALARS radius double 1\n"

@@ -447,12 +447,12 @@ static const struct {
     {"exit 3", "status 3"},
     {"kill -SEGV $$", "signal"},
     {"sleep 100", "too long"},
-    {"exit 0", "not used"},
-    {"echo rubbish > \"${2%.smesh}.1.node\"; echo rubbish > \"${2%.smesh}.1.ele\"", "not used"},
-    {"echo 4 3 0 0 > \"${2%.smesh}.1.node\"; echo 0 4 0 > \"${2%.smesh}.1.ele\"", "not used"},
+    {"exit 0", "rejected"},
+    {"echo rubbish > \"${2%.smesh}.1.node\"; echo rubbish > \"${2%.smesh}.1.ele\"", "rejected"},
+    {"echo 4 3 0 0 > \"${2%.smesh}.1.node\"; echo 0 4 0 > \"${2%.smesh}.1.ele\"", "rejected"},
     {"n=\"${2%.smesh}.1\"; printf '8 3 0 0\\n0 0 0 0\\n1 0 0 1\\n2 0 1 0\\n3 0 1 1\\n4 1 0 0\\n"
      "5 1 0 1\\n6 1 1 0\\n7 1 1 1\\n' > $n.node; printf '1 4 1\\n0 0 4 2 1 1\\n' > $n.ele",
-     "not used"},
+     "rejected"},
 };
 
 static void test_broken_programs(void **state) {

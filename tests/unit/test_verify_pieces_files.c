@@ -148,7 +148,7 @@ typedef struct refusal {
 static void test_bad_files(void **state) {
     (void)state;
     static const refusal texts[] = {
-        {"# vtk", "# vtx", "line 1: this is no legacy VTK file"},
+        {"# vtk", "# vtx", "line 1: not a legacy VTK file"},
         {"Version 3", "Version 5", "only versions below 5"},
         {"ASCII", "ASCIL", "ASCII or BINARY"},
         {"UNSTRUCTURED_GRID", "POLYDATA", "\"UNSTRUCTURED_GRID\" is expected"},

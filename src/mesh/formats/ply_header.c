@@ -47,10 +47,10 @@ static starg_status read_format(ply_reader *ply) {
             return STARG_OK;
         }
     }
-    return starg_source_fail(ply->source, starg_at_line(word.line),
-                             "the encoding '%s' is unknown; ascii, binary_little_endian and "
-                             "binary_big_endian are read",
-                             starg_word_excerpt(word).text);
+    return starg_source_fail(
+        ply->source, starg_at_line(word.line),
+        "unknown encoding '%s'; use ascii, binary_little_endian or binary_big_endian",
+        starg_word_excerpt(word).text);
 }
 
 static starg_status read_element(ply_reader *ply) {
@@ -88,10 +88,10 @@ static starg_status read_type(ply_reader *ply, ply_type *out) {
             return STARG_OK;
         }
     }
-    return starg_source_fail(ply->source, starg_at_line(word.line),
-                             "the type '%s' is unknown; char, uchar, short, ushort, int, uint, "
-                             "float and double are read",
-                             starg_word_excerpt(word).text);
+    return starg_source_fail(
+        ply->source, starg_at_line(word.line),
+        "unknown type '%s'; use char, uchar, short, ushort, int, uint, float or double",
+        starg_word_excerpt(word).text);
 }
 
 static ply_role find_role(ply_kind kind, bool list, starg_word name) {
@@ -109,7 +109,7 @@ static starg_status read_property(ply_reader *ply) {
     starg_word word;
     ply_property property = {0};
     if (ply->elements.count == 0)
-        return fail_header(ply, "a property stands before the first element");
+        return fail_header(ply, "a property precedes the first element");
     ply_element *element = &ply->elements.data[ply->elements.count - 1];
     starg_scan ahead = ply->scan;
     property.list = starg_scan_word_here(&ahead, &word) && starg_word_is(word, "list");
@@ -117,7 +117,7 @@ static starg_status read_property(ply_reader *ply) {
         ply->scan = ahead;
         STARG_TRY(read_type(ply, &property.count_type));
         if (property.count_type >= PLY_FLOAT32)
-            return fail_header(ply, "the size of a list has to be of a whole type");
+            return fail_header(ply, "the size of a list must have an integer type");
     }
     STARG_TRY(read_type(ply, &property.type));
     STARG_TRY(header_word(ply, "the name of the property", &word));
@@ -138,7 +138,7 @@ static starg_status pass_header_end(ply_reader *ply) {
     starg_scan *scan = &ply->scan;
     starg_word word;
     if (starg_scan_word_here(scan, &word))
-        return fail_header(ply, "something stands behind end_header");
+        return fail_header(ply, "unexpected text after end_header");
     if (scan->at == scan->end)
         return STARG_OK;
     bool two = *scan->at == '\r' && scan->end - scan->at > 1 && scan->at[1] == '\n' &&
@@ -158,7 +158,7 @@ static starg_status read_lines(ply_reader *ply) {
     starg_word word;
     STARG_TRY(starg_scan_expect(&ply->scan, "the word ply", &word));
     if (!starg_word_is(word, "ply"))
-        return fail_header(ply, "a PLY file begins with a line that says ply");
+        return fail_header(ply, "a PLY file must begin with the line 'ply'");
     for (;;) {
         starg_scan_next_line(&ply->scan);
         STARG_TRY(starg_scan_expect(&ply->scan, "a line of the header or end_header", &word));
@@ -172,12 +172,12 @@ static starg_status read_lines(ply_reader *ply) {
             STARG_TRY(read_property(ply));
         else if (!is_remark(word))
             return starg_source_fail(ply->source, starg_at_line(word.line),
-                                     "'%s' begins no line of a PLY header",
+                                     "'%s' is not a keyword of a PLY header",
                                      starg_word_excerpt(word).text);
     }
     STARG_TRY(pass_header_end(ply));
     if (!ply->has_encoding)
-        return fail_header(ply, "the header has no line that says the format");
+        return fail_header(ply, "the header has no format line");
 done:
     return status;
 }
@@ -219,9 +219,8 @@ static starg_status check_counts(const ply_reader *ply) {
         size_t bytes = least_bytes(ply, element);
         if (bytes != 0 && element->count > (left + 1) / bytes)
             return starg_source_fail(ply->source, starg_at_line(element->line),
-                                     "%zu items are announced, which the %zu bytes behind the "
-                                     "header cannot hold; the header is wrong or the file is cut "
-                                     "off",
+                                     "the header declares %zu items, too many for the %zu bytes "
+                                     "after it; the header is wrong or the file is truncated",
                                      element->count, left);
     }
     return STARG_OK;

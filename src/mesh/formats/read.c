@@ -41,8 +41,7 @@ static starg_status detect(const starg_source *source, const char *name,
             return STARG_OK;
         }
     }
-    return starg_source_fail(source, starg_at_file(),
-                             "the format is unknown; OFF, OBJ, PLY and STL are read");
+    return starg_source_fail(source, starg_at_file(), "unknown format; use OFF, OBJ, PLY or STL");
 }
 
 /* Text may begin with a byte order mark, which says nothing. */

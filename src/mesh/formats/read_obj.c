@@ -75,9 +75,8 @@ static starg_status resolve(starg_scan *scan, int64_t given, size_t before,
         *out = (int64_t)before + given;
     else
         return starg_source_fail(scan->source, starg_at_line(scan->line),
-                                 "a face names vertex %lld, but there are %zu vertices, %zu of "
-                                 "them before this line; they count from 1 on, or backward from "
-                                 "-1",
+                                 "a face refers to vertex %lld, but there are %zu vertices, %zu of "
+                                 "them before this line; indices count from 1, or backward from -1",
                                  (long long)given, count, before);
     return STARG_OK;
 }

@@ -52,20 +52,21 @@ static starg_status read_keyword(starg_scan *scan, off_header *header) {
         return status;
     starg_place place = starg_at_line(word.line);
     if (!parse_keyword(word, header))
-        return starg_source_fail(scan->source, place,
-                                 "'%s' stands where the keyword OFF should; an OFF file begins "
-                                 "with it",
-                                 starg_word_excerpt(word).text);
+        return starg_source_fail(
+            scan->source, place,
+            "found '%s' instead of the keyword OFF, with which an OFF file begins",
+            starg_word_excerpt(word).text);
     if (header->homogeneous || header->dimension)
-        return starg_source_fail(scan->source, place,
-                                 "%s: only points with three coordinates are read, so convert the "
-                                 "file to plain OFF",
-                                 starg_word_excerpt(word).text);
+        return starg_source_fail(
+            scan->source, place,
+            "%s: only points with three coordinates are supported; convert the file to plain OFF",
+            starg_word_excerpt(word).text);
     scan->at = word.text + header->length;
     starg_scan ahead = *scan;
     if (starg_scan_word_here(&ahead, &word) && starg_word_is(word, "BINARY"))
-        return starg_source_fail(scan->source, place,
-                                 "binary OFF is not read; convert the file to text OFF or to PLY");
+        return starg_source_fail(
+            scan->source, place,
+            "binary OFF is not supported; convert the file to text OFF or to PLY");
     return STARG_OK;
 }
 
@@ -95,11 +96,11 @@ static starg_status read_counts(starg_scan *scan, size_t *vertices, size_t *face
     enum { VERTEX_BYTES = 6, FACE_BYTES = 8 }; /* "0 0 0\n", "3 0 0 0\n" */
     int64_t left = (int64_t)(scan->end - scan->at) + 1;
     if (v < 0 || f < 0 || v > left / VERTEX_BYTES || f > left / FACE_BYTES)
-        return starg_source_fail(scan->source, starg_at_line(line),
-                                 "%lld vertices and %lld faces are announced, which the %lld bytes "
-                                 "that follow cannot hold; the header is wrong or the file is cut "
-                                 "off",
-                                 (long long)v, (long long)f, (long long)left - 1);
+        return starg_source_fail(
+            scan->source, starg_at_line(line),
+            "the header declares %lld vertices and %lld faces, too many for the %lld bytes that "
+            "follow; the header is wrong or the file is truncated",
+            (long long)v, (long long)f, (long long)left - 1);
     *vertices = (size_t)v;
     *faces = (size_t)f;
 done:
@@ -116,7 +117,7 @@ static starg_status read_vertices(starg_scan *scan, const off_header *header, si
             STARG_TRY(starg_scan_real(scan, "a coordinate of a vertex", &point[k]));
         STARG_TRY(starg_builder_vertex(builder, point, starg_at_line(scan->line)));
         if (header->vertex_extras)
-            STARG_TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "what a vertex carries"));
+            STARG_TRY(starg_scan_extra_numbers(scan, MOST_EXTRAS, "an attribute of a vertex"));
         STARG_TRY(starg_builder_tick(builder, (size_t)(scan->at - scan->source->bytes)));
     }
 done:
@@ -152,8 +153,8 @@ starg_status starg_off_read(starg_mesh_builder *builder) {
     STARG_TRY(starg_builder_reserve(builder, vertices, faces));
     STARG_TRY(read_vertices(&scan, &header, vertices, builder));
     STARG_TRY(read_faces(&scan, faces, builder));
-    STARG_TRY(starg_scan_end(&scan, "the counts in the header are too small, or vertices carry "
-                                    "numbers that the keyword does not announce (COFF, NOFF)"));
+    STARG_TRY(starg_scan_end(&scan, "the counts in the header are too small, or vertices have "
+                                    "numbers that the keyword does not declare (COFF, NOFF)"));
 done:
     return status;
 }

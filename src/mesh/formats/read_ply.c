@@ -26,7 +26,7 @@ static starg_status need(const ply_reader *ply, size_t bytes) {
     if (bytes <= (size_t)(ply->scan.end - ply->scan.at))
         return STARG_OK;
     return starg_source_fail(ply->source, place_of(ply),
-                             "the file ends within its data; it seems to be cut off");
+                             "the file ends within its data; it seems to be truncated");
 }
 
 /* The next `size` bytes as a number, whatever their order. */
@@ -194,7 +194,7 @@ static starg_status check_end(ply_reader *ply) {
         at++;
     if (at == ply->scan.end)
         return STARG_OK;
-    return starg_source_fail(ply->source, place_of(ply), "%zu bytes stand behind the data; %s",
+    return starg_source_fail(ply->source, place_of(ply), "%zu bytes follow the data; %s",
                              (size_t)(ply->scan.end - ply->scan.at), hint);
 }
 

@@ -59,9 +59,8 @@ static starg_status expect_keyword(starg_scan *scan, const char *keyword) {
     starg_status status = starg_scan_expect(scan, keyword, &word);
     if (status != STARG_OK || keyword_is(word, keyword))
         return status;
-    return starg_source_fail(scan->source, starg_at_line(word.line),
-                             "'%s' stands where '%s' should", starg_word_excerpt(word).text,
-                             keyword);
+    return starg_source_fail(scan->source, starg_at_line(word.line), "found '%s' instead of '%s'",
+                             starg_word_excerpt(word).text, keyword);
 }
 
 /* Behind "facet": normal, outer loop, three points, endloop, endfacet. Normals of facets without
@@ -102,7 +101,7 @@ static starg_status read_solid(starg_scan *scan, starg_weld *weld) {
             break;
         if (!keyword_is(word, "facet"))
             return starg_source_fail(scan->source, starg_at_line(word.line),
-                                     "'%s' stands where 'facet' or 'endsolid' should",
+                                     "found '%s' instead of 'facet' or 'endsolid'",
                                      starg_word_excerpt(word).text);
         STARG_TRY(read_facet(scan, weld));
     }
@@ -129,20 +128,20 @@ done:
 /* What stands behind the triangles is of no use to anybody. */
 static starg_status check_size(const starg_source *source) {
     if (source->size < HEADER)
-        return starg_source_fail(source, starg_at_byte(source->size),
-                                 "the file ends within the header of a binary STL file; it is cut "
-                                 "off, or it is something else");
+        return starg_source_fail(
+            source, starg_at_byte(source->size),
+            "the file ends within the header of a binary STL file; it is truncated or not STL");
     uint64_t announced = announced_size(source);
     if (source->size < announced)
         return starg_source_fail(source, starg_at_byte(80),
-                                 "%u triangles are announced, which take %llu bytes, but the file "
-                                 "has %zu; it is cut off, or no STL file",
+                                 "the header declares %u triangles, which need %llu bytes, but the "
+                                 "file has %zu; it is truncated or not STL",
                                  little_endian(source->bytes + 80), (unsigned long long)announced,
                                  source->size);
     if (source->size > announced)
         starg_log(source->context, STARG_LOG_NOTICE,
-                  "'%s': %llu bytes behind the %u triangles that are announced were ignored",
-                  source->name, (unsigned long long)(source->size - announced),
+                  "'%s': ignored %llu bytes after the %u declared triangles", source->name,
+                  (unsigned long long)(source->size - announced),
                   little_endian(source->bytes + 80));
     return STARG_OK;
 }

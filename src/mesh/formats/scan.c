@@ -99,7 +99,7 @@ starg_status starg_scan_expect(starg_scan *scan, const char *what, starg_word *w
     if (starg_scan_word(scan, word))
         return STARG_OK;
     return starg_source_fail(scan->source, starg_at_line(scan->line),
-                             "the file ends where %s should stand; it seems to be cut off", what);
+                             "the file ends where %s is expected; it seems to be truncated", what);
 }
 
 starg_status starg_scan_real(starg_scan *scan, const char *what, double *value) {
@@ -123,7 +123,7 @@ starg_status starg_scan_extra_numbers(starg_scan *scan, size_t limit, const char
             return status;
         if (count == limit)
             return starg_source_fail(scan->source, starg_at_line(word.line),
-                                     "more than %zu numbers stand where %s should", limit, what);
+                                     "more than %zu numbers where %s is expected", limit, what);
     }
     return STARG_OK;
 }
@@ -133,8 +133,8 @@ starg_status starg_scan_end(starg_scan *scan, const char *hint) {
     if (!starg_scan_word(scan, &word))
         return STARG_OK;
     return starg_source_fail(scan->source, starg_at_line(word.line),
-                             "'%s' stands behind the end of the data; %s",
-                             starg_word_excerpt(word).text, hint);
+                             "'%s' follows the end of the data; %s", starg_word_excerpt(word).text,
+                             hint);
 }
 
 bool starg_word_is(starg_word word, const char *text) {
@@ -146,8 +146,8 @@ starg_status starg_word_real(const starg_scan *scan, starg_word word, const char
     if (starg_parse_real(word.text, word.length, value))
         return STARG_OK;
     return starg_source_fail(scan->source, starg_at_line(word.line),
-                             "'%s' is not a number; %s should stand here",
-                             starg_word_excerpt(word).text, what);
+                             "'%s' is not a number; expected %s", starg_word_excerpt(word).text,
+                             what);
 }
 
 starg_status starg_word_integer(const starg_scan *scan, starg_word word, const char *what,
@@ -155,7 +155,7 @@ starg_status starg_word_integer(const starg_scan *scan, starg_word word, const c
     if (starg_parse_integer(word.text, word.length, value))
         return STARG_OK;
     return starg_source_fail(scan->source, starg_at_line(word.line),
-                             "'%s' is not a whole number; %s should stand here",
+                             "'%s' is not a whole number; expected %s",
                              starg_word_excerpt(word).text, what);
 }
 

@@ -41,8 +41,8 @@ static starg_status choose_format(starg_context *context, const char *path,
     if (*format >= STARG_MESH_OFF && *format <= STARG_MESH_STL_BINARY)
         return STARG_OK;
     return starg_fail(context, STARG_ERROR_ARGUMENT, STARG_MESH_FILE,
-                      "cannot tell the format to write '%s' in; let the name end with .off, .obj, "
-                      ".ply or .stl, or name a format",
+                      "'%s' has no known format; use a name that ends in .off, .obj, .ply or .stl, "
+                      "or give a format",
                       path);
 }
 
@@ -54,8 +54,8 @@ static starg_status check_single(starg_context *context, const starg_mesh *mesh,
         uint64_t vertex = i / 3;
         return starg_fail_at(context, STARG_ERROR_RANGE, STARG_MESH_FILE, STARG_ELEMENT_VERTEX,
                              &vertex, 1,
-                             "cannot write '%s': coordinate %c of vertex %zu is %g, more than the "
-                             "single precision of binary STL holds; write another format",
+                             "cannot write '%s': coordinate %c of vertex %zu is %g, which exceeds "
+                             "the single precision of binary STL; write another format",
                              path, "xyz"[i % 3], i / 3, mesh->vertices[i]);
     }
     return STARG_OK;

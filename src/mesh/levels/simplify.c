@@ -199,7 +199,7 @@ static starg_status look_up(simplifier *s, size_t target) {
                         surface->vertex_count - target);
     if (starg_time_is_over(s->context))
         return starg_fail(s->context, STARG_ERROR_TIME, "simplify",
-                          "the time limit struck at %zu of the %zu vertices wanted",
+                          "time limit reached at %zu vertices, before the target of %zu",
                           surface->vertices_left, target);
     return starg_check_cancel(s->context, "simplify");
 }

@@ -13,7 +13,7 @@ static starg_status fail_edge(starg_context *context, uint32_t a, uint32_t b, co
     const uint64_t ends[2] = {a, b};
     return starg_fail_at(context, STARG_ERROR_MESH, "simplify", STARG_ELEMENT_EDGE, ends, 2,
                          "the edge from vertex %u to vertex %u %s; only closed, oriented "
-                         "2-manifolds can be simplified, 'starguard repair' may make one",
+                         "2-manifolds can be simplified; try 'starguard repair'",
                          a, b, what);
 }
 
@@ -29,7 +29,7 @@ static starg_status check_edges(starg_context *context, const starg_mesh *mesh,
         if (topology->twin[h] == TOPOLOGY_NONE)
             return fail_edge(context, a, b, "does not have two faces");
         if (faces[topology->twin[h]] != b)
-            return fail_edge(context, a, b, "has faces that run along it the same way");
+            return fail_edge(context, a, b, "has faces that traverse it in the same direction");
     }
     return STARG_OK;
 }
@@ -50,7 +50,7 @@ static starg_status check_fans(const mesh_surface *s) {
         return STARG_OK;
     return starg_fail(s->context, STARG_ERROR_MESH, "simplify",
                       "some vertices have faces in more than one fan; only closed, oriented "
-                      "2-manifolds can be simplified, 'starguard repair' may make one");
+                      "2-manifolds can be simplified; try 'starguard repair'");
 }
 
 static void number_edges(mesh_surface *s) {

@@ -22,7 +22,7 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_repair_options, merge_distance),
      .high = 1,
      .value = "D",
-     .help = "Vertices this close become one; a fraction of the model's diagonal.",
+     .help = "Merge vertices within this distance, a fraction of the model's diagonal.",
      .default_text = "0, only equal positions"},
     {.key = "max_hole_edges",
      .option = "max-hole-edges",
@@ -30,7 +30,7 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_repair_options, max_hole_edges),
      .most = UINT32_MAX,
      .value = "N",
-     .help = "Leave holes of more edges open.",
+     .help = "Do not fill holes with more edges than this.",
      .default_text = "0, fill all"},
     {.key = "max_rounds",
      .option = "rounds",
@@ -39,7 +39,7 @@ static const starg_field OPTIONS[] = {
      .most = 10000,
      .initial = 10,
      .value = "N",
-     .help = "Attempts to resolve self-intersections."},
+     .help = "Number of attempts to resolve self-intersections."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "repair options", .size = sizeof(starg_repair_options), FIELD_ROWS(OPTIONS)};
@@ -141,8 +141,8 @@ static starg_status fail_empty(repair_state *state) {
         return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
                           "the mesh has no faces: there is nothing to repair");
     return starg_fail(state->context, STARG_ERROR_MESH, REPAIR_STAGE,
-                      "nothing is left that encloses volume: of %zu faces %zu are of one-sided "
-                      "surfaces (as a Moebius strip is), and %zu components are flat",
+                      "nothing is left that encloses volume: of %zu faces, %zu belong to one-sided "
+                      "surfaces (such as a Moebius strip), and %zu components are flat",
                       state->input->face_count, state->one_sided_faces, report->components_dropped);
 }
 
@@ -158,7 +158,7 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                                                 : "");
     }
     return starg_fail(context, STARG_ERROR_MESH, REPAIR_STAGE,
-                      "the mesh could not be made a solid: what is left encloses no volume");
+                      "the mesh could not be made a solid: the remainder encloses no volume");
 }
 
 /* Checks the result, and hands it over if it is a solid's boundary. */

@@ -76,7 +76,7 @@ static starg_status take_guards(paper_state *s, const double *points, size_t cou
     }
     if (outside > 0)
         starg_log(s->context, STARG_LOG_NOTICE,
-                  "%zu of %zu guards are not strictly inside the tetrahedra and left out", outside,
+                  "ignoring %zu of %zu guards that are not strictly inside the tetrahedra", outside,
                   count);
 done:
     return status;

@@ -415,9 +415,8 @@ static starg_status grow_from(growing *c, uint32_t t, grower *grow, grown_region
         const uint64_t number = t;
         status = starg_fail_at(c->context, STARG_ERROR_MESH, STAGE, STARG_ELEMENT_TETRAHEDRON,
                                &number, 1,
-                               "no point is found strictly inside of tetrahedron %u, which is as "
-                               "thin as its coordinates are precise; remove it or make the mesh "
-                               "again",
+                               "tetrahedron %u is too thin to contain a point in double precision; "
+                               "remove it or generate the mesh again",
                                (unsigned)t);
         goto done;
     }
