@@ -39,7 +39,7 @@ typedef struct starg_cover_problem {
 STARG_API void starg_cover_problem_default(starg_cover_problem *problem);
 
 typedef enum starg_cover_method {
-    STARG_COVER_GREEDY = 0, /* the largest gain first, as it stands; weak bound           */
+    STARG_COVER_GREEDY = 0, /* the largest gain first, as it stands, and LP's bound      */
     STARG_COVER_ILP = 1,    /* reductions, Lagrangian bound, then branch and bound        */
     STARG_COVER_LP = 2      /* reductions, the linear relaxation's bound and prices, and a
                                greedy cover that is improved; ILP's answer where not all

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A partial target, or a limit on the rows: bounds by weight_bound.h, from the linear
- * relaxation (weight_relax.c), exact search by search.h. The
- * fewest rows for a target are found by asking for each number of rows from the bound upwards
- * whether so many can reach it. */
+/* A partial target, or a limit on the rows: bounds by weight_bound.h, from the linear relaxation
+ * (weight_relax.c), exact search by search.h. The fewest rows for a target are found by asking for
+ * each number of rows from the bound upwards whether so many can reach it. */
 #include "cover/solve.h"
 
 #include "cover/greedy.h"

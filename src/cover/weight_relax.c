@@ -65,7 +65,7 @@ typedef struct relaxing {
     uint64_t *inside, *kept; /* masks: in the model; replaced by w       */
     uint32_t *columns;       /* those inside, in the order of the model  */
     size_t count, entries;   /* columns and ones in the model            */
-    double *cost;            /* per row: less what the linear columns add */
+    double *cost;            /* per row: minus what the linear columns add */
     double *held;            /* per column: h                            */
     overstated *found;       /* columns not inside                       */
     int *index;              /* a batch of columns                       */

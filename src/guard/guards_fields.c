@@ -27,7 +27,7 @@ static const starg_field OPTIONS[] = {
      .value = "pilp|ilp|greedy",
      .help = "pilp goes from coarse to fine levels of detail and then refines; ilp finds the "
              "fewest of the candidates and proves it, or gives its best and a bound; greedy is "
-             "fastest, with more guards and a weaker bound."},
+             "fastest, with more guards and the bound of a linear program."},
     {.key = "candidates",
      .kind = STARG_FIELD_CHOICE,
      OPTION(candidates),
