@@ -59,7 +59,9 @@ typedef struct overstated {
 typedef struct relaxing {
     const cover_instance *instance;
     cover_weight_bound *bound;
-    size_t limit; /* K */
+    bool by_goal;    /* K follows the bound for the goal                  */
+    uint64_t enough; /* rows for the goal or weight of the rows: no better bound is wanted */
+    size_t limit;    /* K */
     Clp_Simplex *model;
     double unit;             /* the mean weight, 1 in the model          */
     uint64_t *inside, *kept; /* masks: in the model; replaced by w       */
@@ -111,9 +113,14 @@ static void step_towards_best(relaxing *relax, double part) {
     }
 }
 
+static bool is_enough(const relaxing *relax) {
+    return relax->by_goal ? relax->bound->least >= relax->enough
+                          : relax->bound->most <= relax->enough;
+}
+
 static starg_status find_sides(cover_run *run, relaxing *relax) {
     const cover_instance *instance = relax->instance;
-    for (size_t step = 0; step < STEPS; step++) {
+    for (size_t step = 0; step < STEPS && !is_enough(relax); step++) {
         starg_status status = starg_check_cancel(run->context, "bound");
         if (status != STARG_OK || cover_time_is_over(run))
             return status;
@@ -300,12 +307,10 @@ static double seen_weight(const relaxing *relax) {
     return seen;
 }
 
-/* Follows the bound on the rows for the goal; false when the relaxation of so many rows reaches it,
- * or the bound is `enough`. */
-static bool follow_least(relaxing *relax, uint64_t enough) {
+/* Follows the bound on the rows for the goal; false when the relaxation of so many rows reaches it.
+ */
+static bool follow_least(relaxing *relax) {
     const cover_weight_bound *bound = relax->bound;
-    if (bound->least >= enough)
-        return false;
     if (bound->least == relax->limit)
         return seen_weight(relax) < (double)bound->goal / relax->unit;
     relax->limit = bound->least;
@@ -313,7 +318,7 @@ static bool follow_least(relaxing *relax, uint64_t enough) {
     return true;
 }
 
-static starg_status run_rounds(cover_run *run, relaxing *relax, bool by_goal, uint64_t enough) {
+static starg_status run_rounds(cover_run *run, relaxing *relax) {
     for (size_t round = 1; round <= MOST_ROUNDS; round++) {
         starg_status status = starg_check_cancel(run->context, "bound");
         if (status != STARG_OK || cover_time_is_over(run) ||
@@ -323,7 +328,7 @@ static starg_status run_rounds(cover_run *run, relaxing *relax, bool by_goal, ui
         read_solution(relax);
         cover_weight_bound_take(relax->instance, relax->bound);
         size_t limit = relax->limit;
-        if (by_goal ? !follow_least(relax, enough) : relax->bound->most <= enough)
+        if (is_enough(relax) || (relax->by_goal && !follow_least(relax)))
             break;
         if (!add_overstated(relax) && relax->limit == limit)
             break;
@@ -334,8 +339,6 @@ static starg_status run_rounds(cover_run *run, relaxing *relax, bool by_goal, ui
 typedef struct clp_call {
     cover_run *run;
     relaxing *relax;
-    bool by_goal;
-    uint64_t enough;
     starg_status status;
 } clp_call;
 
@@ -343,12 +346,12 @@ typedef struct clp_call {
 static void run_clp(void *argument) {
     clp_call *call = argument;
     if (start_model(call->relax))
-        call->status = run_rounds(call->run, call->relax, call->by_goal, call->enough);
+        call->status = run_rounds(call->run, call->relax);
 }
 
 /* A model that an exception has come out of is not touched again. */
-static starg_status run_clp_safely(cover_run *run, relaxing *relax, bool by_goal, uint64_t enough) {
-    clp_call call = {run, relax, by_goal, enough, STARG_OK};
+static starg_status run_clp_safely(cover_run *run, relaxing *relax) {
+    clp_call call = {run, relax, STARG_OK};
     if (!cover_call_safely(run_clp, &call)) {
         relax->model = NULL;
         cover_solver_give_up();
@@ -363,10 +366,14 @@ starg_status cover_weight_bound_relax(cover_run *run, const cover_instance *inst
     relaxing relax = {0};
     starg_progress_begin(run->context, "bound");
     STARG_TRY(relaxing_make(instance, bound, &relax));
+    relax.by_goal = by_goal;
+    relax.enough = enough;
     STARG_TRY(find_sides(run, &relax));
+    if (is_enough(&relax))
+        goto done;
     STARG_TRY(cover_solver_lock(run, &held));
     if (held && instance->columns != 0)
-        STARG_TRY(run_clp_safely(run, &relax, by_goal, enough));
+        STARG_TRY(run_clp_safely(run, &relax));
 done:
     relaxing_free(run->context, &relax);
     cover_solver_unlock(held);
