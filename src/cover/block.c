@@ -298,14 +298,17 @@ starg_status cover_solve_greedy(cover_run *run, const cover_instance *instance,
                                 cover_answer *answer) {
     starg_status status = STARG_OK;
     cover_state cover = {0};
-    cover_dual dual = {0};
+    cover_instance rest = {.context = run->context};
+    cover_answer bounded = {0};
     STARG_TRY(cover_state_create(instance, &cover));
     STARG_TRY(cover_greedy(run, &cover, instance->total, instance->rows));
     STARG_TRY(cover_state_names(&cover, &answer->rows));
-    STARG_TRY(cover_dual_create(instance, &dual));
-    answer->lower_bound = cover_dual_rows(dual.value);
+    STARG_TRY(cover_instance_select(instance, NULL, NULL, &rest));
+    STARG_TRY(cover_solve_full(run, &rest, &bounded));
+    answer->lower_bound = bounded.lower_bound;
 done:
     cover_state_free(&cover);
-    cover_dual_free(instance, &dual);
+    cover_instance_free(&rest);
+    STARG_ARRAY_FREE(run->context, &bounded.rows);
     return status;
 }

@@ -193,7 +193,7 @@ starg_status starg_cover_solve(starg_context *context, const starg_cover_problem
     STARG_TRY(starg_check_cancel(context, "cover"));
     run.max_nodes = options->max_nodes;
     bool exact = options->method != STARG_COVER_GREEDY;
-    run.relaxed = options->method == STARG_COVER_LP;
+    run.relaxed = !exact || options->method == STARG_COVER_LP;
     STARG_TRY(cover_instance_build(context, problem, &instance, &given));
     uint64_t goal = problem->target > given ? problem->target - given : 0;
     if (goal > instance.total)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A partial target, or a limit on the rows: bounds by weight_bound.h, from the subgradient
- * method and then the linear relaxation (weight_relax.c), exact search by search.h. The
- * fewest rows for a target are found by asking for each number of rows from the bound upwards
- * whether so many can reach it. */
+/* A partial target, or a limit on the rows: bounds by weight_bound.h, from the linear relaxation
+ * (weight_relax.c), exact search by search.h. The fewest rows for a target are found by asking for
+ * each number of rows from the bound upwards whether so many can reach it. */
 #include "cover/solve.h"
 
 #include "cover/greedy.h"
@@ -26,7 +25,7 @@ static starg_status try_rows(cover_run *run, const cover_instance *instance, siz
     uint64_t goal = bound->goal;
     STARG_TRY(cover_state_create(instance, &found));
     cover_weight_bound_restart(instance, bound, rows);
-    STARG_TRY(cover_weight_bound_improve(run, instance, goal - 1, bound));
+    STARG_TRY(cover_weight_bound_relax(run, instance, false, goal - 1, bound));
     *decided = bound->most < goal;
     if (*decided || cover_time_is_over(run))
         goto done;
@@ -37,17 +36,6 @@ static starg_status try_rows(cover_run *run, const cover_instance *instance, siz
     }
 done:
     cover_state_free(&found);
-    return status;
-}
-
-/* The bound on the rows for its goal, which `count` rows reach. */
-static starg_status raise_least(cover_run *run, const cover_instance *instance, size_t count,
-                                cover_weight_bound *bound) {
-    starg_status status = STARG_OK;
-    STARG_TRY(cover_weight_bound_improve(run, instance, bound->goal - 1, bound));
-    if (bound->least < count && !cover_time_is_over(run))
-        STARG_TRY(cover_weight_bound_relax(run, instance, true, count, bound));
-done:
     return status;
 }
 
@@ -76,7 +64,7 @@ starg_status cover_solve_partial(cover_run *run, const cover_instance *instance,
     STARG_TRY(cover_state_create(instance, &choice));
     STARG_TRY(find_first_choice(run, &choice, goal));
     STARG_TRY(cover_weight_bound_create(instance, choice.count - 1, goal, &bound));
-    STARG_TRY(raise_least(run, instance, choice.count, &bound));
+    STARG_TRY(cover_weight_bound_relax(run, instance, true, choice.count, &bound));
     if (exact)
         STARG_TRY(close_gap(run, instance, &bound, &choice));
     answer->lower_bound = bound.least;
@@ -84,17 +72,6 @@ starg_status cover_solve_partial(cover_run *run, const cover_instance *instance,
 done:
     cover_weight_bound_free(instance, &bound);
     cover_state_free(&choice);
-    return status;
-}
-
-/* Lowers the bound on the weight of its rows, which `reached` cannot exceed. */
-static starg_status lower_most(cover_run *run, const cover_instance *instance, uint64_t reached,
-                               cover_weight_bound *bound) {
-    starg_status status = STARG_OK;
-    STARG_TRY(cover_weight_bound_improve(run, instance, reached, bound));
-    if (bound->most > reached && !cover_time_is_over(run))
-        STARG_TRY(cover_weight_bound_relax(run, instance, false, reached, bound));
-done:
     return status;
 }
 
@@ -122,7 +99,7 @@ static starg_status bound_rows(cover_run *run, const cover_instance *instance,
         goto done;
     uint64_t reached = choice->weight < goal ? choice->weight : goal;
     STARG_TRY(cover_weight_bound_create(instance, choice->count - 1, reached, &bound));
-    STARG_TRY(raise_least(run, instance, choice->count, &bound));
+    STARG_TRY(cover_weight_bound_relax(run, instance, true, choice->count, &bound));
     *least = bound.least;
 done:
     cover_weight_bound_free(instance, &bound);
@@ -139,7 +116,7 @@ starg_status cover_solve_limited(cover_run *run, const cover_instance *instance,
     STARG_TRY(cover_swap(run, &choice, goal));
     STARG_TRY(cover_weight_bound_create(instance, limit, goal, &bound));
     if (choice.weight < goal)
-        STARG_TRY(lower_most(run, instance, choice.weight, &bound));
+        STARG_TRY(cover_weight_bound_relax(run, instance, false, choice.weight, &bound));
     if (exact && choice.weight < goal)
         STARG_TRY(close_weight_gap(run, instance, goal, &bound, &choice));
     cover_drop_needless(&choice, choice.weight < goal ? choice.weight : goal);

@@ -27,7 +27,7 @@ starg_status cover_solve_partial(cover_run *run, const cover_instance *instance,
 starg_status cover_solve_limited(cover_run *run, const cover_instance *instance, size_t limit,
                                  uint64_t goal, bool exact, cover_answer *answer, uint64_t *most);
 
-/* Covers everything greedily, with a fast bound. Errors: MEMORY, CANCELLED. */
+/* Covers everything greedily, with the bound of a relaxed run. Errors: MEMORY, CANCELLED. */
 starg_status cover_solve_greedy(cover_run *run, const cover_instance *instance,
                                 cover_answer *answer);
 

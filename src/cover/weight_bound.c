@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_STEPS = 300, STEPS_PER_REVIEW = 10, MOST_SHIFT = 20 };
+enum { MOST_SHIFT = 20 };
 
 static int compare_scores(const void *a, const void *b) {
     const cover_score *x = a, *y = b;
@@ -54,7 +54,7 @@ static cover_wide evaluate(const cover_instance *instance, cover_weight_bound *b
     return kept;
 }
 
-uint64_t cover_weight_bound_take(const cover_instance *instance, cover_weight_bound *bound) {
+void cover_weight_bound_take(const cover_instance *instance, cover_weight_bound *bound) {
     cover_wide sum = evaluate(instance, bound);
     cover_wide goal = (cover_wide)bound->goal << bound->shift;
     cover_wide most = sum;
@@ -75,7 +75,6 @@ uint64_t cover_weight_bound_take(const cover_instance *instance, cover_weight_bo
         for (size_t j = 0; j < instance->columns; j++)
             bound->multipliers[j] = bound->trial[j];
     }
-    return limit;
 }
 
 void cover_weight_bound_restart(const cover_instance *instance, cover_weight_bound *bound,
@@ -111,73 +110,4 @@ void cover_weight_bound_free(const cover_instance *instance, cover_weight_bound 
     starg_release(instance->context, bound->word_sums);
     starg_release(instance->context, bound->scores);
     *bound = (cover_weight_bound){0};
-}
-
-/* The subgradient of U at the trial multipliers: chosen rows that hold a column, less its demand
- * while the column is worth covering. Returns its length in the metric of the weights. */
-static double find_slope(const cover_instance *instance, const cover_weight_bound *bound,
-                         double *slope) {
-    double square = 0;
-    for (size_t j = 0; j < instance->columns; j++)
-        slope[j] = 0;
-    for (size_t k = 0; k < bound->rows && k < instance->rows; k++) {
-        const uint64_t *row = cover_row(instance, bound->scores[k].row);
-        for (size_t w = 0; w < instance->row_words; w++) {
-            STARG_FOR_BITS (bit, row[w])
-                slope[64 * w + bit] += 1;
-        }
-    }
-    for (size_t j = 0; j < instance->columns; j++) {
-        double demand = instance->demands[j];
-        bool full = bound->trial[j] >= cover_largest_multiplier(instance, bound, j);
-        slope[j] -= demand;
-        if ((full && slope[j] < 0) || (bound->trial[j] == 0 && slope[j] > 0))
-            slope[j] = 0; /* the step would leave the box */
-        square += (double)instance->weights[j] * slope[j] * slope[j];
-    }
-    return square;
-}
-
-/* Down the slope by factor x gap / square, in the metric of the weights, inside the box. */
-static void take_step(const cover_instance *instance, cover_weight_bound *bound,
-                      const double *slope, double length) {
-    double scale = (double)((uint64_t)1 << bound->shift);
-    for (size_t j = 0; j < instance->columns; j++) {
-        double step = length * scale * (double)instance->weights[j] * slope[j];
-        bound->trial[j] = cover_near_multiplier(instance, bound, j, (double)bound->trial[j] - step);
-    }
-}
-
-starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *instance,
-                                        uint64_t enough, cover_weight_bound *bound) {
-    starg_status status = STARG_OK;
-    double *slope = NULL;
-    double factor = 1;
-    uint64_t reviewed = bound->most;
-    starg_progress_begin(run->context, "bound");
-    STARG_NEW(run->context, "bound", slope, instance->columns);
-    for (size_t j = 0; j < instance->columns; j++)
-        bound->trial[j] = bound->multipliers[j];
-    uint64_t value = cover_weight_bound_take(instance, bound);
-    for (size_t step = 1; step <= MOST_STEPS && bound->most > enough; step++) {
-        STARG_TRY(starg_check_cancel(run->context, "bound"));
-        if (cover_time_is_over(run))
-            break;
-        starg_progress_step(run->context, step, MOST_STEPS);
-        double square = find_slope(instance, bound, slope);
-        if (square == 0)
-            break; /* a minimum */
-        double gap = (double)(value - enough) + 1e-3 * (double)instance->total;
-        take_step(instance, bound, slope, factor * gap / square);
-        value = cover_weight_bound_take(instance, bound);
-        if (step % STEPS_PER_REVIEW == 0) {
-            if (bound->most >= reviewed)
-                factor *= 0.5;
-            reviewed = bound->most;
-        }
-    }
-done:
-    starg_progress_end(run->context);
-    starg_release(run->context, slope);
-    return status;
 }

@@ -57,13 +57,8 @@ void cover_weight_bound_free(const cover_instance *instance, cover_weight_bound 
 void cover_weight_bound_restart(const cover_instance *instance, cover_weight_bound *bound,
                                 size_t rows);
 
-/* Takes over what the trial multipliers prove; returns U(K, u) of them. */
-uint64_t cover_weight_bound_take(const cover_instance *instance, cover_weight_bound *bound);
-
-/* Improves both by the subgradient method until `most` is at most `enough`. Errors: MEMORY,
- * CANCELLED. */
-starg_status cover_weight_bound_improve(cover_run *run, const cover_instance *instance,
-                                        uint64_t enough, cover_weight_bound *bound);
+/* Takes over what the trial multipliers prove, and sorts the rows' scores by them. */
+void cover_weight_bound_take(const cover_instance *instance, cover_weight_bound *bound);
 
 /* Improves both by the linear relaxation: of the fewest rows for the goal, until `least` is at
  * least `enough`, or of the most weight for `rows` rows, until `most` is at most `enough`. Where

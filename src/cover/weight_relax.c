@@ -1,28 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The linear relaxation of a partial target or of a limit on the rows, for its multipliers: with
- * y(j) the part of column j that counts and h(j) the sum of x over R(j),
+/* The linear relaxation of a limit K on the rows, for its multipliers: with y(j) the part of column
+ * j that counts and h(j) the sum of x over R(j),
  *
- *     demand(j) y(j) <= h(j),  0 <= x <= 1,  0 <= y <= 1, and either
- *     min sum x, sum w y >= goal      or      max sum w y, sum x <= rows.
+ *     max sum w y,  sum x <= K,  demand(j) y(j) <= h(j),  0 <= x <= 1,  0 <= y <= 1.
+ *
+ * Its value grows with K and is concave. The fewest rows for a goal are, in the relaxation, the K
+ * where it reaches the goal: K starts at the bound known and follows it, as each K's multipliers
+ * bound the weight of every other number of rows, too (Newton's method, from below).
  *
  * Most columns are on one side of their bend w min(1, h / demand): surely seen, with the multiplier
  * 0 and all of their weight kept, or short of it, with the full multiplier w / demand and a weight
- * that is linear in x. So the model starts with rows only: each column is replaced by the side that
- * the multipliers known so far put it on, which can only raise what x seems to cover. The columns
- * whose replacement overstates most join the model, round by round, as
+ * that is linear in x. So the model starts with rows only: each column is replaced by one of its
+ * sides, which can only raise what x seems to cover. The columns whose replacement overstates most
+ * join the model, round by round, as
  *
  *     h + demand s >= demand   (kept:   s >= 0 takes w s away)   or
  *     h - demand e <= demand   (linear: e >= 0 takes w e away).
  *
  * The last basis stays dual feasible with them, for Clp's dual simplex. It ends when nothing is
- * overstated: then the relaxation of all columns is solved.
+ * overstated: then the relaxation of all columns is solved. The first sides are those of an average
+ * of subgradient steps, which tends to the relaxation's solution.
  *
  * Invariant: to replace a column is to fix its multiplier, and any multipliers within their box
  * prove something (weight_bound.h). So each round's are rounded to whole numbers and evaluated
- * there in integers; nothing that Clp says is believed. The smallest K with U(K, u) >= goal is at
- * least the relaxation's value: were K below it, K rows of the largest sums s(i) and the dual value
- *     t goal - sum_j max(0, t w - t demand u) + sum_i min(0, 1 - t s(i)) > K
- * gave U(K, u) < goal, as sum_i min(0, 1 - t s(i)) is at most the sum of 1 - t s(i) over them. */
+ * there in integers; nothing that Clp says is believed.
+ *
+ * Cost: a subgradient step takes the ones of the matrix, a round the simplex method on the columns
+ * taken in, some hundreds of steps. */
 #include "cover/weight_bound.h"
 
 #include <float.h>
@@ -35,14 +39,17 @@
 #include "cover/solver.h"
 
 enum {
-    MOST_ADDED = 500, /* columns in a round */
+    STEPS = 100,      /* towards the first sides */
+    MOST_ADDED = 300, /* columns in a round      */
     MOST_ROUNDS = 100,
     BATCH_ENTRIES = 1 << 20, /* at least one column's */
     MOST_ENTRIES = INT_MAX / 2
 };
 
-/* The columns overstate no more than this, as a part of the total weight or in rows. */
-static const double TOLERANCE = 1e-7;
+static const double TOLERANCE = 1e-7; /* of what is overstated, as a part of the total weight */
+
+/* Half the width of the bend h = demand while sides are looked for, as a part of the demand. */
+static const double BEND = 0.1;
 
 typedef struct overstated {
     double excess;
@@ -52,15 +59,15 @@ typedef struct overstated {
 typedef struct relaxing {
     const cover_instance *instance;
     cover_weight_bound *bound;
-    bool by_goal; /* min sum x; else max sum w y */
+    bool by_goal;    /* K follows the bound for the goal                  */
+    uint64_t enough; /* rows for the goal or weight of the rows: no better bound is wanted */
+    size_t limit;    /* K */
     Clp_Simplex *model;
     double unit;             /* the mean weight, 1 in the model          */
-    double per_unit;         /* rows that one unit costs, 0 where what is
-                                kept reaches the goal; max sum w y: 1 */
     uint64_t *inside, *kept; /* masks: in the model; replaced by w       */
     uint32_t *columns;       /* those inside, in the order of the model  */
     size_t count, entries;   /* columns and ones in the model            */
-    double *gains, *cost;    /* per row: the linear columns' part; cost    */
+    double *cost;            /* per row: minus what the linear columns add */
     double *held;            /* per column: h                            */
     overstated *found;       /* columns not inside                       */
     int *index;              /* a batch of columns                       */
@@ -75,7 +82,6 @@ static void relaxing_free(starg_context *context, relaxing *relax) {
     starg_release(context, relax->inside);
     starg_release(context, relax->kept);
     starg_release(context, relax->columns);
-    starg_release(context, relax->gains);
     starg_release(context, relax->cost);
     starg_release(context, relax->held);
     starg_release(context, relax->found);
@@ -83,75 +89,100 @@ static void relaxing_free(starg_context *context, relaxing *relax) {
     starg_release(context, relax->ones);
 }
 
-/* Replaces each column by the side that its multiplier is nearer to. */
+/* Multipliers that fall from full to 0 while h crosses the bend. */
+static void set_trial(const relaxing *relax) {
+    const cover_instance *instance = relax->instance;
+    for (size_t j = 0; j < instance->columns; j++) {
+        double short_of = 0.5 + (1 - relax->held[j] / instance->demands[j]) / (2 * BEND);
+        double full = (double)cover_largest_multiplier(instance, relax->bound, j);
+        relax->bound->trial[j] = cover_near_multiplier(instance, relax->bound, j, short_of * full);
+    }
+}
+
+/* Moves x by a part of the way towards the K rows of the largest sums of multipliers. */
+static void step_towards_best(relaxing *relax, double part) {
+    const cover_instance *instance = relax->instance;
+    for (size_t j = 0; j < instance->columns; j++)
+        relax->held[j] *= 1 - part;
+    for (size_t k = 0; k < relax->limit && k < instance->rows; k++) {
+        const uint64_t *row = cover_row(instance, relax->bound->scores[k].row);
+        for (size_t w = 0; w < instance->row_words; w++) {
+            STARG_FOR_BITS (bit, row[w])
+                relax->held[64 * w + bit] += part;
+        }
+    }
+}
+
+static bool is_enough(const relaxing *relax) {
+    return relax->by_goal ? relax->bound->least >= relax->enough
+                          : relax->bound->most <= relax->enough;
+}
+
+static starg_status find_sides(cover_run *run, relaxing *relax) {
+    const cover_instance *instance = relax->instance;
+    for (size_t step = 0; step < STEPS && !is_enough(relax); step++) {
+        starg_status status = starg_check_cancel(run->context, "bound");
+        if (status != STARG_OK || cover_time_is_over(run))
+            return status;
+        set_trial(relax);
+        cover_weight_bound_take(instance, relax->bound);
+        step_towards_best(relax, 2 / (double)(step + 2));
+    }
+    return STARG_OK;
+}
+
+/* Replaces each column by the side that it is on. */
 static void choose_sides(relaxing *relax) {
     const cover_instance *instance = relax->instance;
     for (size_t j = 0; j < instance->columns; j++) {
-        if (relax->bound->multipliers[j] <
-            cover_largest_multiplier(instance, relax->bound, j) / 2) {
+        if (relax->held[j] >= instance->demands[j]) {
             starg_bit_set(relax->kept, j);
             continue;
         }
         double share = (double)instance->weights[j] / relax->unit / instance->demands[j];
         for (size_t w = 0; w < instance->column_words; w++) {
             STARG_FOR_BITS (bit, cover_column(instance, j)[w])
-                relax->gains[64 * w + bit] += share;
+                relax->cost[64 * w + bit] -= share;
         }
     }
 }
 
-static starg_status relaxing_make(const cover_instance *instance, bool by_goal,
-                                  cover_weight_bound *bound, relaxing *relax) {
+static starg_status relaxing_make(const cover_instance *instance, cover_weight_bound *bound,
+                                  relaxing *relax) {
     starg_status status = STARG_OK;
     starg_context *context = instance->context;
-    *relax = (relaxing){.instance = instance, .bound = bound, .by_goal = by_goal};
+    *relax = (relaxing){.instance = instance, .bound = bound, .limit = bound->rows};
     relax->unit = (double)instance->total / (double)instance->columns;
     relax->room = instance->rows > BATCH_ENTRIES ? instance->rows : BATCH_ENTRIES;
     STARG_NEW_ZERO(context, "bound", relax->inside, instance->row_words);
     STARG_NEW_ZERO(context, "bound", relax->kept, instance->row_words);
     STARG_NEW(context, "bound", relax->columns, instance->columns);
-    STARG_NEW_ZERO(context, "bound", relax->gains, instance->rows);
-    STARG_NEW(context, "bound", relax->cost, instance->rows);
-    STARG_NEW(context, "bound", relax->held, instance->columns);
+    STARG_NEW_ZERO(context, "bound", relax->cost, instance->rows);
+    STARG_NEW_ZERO(context, "bound", relax->held, instance->columns);
     STARG_NEW(context, "bound", relax->found, instance->columns);
     STARG_NEW(context, "bound", relax->index, relax->room);
     STARG_NEW(context, "bound", relax->ones, relax->room);
     for (size_t e = 0; e < relax->room; e++)
         relax->ones[e] = 1;
-    choose_sides(relax);
 done:
     return status;
 }
 
-/* What is missing to the goal when the kept columns count in full, in units. */
-static double remaining_goal(const relaxing *relax) {
-    const cover_instance *instance = relax->instance;
-    cover_wide rest = relax->bound->goal;
-    for (size_t j = 0; j < instance->columns; j++)
-        rest -= starg_bit_test(relax->kept, j) ? instance->weights[j] : 0;
-    return (double)rest / relax->unit;
-}
-
-/* The model with all rows and no column, but for the target or the limit; false when there is
- * none. */
+/* The model with all rows and no column, but for the limit; false when there is none. */
 static bool start_model(relaxing *relax) {
     size_t rows = relax->instance->rows;
     CoinBigIndex starts[2] = {0, (CoinBigIndex)rows};
+    double limit = (double)relax->limit;
     if (rows >= MOST_ENTRIES || (relax->model = Clp_newModel()) == NULL)
         return false;
-    double limit = (double)relax->bound->rows, goal = remaining_goal(relax);
+    choose_sides(relax);
     Clp_setLogLevel(relax->model, 0);
     Clp_resize(relax->model, 0, (int)rows);
-    for (size_t i = 0; i < rows; i++) {
-        relax->cost[i] = relax->by_goal ? 1 : -relax->gains[i];
-        relax->index[i] = (int)i;
-    }
     Clp_chgColumnUpper(relax->model, relax->ones); /* there is room for all rows */
     Clp_chgObjCoefficients(relax->model, relax->cost);
-    if (relax->by_goal)
-        Clp_addRows(relax->model, 1, &goal, NULL, starts, relax->index, relax->gains);
-    else
-        Clp_addRows(relax->model, 1, NULL, &limit, starts, relax->index, relax->ones);
+    for (size_t i = 0; i < rows; i++)
+        relax->index[i] = (int)i;
+    Clp_addRows(relax->model, 1, NULL, &limit, starts, relax->index, relax->ones);
     relax->entries = rows;
     return true;
 }
@@ -175,23 +206,18 @@ static bool list_rows(relaxing *relax, size_t column, size_t added) {
 
 /* The variables s or e of the last `added` columns. */
 static void add_slacks(relaxing *relax, size_t added) {
-    double cost[MOST_ADDED], elements[2 * MOST_ADDED];
-    int rows[2 * MOST_ADDED];
-    size_t each = relax->by_goal ? 2 : 1, first = relax->count - added;
+    double cost[MOST_ADDED], elements[MOST_ADDED];
+    int rows[MOST_ADDED];
+    size_t first = relax->count - added;
     for (size_t a = 0; a < added; a++) {
         size_t j = relax->columns[first + a];
-        double weight = (double)relax->instance->weights[j] / relax->unit;
         double demand = relax->instance->demands[j];
-        relax->starts[a] = (CoinBigIndex)(each * a);
-        rows[each * a] = (int)(1 + first + a);
-        elements[each * a] = starg_bit_test(relax->kept, j) ? demand : -demand;
-        cost[a] = relax->by_goal ? 0 : weight;
-        if (relax->by_goal) {
-            rows[each * a + 1] = 0;
-            elements[each * a + 1] = -weight;
-        }
+        relax->starts[a] = (CoinBigIndex)a;
+        rows[a] = (int)(1 + first + a);
+        elements[a] = starg_bit_test(relax->kept, j) ? demand : -demand;
+        cost[a] = (double)relax->instance->weights[j] / relax->unit;
     }
-    relax->starts[added] = (CoinBigIndex)(each * added);
+    relax->starts[added] = (CoinBigIndex)added;
     Clp_addColumns(relax->model, (int)added, NULL, NULL, cost, relax->starts, rows, elements);
 }
 
@@ -224,10 +250,7 @@ static double find_overstated(relaxing *relax, size_t *count) {
 static bool add_overstated(relaxing *relax) {
     double lower[MOST_ADDED], upper[MOST_ADDED];
     size_t count, added = 0;
-    double sum = find_overstated(relax, &count);
-    bool in_rows = relax->by_goal && relax->per_unit > 0;
-    double excess = in_rows ? sum * relax->per_unit : sum / (double)relax->instance->columns;
-    if (excess <= TOLERANCE)
+    if (find_overstated(relax, &count) <= TOLERANCE * (double)relax->instance->columns)
         return false;
     relax->starts[0] = 0;
     for (size_t c = 0; c < count && added < MOST_ADDED; c++) {
@@ -252,15 +275,14 @@ static void read_solution(relaxing *relax) {
     const double *solution = Clp_primalColumnSolution(relax->model);
     const double *duals = Clp_dualRowSolution(relax->model);
     double scale = relax->unit * (double)((uint64_t)1 << bound->shift);
-    relax->per_unit = relax->by_goal ? duals[0] : 1;
     for (size_t j = 0; j < instance->columns; j++) {
         bound->trial[j] =
             starg_bit_test(relax->kept, j) ? 0 : cover_largest_multiplier(instance, bound, j);
         relax->held[j] = 0;
     }
-    for (size_t c = 0; c < relax->count && relax->per_unit > 0; c++) {
+    for (size_t c = 0; c < relax->count; c++) {
         size_t j = relax->columns[c];
-        double change = duals[1 + c] / relax->per_unit * scale;
+        double change = duals[1 + c] * scale;
         bound->trial[j] =
             cover_near_multiplier(instance, bound, j, (double)bound->trial[j] + change);
     }
@@ -274,11 +296,29 @@ static void read_solution(relaxing *relax) {
     }
 }
 
-static bool is_enough(const relaxing *relax, uint64_t enough) {
-    return relax->by_goal ? relax->bound->least >= enough : relax->bound->most <= enough;
+/* What x covers, in units. */
+static double seen_weight(const relaxing *relax) {
+    const cover_instance *instance = relax->instance;
+    double seen = 0;
+    for (size_t j = 0; j < instance->columns; j++) {
+        double part = relax->held[j] / instance->demands[j];
+        seen += (part < 1 ? part : 1) * (double)instance->weights[j] / relax->unit;
+    }
+    return seen;
 }
 
-static starg_status run_rounds(cover_run *run, relaxing *relax, uint64_t enough) {
+/* Follows the bound on the rows for the goal; false when the relaxation of so many rows reaches it.
+ */
+static bool follow_least(relaxing *relax) {
+    const cover_weight_bound *bound = relax->bound;
+    if (bound->least == relax->limit)
+        return seen_weight(relax) < (double)bound->goal / relax->unit;
+    relax->limit = bound->least;
+    Clp_rowUpper(relax->model)[0] = (double)relax->limit;
+    return true;
+}
+
+static starg_status run_rounds(cover_run *run, relaxing *relax) {
     for (size_t round = 1; round <= MOST_ROUNDS; round++) {
         starg_status status = starg_check_cancel(run->context, "bound");
         if (status != STARG_OK || cover_time_is_over(run) ||
@@ -287,8 +327,11 @@ static starg_status run_rounds(cover_run *run, relaxing *relax, uint64_t enough)
         starg_progress_step(run->context, round, MOST_ROUNDS);
         read_solution(relax);
         cover_weight_bound_take(relax->instance, relax->bound);
-        if (is_enough(relax, enough) || !add_overstated(relax))
-            return STARG_OK;
+        size_t limit = relax->limit;
+        if (is_enough(relax) || (relax->by_goal && !follow_least(relax)))
+            break;
+        if (!add_overstated(relax) && relax->limit == limit)
+            break;
     }
     return STARG_OK;
 }
@@ -296,7 +339,6 @@ static starg_status run_rounds(cover_run *run, relaxing *relax, uint64_t enough)
 typedef struct clp_call {
     cover_run *run;
     relaxing *relax;
-    uint64_t enough;
     starg_status status;
 } clp_call;
 
@@ -304,12 +346,12 @@ typedef struct clp_call {
 static void run_clp(void *argument) {
     clp_call *call = argument;
     if (start_model(call->relax))
-        call->status = run_rounds(call->run, call->relax, call->enough);
+        call->status = run_rounds(call->run, call->relax);
 }
 
 /* A model that an exception has come out of is not touched again. */
-static starg_status run_clp_safely(cover_run *run, relaxing *relax, uint64_t enough) {
-    clp_call call = {run, relax, enough, STARG_OK};
+static starg_status run_clp_safely(cover_run *run, relaxing *relax) {
+    clp_call call = {run, relax, STARG_OK};
     if (!cover_call_safely(run_clp, &call)) {
         relax->model = NULL;
         cover_solver_give_up();
@@ -323,10 +365,15 @@ starg_status cover_weight_bound_relax(cover_run *run, const cover_instance *inst
     bool held = false;
     relaxing relax = {0};
     starg_progress_begin(run->context, "bound");
-    STARG_TRY(relaxing_make(instance, by_goal, bound, &relax));
+    STARG_TRY(relaxing_make(instance, bound, &relax));
+    relax.by_goal = by_goal;
+    relax.enough = enough;
+    STARG_TRY(find_sides(run, &relax));
+    if (is_enough(&relax))
+        goto done;
     STARG_TRY(cover_solver_lock(run, &held));
     if (held && instance->columns != 0)
-        STARG_TRY(run_clp_safely(run, &relax, enough));
+        STARG_TRY(run_clp_safely(run, &relax));
 done:
     relaxing_free(run->context, &relax);
     cover_solver_unlock(held);

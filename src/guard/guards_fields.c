@@ -27,7 +27,8 @@ static const starg_field OPTIONS[] = {
      .value = "pilp|ilp|greedy",
      .help =
          "pilp: from coarse to fine levels of detail, then refinement; ilp: the fewest candidates, "
-         "proven optimal or with a bound; greedy: fastest, with more guards and a weaker bound."},
+         "proven optimal or with a bound; greedy: fastest, with more guards and the bound of a "
+         "linear program."},
     {.key = "candidates",
      .kind = STARG_FIELD_CHOICE,
      OPTION(candidates),
