@@ -8,7 +8,7 @@ import support
 QUESTIONS = ["", "--method ilp", "--method greedy", "--no-refine", "--coverage 0.9",
              "--coverage 0.5 --method ilp", "--max-guards 3", "--max-guards 4 --redundancy 2",
              "--redundancy 2", "--redundancy 2 --method greedy", "--range 0.6",
-             "--range 0.5 --clearance 0.03 --method greedy", "--cone 120 --method greedy --count 100",
+             "--range 0.5 --clearance 0.03 --method greedy", "--cone 120 --method greedy --count 50",
              "--target vertices", "--target vertices --redundancy 2", "--faces whole",
              "--candidates interior --count 50 --method ilp", "--candidates places.txt"]
 MODELS = ["star", "l-room", "octopus"]
@@ -135,7 +135,7 @@ class Forged(support.Case):
     # ---- pieces ----
 
     def decompose(self, *words, model="m.off"):
-        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", *words)
+        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "300", *words)
         return json.loads(self.read("p.json"))
 
     def refused_pieces(self, report, text, model="m.off"):
@@ -179,10 +179,10 @@ class Forged(support.Case):
     def test_genuine_guards(self):
         self.write("places.txt", PLACES)
         for model in MODELS:
-            self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
+            self.run_text("sample", model, "--vertices", "300", "-o", "m.off")
             for question in QUESTIONS:
                 with self.subTest(model=model, question=question):
-                    self.guard(*question.split())
+                    self.guard("--refine-lines", "100000", *question.split())
                     self.run_text("verify", "m.off", "g.json")
 
     def test_genuine_pieces(self):
