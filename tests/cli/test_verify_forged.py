@@ -135,7 +135,7 @@ class Forged(support.Case):
     # ---- pieces ----
 
     def decompose(self, *words, model="m.off"):
-        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "300", *words)
+        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "500", *words)
         return json.loads(self.read("p.json"))
 
     def refused_pieces(self, report, text, model="m.off"):
@@ -148,7 +148,7 @@ class Forged(support.Case):
         self.run_text("verify", "m.off", "p.vtk", "p.json")
         for change in [1 + 1e-6, 0.5, -1]:
             forged = json.loads(json.dumps(report))
-            forged["pieces"][0]["radius"] *= change
+            max(forged["pieces"], key=lambda piece: piece["radius"])["radius"] *= change
             self.refused_pieces(forged, "as far from the planes")
         for change in [1 + 1e-6, 2]:
             forged = json.loads(json.dumps(report))
@@ -156,7 +156,7 @@ class Forged(support.Case):
             self.refused_pieces(forged, "the flattest tetrahedron")
 
     def test_pieces_of_another_model(self):
-        self.run_text("sample", "star", "--vertices", "300", "-o", "other.off")
+        self.run_text("sample", "star", "--vertices", "500", "-o", "other.off")
         report = self.decompose(model="other.off")
         for distance in [100, 1e99]:
             report.update(surface="approximated", distance=distance, distance_back=distance)
@@ -179,7 +179,7 @@ class Forged(support.Case):
     def test_genuine_guards(self):
         self.write("places.txt", PLACES)
         for model in MODELS:
-            self.run_text("sample", model, "--vertices", "300", "-o", "m.off")
+            self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
             for question in QUESTIONS:
                 with self.subTest(model=model, question=question):
                     self.guard("--refine-lines", "100000", *question.split())
@@ -187,7 +187,7 @@ class Forged(support.Case):
 
     def test_genuine_pieces(self):
         for model in MODELS:
-            self.run_text("sample", model, "--vertices", "300", "-o", "m.off")
+            self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
             for words in [(), ("--mode", "paper")]:
                 with self.subTest(model=model, words=words):
                     self.decompose(*words)
