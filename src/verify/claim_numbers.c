@@ -111,7 +111,7 @@ static void bound_radius(const verify_context *own, size_t piece, double *least,
 static void claim_radius(const verify_context *own) {
     const starg_pieces_report *report = own->report;
     size_t bad = 0, first = 0, told = 0;
-    double found = 0, slack = 1e-9 * ldexp(1, -own->pieces->scale);
+    double found = 0, slack = 0x1p-46 * ldexp(1, -own->pieces->scale);
     for (size_t p = report->piece_count; p-- > 0;) {
         double least, most, claimed = report->pieces[p].radius;
         if (isnan(claimed))

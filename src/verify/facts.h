@@ -4,7 +4,7 @@
 #define STARG_VERIFY_FACTS_H
 
 #include "core/bits.h"
-#include "starguard/guard.h"
+#include "starguard/verify.h"
 #include "verify/sight.h"
 #include "verify/surface.h"
 #include "verify/tree.h"

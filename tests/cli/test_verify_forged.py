@@ -8,10 +8,10 @@ import support
 QUESTIONS = ["", "--method ilp", "--method greedy", "--no-refine", "--coverage 0.9",
              "--coverage 0.5 --method ilp", "--max-guards 3", "--max-guards 4 --redundancy 2",
              "--redundancy 2", "--redundancy 2 --method greedy", "--range 0.6",
-             "--range 0.5 --clearance 0.03 --method greedy", "--cone 120 --method greedy --count 100",
+             "--range 0.5 --clearance 0.03 --method greedy", "--cone 120 --method greedy --count 50",
              "--target vertices", "--target vertices --redundancy 2", "--faces whole",
              "--candidates interior --count 50 --method ilp", "--candidates places.txt"]
-MODELS = ["star", "l-room", "octopus"]
+MODELS = ["star", "l-room"]
 # The candidates that are given: most are in none of the models, and left out.
 PLACES = "".join(f"{x / 4} {y / 4} {z / 4}\n" for x in range(-4, 9) for y in range(-4, 9)
                  for z in range(-4, 9))
@@ -135,7 +135,7 @@ class Forged(support.Case):
     # ---- pieces ----
 
     def decompose(self, *words, model="m.off"):
-        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", *words)
+        self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "500", *words)
         return json.loads(self.read("p.json"))
 
     def refused_pieces(self, report, text, model="m.off"):
@@ -148,7 +148,7 @@ class Forged(support.Case):
         self.run_text("verify", "m.off", "p.vtk", "p.json")
         for change in [1 + 1e-6, 0.5, -1]:
             forged = json.loads(json.dumps(report))
-            forged["pieces"][0]["radius"] *= change
+            max(forged["pieces"], key=lambda piece: piece["radius"])["radius"] *= change
             self.refused_pieces(forged, "as far from the planes")
         for change in [1 + 1e-6, 2]:
             forged = json.loads(json.dumps(report))
@@ -156,7 +156,7 @@ class Forged(support.Case):
             self.refused_pieces(forged, "the flattest tetrahedron")
 
     def test_pieces_of_another_model(self):
-        self.run_text("sample", "star", "--vertices", "300", "-o", "other.off")
+        self.run_text("sample", "star", "--vertices", "500", "-o", "other.off")
         report = self.decompose(model="other.off")
         for distance in [100, 1e99]:
             report.update(surface="approximated", distance=distance, distance_back=distance)
@@ -181,13 +181,14 @@ class Forged(support.Case):
         for model in MODELS:
             self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
             for question in QUESTIONS:
+                count = () if "--count" in question else ("--count", "100")
                 with self.subTest(model=model, question=question):
-                    self.guard(*question.split())
+                    self.guard("--refine-lines", "100000", *count, *question.split())
                     self.run_text("verify", "m.off", "g.json")
 
     def test_genuine_pieces(self):
         for model in MODELS:
-            self.run_text("sample", model, "--vertices", "300", "-o", "m.off")
+            self.run_text("sample", model, "--vertices", "500", "-o", "m.off")
             for words in [(), ("--mode", "paper")]:
                 with self.subTest(model=model, words=words):
                     self.decompose(*words)
