@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The lattice of isosurface stuffing [LS07]: insides, cuts, and the warp.
  *
- * Inside is where the surface winds at least once, as for solids everywhere; the winding number is
+ * A point is inside if its winding number is at least one, as for all solids; the winding number is
  * exact, and all points of a column share the triangles that the vertical line through them meets.
- * For open surfaces it is where the generalised winding number is above a half. A cut is where, on
+ * For open surfaces: if the generalized winding number exceeds 1/2. A cut is where, on
  * the way from the inside end of an edge, the winding number falls to zero first; a rounded
  * position on the edge is all that is needed.
  *

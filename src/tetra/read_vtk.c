@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords stand on
- * lines of text in both. Version 5.1 replaced the list of cells (count, then indices, cell by cell)
- * by offsets and connectivity. Cells become tetrahedra when their types are known, which comes
- * last. The first integer array of the cells, if it follows at once, gives the regions. */
+/* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords are text
+ * lines in both. Version 5.1 replaced the list of cells (count, then indices, cell by cell) by
+ * offsets and connectivity. Cells become tetrahedra when their types are known, which comes last.
+ * The first integer array of the cells, if it follows at once, gives the regions. */
 #include <strings.h>
 
 #include "core/memory.h"

@@ -53,7 +53,7 @@ static void claim_near(const verify_context *own, const verify_nearness *nearnes
                      limit, verify_outer_words(own, nearness->to.face).text, nearness->to.farthest);
     limit = report->distance_back;
     if (limit == INFINITY)
-        return; /* not told */
+        return; /* not given */
     verify_claim(own->verdict, nearness->from.farthest <= limit * (1 + TOLERANCE) + rounding,
                  "the model's surface is at most %.17g from the boundary (%.17g at %zu points, in "
                  "face %zu)",

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verification of a guards result. First the facts: each guard looks around anew (verify/sight.h),
- * in parallel. Then the claims of the result are held against them, one by one. What depends on
- * the candidates, which a result does not hold (which faces are coverable, the proof of the lower
- * bound), is checked for consistency only.
+/* Verification of a guards result. First, visibility is recomputed for each guard (verify/sight.h),
+ * in parallel. Then the claims of the result are compared with it, one by one. Claims that depend
+ * on the candidates, which a result does not contain (which faces are coverable, the proof of the
+ * lower bound), are only checked for consistency.
  *
  * Invariant: facts are sums and unions over the guards, so that the order in which threads work
  * does not show. Cost: see verify/sight.h for each guard. */
