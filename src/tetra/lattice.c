@@ -142,7 +142,7 @@ static size_t column_start(const lattice *l, size_t item, lattice_point *first) 
     return (size_t)(l->cubes[2] + !odd);
 }
 
-/* Of an open mesh: what it winds around by more than a half. */
+/* For an open mesh: where the generalized winding number exceeds 1/2. */
 static bool winds_around(const lattice *l, const double x[3]) {
     double sense = l->shape->volume < 0 ? -1 : 1;
     for (int k = 0; k < 3; k++)

@@ -246,7 +246,7 @@ done:
 
 enum { POINT = 1, TETRAHEDRON = 10 };
 
-/* Types that are passed over: points, lines, triangles, polygons, quadrilaterals of all orders. */
+/* Types that are skipped: points, lines, triangles, polygons, quadrilaterals of all orders. */
 static bool is_flat(int64_t type) {
     static const uint8_t flat[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34, 35, 36};
     for (size_t i = 0; i < sizeof flat; i++)

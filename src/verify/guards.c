@@ -418,7 +418,7 @@ static double least_unseen_area(const facts *known, size_t count) {
 }
 
 /* Guards without a limit to their number reach the coverage that was asked for. Which of the faces
- * unseen are coverable is not known; the smallest possible area is held against the claim. */
+ * unseen are coverable is not known; the smallest possible area is compared with the claim. */
 static void claim_goal(starg_verdict *verdict, const facts *known) {
     const starg_guard_options *options = &known->guards->options;
     target goal = target_of(known);
