@@ -60,7 +60,7 @@ static void tell_added(cli_session *session, const starg_database_report *r) {
         if (r->results[i].outcome == STARG_DATABASE_KNOWN)
             cli_say(session, "%s: already stored as %s\n", session->operands[i + 1],
                     r->results[i].text);
-    cli_say(session, "%zu added, %zu already stored, %zu rejected\n", r->added, r->known,
+    cli_say(session, "%zu added, %zu already stored, %zu refused\n", r->added, r->known,
             r->refused);
     for (size_t i = 0; i < r->count; i++)
         if (r->results[i].outcome == STARG_DATABASE_REFUSED)
@@ -109,7 +109,7 @@ const cli_command cli_command_db_add = {
     .examples =
         "# add all models of a folder\n"
         "starguard db add shapes.db models/*.off\n"
-        "# list the rejected files, for a script\n"
+        "# list the refused files, for a script\n"
         "starguard db add shapes.db *.stl --json | jq '.files[] | select(.outcome == \"refused\")'",
     CLI_OPERANDS(2, SIZE_MAX),
     .run = add,

@@ -79,7 +79,7 @@ static void say_bound(cli_session *session, const starg_guards *g) {
     size_t gap = g->count - g->lower_bound;
     cli_say(session, "lower bound   %zu", g->lower_bound);
     if (g->optimal)
-        cli_say(session, " (optimal for these candidates)\n");
+        cli_say(session, " (optimal: no fewer of the candidates do)\n");
     else
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }

@@ -54,7 +54,7 @@ static void catch_signals(void) {
     sigaction(SIGTERM, &action, NULL);
     if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN)
         sigaction(SIGHUP, &action, NULL);
-    /* Writes that fail shall say so, not kill us half-way. */
+    /* Failed writes must return an error, not kill the process. */
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
 }

@@ -124,7 +124,7 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
         pointer = _arrays.pointer("double[]", looks)
         wanted.pointer.directions = pointer
     elif wanted.pointer.cone < 360:
-        raise ArgumentError("a cone needs one direction per point")
+        raise ArgumentError("a cone needs directions, one per point")
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility, session.context,
                              solid._handle, _arrays.pointer("double[]", rows), len(rows),
                              wanted.pointer, progress=progress, time_limit=time_limit))

@@ -226,7 +226,7 @@ void starg_log(starg_context *context, starg_log_level level, const char *format
 
 static const double ALMOST = 1 - 0x1p-20; /* 1 itself says that a stage is over */
 
-/* The stage that the callback hears of: those of one name in each other are the outermost. */
+/* The stage reported to the callback: of nested stages with one name, the outermost. */
 static size_t shown_stage(const starg_progress *p) {
     size_t shown = p->depth - 1;
     while (shown > 0 && strcmp(p->stages[shown].name, p->stages[shown - 1].name) == 0)

@@ -142,7 +142,8 @@ static void forget(starg_output *output) {
     *output = (starg_output){.context = output->context, .stage = output->stage};
 }
 
-/* A write has failed, and why is forgotten: one more, of what nobody will read, tells. */
+/* A write has failed and its errno is lost: another write, which nobody will read, sets it again.
+ */
 static int ask_for_reason(FILE *stream) {
     static const char block[1 << 14];
     clearerr(stream);

@@ -8,7 +8,7 @@
 
 enum { DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 
-/* jansson says so, or fails without a word: a text that is wrong it always complains of. */
+/* jansson reports it, or fails silently: it always reports a malformed text. */
 static bool is_out_of_memory(const json_error_t *error) {
     return json_error_code(error) == json_error_out_of_memory || error->text[0] == '\0';
 }

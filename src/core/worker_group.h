@@ -13,7 +13,7 @@ typedef struct worker_group {
     atomic_size_t next, finished;
     atomic_bool stop;
     atomic_uchar *is_finished; /* by item; NULL unless somebody wants to know */
-    size_t advanced;           /* items that `advance` has been told of       */
+    size_t advanced;           /* items reported to `advance`       */
     mtx_t lock;                /* guards the two below                        */
     size_t failed_item;
     starg_status failed_status;
@@ -22,13 +22,13 @@ typedef struct worker_group {
 
 void worker_group_fail(worker_group *group, size_t item, starg_status status);
 
-/* Is it in vain to begin with the item? Notes why. */
+/* Whether there is no point in beginning the item; records the reason. */
 bool worker_group_must_stop(worker_group *group, size_t item);
 
 /* Counts items as finished. */
 void worker_group_finish(worker_group *group, size_t first, size_t count);
 
-/* What the calling thread does between items: tells how far the loop is. */
+/* Reports the progress of the loop, on the calling thread between items. */
 void worker_group_report(worker_group *group);
 
 /* The calling thread's part in a loop that is shared with other processes (core/distribute.c). */

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A page to look at results: the text before the data, the data, the text behind it.
+/* Interactive pages: the text before the data, the data, the text after it.
  *
- * Small things stand in one block of JSON ("data"), arrays in blocks of their own in base64, whose
- * names viewer/data.js knows. Positions are moved and scaled so that all that is shown lies about
- * the origin and reaches about 1 from it (the JSON says by how much): single precision then does
- * for models of any size and place. Cost: that of the output, and of sorting the faces of pieces.
- */
+ * Small values are in one block of JSON ("data"), arrays in separate base64 blocks with the names
+ * of viewer/data.js. Positions are translated and scaled to about the unit ball (the transform is
+ * in the JSON), so that single precision suffices for models of any size and place. Cost: that of
+ * the output, and of sorting the faces of pieces. */
 #include "starguard/page.h"
 
 #include <math.h>

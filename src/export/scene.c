@@ -2,7 +2,7 @@
 /* A model with results about it in one file: what fits together, what is made of it, and which
  * writer takes it.
  *
- * Stages: the parts are held against one another; the surfaces of the pieces are found; each face
+ * Stages: the parts are compared with one another; the surfaces of the pieces are found; each face
  * of the model learns which guard sees it first; the box of all that is shown gives the centre that
  * single precision counts from, and the size of what stands for a guard. Cost: that of the output,
  * and of sorting the faces of pieces. */

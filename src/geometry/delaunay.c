@@ -46,7 +46,7 @@ typedef struct open_edge {
 typedef struct delaunay_builder {
     starg_context *context;
     const double *points;
-    size_t count;       /* points inserted or passed over */
+    size_t count;       /* points inserted or skipped */
     uint32_t *incident; /* a cell at each point, or NOWHERE */
     bool *changed;      /* of each point: since the caller last asked */
     STARG_ARRAY(cell) cells;
@@ -455,7 +455,7 @@ static starg_status reserve_points(builder *b, size_t count) {
     return status;
 }
 
-/* As long as all points lie in one plane there are no cells, and those passed over stay so. */
+/* As long as all points lie in one plane there are no cells, and those skipped stay so. */
 starg_status delaunay_extend(delaunay_builder *b, const double *points, size_t count) {
     starg_status status = STARG_OK;
     sort_key *order = NULL;

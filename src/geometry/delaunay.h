@@ -32,7 +32,7 @@ typedef struct delaunay_builder delaunay_builder;
 starg_status delaunay_begin(starg_context *context, const double *points, size_t count,
                             delaunay_builder **out);
 /* Adds the points behind those that were inserted before. `points` is the whole array, which may
- * have moved. Points that span no tetrahedron in the first call are passed over for good. */
+ * have moved. Points that span no tetrahedron in the first call are skipped for good. */
 starg_status delaunay_extend(delaunay_builder *builder, const double *points, size_t count);
 
 /* The tetrahedra at a point, by their other three corners; none at a point that lies where an

@@ -2,7 +2,7 @@
 /* k-d tree [Bentley 1975], implicit: the middle of a range of `order` is the median along the axis
  * of its depth (axes take turns), what is before it is not above, what is behind it not below.
  *
- * Invariant: a range is passed over only where its distance along one axis, rounded as that of a
+ * Invariant: a range is skipped only where its distance along one axis, rounded as that of a
  * point is, exceeds the best one; rounding is monotone, so that no nearer point is lost.
  *
  * Cost: O(n log n) to build on average, O(log n) a query for points that are spread out. */

@@ -36,7 +36,7 @@ typedef struct linear_solution {
 
 /* `order` is working memory for `count` entries. `start` is NULL or the solution of a program
  * whose tight rows are likely to be tight again: they are taken first (numbers >= count are
- * passed over). Rounded: rows hold up to about 2^-44 of the radius, and a program may be called
+ * skipped). Rounded: rows hold up to about 2^-44 of the radius, and a program may be called
  * infeasible that is feasible by less than that. */
 void linear_program_solve(const linear_program *program, uint32_t *order,
                           const linear_solution *start, linear_solution *solution)

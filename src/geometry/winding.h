@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The generalised winding number, which tells inside from outside for surfaces with holes too. */
+/* The generalized winding number, which separates inside from outside even for surfaces with holes.
+ */
 #ifndef STARG_GEOMETRY_WINDING_H
 #define STARG_GEOMETRY_WINDING_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Guard options and GUARDS.json as tables (starguard/fields.h): the one place that says what each
- * of them is called, may hold and means. Rows are in the order of the file. */
+/* Guard options and GUARDS.json as tables (starguard/fields.h): the only place with their names,
+ * ranges and descriptions. Rows are in the order of the file. */
 #include "guard/guards_fields.h"
 
 #include "starguard/guard.h"

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "mesh/examine.h"
 
-/* Findings that no solid may have, in the order in which they are told. */
+/* Findings that no solid may have, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {
     STARG_FINDING_REPEATED_CORNER, STARG_FINDING_OPEN_EDGE, STARG_FINDING_NONMANIFOLD_EDGE,
     STARG_FINDING_NONMANIFOLD_VERTEX, STARG_FINDING_INCONSISTENT_EDGE};

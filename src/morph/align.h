@@ -6,7 +6,7 @@
 #include "morph/extremities.h"
 #include "morph/locate.h"
 
-/* Vertices that shall meet: `from` of the first surface, `to` of the second. */
+/* Corresponding vertices: `from` of the first surface, `to` of the second. */
 typedef struct landmark_list {
     const uint32_t *from, *to;
     size_t count;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Mesh deformation: tetrahedra of A that go with a morph to B.
  *
- * Problem: A's surface moves to B's, on a way that is given; find places for the vertices inside,
- * so that at the end every tetrahedron is positive. Then they fill B: their boundary is its
- * surface.
+ * Problem: A's surface moves to B's along a given path; find positions of the interior vertices
+ * such that every tetrahedron is positive at the end. The tetrahedra then fill B, because their
+ * boundary is its surface.
  *
  * Stages, for a step of the way: the surface takes its places; vertices inside are displaced by the
  * discrete harmonic extension of the surface's displacement (one sparse factor for all steps); then
@@ -11,9 +11,9 @@
  * from the planes of the faces about them, a linear program [Freitag, Plassmann 2000], until none
  * is inverted. If some stay so, the step is halved, until it is too short: then it cannot be done.
  *
- * Before the first step edges inside that have both ends on the surface are split (split.c): they
- * leave no freedom where the surface bends. More room than that was never needed where the surface
- * did not pass through itself on the way.
+ * Before the first step, interior edges with both ends on the surface are split (split.c), because
+ * they leave no freedom where the surface bends. This has always sufficed if the surface did not
+ * intersect itself on the way.
  *
  * Invariant: at every moment reached all tetrahedra are positive, exactly.
  * Cost: for a step a frame, three solutions and some sweeps over the tetrahedra. */

@@ -4,8 +4,8 @@
  * length over radius, so that thin parts have as many nodes for their width as thick ones. Joints
  * and ends stay, and every branch gets the nodes without which two edges would join the same pair.
  *
- * Every position is tested exactly: one that would leave the solid gives way to the unsmoothed one
- * next to it, which is known to be inside.
+ * Every position is tested exactly: one outside the solid is replaced by the nearest unsmoothed
+ * one, which is known to be inside.
  *
  * Cost: linear, and some inside tests for each node. */
 #include "skeleton/curve.h"

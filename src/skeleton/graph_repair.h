@@ -10,7 +10,7 @@
 starg_status graph_repair_loops(starg_context *context, const medial_complex *complex,
                                 bool *link_left, size_t excess);
 
-/* Keeps the `wanted` parts of the most nodes, and tells which nodes those are.
+/* Keeps the `wanted` largest components, and marks their nodes.
  * Errors: MEMORY. */
 starg_status graph_repair_parts(starg_context *context, const medial_complex *complex,
                                 bool *link_left, bool *node_left, size_t wanted);

@@ -101,7 +101,7 @@ static bool is_as_expected(const starg_check *check, size_t parts, size_t loops)
 }
 
 /* How far an attempt is from the topology demanded; what is missing weighs more than what is too
- * much, as it cannot be mended. */
+ * much, as it cannot be repaired. */
 static size_t count_faults(const starg_check *check, const attempt *a) {
     enum { MISSING = 1000 };
     size_t parts = check->components - check->cavities, loops = (size_t)check->genus;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is told about the pieces of a solid.
+/* The report about the pieces of a solid.
  *
  * Problem: labels on tetrahedra and a guard for each label are given; count and measure the pieces,
  * prove which of them are star-shaped, list which of them touch, and over what area.
@@ -102,7 +102,7 @@ done:
 
 /* ---- contacts ---- */
 
-/* A face between two pieces, told by the tetrahedron of the lower label. */
+/* A face between two pieces, counted at the tetrahedron of the lower label. */
 typedef struct inner_face {
     uint32_t first, second, face;
 } inner_face;

@@ -5,8 +5,8 @@
  * from all planes (Chebyshev centre).
  *
  * Stages: every edge has as many faces one way as the other; a row for each face, scaled to unit
- * size; the linear program in (x, y, z, radius) that maximises the radius; then the proof, in which
- * the program's numbers count for nothing: either the rounded centre passes the certificate, or the
+ * size; the linear program in (x, y, z, radius) that maximises the radius; then the proof, which
+ * does not rely on the program's numbers: either the rounded centre passes the certificate, or the
  * rows that stop the program are half-spaces without a common point in the box of the surface. A
  * program that leads to neither is solved again in another random order, which ends in other rows.
  *
@@ -82,8 +82,8 @@ static void to_unit(const finder *f, const double p[3], double out[3]) {
         out[k] = ldexp(out[k], -f->exponent);
 }
 
-/* n . x + r <= n . a for the unit normal n. A normal too short to be told is left zero: that row
- * bounds r alone, and the exact tests decide about its face. */
+/* n . x + r <= n . a for the unit normal n. A normal too short to be computed is left zero: that
+ * row bounds r alone, and the exact tests decide about its face. */
 static void make_row(const finder *f, size_t face, double row[ROW]) {
     double a[3], b[3], c[3], n[3];
     to_unit(f, corner(f->surface, face, 0), a);
@@ -252,7 +252,8 @@ static bool prove_empty(const finder *f, const linear_solution *solution,
     return true;
 }
 
-/* A face without area settles the question; such faces are told before any program is solved. */
+/* A face without area settles the question; such faces are reported before any program is solved.
+ */
 static bool find_flat_face(const finder *f, starg_kernel_result *result) {
     for (size_t face = 0; face < f->surface->count; face++) {
         const double *a = corner(f->surface, face, 0);

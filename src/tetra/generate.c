@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One interface for the generators: which one, how fine, and what is told about it. */
+/* One interface for the generators: choice, density and report. */
 #include "tetra/generate.h"
 #include "tetra/fields.h"
 

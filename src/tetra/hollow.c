@@ -3,7 +3,7 @@
  *
  * Problem: the winding number of some meshes is at most 1/2 everywhere: of those that lie in a
  * plane, and of those whose every face has a counterpart with the opposite orientation. A lattice
- * would be refined in vain until memory ends.
+ * would be refined uselessly until memory runs out.
  *
  * Stages: a plane through three positions that are not on one line, and all others against it;
  * then faces as triples of positions in ascending order with the sign of the permutation, sorted:

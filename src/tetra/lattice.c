@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The lattice of isosurface stuffing [LS07]: insides, cuts, and the warp.
  *
- * Inside is where the surface winds at least once, as for solids everywhere; the winding number is
+ * A point is inside if its winding number is at least one, as for all solids; the winding number is
  * exact, and all points of a column share the triangles that the vertical line through them meets.
- * For open surfaces it is where the generalised winding number is above a half. A cut is where, on
+ * For open surfaces: if the generalized winding number exceeds 1/2. A cut is where, on
  * the way from the inside end of an edge, the winding number falls to zero first; a rounded
  * position on the edge is all that is needed.
  *
@@ -142,7 +142,7 @@ static size_t column_start(const lattice *l, size_t item, lattice_point *first) 
     return (size_t)(l->cubes[2] + !odd);
 }
 
-/* Of an open mesh: what it winds around by more than a half. */
+/* For an open mesh: where the generalized winding number exceeds 1/2. */
 static bool winds_around(const lattice *l, const double x[3]) {
     double sense = l->shape->volume < 0 ? -1 : 1;
     for (int k = 0; k < 3; k++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading a tetrahedral mesh of any format; which one it is, is told by the content. TetGen's pair
+/* Reading a tetrahedral mesh of any format; the format is recognized by content. TetGen's pair
  * of files has none, and is known by its name. */
 #include "core/file.h"
 #include "core/memory.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Gmsh .msh, versions 2 and 4.1, text or binary. Nodes have tags of their own, which need not be
- * consecutive; elements come in blocks of one type. Sections of no concern are passed over.
+ * consecutive; elements come in blocks of one type. Other sections are skipped.
  *
  * Version 2 in binary: element blocks of (type, count, tags), numbers of four bytes; in text one
  * line an element. Version 4: entity blocks in both, tags as size_t. */

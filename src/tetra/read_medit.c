@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* MEDIT .mesh, INRIA's text format: keywords, each with a count and as many entries. Vertices and
  * tetrahedra carry a reference, which is the region. Sections of no concern are numbers up to the
- * next keyword, and are passed over as such. */
+ * next keyword, and are skipped as such. */
 #include "tetra/io.h"
 
 bool tet_medit_matches(const starg_source *source) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords stand on
- * lines of text in both. Version 5.1 replaced the list of cells (count, then indices, cell by cell)
- * by offsets and connectivity. Cells become tetrahedra when their types are known, which comes
- * last. The first integer array of the cells, if it follows at once, gives the regions. */
+/* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords are text
+ * lines in both. Version 5.1 replaced the list of cells (count, then indices, cell by cell) by
+ * offsets and connectivity. Cells become tetrahedra when their types are known, which comes last.
+ * The first integer array of the cells, if it follows at once, gives the regions. */
 #include <strings.h>
 
 #include "core/memory.h"
@@ -246,7 +246,7 @@ done:
 
 enum { POINT = 1, TETRAHEDRON = 10 };
 
-/* Types that are passed over: points, lines, triangles, polygons, quadrilaterals of all orders. */
+/* Types that are skipped: points, lines, triangles, polygons, quadrilaterals of all orders. */
 static bool is_flat(int64_t type) {
     static const uint8_t flat[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34, 35, 36};
     for (size_t i = 0; i < sizeof flat; i++)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Contacts of pieces. For one piece after the other the areas of its walls towards later pieces are
- * added up, held against what the report lists for that piece, and cleared again. Cost: O(walls +
+ * added up, compared with what the report lists for that piece, and cleared again. Cost: O(walls +
  * contacts listed). */
 #include <math.h>
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verification of a guards result. First the facts: each guard looks around anew (verify/sight.h),
- * in parallel. Then the claims of the result are held against them, one by one. The candidates are
- * not in the file; what is said of them is refuted where facts do so: faces that could be seen
- * (verify/coverable.c), guards of the result that would do (verify/needed.c), redundancy
- * (verify/redundancy.c). What remains is named as not checked.
+/* Verification of a guards result. First, visibility is recomputed for each guard (verify/sight.h),
+ * in parallel. Then the claims of the result are compared with it, one by one. Claims that depend on
+ * the candidates, which a result does not contain, are refuted by counterexamples: faces that could
+ * be seen (verify/coverable.c), guards of the result that suffice (verify/needed.c), redundancy
+ * (verify/redundancy.c). What remains is listed as not checked.
  *
  * Invariant: each guard has a row of its own, so that the order in which threads work does not
  * show. Cost: see verify/sight.h for each guard. */
@@ -483,7 +483,7 @@ static double least_unseen_area(const verify_facts *known, size_t count) {
 }
 
 /* Guards without a limit to their number reach the coverage that was asked for. Which of the faces
- * unseen are coverable is not known; the smallest possible area is held against the claim. */
+ * unseen are coverable is not known; the smallest possible area is compared with the claim. */
 static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
     const starg_guard_options *options = &known->guards->options;
     target goal = target_of(known);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A boundary that is only near the model: how near, and does it bound its tetrahedra once? Points
- * of up to 20,000 faces of either surface (drawn at random when there are more) are held against
+ * of up to 20,000 faces of either surface (drawn at random when there are more) are compared with
  * the other: corners, centre, and one at random of each. The model need not be closed.
  *
  * Overlap: a point lies in as many tetrahedra as the boundary winds around it (verify/facets.c,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Verification of a star decomposition: facts are found one after the other, and every claim is
- * held against them. Nothing is shared with what makes decompositions.
+ * compared with them. Nothing is shared with what makes decompositions.
  *
  * What the claims prove together, for a model whose surface is embedded:
  *  1. Tetrahedra are positive, and a triangle is shared by two at most, on opposite sides. So a

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PIECES.json, read for the verifier (docs/formats.md). Types and shapes are checked here; whether
- * the numbers are true is what verification tells. Keys that are not known are passed over.
+ * the numbers are true is checked by verification. Unknown keys are skipped.
  *
  * The reader of starg_decomposition_read is another one, by the table that also writes the file.
  * This one shares no more with it than the parser of JSON: a mistake in the table shows here. */

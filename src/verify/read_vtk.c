@@ -9,7 +9,7 @@
  *     POINTS n float or double               LOOKUP_TABLE default
  *
  * Binary numbers are big-endian, integers of 32 bits. What begins with a word behind the labels is
- * passed over. Declared counts are held against the bytes that are left before any memory is asked
+ * skipped. Declared counts are compared with the bytes that are left before any memory is asked
  * for. */
 #include <locale.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which result does a file hold? The content tells. */
+/* Recognizes the kind of a result file by its content. */
 #include <jansson.h>
 #include <string.h>
 

@@ -84,7 +84,7 @@ typedef struct box_question {
 void box_look(box_worker *worker, const box_question *question, uint64_t *open,
               box_reason *reasons);
 
-/* How many vertices were held against boxes so far (a face whose plane does not decide counts for
+/* How many vertices were compared with boxes so far (a face whose plane does not decide counts for
  * each of its vertices that was looked at). */
 uint64_t box_worker_tests(const box_worker *worker);
 

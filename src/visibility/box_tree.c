@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A hierarchy with four children a node, whose boxes are floats: a segment is held against the four
- * at once. A node takes the place of a node of the binary tree and its children; below it a leaf's
- * triangles are the children, with their own boxes.
+/* A hierarchy with four children a node, whose boxes are floats: a segment is tested against the
+ * four at once. A node takes the place of a node of the binary tree and its children; below it a
+ * leaf's triangles are the children, with their own boxes.
  *
  * Nothing is lost to rounding: coordinates are relative to the centre of the whole and in units of
  * its extent, so at most a half but for rounding; boxes are larger by MARGIN on every side. The

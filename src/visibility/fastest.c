@@ -9,9 +9,9 @@
  * The line between the two is fitted to the cycles that both engines take from nodes of skeletons
  * (37 models of 500 to 100,000 vertices, eight and sixteen lanes). On each model of 600 vertices or
  * more the choice costs at most 5 % more than the better engine alone, in the mean 1 % less, but
- * where points in special positions abound (cad), for which the contours are tried in vain. Without
- * lanes the engine by contours, whose work is in comparing, pays only where contours are next to
- * none.
+ * where points in special positions abound (cad), for which the contours are tried without success.
+ * Without lanes the engine by contours, whose work is in comparing, pays only where contours are
+ * next to none.
  *
  * Cost: a pass over the sides of the faces, and over some thousand edges. */
 #include "visibility/contours.h"

@@ -5,7 +5,7 @@
  * both. The sweep passes the vertices by phi; faces are active while phi lies in their range;
  * the segment test is made where theta lies in the face's range too, condition (1).
  *
- * As printed the method misses blockers; three things are mended:
+ * As printed the method misses blockers; three corrections:
  * - the edges of a spherical triangle bulge poleward, so its latitudes exceed those of its
  *   vertices: the range includes the extremes of the edges' great circles;
  * - longitudes wrap at pi: a face across the seam is active at both ends of the sweep;

@@ -237,7 +237,7 @@ class Harm(Database):
         self.create()
         out, err = self.run_text("db", "add", "shapes.db", good[0], "bad.off", "none.off", "flat.off",
                                  good[1], good[0], status=3)
-        self.assertIn("2 added, 1 stored already, 3 refused", out)
+        self.assertIn("2 added, 1 already stored, 3 refused", out)
         for name in "bad.off", "none.off":
             self.assertIn(name, err)
         self.assertEqual(len(self.stored()), 2)

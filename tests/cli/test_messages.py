@@ -66,7 +66,7 @@ class Messages(support.Case):
         found = self.run_json("check", "two.off")["findings"]["self_intersections"]
         log = self.run_json("guard", "two.off", "-o", "g.json", "--coarsest", "500", "--step", "1000",
                             "--count", "50")["log"]
-        told = [line["message"] for line in log if "intersect" in line["message"]]
+        told = [line["message"] for line in log if "faces intersect" in line["message"]]
         self.assertEqual(len(told), 1, log)
         first = found["first"][0]
         self.assertIn(f"{found['count']} pairs of faces intersect (first: {first[0]} and {first[1]})", told[0])
@@ -111,7 +111,7 @@ class Messages(support.Case):
         self.write("a.off", join((ball, 0, 1, False), (ball, .7, 1, False)))
         self.write("b.off", join((ball, 0, 1, False), (ball, .8, 1, False)))
         report = self.run_json("morph", "a.off", "b.off", "--frames", "2", "--guards", "-o", "frames")
-        told = [line["message"] for line in report["log"] if "intersect" in line["message"]]
+        told = [line["message"] for line in report["log"] if "faces intersect" in line["message"]]
         self.assertEqual(len(told), 2, told)
         self.assertTrue(told[0].startswith("A: ") and told[1].startswith("B in A's connectivity: "), told)
         out, _ = self.run_text("morph", "a.off", "b.off", "--frames", "2", "--guards", "-o", "frames")

@@ -150,7 +150,7 @@ class Pieces(support.Case):
         self.assertIn("verified", out)
         self.assertIn("add its PIECES.vtk",
                       self.run_text("verify", "m.off", "p.json", status=2)[1])
-        self.usage_error("verify", "m.off", "p.vtk", "p.json", "p.vtk", says="one at a time")
+        self.usage_error("verify", "m.off", "p.vtk", "p.json", "p.vtk", says="separately")
 
     def test_unreadable(self):
         self.write("short.vtk", vtk()[:200])

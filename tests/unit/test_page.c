@@ -491,8 +491,9 @@ static void parts_that_do_not_fit(void **state) {
     test_ok(context, starg_bits_create(context, guards->count, guards->face_count + 1, &bits));
     expect_refused(context, &(starg_page){.title = "nothing"}, "no content");
     expect_refused(context, &(starg_page){.model = other, .guards = guards}, "to a model with");
-    expect_refused(context, &(starg_page){.model = mesh, .guards = guards, .seen = bits}, "a row");
-    expect_refused(context, &(starg_page){.guards = guards, .seen = bits}, "a row");
+    expect_refused(context, &(starg_page){.model = mesh, .guards = guards, .seen = bits},
+                   "one row");
+    expect_refused(context, &(starg_page){.guards = guards, .seen = bits}, "one row");
     const starg_mesh *frames[] = {mesh, other};
     expect_refused(context, &(starg_page){.frames = frames, .frame_count = 1}, "one frame");
     expect_refused(context, &(starg_page){.frames = frames, .frame_count = 2}, "frame 1");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading a mesh of any format: which one it is, is told by the content, and only if that leaves
+/* Reading a mesh of any format: the format is recognized by content, and only if that leaves
  * it open by the name. */
 #include <string.h>
 #include <strings.h>

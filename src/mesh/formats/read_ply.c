@@ -228,7 +228,7 @@ static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_
     return read_data(ply);
 }
 
-/* If that fails line by line as well, the first fault is what is told. */
+/* If that fails line by line as well, the first fault is reported. */
 static starg_status read_either_way(ply_reader *ply) {
     const starg_scan begin = ply->scan;
     starg_status status = read_anew(ply, &begin, false);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A bounding volume hierarchy under edge collapses: the box of a leaf, and of the nodes above it,
- * grows when a face moves out of it, and dead faces are passed over. Boxes never shrink, so that
+ * grows when a face moves out of it, and dead faces are skipped. Boxes never shrink, so that
  * no face is lost; building anew whenever half of the faces are gone keeps them tight, at the cost
  * of two constructions for the largest mesh in all. */
 #include "mesh/repair/dynamic_bvh.h"

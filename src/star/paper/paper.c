@@ -7,7 +7,7 @@
  * Stages: guards (given, or those of section 3); what they see of the vertices of tetrahedra, and
  * how tetrahedra depend on each other (view.c, dependency.c, cost.c); growth, strict and then
  * relaxed (growth.c); guards for what is left (uncoloured.c); smoothing of the borders between
- * pieces (smooth.c). Then it is told how many pieces are star-shaped in fact, which the paper does
+ * pieces (smooth.c). Then the star-shaped pieces are counted, which the paper does
  * not say.
  *
  * Invariants: every tetrahedron has a colour in the end, every colour a tetrahedron; guards are

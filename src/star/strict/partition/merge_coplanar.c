@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Coplanar merge: undoes splits of facets that no cut needs any more.
  *
- * Problem: a cut splits the facets that it meets, and when later cuts take its place the splits
- * stay. They cost time, and slivers come of them.
+ * Problem: a cut splits the facets that it meets, and the splits remain when later cuts replace it.
+ * They cost time and cause slivers.
  *
  * Stages: facets of one plane with the same piece on either side form a group; the border of a
  * group are its edges that no other facet of it has the other way round. A vertex that cuts have

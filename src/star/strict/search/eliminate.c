@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Piece elimination: the search for a way to share out pieces among their neighbours.
+/* Piece elimination: distributes pieces among their neighbours.
  *
- * Problem: a piece is to vanish. Its neighbours together can see all of it, each a part; it is to
- * be parted so that each part is seen by the neighbour that gets it. The rest of the neighbours'
- * surfaces, however ragged, is not touched, unlike by a cut of the whole union
- * (star/strict/search/repartition.c). Likewise for the union of a few pieces, of which some may be
- * made anew.
+ * Problem: eliminate a piece whose neighbours together see all of it: partition it so that each
+ * part is visible from the guard of the neighbour that receives it. Unlike a cut of the whole union
+ * (star/strict/search/repartition.c), this keeps the rest of the neighbours' surfaces. The same for
+ * the union of a few pieces, some of which may be created anew.
  *
  * Method: every facet of the union goes to a taker whose guard sees it, with the tetrahedron
  * between it and a common apex (star/strict/partition/fan.c). Between two facets that share an edge

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Repartition: the search for planes that cut a region into a given number of star-shaped parts.
  *
- * Problem: a union of m neighbouring pieces, to be cut into fewer parts. Flat cuts cost each side
- * one half-space only, so that parts with flat borders have the largest kernels.
+ * Problem: cut a union of m neighbouring pieces into fewer parts. A planar cut adds only one
+ * half-space to each side, so that parts with planar borders have the largest kernels.
  *
  * Two parts: for a direction n let L be the highest plane with a star-shaped low side and H the
  * lowest with a star-shaped high side (star/strict/partition/region.c). A cut exists along n where

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Split-plane search: a plane that makes a region easier to see.
  *
- * Problem: a region that no single point can see is to be cut in two, and those again, until every
- * part is star-shaped: as in a decision tree, each cut is to take away as much as it can of what is
- * wrong. What is wrong with a guard is the area of the triangles that it is not strictly behind.
- * The cost of a plane is the least that a guard below misses of the triangles that reach below,
- * and one above of those that reach above. A plane is worth a cut if it costs less than the best
- * guard of the whole region does.
+ * Problem: cut a region that no single point sees in two, recursively, until every part is
+ * star-shaped. As in a decision tree, each cut should reduce the cost as much as possible. The cost
+ * of a guard is the area of the triangles that it is not strictly behind. The cost of a plane is
+ * the sum of the least costs of a guard below, for the triangles that reach below, and of a guard
+ * above. A plane is used if it costs less than the best guard of the whole region.
  *
  * Stages: guards to choose from, each as far inside of as many triangles around a place as can be
  * (star/strict/partition/region.c): along random directions, about random places, about triangles
