@@ -64,6 +64,13 @@ typedef struct starg_guard_options {
      * found, candidates are added where they pay, and guards chosen again */
     bool refine;
     uint64_t refine_lines; /* sight lines that may be tested for that                   */
+
+    /* Guards anywhere: fewer guards are looked for at every point of the solid, and how few could
+     * do, wherever they stand. With all to be covered once, no cone, and candidates that are not
+     * given. */
+    bool prove;
+    uint64_t prove_work; /* that may be done for that: tests of a vertex against a box or a point,
+                            and others in proportion; about microseconds                  */
 } starg_guard_options;
 
 /* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (10 million lines), 1,000 skeletal
@@ -116,6 +123,9 @@ typedef struct starg_guards {
     uint64_t lines_tested;  /* by refinement                                              */
     size_t lower_bound;     /* no fewer candidates see as much (of what was asked for)    */
     bool optimal;           /* count == lower_bound                                       */
+    size_t lower_bound_everywhere; /* no fewer guards see as much, wherever they stand; 0: this was
+                                      not sought                                          */
+    bool optimal_everywhere;       /* count == lower_bound_everywhere                     */
     double area_bound;      /* max_guards, for faces seen once: no choice of so many sees a
                                larger fraction of all area; else 1                        */
     bool time_limited;      /* the time limit cut the search short                        */

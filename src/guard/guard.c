@@ -14,6 +14,7 @@
 
 #include "core/fields.h"
 #include "guard/samples.h"
+#include "guard/search.h"
 #include "guard/stages.h"
 
 static const char STAGE[] = "guard";
@@ -235,6 +236,9 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
     else
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
+    if (problem->options->prove)
+        STARG_TRY(
+            search_guards(problem, &out->pool, &out->selection, &out->bound_everywhere));
 done:
     starg_solid_free(detail.samples);
     starg_levels_free(problem->context, detail.levels);

@@ -191,6 +191,8 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
         result->area_bound = (double)selection->weight_bound / (double)problem->weights.total;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
+    result->lower_bound_everywhere = outcome->bound_everywhere;
+    result->optimal_everywhere = selection->chosen.count == outcome->bound_everywhere;
 }
 
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,

@@ -40,6 +40,7 @@ typedef struct guard_outcome {
     guard_selection selection;
     guard_records records; /* of the levels */
     uint64_t lines_tested;
+    size_t bound_everywhere; /* no fewer guards do, wherever they stand; 0: not sought */
 } guard_outcome;
 
 static inline candidate_shape guard_shape(const guard_problem *problem,
