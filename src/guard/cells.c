@@ -20,7 +20,7 @@
 
 static const char STAGE[] = "search";
 
-enum { RANDOM_STAGE = 27, POINTS = 2, ROOT_BITS = 20 };
+enum { RANDOM_STAGE = 27, ROOT_BITS = 20 };
 
 /* ---- the scene ---- */
 
@@ -291,7 +291,7 @@ done:
 
 typedef struct part {
     search_cell cell;
-    search_point points[POINTS];
+    search_point points[MOST_TRIES];
     int count; /* of the points */
     uint64_t work;
 } part;
@@ -301,6 +301,7 @@ typedef struct splitting {
     const search_cell *cells;
     const uint32_t *leaves;
     size_t first; /* number of the first part among the cells */
+    int tries;
     part *parts;
 } splitting;
 
@@ -321,15 +322,16 @@ static starg_status make_part(starg_context *context, void *shared, void *scratc
     part *out = &s->parts[item];
     starg_rng rng = starg_rng_make(context->seed, RANDOM_STAGE, s->first + item);
     witness_row known = {{0}};
-    double centre[3], random[3];
+    double p[3];
     *out = (part){.cell.box = half(&whole->box, item % 2 != 0)};
     const bvh_box *box = &out->cell.box;
-    for (int k = 0; k < 3; k++) {
-        centre[k] = middle(box, k);
-        random[k] = box->lower[k] + starg_rng_unit(&rng) * (box->upper[k] - box->lower[k]);
+    for (int i = 0; i < s->tries; i++) {
+        for (int k = 0; k < 3; k++)
+            p[k] = i == 0 ? middle(box, k)
+                          : box->lower[k] +
+                                starg_rng_unit(&rng) * (box->upper[k] - box->lower[k]);
+        add_point(s->scene, out, p, &whole->open);
     }
-    add_point(s->scene, out, centre, &whole->open);
-    add_point(s->scene, out, random, &whole->open);
     for (int i = 0; i < out->count; i++)
         for (int w = 0; w < WITNESS_WORDS; w++)
             known.bits[w] |= out->points[i].seen.bits[w];
@@ -339,10 +341,14 @@ static starg_status make_part(starg_context *context, void *shared, void *scratc
 }
 
 starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
-                         size_t count, search_points *points) {
+                         size_t count, int tries, search_points *points) {
     starg_status status = STARG_OK;
     starg_context *context = scene->context;
-    splitting s = {.scene = scene, .cells = cells->data, .leaves = leaves, .first = cells->count};
+    splitting s = {.scene = scene,
+                   .cells = cells->data,
+                   .leaves = leaves,
+                   .first = cells->count,
+                   .tries = tries};
     STARG_NEW(context, STAGE, s.parts, 2 * count);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = 2 * count,

@@ -35,7 +35,7 @@
 
 static const char STAGE[] = "search";
 
-enum { FIRST_WITNESSES = 150, MORE_WITNESSES = 20, LEAST_BATCH = 32, MOST_BATCH = 2048, NODES = 300 };
+enum { FIRST_WITNESSES = 150, MORE_WITNESSES = 20, LEAST_BATCH = 32, MOST_BATCH = 2048, NODES = 300, TRIES = 2, FOLLOWED = 16 };
 
 static const double ROUNDING = 1e-6, GAP = 2e-3;
 
@@ -371,17 +371,16 @@ static starg_status make_program(const search *s, const row_list *list, starg_bi
     return status;
 }
 
-static starg_status list_needed(const search *s, row_list *list) {
+static void list_needed(const search *s, row_list *list) {
     list->count = 0;
     for (size_t i = 0; i < s->points.count; i++)
         if (!is_needless(list, &s->points.data[i].seen))
             row_list_add(s, list, i);
-    return STARG_OK;
 }
 
 /* The integer program over the points: do fewer guards see all witnesses? *changed: there are
  * better guards, or more witnesses. */
-static starg_status ask_points(search *s, row_list *list, bool *changed) {
+static starg_status ask_points(search *s, bool *changed) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
     starg_bits *rows = NULL;
@@ -389,24 +388,27 @@ static starg_status ask_points(search *s, row_list *list, bool *changed) {
     starg_cover_problem problem;
     starg_cover_options options;
     STARG_ARRAY(double) places = {0};
+    row_list list = {0};
     *changed = false;
-    STARG_TRY(list_needed(s, list));
-    STARG_TRY(make_program(s, list, &rows));
+    STARG_TRY(row_list_make(context, s->points.count, &list));
+    list_needed(s, &list);
+    STARG_TRY(make_program(s, &list, &rows));
     starg_cover_problem_default(&problem);
     starg_cover_options_default(&options);
     problem.rows = rows;
     options.max_nodes = NODES;
     STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
-    s->scene.work += list->count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
+    s->scene.work += list.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
     s->asked_at = s->cells.count;
     if (cover->count < s->count) {
         for (size_t k = 0; k < cover->count; k++)
             for (int c = 0; c < 3; c++)
                 STARG_PUSH(context, STAGE, &places,
-                           s->points.data[list->points[cover->rows[k]]].place[c]);
+                           s->points.data[list.points[cover->rows[k]]].place[c]);
         STARG_TRY(try_guards(s, places.data, cover->count, changed));
     }
 done:
+    row_list_free(context, &list);
     STARG_ARRAY_FREE(context, &places);
     starg_cover_free(cover);
     starg_bits_free(rows);
@@ -447,7 +449,7 @@ done:
     return status;
 }
 
-static starg_status split_leaves(search *s, const scored_leaf *list, size_t count) {
+static starg_status split_leaves(search *s, const scored_leaf *list, size_t count, int tries) {
     starg_status status = STARG_OK;
     uint32_t *leaves = NULL;
     size_t first = s->points.count, chosen = 0, batch = count / 4;
@@ -457,7 +459,7 @@ static starg_status split_leaves(search *s, const scored_leaf *list, size_t coun
         if (cell_splits(&s->cells.data[list[i].cell].box))
             leaves[chosen++] = list[i].cell;
     s->ended = chosen == 0;
-    STARG_TRY(cells_split(&s->scene, &s->cells, leaves, chosen, &s->points));
+    STARG_TRY(cells_split(&s->scene, &s->cells, leaves, chosen, tries, &s->points));
     prune_points(s, first);
 done:
     starg_release(context_of(s), leaves);
@@ -517,12 +519,158 @@ done:
 }
 
 /* Better guards or more witnesses, where the prices leave room. */
-static starg_status look_for_guards(search *s, row_list *list, bool last, bool *changed) {
+static starg_status look_for_guards(search *s, bool last, bool *changed) {
     *changed = false;
-    bool grown = s->cells.count > s->asked_at + s->asked_at / 3;
-    if (s->prices.sum > (double)s->count - 1 + GAP || !(grown || (last && s->cells.count > s->asked_at)))
+    bool grown = s->cells.count > s->asked_at + s->asked_at / (last ? 10 : 3);
+    if (s->prices.sum > (double)s->count - 1 + GAP || !grown)
         return STARG_OK;
-    return ask_points(s, list, changed);
+    return ask_points(s, changed);
+}
+
+/* ---- the integer program over cells ---- */
+
+/* Columns of the program: what no other one holds. Leaves that see no more than a point does are
+ * left to the point: that is settled. */
+typedef struct column_list {
+    row_list rows;
+    uint32_t *cells; /* by column: the leaf, or UINT32_MAX for a point */
+} column_list;
+
+static starg_status list_columns(const search *s, column_list *out) {
+    starg_status status = STARG_OK;
+    size_t most = s->points.count + s->cells.count, hint = 0;
+    STARG_TRY(row_list_make(context_of(s), most, &out->rows));
+    STARG_NEW(context_of(s), STAGE, out->cells, most);
+    list_needed(s, &out->rows);
+    for (size_t k = 0; k < out->rows.count; k++)
+        out->cells[k] = UINT32_MAX;
+    for (size_t i = 0; i < s->cells.count; i++) {
+        const witness_row *open = &s->cells.data[i].open;
+        bool needless = s->cells.data[i].children != 0 ||
+                        (hint < out->rows.count && row_is_within(open, out->rows.rows[hint]));
+        for (size_t k = 0; k < out->rows.count && !needless; k++)
+            if (row_is_within(open, out->rows.rows[k])) {
+                needless = true;
+                hint = k;
+            }
+        if (needless)
+            continue;
+        out->cells[out->rows.count] = (uint32_t)i;
+        out->rows.points[out->rows.count] = UINT32_MAX;
+        out->rows.rows[out->rows.count++] = open;
+    }
+done:
+    return status;
+}
+
+/* Unsettled leaves that could stand in for a chosen column: they may see all that it alone sees. */
+static starg_status list_stand_ins(const search *s, const column_list *columns,
+                                   const starg_cover *cover, scored_leaf **out, size_t *count) {
+    starg_status status = STARG_OK;
+    uint8_t *listed = NULL;
+    *count = 0;
+    STARG_NEW_ZERO(context_of(s), STAGE, listed, columns->rows.count);
+    STARG_NEW(context_of(s), STAGE, *out, columns->rows.count);
+    for (size_t c = 0; c < cover->count; c++) {
+        witness_row alone = *columns->rows.rows[cover->rows[c]];
+        for (size_t o = 0; o < cover->count; o++)
+            for (int w = 0; o != c && w < WITNESS_WORDS; w++)
+                alone.bits[w] &= ~columns->rows.rows[cover->rows[o]]->bits[w];
+        for (size_t k = 0; k < columns->rows.count; k++) {
+            uint32_t cell = columns->cells[k];
+            if (cell == UINT32_MAX || listed[k] || !row_is_within(&alone, columns->rows.rows[k]))
+                continue;
+            const bvh_box *box = &s->cells.data[cell].box;
+            double size = vec3_distance(box->lower, box->upper);
+            (*out)[(*count)++] = (scored_leaf){k == cover->rows[c] ? INFINITY : size, cell};
+            listed[k] = 1;
+        }
+    }
+    qsort(*out, *count, sizeof **out, by_leaf_score);
+done:
+    starg_release(context_of(s), listed);
+    return status;
+}
+
+/* Fewer columns than there are guards hold all witnesses: their leaves are split, or all of them
+ * are points, which are tried. */
+static starg_status follow_cover(search *s, const column_list *columns, const starg_cover *cover,
+                                 bool *changed, bool *again) {
+    starg_status status = STARG_OK;
+    scored_leaf *leaves = NULL;
+    size_t count;
+    STARG_ARRAY(double) places = {0};
+    STARG_TRY(list_stand_ins(s, columns, cover, &leaves, &count));
+    *changed = *again = count > 0;
+    for (size_t c = 0; c < cover->count && count == 0; c++)
+        for (int k = 0; k < 3; k++)
+            STARG_PUSH(context_of(s), STAGE, &places,
+                       s->points.data[columns->rows.points[cover->rows[c]]].place[k]);
+    if (count > 0)
+        STARG_TRY(split_leaves(s, leaves, count, MOST_TRIES));
+    else
+        STARG_TRY(try_guards(s, places.data, cover->count, changed));
+done:
+    STARG_ARRAY_FREE(context_of(s), &places);
+    starg_release(context_of(s), leaves);
+    return status;
+}
+
+/* The integer program over cells and points: what holds all witnesses with fewer columns than there
+ * are guards is followed; where nothing does, branching proves it. */
+static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
+    starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
+    column_list columns = {0};
+    starg_bits *rows = NULL;
+    starg_cover *cover = NULL;
+    starg_cover_problem problem;
+    starg_cover_options options;
+    bool proven = false;
+    const witness_row all = all_witnesses(s);
+    *again = false;
+    STARG_TRY(list_columns(s, &columns));
+    STARG_TRY(make_program(s, &columns.rows, &rows));
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    problem.rows = rows;
+    options.max_nodes = NODES;
+    double t0 = starg_clock();
+    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    double t1 = starg_clock();
+    s->scene.work += columns.rows.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
+    if (cover->count < s->count)
+        STARG_TRY(follow_cover(s, &columns, cover, changed, again));
+    else
+        STARG_TRY(bound_by_branching(context, columns.rows.rows, columns.rows.count, &all,
+                                     s->count - 1, NODES, &proven, &s->scene.work));
+    if (getenv("SEARCH_TRACE"))
+        fprintf(stderr, "  cells: %zu columns, cover %zu/%zu, ilp %.2f, rest %.2f proven %d\n", columns.rows.count, cover->count, cover->lower_bound, t1 - t0, starg_clock() - t1, proven);
+    if (proven)
+        s->bound = s->count;
+done:
+    row_list_free(context, &columns.rows);
+    starg_release(context, columns.cells);
+    starg_cover_free(cover);
+    starg_bits_free(rows);
+    return status;
+}
+
+static starg_status ask_cells(search *s, bool *changed) {
+    starg_status status = STARG_OK;
+    bool again = true;
+    *changed = false;
+    for (int k = 0; k < FOLLOWED && again; k++)
+        STARG_TRY(ask_cells_once(s, changed, &again));
+done:
+    return status;
+}
+
+/* The next bound to be proven: half of what is missing to what the prices allow. */
+static size_t next_aim(const search *s) {
+    double allowed = fmin((double)s->count, ceil(s->prices.sum - ROUNDING));
+    size_t most = allowed > 1 ? (size_t)allowed : 1;
+    return s->bound < most ? s->bound + (most - s->bound + 1) / 2 : most;
 }
 
 static starg_status run_round(search *s, row_list *list) {
@@ -531,24 +679,24 @@ static starg_status run_round(search *s, row_list *list) {
     size_t count;
     bool changed;
     STARG_TRY(find_prices(s, list));
-    STARG_TRY(look_for_guards(s, list, false, &changed));
+    STARG_TRY(look_for_guards(s, false, &changed));
     if (changed)
         goto done;
-    double aim = fmin((double)s->count, ceil(s->prices.sum - ROUNDING));
-    double most = aim > 1 ? s->prices.sum / (aim - 1) * (1 - ROUNDING) : INFINITY;
+    size_t aim = next_aim(s), before = s->bound;
+    double most = aim > 1 ? s->prices.sum / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
     STARG_TRY(list_leaves(s, most, &leaves, &count));
     if (count > 0) {
-        STARG_TRY(split_leaves(s, leaves, count));
+        STARG_TRY(split_leaves(s, leaves, count, TRIES));
         goto done;
     }
     STARG_TRY(prove(s));
-    if (s->bound >= s->count)
+    if (s->bound >= s->count || s->bound > before)
         goto done;
-    STARG_TRY(look_for_guards(s, list, true, &changed));
-    if (!changed) {
-        STARG_TRY(find_prices(s, list));
+    STARG_TRY(look_for_guards(s, true, &changed));
+    if (!changed)
         STARG_TRY(add_short(s, list, &changed));
-    }
+    if (!changed)
+        STARG_TRY(ask_cells(s, &changed));
     s->ended = !changed;
 done:
     starg_release(context_of(s), leaves);
@@ -574,6 +722,8 @@ static starg_status run(search *s) {
                     s->count, s->bound, s->prices.sum, s->cells.count, s->points.count,
                     s->scene.witnesses.count, (double)s->scene.work / 1e6, starg_clock());
     }
+    if (s->bound < s->count)
+        STARG_TRY(prove(s));
 done:
     return status;
 }
