@@ -79,15 +79,27 @@ static starg_status take_candidates(cli_session *session, const char *word,
 
 static void say_bound(cli_session *session, const starg_guards *g) {
     size_t gap = g->count - g->lower_bound;
-    cli_say(session, "lower bound   %zu", g->lower_bound);
+    cli_say(session, "of candidates at least %zu", g->lower_bound);
     if (g->optimal)
-        cli_say(session, " (optimal: no fewer of the candidates do)\n");
+        cli_say(session, ": no fewer of these candidates do\n");
     else
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
+static void say_bound_everywhere(cli_session *session, const starg_guards *g) {
+    cli_say(session, "%s", cli_count_of(g->count, "guard", "guards").text);
+    if (g->optimal_everywhere)
+        cli_say(session, ", the fewest possible, wherever they stand\n");
+    else
+        cli_say(session, "; at least %zu %s needed, wherever they stand\n",
+                g->lower_bound_everywhere, g->lower_bound_everywhere == 1 ? "is" : "are");
+}
+
 static void say_guards(cli_session *session, const starg_guards *g) {
-    cli_say(session, "guards        %zu\n", g->count);
+    if (g->lower_bound_everywhere > 0)
+        say_bound_everywhere(session, g);
+    else
+        cli_say(session, "guards        %zu\n", g->count);
     say_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
             cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
@@ -116,6 +128,11 @@ static starg_status report_guards(cli_session *session, const starg_guards *g, c
     cli_report_take(session, text, size);
     cli_put(session, session->report, "output", cli_json_text(output));
     cli_put(session, session->report, "sight_lines", json_integer((json_int_t)g->lines_tested));
+    if (g->options.prove) {
+        cli_put(session, session->report, "cells", json_integer((json_int_t)g->cells));
+        cli_put(session, session->report, "witnesses", json_integer((json_int_t)g->witnesses));
+        cli_put(session, session->report, "work", json_integer((json_int_t)g->prove_work));
+    }
 done:
     return status;
 }

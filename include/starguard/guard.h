@@ -121,6 +121,8 @@ typedef struct starg_guards {
 
     size_t candidate_count; /* in the end, with those added                               */
     uint64_t lines_tested;  /* by refinement                                              */
+    size_t cells, witnesses; /* of the search over every point                            */
+    uint64_t prove_work;     /* done by it                                                */
     size_t lower_bound;     /* no fewer candidates see as much (of what was asked for)    */
     bool optimal;           /* count == lower_bound                                       */
     size_t lower_bound_everywhere; /* no fewer guards see as much, wherever they stand; 0: this was

@@ -73,8 +73,12 @@ class Guards:
     lines_tested: int
     #: No fewer candidates see as much: proven.
     lower_bound: int
-    #: As many guards as the bound.
+    #: As many guards as that bound: no fewer of the candidates do.
     optimal: bool
+    #: No fewer guards see as much, wherever they stand; 0 where this was not sought.
+    lower_bound_everywhere: int
+    #: As many guards as that bound.
+    optimal_everywhere: bool
     #: With max_guards: no choice of so many sees a larger fraction of all area.
     area_bound: float
     time_limited: bool
@@ -145,7 +149,7 @@ class Guards:
 def _options_dict(options: Any) -> dict[str, Any]:
     view = options.visibility
     names = ("candidate_count", "coverage", "max_guards", "redundancy", "clearance", "max_nodes",
-             "coarsest", "step", "significance", "refine", "refine_lines")
+             "coarsest", "step", "significance", "refine", "refine_lines", "prove", "prove_work")
     return {"method": word_of(options.method, _METHODS),
             "candidates": word_of(options.candidates, _ALL_CANDIDATES),
             **{name: getattr(options, name) for name in names},
@@ -160,7 +164,8 @@ def guard(model: Any, *, method: str | None = None, candidates: str | ArrayLike 
           face_rule: str | None = None, range: float | None = None, cone: float | None = None,
           max_nodes: int | None = None, coarsest: int | None = None, step: int | None = None,
           significance: float | None = None, refine: bool | None = None,
-          refine_lines: int | None = None, threads: int | None = None, seed: int | None = None,
+          refine_lines: int | None = None, prove: bool | None = None,
+          prove_work: int | None = None, threads: int | None = None, seed: int | None = None,
           time_limit: float | None = None, progress: Progress | None = None) -> Guards:
     """Places guards that together see the whole boundary, as few as can be found.
 
@@ -169,7 +174,8 @@ def guard(model: Any, *, method: str | None = None, candidates: str | ArrayLike 
     "skeleton" (default), "medial", "interior", or points of shape (n, 3). `coverage` below 1 asks
     for a fraction of the area only, `max_guards` for the most area that so many see, `redundancy`
     for faces seen by so many, `clearance` for a distance from the walls, `range` and `cone` for
-    guards like cameras. The rest is in include/starguard/guard.h. Faces that nothing can see are no
+    guards like cameras. `prove` looks for fewer guards at every point of the solid, and for how few could
+    do, wherever they stand (`lower_bound_everywhere`). The rest is in include/starguard/guard.h. Faces that nothing can see are no
     error: they are listed in `uncovered`.
 
     >>> import starguard
@@ -193,7 +199,8 @@ def guard(model: Any, *, method: str | None = None, candidates: str | ArrayLike 
         options.point_count = len(places)
     give(options, candidate_count=candidate_count, coverage=coverage, max_guards=max_guards,
          redundancy=redundancy, clearance=clearance, max_nodes=max_nodes, coarsest=coarsest,
-         step=step, significance=significance, refine=refine, refine_lines=refine_lines)
+         step=step, significance=significance, refine=refine, refine_lines=refine_lines,
+         prove=prove, prove_work=prove_work)
     set_view(options.visibility, engine=engine, target=target, face_rule=face_rule,
              range=range, cone=cone)
     handle = session.make("starg_guards", lib.starg_guards_free, lib.starg_guard, session.context,

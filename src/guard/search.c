@@ -20,8 +20,6 @@
  *
  * Invariant: the bound holds for guards anywhere in the free space; the guards see all that was to
  * be seen. Everything is counted in operations, nothing depends on threads. */
-#include "guard/search.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,6 +30,7 @@
 #include "guard/bound.h"
 #include "guard/cells.h"
 #include "guard/prices.h"
+#include "guard/stages.h"
 
 static const char STAGE[] = "search";
 
@@ -782,7 +781,7 @@ done:
 }
 
 starg_status search_guards(const guard_problem *problem, guard_pool *pool,
-                           guard_selection *selection, size_t *bound) {
+                           guard_selection *selection, search_record *out) {
     starg_status status = STARG_OK;
     search s = {.problem = problem, .pool = pool};
     starg_progress_begin(problem->context, STAGE);
@@ -791,7 +790,7 @@ starg_status search_guards(const guard_problem *problem, guard_pool *pool,
     selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
     if (s.better)
         STARG_TRY(join_guards(&s, pool, selection));
-    *bound = s.bound;
+    *out = (search_record){s.bound, s.cells.count, s.scene.witnesses.count, s.scene.work};
     if (selection->lower_bound < s.bound)
         selection->lower_bound = s.bound;
 done:
