@@ -48,7 +48,7 @@ typedef struct search {
     uint64_t *wanted;            /* bits by column: what is to be seen */
     STARG_ARRAY(double) guards;  /* the best ones, three numbers each */
     size_t count, bound;         /* guards, and how few could do */
-    size_t asked_at;             /* number of cells when the integer program was last asked */
+    size_t asked_at, asked_of;   /* cells and witnesses when the integer program was last asked */
     bool better;                 /* there are other guards than at first */
     bool ended;
 } search;
@@ -399,6 +399,7 @@ static starg_status ask_points(search *s, bool *changed) {
     STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
     s->scene.work += list.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
     s->asked_at = s->cells.count;
+    s->asked_of = s->scene.witnesses.count;
     if (cover->count < s->count) {
         for (size_t k = 0; k < cover->count; k++)
             for (int c = 0; c < 3; c++)
@@ -520,7 +521,8 @@ done:
 /* Better guards or more witnesses, where the prices leave room. */
 static starg_status look_for_guards(search *s, bool last, bool *changed) {
     *changed = false;
-    bool grown = s->cells.count > s->asked_at + s->asked_at / (last ? 10 : 3);
+    bool grown = s->cells.count > s->asked_at + s->asked_at / (last ? 10 : 3) ||
+                 (last && s->scene.witnesses.count > s->asked_of);
     if (s->prices.sum > (double)s->count - 1 + GAP || !grown)
         return STARG_OK;
     return ask_points(s, changed);
