@@ -119,18 +119,18 @@ typedef struct starg_guards {
     double *curve_faces; /* count: seen fraction of all faces by the first 1, 2, ... guards */
     double *curve_area;  /* likewise of the area of all faces                             */
 
-    size_t candidate_count; /* in the end, with those added                               */
-    uint64_t lines_tested;  /* by refinement                                              */
-    size_t cells, witnesses; /* of the search over every point                            */
-    uint64_t prove_work;     /* done by it                                                */
-    size_t lower_bound;     /* no fewer candidates see as much (of what was asked for)    */
-    bool optimal;           /* count == lower_bound                                       */
+    size_t candidate_count;        /* in the end, with those added                               */
+    uint64_t lines_tested;         /* by refinement                                              */
+    size_t cells, witnesses;       /* of the search over every point                            */
+    uint64_t prove_work;           /* done by it                                                */
+    size_t lower_bound;            /* no fewer candidates see as much (of what was asked for)    */
+    bool optimal;                  /* count == lower_bound                                       */
     size_t lower_bound_everywhere; /* no fewer guards see as much, wherever they stand; 0: this was
                                       not sought                                          */
     bool optimal_everywhere;       /* count == lower_bound_everywhere                     */
-    double area_bound;      /* max_guards, for faces seen once: no choice of so many sees a
-                               larger fraction of all area; else 1                        */
-    bool time_limited;      /* the time limit cut the search short                        */
+    double area_bound;             /* max_guards, for faces seen once: no choice of so many sees a
+                                      larger fraction of all area; else 1                        */
+    bool time_limited;             /* the time limit cut the search short                        */
 } starg_guards;
 
 /* Places guards. `options` may be NULL for the defaults. Faces that nothing can see are no error:

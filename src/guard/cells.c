@@ -39,8 +39,7 @@ starg_status search_scene_open(starg_context *context, const starg_solid *solid,
                                search_scene *out) {
     starg_status status = STARG_OK;
     bool vertices = view->target == STARG_TARGET_VERTICES;
-    *out = (search_scene){
-        .context = context, .solid = solid, .view = view, .clearance = clearance};
+    *out = (search_scene){.context = context, .solid = solid, .view = view, .clearance = clearance};
     STARG_TRY(scene_create(context, solid, &out->points));
     STARG_TRY(box_scene_create(context, solid, &out->boxes));
     STARG_NEW(context, STAGE, out->places,
@@ -101,8 +100,7 @@ static starg_status look_from_item(starg_context *context, void *shared, void *s
     looking *l = shared;
     (void)context;
     (void)scratch;
-    l->work[item] =
-        look_from(l->scene, l->points[item].place, &l->among, &l->points[item].seen);
+    l->work[item] = look_from(l->scene, l->points[item].place, &l->among, &l->points[item].seen);
     return STARG_OK;
 }
 
@@ -137,7 +135,8 @@ starg_status cells_begin(const search_scene *scene, search_cells *cells) {
     frexp(extent, &exponent);
     double unit = ldexp(1, exponent - ROOT_BITS);
     for (int k = 0; k < 3; k++) {
-        double lower = floor(all->lower[k] / unit) * unit, upper = ceil(all->upper[k] / unit) * unit;
+        double lower = floor(all->lower[k] / unit) * unit,
+               upper = ceil(all->upper[k] / unit) * unit;
         if (lower <= all->lower[k])
             root.box.lower[k] = lower;
         if (upper >= all->upper[k])
@@ -328,15 +327,13 @@ static starg_status make_part(starg_context *context, void *shared, void *scratc
     for (int i = 0; i < s->tries; i++) {
         for (int k = 0; k < 3; k++)
             p[k] = i == 0 ? middle(box, k)
-                          : box->lower[k] +
-                                starg_rng_unit(&rng) * (box->upper[k] - box->lower[k]);
+                          : box->lower[k] + starg_rng_unit(&rng) * (box->upper[k] - box->lower[k]);
         add_point(s->scene, out, p, &whole->open);
     }
     for (int i = 0; i < out->count; i++)
         for (int w = 0; w < WITNESS_WORDS; w++)
             known.bits[w] |= out->points[i].seen.bits[w];
-    out->work +=
-        look_from_box(s->scene, scratch, box, &whole->open, &known, &out->cell.open);
+    out->work += look_from_box(s->scene, scratch, box, &whole->open, &known, &out->cell.open);
     return STARG_OK;
 }
 

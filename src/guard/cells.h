@@ -58,8 +58,9 @@ bool cell_splits(const bvh_box *box);
 
 enum { MOST_TRIES = 12 };
 
-/* Cuts leaves in the middle of their longest sides. Points of the parts where a guard may stand, the
- * centre and others at random, `tries` in all, are appended to `points`. Errors: MEMORY, CANCELLED.
+/* Cuts leaves in the middle of their longest sides. Points of the parts where a guard may stand,
+ * the centre and others at random, `tries` in all, are appended to `points`. Errors: MEMORY,
+ * CANCELLED.
  */
 starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
                          size_t count, int tries, search_points *points);

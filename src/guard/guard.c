@@ -1,11 +1,11 @@
 /* Guarding a solid [YL11, section 3]: candidates, what they see, the fewest that see everything.
  *
- * Stages: a star-shaped solid needs one guard (starguard/kernel.h); levels of detail; candidate points, of a large model from one of the levels
- * (guard/samples.c); their visibility rows; more candidates until every face that can be seen is
- * seen by one (guard/complete.c); the choice, by one cover problem or from coarse to fine
- * (guard/progressive.c); candidates added where they pay (guard/refine.c); the
- * search over every point of the solid, where that is asked for (guard/search.c); what the chosen
- * guards see (guard/measure.c).
+ * Stages: a star-shaped solid needs one guard (starguard/kernel.h); levels of detail; candidate
+ * points, of a large model from one of the levels (guard/samples.c); their visibility rows; more
+ * candidates until every face that can be seen is seen by one (guard/complete.c); the choice, by
+ * one cover problem or from coarse to fine (guard/progressive.c); candidates added where they pay
+ * (guard/refine.c); the search over every point of the solid, where that is asked for
+ * (guard/search.c); what the chosen guards see (guard/measure.c).
  *
  * The lower bound is that of the cover problem: it holds for guards taken from the final candidate
  * set. That of the search holds for guards anywhere. */

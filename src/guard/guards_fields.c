@@ -146,13 +146,14 @@ static const starg_field OPTIONS[] = {
     {.option = "prove",
      .kind = STARG_FIELD_FLAG,
      OPTION(prove),
-     .help = "Look for fewer guards at every point of the solid, and for how few could do, wherever "
-             "they stand."},
+     .help =
+         "Look for fewer guards at every point of the solid, and for how few could do, wherever "
+         "they stand."},
     {.option = "prove-work",
      .kind = STARG_FIELD_COUNT,
      OPTION(prove_work),
      .most = UINT64_MAX >> 1,
-     .initial = 60000000,
+     .initial = 90000000,
      .value = "N",
      .help = "--prove: work that may be done, counted in tests of a vertex against a box, each "
              "about a microsecond."},

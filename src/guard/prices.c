@@ -24,9 +24,9 @@ static const double GAP = 1e-3; /* of the two programs' values, where the steps 
 
 typedef struct program {
     const witness_row *const *rows;
-    size_t n, m;       /* rows, witnesses that are wanted */
-    uint32_t *index;   /* the ones of all rows, one row after the other */
-    size_t *start;     /* by row, and one more */
+    size_t n, m;                  /* rows, witnesses that are wanted */
+    uint32_t *index;              /* the ones of all rows, one row after the other */
+    size_t *start;                /* by row, and one more */
     double *x, *s, *dx, *ds, *rx; /* by row */
     double *w, *t, *dw, *dt, *rw; /* by witness */
     double *matrix;               /* m x m, of which the lower half is used */

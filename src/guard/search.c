@@ -16,12 +16,14 @@
  *   3. cells that may be worth too much for the bound that is aimed at are split, those first that
  *      are worth most and are large; their points join the others, and it goes on with 1;
  *   4. when there are none, the prices prove the bound (guard/bound.c). Is that not the number of
- *      guards, faces that the fractional cover does not see enough become witnesses.
+ *      guards, faces that the fractional cover does not see enough become witnesses;
+ *   5. where there are no such faces either, an integer program over cells and points: cells that
+ *      could do with fewer guards than there are, are split, with more points; where no cells
+ *      could, branching proves it, each branch by prices of its own.
  *
  * Invariant: the bound holds for guards anywhere in the free space; the guards see all that was to
  * be seen. Everything is counted in operations, nothing depends on threads. */
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "core/parallel.h"
@@ -34,7 +36,15 @@
 
 static const char STAGE[] = "search";
 
-enum { FIRST_WITNESSES = 150, MORE_WITNESSES = 20, LEAST_BATCH = 32, MOST_BATCH = 2048, NODES = 300, TRIES = 2, FOLLOWED = 16 };
+enum {
+    FIRST_WITNESSES = 150,
+    MORE_WITNESSES = 20,
+    LEAST_BATCH = 32,
+    MOST_BATCH = 2048,
+    NODES = 300,
+    TRIES = 2,
+    FOLLOWED = 16
+};
 
 static const double ROUNDING = 1e-6, GAP = 2e-3;
 
@@ -45,11 +55,11 @@ typedef struct search {
     search_cells cells;
     search_points points;
     witness_prices prices;
-    uint64_t *wanted;            /* bits by column: what is to be seen */
-    STARG_ARRAY(double) guards;  /* the best ones, three numbers each */
-    size_t count, bound;         /* guards, and how few could do */
-    size_t asked_at, asked_of;   /* cells and witnesses when the integer program was last asked */
-    bool better;                 /* there are other guards than at first */
+    uint64_t *wanted;           /* bits by column: what is to be seen */
+    STARG_ARRAY(double) guards; /* the best ones, three numbers each */
+    size_t count, bound;        /* guards, and how few could do */
+    size_t asked_at, asked_of;  /* cells and witnesses when the integer program was last asked */
+    bool better;                /* there are other guards than at first */
     bool ended;
 } search;
 
@@ -298,12 +308,12 @@ done:
 
 /* ---- guards ---- */
 
-static starg_status see_all(const search *s, const double *places, size_t count,
-                            starg_bits **out) {
+static starg_status see_all(const search *s, const double *places, size_t count, starg_bits **out) {
     starg_visibility_options view = s->problem->options->visibility;
     starg_time_rule former = starg_time_begin(context_of(s), STARG_TIME_IGNORED);
     view.engine = STARG_VISIBILITY_FASTEST;
-    starg_status status = starg_visibility(context_of(s), s->problem->solid, places, count, &view, out);
+    starg_status status =
+        starg_visibility(context_of(s), s->problem->solid, places, count, &view, out);
     starg_time_end(context_of(s), former);
     return status;
 }
@@ -364,9 +374,11 @@ done:
 }
 
 static starg_status make_program(const search *s, const row_list *list, starg_bits **out) {
-    starg_status status = starg_bits_create(context_of(s), list->count, s->scene.witnesses.count, out);
+    starg_status status =
+        starg_bits_create(context_of(s), list->count, s->scene.witnesses.count, out);
     for (size_t i = 0; status == STARG_OK && i < list->count; i++)
-        memcpy(starg_bits_row_mutable(*out, i), list->rows[i]->bits, (*out)->words * sizeof(uint64_t));
+        memcpy(starg_bits_row_mutable(*out, i), list->rows[i]->bits,
+               (*out)->words * sizeof(uint64_t));
     return status;
 }
 
@@ -636,17 +648,13 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     starg_cover_options_default(&options);
     problem.rows = rows;
     options.max_nodes = NODES;
-    double t0 = starg_clock();
     STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
-    double t1 = starg_clock();
     s->scene.work += columns.rows.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
     if (cover->count < s->count)
         STARG_TRY(follow_cover(s, &columns, cover, changed, again));
     else
         STARG_TRY(bound_by_branching(context, columns.rows.rows, columns.rows.count, &all,
                                      s->count - 1, NODES, &proven, &s->scene.work));
-    if (getenv("SEARCH_TRACE"))
-        fprintf(stderr, "  cells: %zu columns, cover %zu/%zu, ilp %.2f, rest %.2f proven %d\n", columns.rows.count, cover->count, cover->lower_bound, t1 - t0, starg_clock() - t1, proven);
     if (proven)
         s->bound = s->count;
 done:
@@ -667,11 +675,13 @@ done:
     return status;
 }
 
-/* The next bound to be proven: half of what is missing to what the prices allow. */
+/* The next bound to be proven: a third of the way to what the prices allow. Cells that stand in the
+ * way of a lower bound stand in that of a higher one too, so that no work is lost, and where the
+ * work ends before the highest bound is proven, another one is. */
 static size_t next_aim(const search *s) {
     double allowed = fmin((double)s->count, ceil(s->prices.sum - ROUNDING));
     size_t most = allowed > 1 ? (size_t)allowed : 1;
-    return s->bound < most ? s->bound + (most - s->bound + 1) / 2 : most;
+    return s->bound < most ? s->bound + (most - s->bound + 2) / 3 : most;
 }
 
 static starg_status run_round(search *s, row_list *list) {
@@ -718,10 +728,6 @@ static starg_status run(search *s) {
             status = run_round(s, &list);
         row_list_free(context, &list);
         STARG_TRY(status);
-        if (getenv("SEARCH_TRACE"))
-            fprintf(stderr, "guards %zu bound %zu sum %.4f cells %zu points %zu witnesses %zu work %.1f clock %.1f\n",
-                    s->count, s->bound, s->prices.sum, s->cells.count, s->points.count,
-                    s->scene.witnesses.count, (double)s->scene.work / 1e6, starg_clock());
     }
     if (s->bound < s->count)
         STARG_TRY(prove(s));
@@ -767,10 +773,8 @@ static starg_status join_guards(search *s, guard_pool *pool, guard_selection *se
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
     for (size_t i = 0; i < s->count; i++)
         STARG_TRY(candidates_push(context, &found, s->guards.data + 3 * i, NULL));
-    size_t first = pool_count(pool);
     STARG_TRY(pool_add(pool, &found));
     STARG_TRY(choose_candidates(pool, &s->problem->weights, &how, &cover));
-    (void)first;
     STARG_TRY(selection_of_cover(context, cover, selection, selection->level, &next));
     selection_free(context, selection);
     *selection = next;

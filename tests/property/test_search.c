@@ -41,8 +41,9 @@ static void sample_points(const starg_solid *solid, const starg_guards *guards, 
         double reach = i < guards->count ? 0 : pow(0.5, (double)(i % 7));
         for (size_t k = 0; k < 3; k++) {
             double at = starg_rng_unit(&rng), side = upper[k] - lower[k];
-            points[3 * i + k] =
-                i % 2 == 0 && i >= guards->count ? lower[k] + at * side : near[k] + reach * (at - 0.5) * side;
+            points[3 * i + k] = i % 2 == 0 && i >= guards->count
+                                    ? lower[k] + at * side
+                                    : near[k] + reach * (at - 0.5) * side;
         }
     }
 }
