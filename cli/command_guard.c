@@ -79,27 +79,25 @@ static starg_status take_candidates(cli_session *session, const char *word,
 
 static void say_bound(cli_session *session, const starg_guards *g) {
     size_t gap = g->count - g->lower_bound;
-    cli_say(session, "of candidates at least %zu", g->lower_bound);
+    cli_say(session, "lower bound   %zu of these candidates", g->lower_bound);
     if (g->optimal)
-        cli_say(session, ": no fewer of these candidates do\n");
+        cli_say(session, " (no fewer of them do)\n");
     else
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
-static void say_bound_everywhere(cli_session *session, const starg_guards *g) {
-    cli_say(session, "%s", cli_count_of(g->count, "guard", "guards").text);
+static void say_count(cli_session *session, const starg_guards *g) {
+    cli_say(session, "guards        %zu", g->count);
     if (g->optimal_everywhere)
-        cli_say(session, ", the fewest possible, wherever they stand\n");
-    else
-        cli_say(session, "; at least %zu %s needed, wherever they stand\n",
-                g->lower_bound_everywhere, g->lower_bound_everywhere == 1 ? "is" : "are");
+        cli_say(session, ", the fewest possible, wherever they stand");
+    else if (g->lower_bound_everywhere > 0)
+        cli_say(session, "; at least %zu %s needed, wherever they stand", g->lower_bound_everywhere,
+                g->lower_bound_everywhere == 1 ? "is" : "are");
+    cli_say(session, "\n");
 }
 
 static void say_guards(cli_session *session, const starg_guards *g) {
-    if (g->lower_bound_everywhere > 0)
-        say_bound_everywhere(session, g);
-    else
-        cli_say(session, "guards        %zu\n", g->count);
+    say_count(session, g);
     say_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
             cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
@@ -234,11 +232,14 @@ const cli_command cli_command_guard = {
         "Makes candidate points inside the solid, computes exactly which faces each sees, and "
         "chooses the fewest that together see every face that can be seen. The result holds the "
         "guards, what they cover, and a proven lower bound: no choice of fewer candidates covers "
-        "as much. Faces that nothing sees are listed, and are no error.\n"
+        "as much. With --prove, every point of the solid is a candidate. Faces that nothing sees "
+        "are listed, and are no error.\n"
         "With --time-limit the best that was found is written, with its bound.",
     .examples = "# the fewest guards for a model, and the proof\n"
                 "starguard guard model.off -o guards.json\n"
                 "starguard verify model.off guards.json\n"
+                "# the fewest guards anywhere in it, and the proof\n"
+                "starguard guard model.off -o guards.json --prove\n"
                 "# 99 % of the area is enough; guards 0.1 from the walls; a picture\n"
                 "starguard guard room.obj -o guards.json --coverage 0.99 --clearance 0.1 \\\n"
                 "    --picture guards.png\n"

@@ -157,7 +157,8 @@ class Schemas(support.Case):
     def test_guards(self):
         room = self.sample("l-room")
         for options in [[], ["--method", "ilp", "--target", "vertices"],
-                        ["--method", "greedy", "--cone", "90", "--range", "5", "--max-guards", "2"]]:
+                        ["--method", "greedy", "--cone", "90", "--range", "5", "--max-guards", "2"],
+                        ["--prove", "--range", "4", "--prove-work", "20000"]]:
             self.report("guard", "guard", room, "-o", "g.json", *options)
             self.file("guards", "g.json")
             self.report("verify", "verify", room, "g.json")
