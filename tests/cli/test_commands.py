@@ -315,7 +315,8 @@ class Guard(support.Case):
                       report["lower_bound_everywhere"] == len(report["guards"]))
         self.assertGreater(report["cells"], 1)
         self.run_text("verify", maze, "p.json")
-        text = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove")[0]
+        text = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
+                             "--prove-work", "100000")[0]
         self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed), "
                                "wherever they stand$")
         self.assertRegex(text, r"(?m)^lower bound +\d+ of these candidates \(")

@@ -101,7 +101,8 @@ class Schemas(support.Case):
                 self.assertFalse(validator.is_valid(wrong), f"{name}: {path} may be missing")
 
     OPTIONAL = {"levels", "direction", "area_bound", "coarsest", "step", "significance", "refine",
-                "peak_resident_bytes", "report", "map", "letter", "separate"}
+                "peak_resident_bytes", "report", "map", "letter", "separate", "cells", "witnesses",
+                "work", "lower_bound_everywhere", "optimal_everywhere"}
 
     def required(self, name, path):
         if path[-1] in self.OPTIONAL:
