@@ -77,15 +77,25 @@ static starg_status take_candidates(cli_session *session, const char *word,
 
 static void say_bound(cli_session *session, const starg_guards *g) {
     size_t gap = g->count - g->lower_bound;
-    cli_say(session, "lower bound   %zu", g->lower_bound);
+    cli_say(session, "lower bound   %zu of these candidates", g->lower_bound);
     if (g->optimal)
-        cli_say(session, " (optimal: no fewer of the candidates do)\n");
+        cli_say(session, " (no fewer of them do)\n");
     else
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
+static void say_count(cli_session *session, const starg_guards *g) {
+    cli_say(session, "guards        %zu", g->count);
+    if (g->optimal_everywhere)
+        cli_say(session, ", the fewest possible, wherever they stand");
+    else if (g->lower_bound_everywhere > 0)
+        cli_say(session, "; at least %zu %s needed, wherever they stand", g->lower_bound_everywhere,
+                g->lower_bound_everywhere == 1 ? "is" : "are");
+    cli_say(session, "\n");
+}
+
 static void say_guards(cli_session *session, const starg_guards *g) {
-    cli_say(session, "guards        %zu\n", g->count);
+    say_count(session, g);
     say_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
             cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
@@ -114,6 +124,11 @@ static starg_status report_guards(cli_session *session, const starg_guards *g, c
     cli_report_take(session, text, size);
     cli_put(session, session->report, "output", cli_json_text(output));
     cli_put(session, session->report, "sight_lines", json_integer((json_int_t)g->lines_tested));
+    if (g->options.prove) {
+        cli_put(session, session->report, "cells", json_integer((json_int_t)g->cells));
+        cli_put(session, session->report, "witnesses", json_integer((json_int_t)g->witnesses));
+        cli_put(session, session->report, "work", json_integer((json_int_t)g->prove_work));
+    }
 done:
     return status;
 }
@@ -215,11 +230,13 @@ const cli_command cli_command_guard = {
         "Generates candidate points inside the solid, computes exactly which faces each one sees, "
         "and chooses the fewest that together see every visible face. The result contains the "
         "guards, their coverage, and a proven lower bound: no choice of fewer candidates covers as "
-        "much. Faces that no candidate sees are listed; they are not an error.\n"
+        "much. With --prove every point of the solid is a candidate. Faces that no candidate sees are listed; they are not an error.\n"
         "With --time-limit the best result so far is written with its bound.",
     .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"
                 "starguard verify model.off guards.json\n"
+                "# the fewest guards anywhere in the solid, with a bound for all positions\n"
+                "starguard guard model.off -o guards.json --prove\n"
                 "# cover 99 % of the area, keep guards 0.1 from the walls, draw a picture\n"
                 "starguard guard room.obj -o guards.json --coverage 0.99 --clearance 0.1 \\\n"
                 "    --picture guards.png\n"

@@ -65,6 +65,11 @@ typedef struct starg_guard_options {
      * bound, and choose again */
     bool refine;
     uint64_t refine_lines; /* sight lines that refinement may test */
+
+    /* Guards anywhere: search fewer guards at every point of the solid, and prove how many are
+     * needed, wherever they stand. For full coverage, redundancy 1, no cone, candidates not given */
+    bool prove;
+    uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_guard_options;
 
 /* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (10 million sight lines), 1,000 skeletal
@@ -114,10 +119,15 @@ typedef struct starg_guards {
     double *curve_faces; /* count: fraction of all faces covered by the first 1, 2, ... guards */
     double *curve_area;  /* the same for the area */
 
-    size_t candidate_count; /* including those added */
-    uint64_t lines_tested;  /* by refinement                                              */
-    size_t lower_bound;     /* no fewer candidates cover as much */
-    bool optimal;           /* count == lower_bound                                       */
+    size_t candidate_count;        /* including those added */
+    uint64_t lines_tested;         /* by refinement */
+    size_t cells, witnesses;       /* of the search over every point */
+    uint64_t prove_work;           /* spent on it */
+    size_t lower_bound;            /* no fewer candidates cover as much */
+    bool optimal;                  /* count == lower_bound */
+    size_t lower_bound_everywhere; /* no fewer guards cover as much, wherever they stand; 0: not
+                                      sought */
+    bool optimal_everywhere;       /* count == lower_bound_everywhere */
     double area_bound; /* max_guards, redundancy 1: upper bound on the area fraction that so many
                           guards cover; else 1 */
     bool time_limited; /* the time limit stopped the search */

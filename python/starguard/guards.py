@@ -78,8 +78,12 @@ class Guards:
     lines_tested: int
     #: Proven: no fewer candidates cover as much.
     lower_bound: int
-    #: The number of guards equals the bound.
+    #: The number of guards equals that bound: no fewer of the candidates suffice.
     optimal: bool
+    #: No fewer guards cover as much, wherever they stand; 0 if this was not sought.
+    lower_bound_everywhere: int
+    #: The number of guards equals that bound.
+    optimal_everywhere: bool
     #: With max_guards: upper bound on the area fraction that so many guards cover.
     area_bound: float
     time_limited: bool

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Guarding a solid [YL11, section 3]: candidates, what they see, the fewest that see everything.
  *
- * Stages: levels of detail; candidate points, of a large model from one of the levels
- * (guard/proxy.c); their visibility rows; more candidates until every face that can be seen is seen
- * by one (guard/augment.c); the choice, by one cover problem or from coarse to fine
- * (guard/progressive.c); candidates added where they pay (guard/refine.c); what the chosen guards
- * see (guard/measure.c).
+ * Stages: a star-shaped solid needs one guard (starguard/kernel.h); levels of detail; candidate
+ * points, of a large model from one of the levels (guard/proxy.c); their visibility rows; more
+ * candidates until every face that can be seen is seen by one (guard/augment.c); the choice, by
+ * one cover problem or from coarse to fine (guard/progressive.c); candidates added where they pay
+ * (guard/refine.c); the search over every point of the solid, where that is asked for
+ * (guard/search.c); what the chosen guards see (guard/measure.c).
  *
  * The lower bound is that of the cover problem: it holds for guards taken from the final candidate
- * set. */
+ * set. That of the search holds for guards anywhere. */
 #include "starguard/guard.h"
 
 #include <math.h>
@@ -16,6 +17,7 @@
 #include "core/fields.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
+#include "starguard/kernel.h"
 
 static const char STAGE[] = "guard";
 
@@ -26,9 +28,30 @@ static void set_defaults(starg_guard_options *o, size_t vertices) {
         o->step = proxy_step(vertices, o->coarsest);
 }
 
+/* What the search over every point cannot do. */
+static starg_status check_prove(starg_context *context, const starg_guard_options *o) {
+    const char *why = NULL;
+    if (o->candidates == STARG_CANDIDATES_GIVEN)
+        why = "candidates are given, and guards would stand elsewhere; leave the candidates out";
+    else if (o->coverage < 1)
+        why = "a part of the area is enough; ask for a coverage of 1";
+    else if (o->max_guards > 0)
+        why = "the number of guards is limited; leave the limit out";
+    else if (o->redundancy > 1)
+        why = "faces are to be seen more than once; ask for a redundancy of 1";
+    else if (o->visibility.cone < 360)
+        why = "guards look in one direction; ask for a cone of 360 degrees";
+    if (why == NULL)
+        return STARG_OK;
+    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                      "a bound for guards anywhere (prove) cannot be found where %s", why);
+}
+
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
     starg_status status = STARG_OK;
     STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
+    if (o->prove)
+        STARG_TRY(check_prove(context, o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
 done:
@@ -225,10 +248,61 @@ done:
     return status;
 }
 
+/* May one point be enough, and stand where no candidate does? */
+static bool may_be_star(const guard_problem *problem) {
+    const starg_guard_options *o = problem->options;
+    bool free = o->prove || (o->method == STARG_GUARD_PILP && may_refine(o));
+    return free && o->redundancy == 1 && o->visibility.cone == 360;
+}
+
+/* Does the only candidate see all that anyone could? */
+static bool sees_everything(const guard_pool *pool) {
+    const starg_mesh *mesh = pool->solid->mesh;
+    if (pool_count(pool) != 1)
+        return false;
+    if (pool->options->visibility.target == STARG_TARGET_FACES)
+        return starg_bits_count(pool->rows, 0) == mesh->face_count;
+    for (size_t k = 0; k < 3 * mesh->face_count; k++)
+        if (!starg_bits_test(pool->rows, 0, mesh->faces[k]))
+            return false;
+    return true;
+}
+
+/* A star-shaped solid: a point of its kernel sees everything, and nobody needs fewer guards. */
+static starg_status find_star_guard(const guard_problem *problem, guard_outcome *out, bool *found) {
+    starg_status status = STARG_OK;
+    candidate_points points = {0};
+    starg_kernel_result kernel;
+    guard_pool *pool = &out->pool;
+    *found = false;
+    STARG_TRY(starg_kernel(problem->context, problem->solid->mesh, NULL, &kernel));
+    if (kernel.verdict != STARG_KERNEL_INTERIOR ||
+        !candidates_allowed(problem->solid, kernel.guard, problem->options->clearance))
+        return STARG_OK;
+    STARG_TRY(pool_create(problem->context, problem->solid, problem->options, pool));
+    STARG_TRY(candidates_push(problem->context, &points, kernel.guard, NULL));
+    STARG_TRY(pool_add(pool, &points));
+    *found = sees_everything(pool);
+    if (*found) {
+        STARG_PUSH(problem->context, STAGE, &out->selection.chosen, 0);
+        STARG_PUSH(problem->context, STAGE, &out->selection.levels, 0);
+        out->selection.lower_bound = out->search.bound = 1;
+    } else
+        pool_free(pool);
+done:
+    candidates_free(problem->context, &points);
+    return status;
+}
+
 /* Everything from the solid to the choice. */
 static starg_status find_guards(const guard_problem *problem, guard_outcome *out) {
     starg_status status = STARG_OK;
     guard_detail detail = {0};
+    bool found = false;
+    if (may_be_star(problem))
+        STARG_TRY(find_star_guard(problem, out, &found));
+    if (found)
+        return STARG_OK;
     STARG_TRY(find_detail(problem, &detail));
     STARG_TRY(find_pool(problem, &detail, &out->pool));
     if (problem->options->method == STARG_GUARD_PILP)
@@ -236,6 +310,8 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
     else
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
+    if (problem->options->prove)
+        STARG_TRY(search_guards(problem, &out->pool, &out->selection, &out->search));
 done:
     starg_solid_free(detail.proxy);
     starg_levels_free(problem->context, detail.levels);

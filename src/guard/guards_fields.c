@@ -143,6 +143,20 @@ static const starg_field OPTIONS[] = {
      .initial = 10000000,
      .value = "N",
      .help = "pilp: number of sight lines that refinement may test."},
+    {.option = "prove",
+     .kind = STARG_FIELD_FLAG,
+     OPTION(prove),
+     .help =
+         "Search fewer guards at every point of the solid, and prove how many are needed, "
+         "wherever they stand."},
+    {.option = "prove-work",
+     .kind = STARG_FIELD_COUNT,
+     OPTION(prove_work),
+     .most = UINT64_MAX >> 1,
+     .initial = 90000000,
+     .value = "N",
+     .help = "--prove: budget, counted in tests of a vertex against a box (about a microsecond "
+             "each)."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "options", .size = sizeof(starg_guard_options), FIELD_ROWS(OPTIONS)};
@@ -175,6 +189,10 @@ static bool targets_vertices(const void *record) {
 
 static bool has_area_bound(const void *record) {
     return of(record)->options.max_guards > 0;
+}
+
+static bool is_bounded_everywhere(const void *record) {
+    return of(record)->lower_bound_everywhere > 0;
 }
 
 static const starg_field MODEL[] = {
@@ -365,6 +383,19 @@ static const starg_field FILE_ROWS[] = {
      .kind = STARG_FIELD_FLAG,
      RESULT(optimal),
      .help = "The number of guards equals lower_bound."},
+    {.key = "lower_bound_everywhere",
+     .kind = STARG_FIELD_COUNT,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(lower_bound_everywhere),
+     .least = 1,
+     .most = UINT32_MAX,
+     .help = "No fewer guards cover as much, wherever they stand; absent if this was not sought."},
+    {.key = "optimal_everywhere",
+     .kind = STARG_FIELD_FLAG,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(optimal_everywhere),
+     .applies = is_bounded_everywhere,
+     .help = "The number of guards equals lower_bound_everywhere."},
     {.key = "time_limited",
      .kind = STARG_FIELD_FLAG,
      .flags = STARG_FIELD_OPTIONAL,

@@ -192,6 +192,11 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
         result->area_bound = (double)selection->weight_bound / (double)problem->weights.total;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
+    result->lower_bound_everywhere = outcome->search.bound;
+    result->optimal_everywhere = selection->chosen.count == outcome->search.bound;
+    result->cells = outcome->search.cells;
+    result->witnesses = outcome->search.witnesses;
+    result->prove_work = outcome->search.work;
 }
 
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,

@@ -35,12 +35,20 @@ typedef struct guard_selection {
 
 typedef STARG_ARRAY(starg_guard_level) guard_records;
 
+/* What the search over every point has come to. */
+typedef struct search_record {
+    size_t bound; /* no fewer guards do, wherever they stand; 0: not sought */
+    size_t cells, witnesses;
+    uint64_t work;
+} search_record;
+
 /* What guards are reported from. */
 typedef struct guard_outcome {
     guard_pool pool;
     guard_selection selection;
     guard_records records; /* of the levels */
     uint64_t lines_tested;
+    search_record search;
 } guard_outcome;
 
 static inline candidate_shape guard_shape(const guard_problem *problem,
@@ -79,6 +87,12 @@ starg_status bound_guards(const guard_problem *problem, const guard_pool *pool,
 starg_status refine_guards(const guard_problem *problem, const guard_detail *detail,
                            const guard_selection *first, guard_pool *pool, guard_selection *out,
                            uint64_t *lines_tested);
+
+/* The search over every point of the solid: replaces the choice by fewer guards where it finds
+ * them, which see all that the former ones saw, and adds them to the pool (guard/search.c). Errors:
+ * MEMORY, CANCELLED. */
+starg_status search_guards(const guard_problem *problem, guard_pool *pool,
+                           guard_selection *selection, search_record *out);
 
 /* The result: what the chosen guards see, counted anew (guard/measure.c). Takes the records over.
  * Errors: MEMORY, CANCELLED. */

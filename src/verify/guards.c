@@ -553,6 +553,15 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
                  "the result is called %s, with %zu guards and a lower bound of %zu",
                  guards->optimal ? "optimal" : "not proven optimal", guards->count,
                  guards->lower_bound);
+    if (guards->lower_bound_everywhere > 0)
+        verify_claim(
+            verdict,
+            guards->lower_bound_everywhere <= guards->lower_bound &&
+                guards->optimal_everywhere == (guards->lower_bound_everywhere == guards->count),
+            "the lower bound for guards anywhere, %zu, is at most that for candidates, and "
+            "the result is called %s",
+            guards->lower_bound_everywhere,
+            guards->optimal_everywhere ? "the fewest possible" : "not proven such");
     double seen = fraction(known->covered_area, known->total_area);
     verify_claim(verdict, seen <= guards->area_bound * (1 + TOLERANCE),
                  "the area seen, %.17g, is within its bound %.17g", seen, guards->area_bound);

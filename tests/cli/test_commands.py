@@ -304,6 +304,29 @@ class Guard(support.Case):
         for line in ["guards", "lower bound", "coverage", "uncovered", "candidates"]:
             self.assertRegex(text, rf"(?m)^{line} +\d")
 
+    def test_anywhere(self):
+        maze = self.sample("gallery")
+        plain = self.run_json("guard", maze, "-o", "g.json", "--count", "60")
+        self.assertNotIn("lower_bound_everywhere", plain)
+        report = self.run_json("guard", maze, "-o", "p.json", "--count", "60", "--prove",
+                               "--prove-work", "200000")
+        self.assertLessEqual(len(report["guards"]), len(plain["guards"]))
+        self.assertLessEqual(report["lower_bound_everywhere"], report["lower_bound"])
+        self.assertIs(report["optimal_everywhere"],
+                      report["lower_bound_everywhere"] == len(report["guards"]))
+        self.assertGreater(report["cells"], 1)
+        self.run_text("verify", maze, "p.json")
+        text = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
+                             "--prove-work", "100000")[0]
+        self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed), "
+                               "wherever they stand$")
+        self.assertRegex(text, r"(?m)^lower bound +\d+ of these candidates \(")
+        for options in [["--max-guards", "2"], ["--coverage", "0.9"], ["--redundancy", "2"],
+                        ["--cone", "90"], ["--candidates", "g.json"]]:
+            err = self.run_text("guard", maze, "-o", "no.json", "--prove", *options, status=1)[1]
+            self.assertIn("anywhere", err)
+        self.assertNotIn("no.json", self.names())
+
     def test_candidates_from_files(self):
         self.run_text("guard", self.room, "-o", "g.json")
         guards = json.loads(self.read("g.json"))["guards"]

@@ -108,7 +108,8 @@ class Schemas(support.Case):
                 self.assertFalse(validator.is_valid(wrong), f"{name}: {path} may be missing")
 
     OPTIONAL = {"levels", "direction", "area_bound", "coarsest", "step", "significance", "refine",
-                "peak_resident_bytes", "report", "map", "letter", "separate"}
+                "peak_resident_bytes", "report", "map", "letter", "separate", "cells", "witnesses",
+                "work", "lower_bound_everywhere", "optimal_everywhere"}
 
     def required(self, name, path):
         if path[-1] in self.OPTIONAL:
@@ -164,7 +165,8 @@ class Schemas(support.Case):
     def test_guards(self):
         room = self.sample("l-room")
         for options in [[], ["--method", "ilp", "--target", "vertices"],
-                        ["--method", "greedy", "--cone", "90", "--range", "5", "--max-guards", "2"]]:
+                        ["--method", "greedy", "--cone", "90", "--range", "5", "--max-guards", "2"],
+                        ["--prove", "--range", "4", "--prove-work", "20000"]]:
             self.report("guard", "guard", room, "-o", "g.json", *options)
             self.file("guards", "g.json")
             self.report("verify", "verify", room, "g.json")

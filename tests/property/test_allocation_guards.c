@@ -162,6 +162,7 @@ static starg_status guards(starg_context *context) {
            o.point_count = in.guards->count, o.visibility.face_rule = STARG_FACES_WHOLE));
     GUARD(starg_guard, "cone, at most 2",
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
+    GUARD(starg_guard, "anywhere", (o.prove = true, o.prove_work = 3000, o.visibility.range = 2));
     GUARDS(starg_guards_given, "", in.solid, in.guards->positions, in.guards->count);
     FAILING(starg_guards_write, "", in.guards, "room.off", failing_output("g.json"));
     FAILING_TEXT(starg_guards_write_memory, "", in.guards, "room.off");

@@ -1,0 +1,215 @@
+/* The bound of a search, in whole numbers: whatever floating point has found the prices, this sum
+ * and this maximum are exact. Prices are below 2^44 and witnesses at most 2^10, so that sums stay
+ * below 2^54. */
+#include "guard/bound.h"
+
+#include "guard/prices.h"
+
+static const char STAGE[] = "search";
+
+void bound_round(const double price[MOST_WITNESSES], uint64_t whole[MOST_WITNESSES]) {
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        whole[j] = price[j] > 0 && price[j] < 16 ? (uint64_t)(price[j] * (double)BOUND_ONE) : 0;
+}
+
+static uint64_t sum_of(const witness_row *row, const uint64_t *price) {
+    uint64_t sum = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w])
+            sum += price[64 * w + bit];
+    return sum;
+}
+
+/* The sum of all prices, and the largest over a row. */
+static void sum_prices(const witness_row *const *rows, size_t count, const uint64_t *price,
+                       uint64_t *all, uint64_t *most) {
+    *all = *most = 0;
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        *all += price[j];
+    for (size_t i = 0; i < count; i++) {
+        uint64_t sum = sum_of(rows[i], price);
+        *most = sum > *most ? sum : *most;
+    }
+}
+
+size_t bound_of_prices(const witness_row *const *rows, size_t count,
+                       const uint64_t price[MOST_WITNESSES]) {
+    uint64_t all, most;
+    sum_prices(rows, count, price, &all, &most);
+    return most == 0 ? 0 : (size_t)((all + most - 1) / most);
+}
+
+/* ---- branching ---- */
+
+typedef struct branching {
+    starg_context *context;
+    const witness_row *const *rows;
+    size_t count;
+    uint8_t *gone; /* by row: a branch before has dealt with the covers that have it */
+    size_t nodes;  /* that may still be looked at */
+    uint64_t work;
+} branching;
+
+/* Rows that may be taken, each cut down to the witnesses that are wanted, without those that are
+ * within another one. */
+typedef struct rest {
+    witness_row *cut;
+    const witness_row **rows; /* `cut`, one by one */
+    uint32_t *names;
+    size_t count;
+} rest;
+
+static bool is_kept(rest *r, const witness_row *cut, size_t *hint) {
+    if (*hint < r->count && row_is_within(cut, &r->cut[*hint]))
+        return true;
+    for (size_t k = 0; k < r->count; k++)
+        if (row_is_within(cut, &r->cut[k])) {
+            *hint = k;
+            return true;
+        }
+    return false;
+}
+
+static size_t row_count(const witness_row *row) {
+    return starg_bit_count(row->bits, WITNESS_WORDS);
+}
+
+static witness_row cut_row(const witness_row *row, const witness_row *wanted) {
+    witness_row cut;
+    for (int w = 0; w < WITNESS_WORDS; w++)
+        cut.bits[w] = row->bits[w] & wanted->bits[w];
+    return cut;
+}
+
+static void rest_free(starg_context *context, rest *r) {
+    starg_release(context, r->cut);
+    starg_release(context, r->rows);
+    starg_release(context, r->names);
+}
+
+/* The large rows come first, so that none is within a later one. */
+static starg_status rest_make(const branching *b, const witness_row *wanted, rest *r) {
+    starg_status status = STARG_OK;
+    size_t by_size[MOST_WITNESSES + 2] = {0}, hint = 0;
+    uint32_t *order = NULL;
+    STARG_NEW(b->context, STAGE, order, b->count);
+    STARG_NEW(b->context, STAGE, r->cut, b->count);
+    STARG_NEW(b->context, STAGE, r->rows, b->count);
+    STARG_NEW(b->context, STAGE, r->names, b->count);
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < b->count; i++) {
+            witness_row cut = cut_row(b->rows[i], wanted);
+            size_t size = MOST_WITNESSES - row_count(&cut);
+            if (pass == 0)
+                by_size[size + 1]++;
+            else
+                order[by_size[size]++] = (uint32_t)i;
+        }
+        for (size_t k = 1; pass == 0 && k < MOST_WITNESSES + 2; k++)
+            by_size[k] += by_size[k - 1];
+    }
+    for (size_t i = 0; i < b->count; i++) {
+        witness_row cut = cut_row(b->rows[order[i]], wanted);
+        if (b->gone[order[i]] || is_kept(r, &cut, &hint))
+            continue;
+        r->cut[r->count] = cut;
+        r->rows[r->count] = &r->cut[r->count];
+        r->names[r->count++] = order[i];
+    }
+done:
+    starg_release(b->context, order);
+    return status;
+}
+
+/* The wanted witness that the fewest rows hold; *fewest: how many. */
+static size_t rarest(const rest *r, const witness_row *wanted, size_t *fewest) {
+    size_t best = MOST_WITNESSES, held[MOST_WITNESSES] = {0};
+    for (size_t i = 0; i < r->count; i++)
+        for (size_t w = 0; w < WITNESS_WORDS; w++)
+            STARG_FOR_BITS (bit, r->cut[i].bits[w])
+                held[64 * w + bit]++;
+    *fewest = SIZE_MAX;
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        if (starg_bit_test(wanted->bits, j) && held[j] < *fewest) {
+            *fewest = held[j];
+            best = j;
+        }
+    return best;
+}
+
+static starg_status bound_by_own_prices(branching *b, const rest *r, const witness_row *wanted,
+                                        size_t most, bool *proven) {
+    starg_status status = STARG_OK;
+    witness_prices prices;
+    uint64_t whole[MOST_WITNESSES], all, largest;
+    STARG_TRY(prices_find(b->context, r->rows, r->count, wanted, &prices));
+    b->work += prices.work;
+    bound_round(prices.price, whole);
+    prices_free(b->context, &prices);
+    sum_prices(r->rows, r->count, whole, &all, &largest);
+    *proven = all > most * largest;
+done:
+    return status;
+}
+
+static starg_status branch(branching *b, const witness_row *wanted, size_t most, bool *proven);
+
+/* One branch for each row that holds the witness; the rows of branches before are gone. */
+static starg_status branch_on(branching *b, const rest *r, size_t witness,
+                              const witness_row *wanted, size_t most, bool *proven) {
+    starg_status status = STARG_OK;
+    size_t ended = 0;
+    *proven = true;
+    for (size_t i = 0; i < r->count && *proven; i++) {
+        witness_row left = *wanted;
+        if (!starg_bit_test(r->cut[i].bits, witness))
+            continue;
+        for (int w = 0; w < WITNESS_WORDS; w++)
+            left.bits[w] &= ~r->cut[i].bits[w];
+        STARG_TRY(branch(b, &left, most - 1, proven));
+        b->gone[r->names[i]] = 1;
+        ended = i + 1;
+    }
+done:
+    for (size_t i = 0; i < ended; i++)
+        if (starg_bit_test(r->cut[i].bits, witness))
+            b->gone[r->names[i]] = 0;
+    return status;
+}
+
+static starg_status branch(branching *b, const witness_row *wanted, size_t most, bool *proven) {
+    starg_status status = STARG_OK;
+    rest r = {0};
+    size_t fewest;
+    bool any = row_count(wanted) > 0;
+    *proven = any && most == 0;
+    if (*proven || !any || b->nodes == 0)
+        return STARG_OK;
+    b->nodes--;
+    STARG_TRY(starg_check_cancel(b->context, STAGE));
+    STARG_TRY(rest_make(b, wanted, &r));
+    b->work += b->count / 10 + r.count * r.count / 100;
+    size_t witness = rarest(&r, wanted, &fewest);
+    *proven = fewest == 0;
+    if (!*proven)
+        STARG_TRY(bound_by_own_prices(b, &r, wanted, most, proven));
+    if (!*proven)
+        STARG_TRY(branch_on(b, &r, witness, wanted, most, proven));
+done:
+    rest_free(b->context, &r);
+    return status;
+}
+
+starg_status bound_by_branching(starg_context *context, const witness_row *const *rows,
+                                size_t count, const witness_row *wanted, size_t most, size_t nodes,
+                                bool *proven, uint64_t *work) {
+    starg_status status = STARG_OK;
+    branching b = {.context = context, .rows = rows, .count = count, .nodes = nodes};
+    *proven = false;
+    STARG_NEW_ZERO(context, STAGE, b.gone, count);
+    STARG_TRY(branch(&b, wanted, most, proven));
+done:
+    *work += b.work;
+    starg_release(context, b.gone);
+    return status;
+}

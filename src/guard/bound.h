@@ -1,0 +1,26 @@
+/* How many guards are needed, proven in whole numbers. */
+#ifndef STARG_GUARD_BOUND_H
+#define STARG_GUARD_BOUND_H
+
+#include "core/memory.h"
+#include "guard/witnesses.h"
+
+#define BOUND_ONE ((uint64_t)1 << 40)
+
+/* Prices as whole numbers of 1 / BOUND_ONE, rounded down; they must be below 16. */
+void bound_round(const double price[MOST_WITNESSES], uint64_t whole[MOST_WITNESSES]);
+
+/* No fewer rows than that hold all witnesses that have a price: one row holds at most the largest
+ * sum of prices over a row, so that k of them hold at most k times that. 0 where no row holds
+ * anything. */
+size_t bound_of_prices(const witness_row *const *rows, size_t count,
+                       const uint64_t price[MOST_WITNESSES]);
+
+/* Is it certain that `most` of the rows do not hold all witnesses in `wanted`? By branching on the
+ * row that holds a witness, each branch with prices of its own; *proven is false where that does
+ * not follow after `nodes` of them. Errors: MEMORY, CANCELLED. */
+starg_status bound_by_branching(starg_context *context, const witness_row *const *rows,
+                                size_t count, const witness_row *wanted, size_t most, size_t nodes,
+                                bool *proven, uint64_t *work);
+
+#endif

@@ -1,0 +1,370 @@
+/* Cells: the space in which guards may stand, cut into boxes, each with the witnesses that it may
+ * see by visibility/box.h.
+ *
+ * The root is the box of the solid, rounded outwards to multiples of a power of two, and a cell is
+ * cut in the middle of its longest side, so that corners of cells are short binary fractions. A
+ * part is asked only about what the whole may see, and not about what a point of it is known to
+ * see. Cells are numbered in the order in which they are made, work is addressed by that number,
+ * and so is the random point of a cell: nothing depends on the number of threads.
+ *
+ * Invariant: a witness that is not open in a cell is seen by no point of the cell in the free
+ * space. Cost: a box test for each open vertex, some 10 sight lines for each it sees. */
+#include "guard/cells.h"
+
+#include <math.h>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "geometry/vec3.h"
+#include "guard/candidates.h"
+
+static const char STAGE[] = "search";
+
+enum { RANDOM_STAGE = 27, ROOT_BITS = 20 };
+
+/* ---- the scene ---- */
+
+static void fill_places(search_scene *scene) {
+    const visibility_scene *points = scene->points;
+    if (scene->view->target == STARG_TARGET_VERTICES)
+        for (size_t v = 0; v < scene->solid->mesh->vertex_count; v++)
+            scene->places[v] = points->slot_of[v];
+    else
+        for (size_t rank = 0; rank < points->face_count; rank++)
+            scene->places[points->face_of[rank]] = (uint32_t)rank;
+}
+
+starg_status search_scene_open(starg_context *context, const starg_solid *solid,
+                               const starg_visibility_options *view, double clearance,
+                               search_scene *out) {
+    starg_status status = STARG_OK;
+    bool vertices = view->target == STARG_TARGET_VERTICES;
+    *out = (search_scene){.context = context, .solid = solid, .view = view, .clearance = clearance};
+    STARG_TRY(scene_create(context, solid, &out->points));
+    STARG_TRY(box_scene_create(context, solid, &out->boxes));
+    STARG_NEW(context, STAGE, out->places,
+              vertices ? solid->mesh->vertex_count : solid->mesh->face_count);
+    fill_places(out);
+done:
+    if (status != STARG_OK)
+        search_scene_close(out);
+    return status;
+}
+
+void search_scene_close(search_scene *scene) {
+    if (scene->context == NULL)
+        return;
+    scene_free(scene->points);
+    box_scene_free(scene->boxes);
+    starg_release(scene->context, scene->places);
+    STARG_ARRAY_FREE(scene->context, &scene->witnesses);
+    *scene = (search_scene){0};
+}
+
+/* ---- points ---- */
+
+/* Sets what the point sees of the witnesses in `among`; returns how many were looked at. */
+static uint64_t look_from(const search_scene *scene, const double p[3], const witness_row *among,
+                          witness_row *seen) {
+    bool vertices = scene->view->target == STARG_TARGET_VERTICES;
+    uint64_t work = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, among->bits[w]) {
+            size_t j = 64 * w + bit;
+            uint32_t place = scene->places[scene->witnesses.data[j]];
+            bool sees = vertices ? scene_sees_vertex(scene->points, p, place, scene->view)
+                                 : scene_sees_face(scene->points, p, place, scene->view);
+            if (sees)
+                starg_bit_set(seen->bits, j);
+            work += sees && !vertices ? 3 : 1;
+        }
+    return work;
+}
+
+static witness_row witnesses_from(const search_scene *scene, size_t first) {
+    witness_row row = {{0}};
+    for (size_t j = first; j < scene->witnesses.count; j++)
+        starg_bit_set(row.bits, j);
+    return row;
+}
+
+typedef struct looking {
+    const search_scene *scene;
+    search_point *points;
+    uint64_t *work; /* by item */
+    witness_row among;
+} looking;
+
+static starg_status look_from_item(starg_context *context, void *shared, void *scratch,
+                                   size_t item) {
+    looking *l = shared;
+    (void)context;
+    (void)scratch;
+    l->work[item] = look_from(l->scene, l->points[item].place, &l->among, &l->points[item].seen);
+    return STARG_OK;
+}
+
+starg_status points_look(search_scene *scene, search_points *points, size_t first) {
+    starg_status status = STARG_OK;
+    starg_context *context = scene->context;
+    looking l = {scene, points->data, NULL, witnesses_from(scene, first)};
+    STARG_NEW_ZERO(context, STAGE, l.work, points->count);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = points->count,
+                                      .shared = &l,
+                                      .item = look_from_item,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    for (size_t i = 0; i < points->count; i++)
+        scene->work += l.work[i];
+done:
+    starg_release(context, l.work);
+    return status;
+}
+
+/* ---- cells ---- */
+
+starg_status cells_begin(const search_scene *scene, search_cells *cells) {
+    starg_status status = STARG_OK;
+    const bvh_box *all = &scene->solid->tree->nodes[0].box;
+    search_cell root = {.box = *all};
+    double extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = fmax(extent, all->upper[k] - all->lower[k]);
+    int exponent;
+    frexp(extent, &exponent);
+    double unit = ldexp(1, exponent - ROOT_BITS);
+    for (int k = 0; k < 3; k++) {
+        double lower = floor(all->lower[k] / unit) * unit,
+               upper = ceil(all->upper[k] / unit) * unit;
+        if (lower <= all->lower[k])
+            root.box.lower[k] = lower;
+        if (upper >= all->upper[k])
+            root.box.upper[k] = upper;
+    }
+    STARG_PUSH(scene->context, STAGE, cells, root);
+done:
+    return status;
+}
+
+static int longest_side(const bvh_box *box) {
+    int longest = 0;
+    for (int k = 1; k < 3; k++)
+        if (box->upper[k] - box->lower[k] > box->upper[longest] - box->lower[longest])
+            longest = k;
+    return longest;
+}
+
+static double middle(const bvh_box *box, int k) {
+    return 0.5 * box->lower[k] + 0.5 * box->upper[k];
+}
+
+bool cell_splits(const bvh_box *box) {
+    int k = longest_side(box);
+    double at = middle(box, k);
+    return at > box->lower[k] && at < box->upper[k];
+}
+
+static bvh_box half(const bvh_box *box, bool upper) {
+    bvh_box part = *box;
+    int k = longest_side(box);
+    if (upper)
+        part.lower[k] = middle(box, k);
+    else
+        part.upper[k] = middle(box, k);
+    return part;
+}
+
+static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
+    const search_scene *const *scene = shared;
+    box_worker *worker = NULL;
+    (void)context;
+    starg_status status = box_worker_create((*scene)->boxes, &worker);
+    *scratch = worker;
+    return status;
+}
+
+static void free_worker(starg_context *context, void *scratch) {
+    (void)context;
+    box_worker_free(scratch);
+}
+
+/* Sets what the box may see of the witnesses in `among`; returns the number of tests. */
+static uint64_t look_from_box(const search_scene *scene, box_worker *worker, const bvh_box *box,
+                              const witness_row *among, const witness_row *known,
+                              witness_row *open) {
+    uint64_t before = box_worker_tests(worker);
+    witness_row found = {{0}};
+    const box_question question = {.box = *box,
+                                   .target = scene->view->target,
+                                   .targets = scene->witnesses.data,
+                                   .count = scene->witnesses.count,
+                                   .range = scene->view->range,
+                                   .among = among->bits,
+                                   .known = known != NULL ? known->bits : NULL};
+    box_look(worker, &question, found.bits, NULL);
+    for (int w = 0; w < WITNESS_WORDS; w++)
+        open->bits[w] |= found.bits[w];
+    return box_worker_tests(worker) - before;
+}
+
+/* ---- looking at more witnesses ---- */
+
+typedef struct asking {
+    const search_scene *scene; /* first: as make_worker wants it */
+    search_cell *cells;
+    const uint32_t *list, *parents; /* by item */
+    witness_row among;
+    uint64_t *work; /* by item */
+} asking;
+
+static starg_status ask_item(starg_context *context, void *shared, void *scratch, size_t item) {
+    asking *a = shared;
+    search_cell *cell = &a->cells[a->list[item]];
+    witness_row among = a->among;
+    (void)context;
+    if (a->parents[item] != UINT32_MAX)
+        for (int w = 0; w < WITNESS_WORDS; w++)
+            among.bits[w] &= a->cells[a->parents[item]].open.bits[w];
+    a->work[item] = look_from_box(a->scene, scratch, &cell->box, &among, NULL, &cell->open);
+    return STARG_OK;
+}
+
+typedef STARG_ARRAY(uint32_t) numbers;
+
+static bool sees_any(const search_cell *cell, const witness_row *among) {
+    uint64_t any = 0;
+    for (int w = 0; w < WITNESS_WORDS; w++)
+        any |= cell->open.bits[w] & among->bits[w];
+    return any != 0;
+}
+
+/* One generation after the other: children are asked about what their parents may see. */
+starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) {
+    starg_status status = STARG_OK;
+    starg_context *context = scene->context;
+    numbers list = {0}, parents = {0}, next = {0}, next_parents = {0};
+    asking a = {.scene = scene, .cells = cells->data, .among = witnesses_from(scene, first)};
+    STARG_PUSH(context, STAGE, &list, 0);
+    STARG_PUSH(context, STAGE, &parents, UINT32_MAX);
+    while (list.count > 0) {
+        STARG_NEW_ZERO(context, STAGE, a.work, list.count);
+        a.list = list.data;
+        a.parents = parents.data;
+        const starg_parallel_loop loop = {.stage = STAGE,
+                                          .count = list.count,
+                                          .shared = &a,
+                                          .item = ask_item,
+                                          .make_scratch = make_worker,
+                                          .free_scratch = free_worker,
+                                          .silent = true};
+        STARG_TRY(starg_parallel_for(context, &loop));
+        next.count = next_parents.count = 0;
+        for (size_t i = 0; i < list.count; i++) {
+            uint32_t children = cells->data[list.data[i]].children;
+            scene->work += a.work[i] + 1;
+            for (uint32_t k = 0; k < 2 && children != 0; k++)
+                if (sees_any(&cells->data[list.data[i]], &a.among)) {
+                    STARG_PUSH(context, STAGE, &next, children + k);
+                    STARG_PUSH(context, STAGE, &next_parents, list.data[i]);
+                }
+        }
+        starg_release(context, a.work);
+        a.work = NULL;
+        numbers done_list = list, done_parents = parents;
+        list = next;
+        parents = next_parents;
+        next = done_list;
+        next_parents = done_parents;
+    }
+done:
+    starg_release(context, a.work);
+    STARG_ARRAY_FREE(context, &list);
+    STARG_ARRAY_FREE(context, &parents);
+    STARG_ARRAY_FREE(context, &next);
+    STARG_ARRAY_FREE(context, &next_parents);
+    return status;
+}
+
+/* ---- splitting ---- */
+
+typedef struct part {
+    search_cell cell;
+    search_point points[MOST_TRIES];
+    int count; /* of the points */
+    uint64_t work;
+} part;
+
+typedef struct splitting {
+    const search_scene *scene; /* first: as make_worker wants it */
+    const search_cell *cells;
+    const uint32_t *leaves;
+    size_t first; /* number of the first part among the cells */
+    int tries;
+    part *parts;
+} splitting;
+
+static void add_point(const search_scene *scene, part *out, const double p[3],
+                      const witness_row *among) {
+    search_point *point = &out->points[out->count];
+    if (!candidates_allowed(scene->solid, p, scene->clearance))
+        return;
+    *point = (search_point){.candidate = UINT32_MAX};
+    vec3_copy(p, point->place);
+    out->work += look_from(scene, p, among, &point->seen);
+    out->count++;
+}
+
+static starg_status make_part(starg_context *context, void *shared, void *scratch, size_t item) {
+    const splitting *s = shared;
+    const search_cell *whole = &s->cells[s->leaves[item / 2]];
+    part *out = &s->parts[item];
+    starg_rng rng = starg_rng_make(context->seed, RANDOM_STAGE, s->first + item);
+    witness_row known = {{0}};
+    double p[3];
+    *out = (part){.cell.box = half(&whole->box, item % 2 != 0)};
+    const bvh_box *box = &out->cell.box;
+    for (int i = 0; i < s->tries; i++) {
+        for (int k = 0; k < 3; k++)
+            p[k] = i == 0 ? middle(box, k)
+                          : box->lower[k] + starg_rng_unit(&rng) * (box->upper[k] - box->lower[k]);
+        add_point(s->scene, out, p, &whole->open);
+    }
+    for (int i = 0; i < out->count; i++)
+        for (int w = 0; w < WITNESS_WORDS; w++)
+            known.bits[w] |= out->points[i].seen.bits[w];
+    out->work += look_from_box(s->scene, scratch, box, &whole->open, &known, &out->cell.open);
+    return STARG_OK;
+}
+
+starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
+                         size_t count, int tries, search_points *points) {
+    starg_status status = STARG_OK;
+    starg_context *context = scene->context;
+    splitting s = {.scene = scene,
+                   .cells = cells->data,
+                   .leaves = leaves,
+                   .first = cells->count,
+                   .tries = tries};
+    STARG_NEW(context, STAGE, s.parts, 2 * count);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = 2 * count,
+                                      .shared = &s,
+                                      .item = make_part,
+                                      .make_scratch = make_worker,
+                                      .free_scratch = free_worker,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    for (size_t i = 0; i < 2 * count; i++) {
+        const part *p = &s.parts[i];
+        STARG_PUSH(context, STAGE, cells, p->cell);
+        if (i % 2 != 0) /* only now: a cell has both children or none */
+            cells->data[leaves[i / 2]].children = (uint32_t)(cells->count - 2);
+        for (int k = 0; k < p->count; k++)
+            STARG_PUSH(context, STAGE, points, p->points[k]);
+        scene->work += p->work + 2;
+    }
+done:
+    starg_release(context, s.parts);
+    return status;
+}

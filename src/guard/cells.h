@@ -1,0 +1,68 @@
+/* The space of a search as a tree of boxes, and what each of them may see of the witnesses. */
+#ifndef STARG_GUARD_CELLS_H
+#define STARG_GUARD_CELLS_H
+
+#include "core/memory.h"
+#include "guard/witnesses.h"
+#include "visibility/box.h"
+#include "visibility/scene.h"
+
+/* Where guards may stand, what hides, and what is to be seen. */
+typedef struct search_scene {
+    starg_context *context;
+    const starg_solid *solid;
+    const starg_visibility_options *view;
+    double clearance;
+    visibility_scene *points; /* what a point sees                                           */
+    box_scene *boxes;         /* what a box may see                                          */
+    uint32_t *places;         /* by column: where `points` has it: rank of the face, or slot */
+    STARG_ARRAY(uint32_t) witnesses; /* columns: the faces or vertices that stand for all    */
+    uint64_t work; /* vertices held against boxes and points, each about a microsecond       */
+} search_scene;
+
+/* Errors: MEMORY. */
+starg_status search_scene_open(starg_context *context, const starg_solid *solid,
+                               const starg_visibility_options *view, double clearance,
+                               search_scene *out);
+void search_scene_close(search_scene *scene);
+
+/* A point where a guard may stand. */
+typedef struct search_point {
+    double place[3];
+    witness_row seen;
+    uint32_t candidate; /* of the pool, or UINT32_MAX */
+} search_point;
+
+typedef STARG_ARRAY(search_point) search_points;
+
+/* Looks from every point at the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
+starg_status points_look(search_scene *scene, search_points *points, size_t first);
+
+/* A box and its parts: a point of the free space is in one leaf or more. */
+typedef struct search_cell {
+    bvh_box box;
+    witness_row open;  /* all that any point of the box in the free space sees, and perhaps more */
+    uint32_t children; /* the first of two, which follow one another; 0: a leaf                  */
+} search_cell;
+
+typedef STARG_ARRAY(search_cell) search_cells;
+
+/* The box of all free space, of which nothing is known. Errors: MEMORY. */
+starg_status cells_begin(const search_scene *scene, search_cells *cells);
+
+/* Looks from the cells at the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
+starg_status cells_look(search_scene *scene, search_cells *cells, size_t first);
+
+/* Can the box be cut in half? */
+bool cell_splits(const bvh_box *box);
+
+enum { MOST_TRIES = 12 };
+
+/* Cuts leaves in the middle of their longest sides. Points of the parts where a guard may stand,
+ * the centre and others at random, `tries` in all, are appended to `points`. Errors: MEMORY,
+ * CANCELLED.
+ */
+starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_t *leaves,
+                         size_t count, int tries, search_points *points);
+
+#endif

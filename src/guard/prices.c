@@ -1,0 +1,280 @@
+/* Prices of witnesses: the linear program max sum w, sum of w over each row <= 1, w >= 0, and its
+ * dual, the fractional cover min sum x, sum of x over the rows of each witness >= 1, x >= 0.
+ *
+ * A primal-dual interior-point method. It ends near the centre of the optimal prices, where the
+ * simplex method ends in a corner: prices that are spread over all faces that matter are worth more
+ * in the space between the points that are known. Both programs have inner points that are known
+ * from the start, and all steps stay feasible, so that only the products of each variable with its
+ * slack are to be made equal and small:
+ *
+ *     s = 1 - A'w,  t = A x - 1,  x s = mu,  w t = mu.
+ *
+ * Each step solves (A X S^-1 A' + T W^-1) dw = r by Cholesky's method; the products are predicted
+ * first, then corrected [Mehrotra 1992]. Cost of a step: the squares of the rows' sizes, and the
+ * cube of the number of witnesses; some 15 steps. */
+#include "guard/prices.h"
+
+#include <math.h>
+
+static const char STAGE[] = "search";
+
+enum { MOST_STEPS = 60 };
+
+static const double GAP = 1e-3; /* of the two programs' values, where the steps end */
+
+typedef struct program {
+    const witness_row *const *rows;
+    size_t n, m;                  /* rows, witnesses that are wanted */
+    uint32_t *index;              /* the ones of all rows, one row after the other */
+    size_t *start;                /* by row, and one more */
+    double *x, *s, *dx, *ds, *rx; /* by row */
+    double *w, *t, *dw, *dt, *rw; /* by witness */
+    double *matrix;               /* m x m, of which the lower half is used */
+    uint64_t work;
+} program;
+
+static void program_free(starg_context *context, program *p) {
+    starg_release(context, p->index);
+    starg_release(context, p->start);
+    starg_release(context, p->x);
+    starg_release(context, p->w);
+    starg_release(context, p->matrix);
+}
+
+static void list_ones(program *p, const uint32_t *number, const witness_row *wanted) {
+    size_t filled = 0;
+    for (size_t i = 0; i < p->n; i++) {
+        p->start[i] = filled;
+        for (size_t k = 0; k < WITNESS_WORDS; k++)
+            STARG_FOR_BITS (bit, p->rows[i]->bits[k] & wanted->bits[k])
+                p->index[filled++] = number[64 * k + bit];
+    }
+    p->start[p->n] = filled;
+}
+
+static starg_status program_make(starg_context *context, program *p, const witness_row *wanted,
+                                 const uint32_t *number) {
+    starg_status status = STARG_OK;
+    size_t ones = 0;
+    for (size_t i = 0; i < p->n; i++)
+        for (size_t k = 0; k < WITNESS_WORDS; k++)
+            ones += (size_t)__builtin_popcountll(p->rows[i]->bits[k] & wanted->bits[k]);
+    STARG_NEW(context, STAGE, p->index, ones);
+    STARG_NEW(context, STAGE, p->start, p->n + 1);
+    STARG_NEW_ZERO(context, STAGE, p->x, 5 * p->n);
+    STARG_NEW_ZERO(context, STAGE, p->w, 5 * p->m);
+    STARG_NEW(context, STAGE, p->matrix, p->m * p->m);
+    p->s = p->x + p->n;
+    p->dx = p->s + p->n;
+    p->ds = p->dx + p->n;
+    p->rx = p->ds + p->n;
+    p->t = p->w + p->m;
+    p->dw = p->t + p->m;
+    p->dt = p->dw + p->m;
+    p->rw = p->dt + p->m;
+    list_ones(p, number, wanted);
+done:
+    return status;
+}
+
+/* out[f] = start[f] + the sum of `of` over the rows of f. */
+static void sum_rows(const program *p, const double *of, double start, double *out) {
+    for (size_t f = 0; f < p->m; f++)
+        out[f] = start;
+    for (size_t i = 0; i < p->n; i++)
+        for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
+            out[p->index[e]] += of[i];
+}
+
+static double sum_row(const program *p, size_t i, const double *of) {
+    double sum = 0;
+    for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
+        sum += of[p->index[e]];
+    return sum;
+}
+
+/* Every row twice; prices that no row of half the sum lets exceed. */
+static void begin(program *p) {
+    for (size_t f = 0; f < p->m; f++)
+        p->w[f] = 0.5;
+    for (size_t i = 0; i < p->n; i++)
+        for (size_t e = p->start[i]; e < p->start[i + 1]; e++)
+            p->w[p->index[e]] =
+                fmin(p->w[p->index[e]], 0.5 / (double)(p->start[i + 1] - p->start[i]));
+    for (size_t i = 0; i < p->n; i++) {
+        p->x[i] = 2;
+        p->s[i] = 1 - sum_row(p, i, p->w);
+    }
+    sum_rows(p, p->x, -1, p->t);
+}
+
+static void fill_matrix(program *p) {
+    size_t m = p->m;
+    memset(p->matrix, 0, m * m * sizeof *p->matrix);
+    for (size_t i = 0; i < p->n; i++) {
+        double d = p->x[i] / p->s[i];
+        for (size_t a = p->start[i]; a < p->start[i + 1]; a++) {
+            double *line = p->matrix + p->index[a] * m;
+            for (size_t b = p->start[i]; b <= a; b++)
+                line[p->index[b]] += d;
+        }
+        p->work += (p->start[i + 1] - p->start[i]) * (p->start[i + 1] - p->start[i]) / 2;
+    }
+    for (size_t f = 0; f < m; f++)
+        p->matrix[f * m + f] += p->t[f] / p->w[f];
+    p->work += m * m * m / 6;
+}
+
+/* Cholesky's L in place of the lower half. False: rounding has made it indefinite. */
+static bool factor(program *p) {
+    size_t m = p->m;
+    for (size_t i = 0; i < m; i++) {
+        double *row = p->matrix + i * m;
+        for (size_t j = 0; j <= i; j++) {
+            const double *other = p->matrix + j * m;
+            double sums[4] = {0};
+            size_t k = 0;
+            for (; k + 4 <= j; k += 4)
+                for (size_t l = 0; l < 4; l++)
+                    sums[l] += row[k + l] * other[k + l];
+            for (; k < j; k++)
+                sums[0] += row[k] * other[k];
+            double left = row[j] - ((sums[0] + sums[1]) + (sums[2] + sums[3]));
+            if (j < i)
+                row[j] = left / other[j];
+            else if (!(left > 0))
+                return false;
+            else
+                row[i] = sqrt(left);
+        }
+    }
+    return true;
+}
+
+static void solve(const program *p, double *v) {
+    size_t m = p->m;
+    for (size_t i = 0; i < m; i++) {
+        for (size_t k = 0; k < i; k++)
+            v[i] -= p->matrix[i * m + k] * v[k];
+        v[i] /= p->matrix[i * m + i];
+    }
+    for (size_t i = m; i-- > 0;) {
+        v[i] /= p->matrix[i * m + i];
+        for (size_t k = 0; k < i; k++)
+            v[k] -= p->matrix[i * m + k] * v[i];
+    }
+}
+
+/* The step for which x s changes by rx and w t by rw. */
+static void find_step(program *p) {
+    for (size_t i = 0; i < p->n; i++)
+        p->dx[i] = p->rx[i] / p->s[i];
+    sum_rows(p, p->dx, 0, p->dw);
+    for (size_t f = 0; f < p->m; f++)
+        p->dw[f] = p->rw[f] / p->w[f] - p->dw[f];
+    solve(p, p->dw);
+    for (size_t i = 0; i < p->n; i++) {
+        p->ds[i] = -sum_row(p, i, p->dw);
+        p->dx[i] = (p->rx[i] - p->x[i] * p->ds[i]) / p->s[i];
+    }
+    sum_rows(p, p->dx, 0, p->dt);
+}
+
+/* How far v + a dv stays positive, at most 1. */
+static double longest(const double *v, const double *dv, size_t count) {
+    double a = 1;
+    for (size_t k = 0; k < count; k++)
+        if (v[k] + a * dv[k] < 0)
+            a = -v[k] / dv[k];
+    return a;
+}
+
+static void aim(program *p, double target, double corrected) {
+    for (size_t i = 0; i < p->n; i++)
+        p->rx[i] = target - p->x[i] * p->s[i] - corrected * p->dx[i] * p->ds[i];
+    for (size_t f = 0; f < p->m; f++)
+        p->rw[f] = target - p->w[f] * p->t[f] - corrected * p->dw[f] * p->dt[f];
+}
+
+static double gap_after(const program *p, double primal, double dual) {
+    double gap = 0;
+    for (size_t i = 0; i < p->n; i++)
+        gap += (p->x[i] + primal * p->dx[i]) * (p->s[i] + dual * p->ds[i]);
+    for (size_t f = 0; f < p->m; f++)
+        gap += (p->w[f] + dual * p->dw[f]) * (p->t[f] + primal * p->dt[f]);
+    return gap;
+}
+
+static void move(double *v, const double *dv, double a, size_t count) {
+    for (size_t k = 0; k < count; k++)
+        v[k] += a * dv[k];
+}
+
+static bool step(program *p, double gap) {
+    fill_matrix(p);
+    if (!factor(p))
+        return false;
+    aim(p, 0, 0);
+    find_step(p);
+    double primal = fmin(longest(p->x, p->dx, p->n), longest(p->t, p->dt, p->m));
+    double dual = fmin(longest(p->s, p->ds, p->n), longest(p->w, p->dw, p->m));
+    double ratio = gap_after(p, primal, dual) / gap;
+    aim(p, ratio * ratio * ratio * gap / (double)(p->n + p->m), 1);
+    find_step(p);
+    primal = 0.98 * fmin(longest(p->x, p->dx, p->n), longest(p->t, p->dt, p->m));
+    dual = 0.98 * fmin(longest(p->s, p->ds, p->n), longest(p->w, p->dw, p->m));
+    move(p->x, p->dx, primal, p->n);
+    move(p->t, p->dt, primal, p->m);
+    move(p->s, p->ds, dual, p->n);
+    move(p->w, p->dw, dual, p->m);
+    return true;
+}
+
+static void run(program *p) {
+    begin(p);
+    for (size_t f = 0; f < p->m; f++)
+        p->dw[f] = p->dt[f] = 0;
+    for (int k = 0; k < MOST_STEPS; k++) {
+        double gap = gap_after(p, 0, 0);
+        if (gap < GAP || !step(p, gap))
+            break;
+    }
+}
+
+/* Rounding may have left a row a little above 1. */
+static void read_prices(const program *p, const uint32_t *number, witness_prices *out) {
+    double most = 1;
+    out->sum = 0;
+    for (size_t i = 0; i < p->n; i++)
+        most = fmax(most, sum_row(p, i, p->w));
+    for (size_t j = 0; j < MOST_WITNESSES; j++) {
+        out->price[j] = number[j] == UINT32_MAX ? 0 : p->w[number[j]] / most;
+        out->sum += out->price[j];
+    }
+    memcpy(out->share, p->x, p->n * sizeof *p->x);
+    out->work = p->work / 1000;
+}
+
+starg_status prices_find(starg_context *context, const witness_row *const *rows, size_t count,
+                         const witness_row *wanted, witness_prices *out) {
+    starg_status status = STARG_OK;
+    program p = {.rows = rows, .n = count};
+    uint32_t number[MOST_WITNESSES];
+    *out = (witness_prices){0};
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        number[j] = starg_bit_test(wanted->bits, j) ? (uint32_t)p.m++ : UINT32_MAX;
+    STARG_NEW(context, STAGE, out->share, count);
+    STARG_TRY(program_make(context, &p, wanted, number));
+    run(&p);
+    read_prices(&p, number, out);
+done:
+    program_free(context, &p);
+    if (status != STARG_OK)
+        prices_free(context, out);
+    return status;
+}
+
+void prices_free(starg_context *context, witness_prices *prices) {
+    starg_release(context, prices->share);
+    prices->share = NULL;
+}

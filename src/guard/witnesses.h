@@ -1,0 +1,29 @@
+/* Rows of bits over the witnesses of a search: faces (or vertices) that stand for all of them. */
+#ifndef STARG_GUARD_WITNESSES_H
+#define STARG_GUARD_WITNESSES_H
+
+#include "core/bits.h"
+
+enum { MOST_WITNESSES = 1024, WITNESS_WORDS = MOST_WITNESSES / 64 };
+
+typedef struct witness_row {
+    uint64_t bits[WITNESS_WORDS];
+} witness_row;
+
+/* Is every witness of `a` in `b`? */
+static inline bool row_is_within(const witness_row *a, const witness_row *b) {
+    uint64_t outside = 0;
+    for (int w = 0; w < WITNESS_WORDS; w++)
+        outside |= a->bits[w] & ~b->bits[w];
+    return outside == 0;
+}
+
+static inline double row_value(const witness_row *row, const double *prices) {
+    double sum = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w])
+            sum += prices[64 * w + bit];
+    return sum;
+}
+
+#endif

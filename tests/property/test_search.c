@@ -1,0 +1,263 @@
+/* The search over every point of a solid: its guards see everything, no dense sample of points has
+ * a cover below its bound, and its bytes do not depend on threads. */
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/bits.h"
+#include "core/rng.h"
+#include "models.h"
+#include "shapes.h"
+#include "starguard/sample.h"
+#include "starguard/visibility.h"
+
+enum { SAMPLE = 1500 };
+
+static starg_guard_options proving(uint64_t work) {
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.candidate_count = 60;
+    options.refine_lines = 20000;
+    options.prove = true;
+    options.prove_work = work;
+    return options;
+}
+
+/* Half of them anywhere in the box, half near a guard; starg_visibility sees nothing from those
+ * outside. */
+static void sample_points(const starg_solid *solid, const starg_guards *guards, uint64_t item,
+                          double *points) {
+    const starg_mesh *mesh = starg_solid_mesh(solid);
+    starg_rng rng = starg_rng_make(5, 9, item);
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < 3 * starg_mesh_vertex_count(mesh); i++) {
+        lower[i % 3] = fmin(lower[i % 3], starg_mesh_vertices(mesh)[i]);
+        upper[i % 3] = fmax(upper[i % 3], starg_mesh_vertices(mesh)[i]);
+    }
+    for (size_t i = 0; i < SAMPLE; i++) {
+        const double *near = guards->positions + 3 * (i % guards->count);
+        double reach = i < guards->count ? 0 : pow(0.5, (double)(i % 7));
+        for (size_t k = 0; k < 3; k++) {
+            double at = starg_rng_unit(&rng), side = upper[k] - lower[k];
+            points[3 * i + k] = i % 2 == 0 && i >= guards->count
+                                    ? lower[k] + at * side
+                                    : near[k] + reach * (at - 0.5) * side;
+        }
+    }
+}
+
+/* Do `most` rows hold all columns that are left? By the rows of the column that fewest hold. */
+static bool covers(const starg_bits *rows, const uint64_t *left, size_t most) {
+    size_t rarest = SIZE_MAX, fewest = SIZE_MAX;
+    for (size_t j = 0; j < rows->columns; j++) {
+        size_t held = 0;
+        if (!starg_bit_test(left, j))
+            continue;
+        for (size_t i = 0; i < rows->rows && most > 0; i++)
+            held += starg_bits_test(rows, i, j);
+        if (held < fewest) {
+            fewest = held;
+            rarest = j;
+        }
+    }
+    if (rarest == SIZE_MAX)
+        return true;
+    uint64_t *rest = calloc(rows->words, sizeof *rest);
+    assert_non_null(rest);
+    bool found = false;
+    for (size_t i = 0; i < rows->rows && most > 0 && !found; i++) {
+        if (!starg_bits_test(rows, i, rarest))
+            continue;
+        for (size_t w = 0; w < rows->words; w++)
+            rest[w] = left[w] & ~starg_bits_row(rows, i)[w];
+        found = covers(rows, rest, most - 1);
+    }
+    free(rest);
+    return found;
+}
+
+/* The sample holds the guards, so that some of it sees all that they see. */
+static void check_bound(starg_context *context, const starg_solid *solid,
+                        const starg_guards *guards, uint64_t item) {
+    double *points = calloc(3 * SAMPLE, sizeof *points);
+    starg_visibility_options view = guards->options.visibility;
+    starg_bits *rows = NULL;
+    assert_non_null(points);
+    sample_points(solid, guards, item, points);
+    view.engine = STARG_VISIBILITY_BVH;
+    test_ok(context, starg_visibility(context, solid, points, SAMPLE, &view, &rows));
+    uint64_t *seen = calloc(rows->words, sizeof *seen);
+    assert_non_null(seen);
+    for (size_t i = 0; i < guards->count; i++)
+        for (size_t w = 0; w < rows->words; w++)
+            seen[w] |= starg_bits_row(rows, i)[w];
+    assert_true(guards->lower_bound_everywhere >= 1);
+    assert_true(guards->lower_bound_everywhere <= guards->count);
+    assert_true(guards->optimal_everywhere == (guards->lower_bound_everywhere == guards->count));
+    assert_true(guards->lower_bound >= guards->lower_bound_everywhere);
+    assert_false(covers(rows, seen, guards->lower_bound_everywhere - 1));
+    starg_bits_free(rows);
+    free(seen);
+    free(points);
+}
+
+/* Never more guards than without the search. */
+static void check_solid(starg_context *context, const starg_solid *solid,
+                        starg_guard_options options, uint64_t item) {
+    starg_guards *best = test_guard(context, solid, &options);
+    options.prove = false;
+    starg_guards *first = test_guard(context, solid, &options);
+    assert_true(best->count <= first->count);
+    assert_true(best->coverage_faces >= first->coverage_faces);
+    check_bound(context, solid, best, item);
+    starg_guards_free(context, best);
+    starg_guards_free(context, first);
+}
+
+/* A heap of cells: many reflex edges, at which cells can never be settled. */
+static shape random_cells(uint64_t item) {
+    starg_rng rng = starg_rng_make(8, 2, item);
+    char cells[4 * 4 * 2];
+    int at[3] = {0, 0, 0};
+    const int size[3] = {4, 4, 2};
+    memset(cells, ' ', sizeof cells);
+    for (int step = 0; step < 20; step++) {
+        size_t k = (size_t)starg_rng_below(&rng, 3);
+        cells[at[0] + 4 * (at[1] + 4 * at[2])] = '#';
+        at[k] = (int)starg_rng_below(&rng, 2) ? at[k] + 1 : at[k] - 1;
+        at[k] = at[k] < 0 ? 0 : at[k] >= size[k] ? size[k] - 1 : at[k];
+    }
+    return shape_cells(cells, 4, 4, 2);
+}
+
+static void test_random_solids(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    size_t solids = 0, rounds = test_rounds(12, 200);
+    for (uint64_t item = 0; item < rounds; item++) {
+        shape s = item % 3 == 0 ? shape_blob(2, item) : random_cells(item);
+        starg_mesh *mesh = test_mesh_of(context, &s);
+        starg_solid *solid = NULL;
+        if (starg_solid_create(context, mesh, &solid) == STARG_OK) {
+            check_solid(context, solid, proving(300000), item);
+            starg_solid_free(solid);
+            solids++;
+        }
+        starg_mesh_free(mesh);
+        shape_free(&s);
+    }
+    assert_true(solids > rounds / 2);
+    test_context_free(context);
+}
+
+/* Vertices, a range, whole faces, and a distance from the walls. */
+static void test_questions(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    shape s = shape_columns();
+    starg_solid *solid = test_solid_of(context, &s);
+    for (int question = 0; question < 4; question++) {
+        starg_guard_options options = proving(400000);
+        if (question == 0)
+            options.visibility.target = STARG_TARGET_VERTICES;
+        else if (question == 1)
+            options.visibility.range = 3;
+        else if (question == 2)
+            options.visibility.face_rule = STARG_FACES_WHOLE;
+        else
+            options.clearance = 0.2;
+        check_solid(context, solid, options, (uint64_t)question);
+    }
+    starg_solid_free(solid);
+    shape_free(&s);
+    test_context_free(context);
+}
+
+static char *bytes_with(int threads, size_t *size) {
+    starg_context *context = test_context(threads);
+    starg_solid *solid = test_sample(context, "gallery", 500);
+    starg_guard_options options = proving(1000000);
+    starg_guards *guards = NULL;
+    char *text = NULL, *copy;
+    test_ok(context, starg_guard(context, solid, &options, &guards));
+    test_ok(context, starg_guards_write_memory(context, guards, "gallery.off", &text, size));
+    copy = malloc(*size);
+    assert_non_null(copy);
+    memcpy(copy, text, *size);
+    starg_text_free(context, text);
+    starg_guards_free(context, guards);
+    starg_solid_free(solid);
+    test_context_free(context);
+    return copy;
+}
+
+static void test_same_bytes(void **state) {
+    (void)state;
+    size_t size, other;
+    char *first = bytes_with(1, &size);
+    for (int threads = 2; threads <= 7; threads += 5) {
+        char *again = bytes_with(threads, &other);
+        assert_int_equal(size, other);
+        assert_memory_equal(first, again, size);
+        free(again);
+    }
+    free(first);
+}
+
+/* One guard in the kernel is enough, with or without the search, and is said to be. */
+static void test_star_shaped(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape s = shape_blob(2, 7);
+    starg_solid *solid = test_solid_of(context, &s);
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    starg_guards *guards = test_guard(context, solid, &options);
+    assert_int_equal(guards->count, 1);
+    assert_int_equal(guards->lower_bound_everywhere, 1);
+    assert_true(guards->optimal_everywhere && guards->optimal);
+    starg_guards_free(context, guards);
+    starg_solid_free(solid);
+    shape_free(&s);
+    test_context_free(context);
+}
+
+static void test_refused(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "l-room", 500);
+    double place[3] = {1, 1, 1};
+    for (int question = 0; question < 5; question++) {
+        starg_guard_options options = proving(1000);
+        starg_guards *guards = NULL;
+        if (question == 0)
+            options.coverage = 0.9;
+        else if (question == 1)
+            options.max_guards = 2;
+        else if (question == 2)
+            options.redundancy = 2;
+        else if (question == 3)
+            options.visibility.cone = 90;
+        else {
+            options.candidates = STARG_CANDIDATES_GIVEN;
+            options.points = place;
+            options.point_count = 1;
+        }
+        assert_int_equal(starg_guard(context, solid, &options, &guards), STARG_ERROR_ARGUMENT);
+        assert_null(guards);
+        assert_non_null(strstr(starg_context_error(context)->message, "anywhere"));
+    }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_random_solids), cmocka_unit_test(test_questions),
+        cmocka_unit_test(test_same_bytes),    cmocka_unit_test(test_star_shaped),
+        cmocka_unit_test(test_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
