@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Guards at every point of a solid, and how few could do: guards and bounds of `guard --prove`, with
 cells, witnesses and seconds of processor time.
 

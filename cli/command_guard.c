@@ -230,7 +230,8 @@ const cli_command cli_command_guard = {
         "Generates candidate points inside the solid, computes exactly which faces each one sees, "
         "and chooses the fewest that together see every visible face. The result contains the "
         "guards, their coverage, and a proven lower bound: no choice of fewer candidates covers as "
-        "much. With --prove every point of the solid is a candidate. Faces that no candidate sees are listed; they are not an error.\n"
+        "much. With --prove every point of the solid is a candidate. Faces that no candidate sees "
+        "are listed; they are not an error.\n"
         "With --time-limit the best result so far is written with its bound.",
     .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"

@@ -67,7 +67,8 @@ typedef struct starg_guard_options {
     uint64_t refine_lines; /* sight lines that refinement may test */
 
     /* Guards anywhere: search fewer guards at every point of the solid, and prove how many are
-     * needed, wherever they stand. For full coverage, redundancy 1, no cone, candidates not given */
+     * needed, wherever they stand. For full coverage, redundancy 1, no cone, candidates not given
+     */
     bool prove;
     uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_guard_options;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The bound of a search, in whole numbers: whatever floating point has found the prices, this sum
  * and this maximum are exact. Prices are below 2^44 and witnesses at most 2^10, so that sums stay
  * below 2^54. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* How many guards are needed, proven in whole numbers. */
 #ifndef STARG_GUARD_BOUND_H
 #define STARG_GUARD_BOUND_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Cells: the space in which guards may stand, cut into boxes, each with the witnesses that it may
  * see by visibility/box.h.
  *

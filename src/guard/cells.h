@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The space of a search as a tree of boxes, and what each of them may see of the witnesses. */
 #ifndef STARG_GUARD_CELLS_H
 #define STARG_GUARD_CELLS_H

@@ -146,9 +146,8 @@ static const starg_field OPTIONS[] = {
     {.option = "prove",
      .kind = STARG_FIELD_FLAG,
      OPTION(prove),
-     .help =
-         "Search fewer guards at every point of the solid, and prove how many are needed, "
-         "wherever they stand."},
+     .help = "Search fewer guards at every point of the solid, and prove how many are needed, "
+             "wherever they stand."},
     {.option = "prove-work",
      .kind = STARG_FIELD_COUNT,
      OPTION(prove_work),

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Prices of witnesses: the linear program max sum w, sum of w over each row <= 1, w >= 0, and its
  * dual, the fractional cover min sum x, sum of x over the rows of each witness >= 1, x >= 0.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The fractional cover of witnesses by rows, and the prices that it pays for them. */
 #ifndef STARG_GUARD_PRICES_H
 #define STARG_GUARD_PRICES_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The fewest guards over every point of the free space, and how few could do.
  *
  * Problem. Guards may stand anywhere; a lower bound that holds for all of them, and guards that

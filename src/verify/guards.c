@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Verification of a guards result. First, visibility is recomputed for each guard (verify/sight.h),
- * in parallel. Then the claims of the result are compared with it, one by one. Claims that depend on
- * the candidates, which a result does not contain, are refuted by counterexamples: faces that could
- * be seen (verify/coverable.c), guards of the result that suffice (verify/needed.c), redundancy
- * (verify/redundancy.c). What remains is listed as not checked.
+ * in parallel. Then the claims of the result are compared with it, one by one. Claims that depend
+ * on the candidates, which a result does not contain, are refuted by counterexamples: faces that
+ * could be seen (verify/coverable.c), guards of the result that suffice (verify/needed.c),
+ * redundancy (verify/redundancy.c). What remains is listed as not checked.
  *
  * Invariant: each guard has a row of its own, so that the order in which threads work does not
  * show. Cost: see verify/sight.h for each guard. */

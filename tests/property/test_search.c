@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The search over every point of a solid: its guards see everything, no dense sample of points has
  * a cover below its bound, and its bytes do not depend on threads. */
 #include "support.h"

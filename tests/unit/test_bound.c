@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Prices of witnesses and the bounds that they prove, against enumeration. */
 #include "support.h"
 
