@@ -562,6 +562,9 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
             "the result is called %s",
             guards->lower_bound_everywhere,
             guards->optimal_everywhere ? "the fewest possible" : "not proven such");
+    if (guards->lower_bound_everywhere > 0)
+        verify_leave(verdict, "that at least %zu guards are needed, wherever they stand",
+                     guards->lower_bound_everywhere);
     double seen = fraction(known->covered_area, known->total_area);
     verify_claim(verdict, seen <= guards->area_bound * (1 + TOLERANCE),
                  "the area seen, %.17g, is within its bound %.17g", seen, guards->area_bound);

@@ -1,0 +1,206 @@
+/* The integer programs of a search, over its points and over its cells.
+ *
+ * A program over points that has fewer rows than there are guards gives better guards or faces that
+ * are to become witnesses. One over cells and points tells where such guards could still stand: in
+ * those cells, or in others that may see what one of them alone sees. They are split, with more
+ * points, until points do as well or no cells could. The solver is believed where it finds
+ * something, which is looked at; that there is nothing is proven by branching (guard/bound.c). */
+#include <math.h>
+#include <stdlib.h>
+
+#include "geometry/vec3.h"
+#include "guard/bound.h"
+#include "guard/search_parts.h"
+#include "starguard/cover.h"
+
+static const char STAGE[] = "search";
+
+enum { NODES = 300, FOLLOWED = 16 };
+
+static starg_status make_program(const search *s, const row_list *list, starg_bits **out) {
+    starg_status status =
+        starg_bits_create(context_of(s), list->count, s->scene.witnesses.count, out);
+    for (size_t i = 0; status == STARG_OK && i < list->count; i++)
+        memcpy(starg_bits_row_mutable(*out, i), list->rows[i]->bits,
+               (*out)->words * sizeof(uint64_t));
+    return status;
+}
+
+static void list_needed(const search *s, row_list *list) {
+    list->count = 0;
+    for (size_t i = 0; i < s->points.count; i++)
+        if (!is_needless(list, &s->points.data[i].seen))
+            row_list_add(s, list, i);
+}
+
+/* The integer program over the points: do fewer guards see all witnesses? *changed: there are
+ * better guards, or more witnesses. */
+starg_status search_ask_points(search *s, bool *changed) {
+    starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
+    starg_bits *rows = NULL;
+    starg_cover *cover = NULL;
+    starg_cover_problem problem;
+    starg_cover_options options;
+    STARG_ARRAY(double) places = {0};
+    row_list list = {0};
+    *changed = false;
+    STARG_TRY(row_list_make(context, s->points.count, &list));
+    list_needed(s, &list);
+    STARG_TRY(make_program(s, &list, &rows));
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    problem.rows = rows;
+    options.max_nodes = NODES;
+    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    s->scene.work += list.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
+    s->asked_at = s->cells.count;
+    s->asked_of = s->scene.witnesses.count;
+    if (cover->count < s->count) {
+        for (size_t k = 0; k < cover->count; k++)
+            for (int c = 0; c < 3; c++)
+                STARG_PUSH(context, STAGE, &places,
+                           s->points.data[list.points[cover->rows[k]]].place[c]);
+        STARG_TRY(search_try_guards(s, places.data, cover->count, changed));
+    }
+done:
+    row_list_free(context, &list);
+    STARG_ARRAY_FREE(context, &places);
+    starg_cover_free(cover);
+    starg_bits_free(rows);
+    return status;
+}
+
+/* ---- cells and points ---- */
+
+/* Columns of the program: what no other one holds. Leaves that see no more than a point does are
+ * left to the point: that is settled. */
+typedef struct column_list {
+    row_list rows;
+    uint32_t *cells; /* by column: the leaf, or UINT32_MAX for a point */
+} column_list;
+
+static starg_status list_columns(const search *s, column_list *out) {
+    starg_status status = STARG_OK;
+    size_t most = s->points.count + s->cells.count, hint = 0;
+    STARG_TRY(row_list_make(context_of(s), most, &out->rows));
+    STARG_NEW(context_of(s), STAGE, out->cells, most);
+    list_needed(s, &out->rows);
+    for (size_t k = 0; k < out->rows.count; k++)
+        out->cells[k] = UINT32_MAX;
+    for (size_t i = 0; i < s->cells.count; i++) {
+        const witness_row *open = &s->cells.data[i].open;
+        bool needless = s->cells.data[i].children != 0 ||
+                        (hint < out->rows.count && row_is_within(open, out->rows.rows[hint]));
+        for (size_t k = 0; k < out->rows.count && !needless; k++)
+            if (row_is_within(open, out->rows.rows[k])) {
+                needless = true;
+                hint = k;
+            }
+        if (needless)
+            continue;
+        out->cells[out->rows.count] = (uint32_t)i;
+        out->rows.points[out->rows.count] = UINT32_MAX;
+        out->rows.rows[out->rows.count++] = open;
+    }
+done:
+    return status;
+}
+
+/* Unsettled leaves that could stand in for a chosen column: they may see all that it alone sees. */
+static starg_status list_stand_ins(const search *s, const column_list *columns,
+                                   const starg_cover *cover, scored_leaf **out, size_t *count) {
+    starg_status status = STARG_OK;
+    uint8_t *listed = NULL;
+    *count = 0;
+    STARG_NEW_ZERO(context_of(s), STAGE, listed, columns->rows.count);
+    STARG_NEW(context_of(s), STAGE, *out, columns->rows.count);
+    for (size_t c = 0; c < cover->count; c++) {
+        witness_row alone = *columns->rows.rows[cover->rows[c]];
+        for (size_t o = 0; o < cover->count; o++)
+            for (int w = 0; o != c && w < WITNESS_WORDS; w++)
+                alone.bits[w] &= ~columns->rows.rows[cover->rows[o]]->bits[w];
+        for (size_t k = 0; k < columns->rows.count; k++) {
+            uint32_t cell = columns->cells[k];
+            if (cell == UINT32_MAX || listed[k] || !row_is_within(&alone, columns->rows.rows[k]))
+                continue;
+            const bvh_box *box = &s->cells.data[cell].box;
+            double size = vec3_distance(box->lower, box->upper);
+            (*out)[(*count)++] = (scored_leaf){k == cover->rows[c] ? INFINITY : size, cell};
+            listed[k] = 1;
+        }
+    }
+done:
+    starg_release(context_of(s), listed);
+    return status;
+}
+
+/* Fewer columns than there are guards hold all witnesses: their leaves are split, or all of them
+ * are points, which are tried. */
+static starg_status follow_cover(search *s, const column_list *columns, const starg_cover *cover,
+                                 bool *changed, bool *again) {
+    starg_status status = STARG_OK;
+    scored_leaf *leaves = NULL;
+    size_t count;
+    STARG_ARRAY(double) places = {0};
+    STARG_TRY(list_stand_ins(s, columns, cover, &leaves, &count));
+    *changed = *again = count > 0;
+    for (size_t c = 0; c < cover->count && count == 0; c++)
+        for (int k = 0; k < 3; k++)
+            STARG_PUSH(context_of(s), STAGE, &places,
+                       s->points.data[columns->rows.points[cover->rows[c]]].place[k]);
+    if (count > 0)
+        STARG_TRY(search_split(s, leaves, count, MOST_TRIES));
+    else
+        STARG_TRY(search_try_guards(s, places.data, cover->count, changed));
+done:
+    STARG_ARRAY_FREE(context_of(s), &places);
+    starg_release(context_of(s), leaves);
+    return status;
+}
+
+/* The integer program over cells and points: what holds all witnesses with fewer columns than there
+ * are guards is followed; where nothing does, branching proves it. */
+static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
+    starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
+    column_list columns = {0};
+    starg_bits *rows = NULL;
+    starg_cover *cover = NULL;
+    starg_cover_problem problem;
+    starg_cover_options options;
+    bool proven = false;
+    const witness_row all = all_witnesses(s);
+    *again = false;
+    STARG_TRY(list_columns(s, &columns));
+    STARG_TRY(make_program(s, &columns.rows, &rows));
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    problem.rows = rows;
+    options.max_nodes = NODES;
+    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    s->scene.work += columns.rows.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
+    if (cover->count < s->count)
+        STARG_TRY(follow_cover(s, &columns, cover, changed, again));
+    else
+        STARG_TRY(bound_by_branching(context, columns.rows.rows, columns.rows.count, &all,
+                                     s->count - 1, NODES, &proven, &s->scene.work));
+    if (proven)
+        s->bound = s->count;
+done:
+    row_list_free(context, &columns.rows);
+    starg_release(context, columns.cells);
+    starg_cover_free(cover);
+    starg_bits_free(rows);
+    return status;
+}
+
+starg_status search_ask_cells(search *s, bool *changed) {
+    starg_status status = STARG_OK;
+    bool again = true;
+    *changed = false;
+    for (int k = 0; k < FOLLOWED && again; k++)
+        STARG_TRY(ask_cells_once(s, changed, &again));
+done:
+    return status;
+}
