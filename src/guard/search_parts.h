@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The parts of a search over every point (guard/search.c). */
 #ifndef STARG_GUARD_SEARCH_PARTS_H
 #define STARG_GUARD_SEARCH_PARTS_H

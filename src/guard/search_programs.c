@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The integer programs of a search, over its points and over its cells.
  *
  * A program over points that has fewer rows than there are guards gives better guards or faces that

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Witnesses of a search: which faces stand for all of them.
  *
  * Those that pay most in the candidates' program are the first. Later ones are faces that guards
