@@ -23,7 +23,7 @@ class Views(Case):
         self.pieces.write("p.vtk")
         self.pieces.write_report("p.json")
         self.skeleton.write("s.vtk")
-        for ending in ("glb", "vtu", "ply", "obj"):
+        for extension in ("glb", "vtu", "ply", "obj"):
             self.cli("export", "g.json", "p.vtk", "p.json", "s.vtk", "-o", f"a.{extension}", "--quiet")
             starguard.write_scene(f"b.{extension}", self.model, guards=self.guards, pieces=self.pieces,
                                   skeleton=self.skeleton)
@@ -48,7 +48,7 @@ class Views(Case):
         self.assertNotIn(b"<script>alert", page)
         self.fails(starguard.ArgumentError, "distances of 1 shapes", starguard.write_page, "b.html",
                    shapes={"a": b""})
-        self.fails(starguard.ArgumentError, "nothing", starguard.write_page, "b.html")
+        self.fails(starguard.ArgumentError, "no content", starguard.write_page, "b.html")
         self.assertFalse(os.path.exists("b.html"))
 
     def test_what_does_not_fit(self):
@@ -67,7 +67,7 @@ class Views(Case):
         return starguard.read_result("p.json")
 
     def test_skeletons(self):
-        for ending in ("obj", "cg", "vtk"):
+        for extension in ("obj", "cg", "vtk"):
             self.skeleton.write(f"s.{extension}")
             again = starguard.Skeleton.read(f"s.{extension}")
             self.assertTrue((again.positions == self.skeleton.positions).all())
