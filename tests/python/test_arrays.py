@@ -34,8 +34,8 @@ class Into(Case):
             rows[2, 1] = bad
             error = self.fails(starguard.RangeError, "", starguard.Mesh, rows, FACES)
             self.assertEqual((error.element, error.elements.tolist()), ("vertex", [2]))
-        self.fails(starguard.ArgumentError, "there is -1", starguard.Mesh, VERTICES, [[0, 1, -1]])
-        self.fails(starguard.ArgumentError, "there is 4294967296", starguard.Mesh, VERTICES,
+        self.fails(starguard.ArgumentError, "not -1", starguard.Mesh, VERTICES, [[0, 1, -1]])
+        self.fails(starguard.ArgumentError, "not 4294967296", starguard.Mesh, VERTICES,
                    np.array([[0, 1, 2**32]]))
         self.fails(starguard.ArgumentError, "", starguard.Mesh, VERTICES, [[0, 1, 4]])
 

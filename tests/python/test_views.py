@@ -48,7 +48,7 @@ class Views(Case):
         self.assertNotIn(b"<script>alert", page)
         self.fails(starguard.ArgumentError, "distances of 1 shapes", starguard.write_page, "b.html",
                    shapes={"a": b""})
-        self.fails(starguard.ArgumentError, "nothing", starguard.write_page, "b.html")
+        self.fails(starguard.ArgumentError, "no content", starguard.write_page, "b.html")
         self.assertFalse(os.path.exists("b.html"))
 
     def test_what_does_not_fit(self):

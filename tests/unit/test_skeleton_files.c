@@ -93,7 +93,7 @@ static void refusals(void **state) {
         {VTK_HEAD "POINTS 900000000 double\n0 0 0\n", "larger than the file"},
         {VTK_HEAD "POINTS 1 double\n0 0 0\nLINES 1 3\n2 0 1\n", "missing node"},
         {VTK_HEAD "POINTS 1 double\n0 0 0\nLINES 1 3\n2 0 -1\n", "impossible"},
-        {VTK_HEAD "POINTS 1 double\n0 0 0\nPOLYGONS 1 3\n", "no part"},
+        {VTK_HEAD "POINTS 1 double\n0 0 0\nPOLYGONS 1 3\n", "not part"},
         {VTK_HEAD "POINTS 1 double\n0 0 0\nPOINT_DATA 1\nSCALARS radius double 1\n"
                   "LOOKUP_TABLE default\n-1\n",
          "negative"},
