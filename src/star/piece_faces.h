@@ -3,8 +3,8 @@
 #ifndef STARG_STAR_PIECE_FACES_H
 #define STARG_STAR_PIECE_FACES_H
 
-#include "star/kernel.h"
 #include "tetra/tetmesh.h"
+#include "visibility/kernel.h"
 
 /* Faces first[p] to first[p + 1] - 1 bound piece p, counter-clockwise seen from outside of it. */
 typedef struct piece_faces {

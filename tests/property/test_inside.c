@@ -10,8 +10,8 @@
 #include "core/rng.h"
 #include "exact_oracle.h"
 #include "models.h"
-#include "star/kernel.h"
 #include "verify/surface.h"
+#include "visibility/kernel.h"
 
 enum { MODELS = 9 };
 

@@ -6,8 +6,8 @@
 
 #include "core/context.h"
 #include "core/memory.h"
-#include "star/kernel.h"
 #include "tetra/tetmesh.h"
+#include "visibility/kernel.h"
 
 #define PARTITION_STAGE "decompose"
 

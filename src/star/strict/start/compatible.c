@@ -24,9 +24,9 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "star/decomposition.h"
-#include "star/kernel.h"
 #include "star/piece_faces.h"
 #include "star/strict/start/region_growing.h"
+#include "visibility/kernel.h"
 
 static const char STAGE[] = "join";
 

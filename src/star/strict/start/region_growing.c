@@ -32,7 +32,7 @@
 #include "core/rng.h"
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
-#include "star/kernel.h"
+#include "visibility/kernel.h"
 
 static const char STAGE[] = "grow regions";
 

@@ -17,7 +17,7 @@
  *
  * Invariant: the radius alone is rounded. Cost: O(n) expected; a few dozen flops a face for the
  * program, one orient3d and one crossing test a face for the certificate. */
-#include "star/kernel.h"
+#include "visibility/kernel.h"
 
 #include <math.h>
 

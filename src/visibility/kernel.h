@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Inside of the kernel: the same for oriented triangles that are no mesh, such as the boundary of a
  * set of tetrahedra. */
-#ifndef STARG_STAR_KERNEL_H
-#define STARG_STAR_KERNEL_H
+#ifndef STARG_VISIBILITY_KERNEL_H
+#define STARG_VISIBILITY_KERNEL_H
 
 #include "core/context.h"
 #include "starguard/kernel.h"
