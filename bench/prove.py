@@ -22,7 +22,7 @@ MODELS = [
     "retrieval_shrec07/teddy_161", "retrieval_shrec07/fish_221", "retrieval_shrec07/fourleg_382",
     "solids/cactus", "cad/fandisk", "cad/joint", "retrieval_shrec07/plier_201",
     "retrieval_shrec07/airplane_062", "retrieval_shrec07/hand_182", "solids/elephant_g0",
-    "retrieval_shrec07/human_001", "cad/pinion", "cad/anchor", "retrieval_tosca/wolf_0",
+    "retrieval_shrec07/human_001", "cad/pinion", "cad/anchor", "retrieval_tosca/wolf_00",
     "retrieval_shrec07/bust_309", "solids/horse_12k"]
 
 

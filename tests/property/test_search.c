@@ -9,6 +9,7 @@
 
 #include "core/bits.h"
 #include "core/rng.h"
+#include "guard/cells.h"
 #include "models.h"
 #include "shapes.h"
 #include "starguard/sample.h"
@@ -176,6 +177,86 @@ static void test_questions(void **state) {
     test_context_free(context);
 }
 
+/* Witnesses from number `from` to `to`: faces that follow one another by a stride. */
+static void add_faces(starg_context *context, search_scene *scene, search_cells *cells, size_t from,
+                      size_t to) {
+    size_t faces = starg_mesh_face_count(starg_solid_mesh(scene->solid));
+    starg_status status = STARG_OK;
+    for (size_t j = from; j < to; j++)
+        STARG_PUSH(context, "test", &scene->witnesses, (uint32_t)(j * 7 % faces));
+    test_ok(context, cells_look(scene, cells, from));
+done:
+    test_ok(context, status);
+}
+
+/* The leaf that holds p. */
+static const search_cell *leaf_of(const search_cells *cells, const double p[3]) {
+    const search_cell *cell = cells->data;
+    while (cell->children != 0) {
+        const search_cell *part = &cells->data[cell->children];
+        for (int k = 0; k < 3; k++)
+            if (p[k] < part->box.lower[k] || p[k] > part->box.upper[k]) {
+                part = &cells->data[cell->children + 1];
+                break;
+            }
+        cell = part;
+    }
+    return cell;
+}
+
+/* No point sees a witness that its leaf is said not to see, whichever came first, the witness or
+ * the leaf; and a good part of what is hidden is found to be. */
+static void test_cells_hold_their_points(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = test_sample(context, "gallery", 500);
+    starg_visibility_options view;
+    search_scene scene = {0};
+    search_cells cells = {0};
+    search_points points = {0};
+    starg_bits *rows = NULL;
+    starg_visibility_options_default(&view);
+    view.engine = STARG_VISIBILITY_BVH;
+    test_ok(context, search_scene_open(context, solid, &view, 0, &scene));
+    test_ok(context, cells_begin(&scene, &cells));
+    add_faces(context, &scene, &cells, 0, 60);
+    for (size_t round = 0; round < 9; round++) {
+        uint32_t leaves[600];
+        size_t count = 0;
+        for (size_t i = 0; i < cells.count && count < 600; i++)
+            if (cells.data[i].children == 0)
+                leaves[count++] = (uint32_t)i;
+        test_ok(context, cells_split(&scene, &cells, leaves, count, 2, &points));
+        if (round == 5)
+            add_faces(context, &scene, &cells, 60, 120);
+    }
+    assert_true(points.count > 200);
+    double *places = calloc(3 * points.count, sizeof *places);
+    assert_non_null(places);
+    for (size_t i = 0; i < points.count; i++)
+        memcpy(places + 3 * i, points.data[i].place, sizeof points.data[i].place);
+    test_ok(context, starg_visibility(context, solid, places, points.count, &view, &rows));
+    size_t hidden = 0, unseen = 0;
+    for (size_t i = 0; i < points.count; i++) {
+        const search_cell *leaf = leaf_of(&cells, places + 3 * i);
+        for (size_t j = 0; j < scene.witnesses.count; j++) {
+            bool sees = starg_bits_test(rows, i, scene.witnesses.data[j]);
+            bool open = starg_bit_test(leaf->open.bits, j);
+            assert_true(open || !sees);
+            hidden += !open;
+            unseen += !sees;
+        }
+    }
+    assert_true(2 * hidden > unseen);
+    starg_bits_free(rows);
+    free(places);
+    STARG_ARRAY_FREE(context, &points);
+    STARG_ARRAY_FREE(context, &cells);
+    search_scene_close(&scene);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
 static char *bytes_with(int threads, size_t *size) {
     starg_context *context = test_context(threads);
     starg_solid *solid = test_sample(context, "gallery", 500);
@@ -256,8 +337,11 @@ static void test_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_solids), cmocka_unit_test(test_questions),
-        cmocka_unit_test(test_same_bytes),    cmocka_unit_test(test_star_shaped),
+        cmocka_unit_test(test_random_solids),
+        cmocka_unit_test(test_questions),
+        cmocka_unit_test(test_cells_hold_their_points),
+        cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_star_shaped),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
