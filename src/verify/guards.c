@@ -505,13 +505,14 @@ static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
 
 /* ---- claims about the number of guards ---- */
 
-/* Guards that would do are candidates, and refute a bound above their number. In files of morph
- * --guards, whose candidates are the guards, guards must do in another shape as well. */
+/* Guards that would do are candidates, and refute a bound above their number. Not in files of morph
+ * --guards, whose option `count` is that of the guards: there they must do in another shape, too.
+ */
 static starg_status claim_bound(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     size_t needed = guards->count;
     bool pairs = guards->options.candidates == STARG_CANDIDATES_GIVEN &&
-                 guards->candidate_count == guards->count;
+                 guards->options.candidate_count == guards->count;
     starg_status status = pairs ? STARG_OK : verify_find_needed(known, &needed);
     if (status != STARG_OK)
         return status;
@@ -525,9 +526,11 @@ static starg_status claim_bound(starg_verdict *verdict, const verify_facts *know
                      "the lower bound %zu is at most the number of guards %zu", guards->lower_bound,
                      guards->count);
     if (guards->lower_bound > 0)
-        verify_leave(verdict, "that no fewer than %zu%s candidates would do%s", guards->lower_bound,
-                     guards->optimal ? " (\"optimal\")" : "",
-                     pairs ? ", nor fewer of the guards: all candidates are guards" : "");
+        verify_leave(
+            verdict, "that no fewer than %zu%s candidates would do%s", guards->lower_bound,
+            guards->optimal ? " (\"optimal\")" : "",
+            pairs ? ", nor fewer of the guards: in results of morph they stand for two shapes"
+                  : "");
     return STARG_OK;
 }
 

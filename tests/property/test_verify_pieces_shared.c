@@ -202,8 +202,10 @@ static void check_whole(starg_context *context, const char *name, const starg_me
     result r = make_result(tetmesh);
     memset(r.mesh.labels, 0, r.mesh.count * sizeof *r.mesh.labels);
     bool star = kernel.verdict == STARG_KERNEL_INTERIOR;
-    starg_piece piece = {
-        .tetrahedra = r.mesh.count, .volume = starg_tetmesh_volume(tetmesh), .star = star};
+    starg_piece piece = {.tetrahedra = r.mesh.count,
+                         .volume = starg_tetmesh_volume(tetmesh),
+                         .star = star,
+                         .radius = NAN};
     memcpy(piece.guard, kernel.guard, sizeof kernel.guard);
     r.report.pieces[0] = piece;
     r.report.piece_count = 1;
