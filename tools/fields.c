@@ -70,9 +70,12 @@ const call calls[] = {
 const size_t call_count = sizeof calls / sizeof *calls;
 
 bool is_required(const starg_field *f) {
-    /* A list as long as another is there with it; any other may never have been made. */
-    bool may_lack = (f->kind == STARG_FIELD_LIST || f->kind == STARG_FIELD_RECORD) &&
-                    (f->flags & STARG_FIELD_OPTIONAL) && !(f->flags & STARG_FIELD_MATCHING);
+    /* A list as long as another is there with it; any other may never have been made. A number
+     * whose default is below its range is not there by default. */
+    bool part = f->kind == STARG_FIELD_LIST || f->kind == STARG_FIELD_RECORD;
+    bool unset = f->kind == STARG_FIELD_COUNT && f->initial < f->least;
+    bool may_lack =
+        (part || unset) && (f->flags & STARG_FIELD_OPTIONAL) && !(f->flags & STARG_FIELD_MATCHING);
     return f->applies == NULL && !may_lack;
 }
 
