@@ -124,7 +124,7 @@ static starg_status report_guards(cli_session *session, const starg_guards *g, c
     cli_report_take(session, text, size);
     cli_put(session, session->report, "output", cli_json_text(output));
     cli_put(session, session->report, "sight_lines", json_integer((json_int_t)g->lines_tested));
-    if (g->options.prove) {
+    if (g->cells > 0) { /* a star-shaped solid needs no search */
         cli_put(session, session->report, "cells", json_integer((json_int_t)g->cells));
         cli_put(session, session->report, "witnesses", json_integer((json_int_t)g->witnesses));
         cli_put(session, session->report, "work", json_integer((json_int_t)g->prove_work));

@@ -13,12 +13,20 @@
 
 /* ---- what there is: a new table is a new row here ---- */
 
+#define SEARCHED(KEY, HELP)                                                                        \
+    {                                                                                              \
+        .key = KEY, .kind = STARG_FIELD_COUNT, .flags = STARG_FIELD_OPTIONAL, .least = 1,          \
+        .most = UINT64_MAX, .help = HELP                                                           \
+    }
 static const starg_field GUARD_REPORT[] = {
     {.key = "output", .kind = STARG_FIELD_TEXT, .help = "The file that was written."},
     {.key = "sight_lines",
      .kind = STARG_FIELD_COUNT,
      .most = UINT64_MAX,
      .help = "Tests that refinement made."},
+    SEARCHED("cells", "--prove: boxes of the subdivision."),
+    SEARCHED("witnesses", "--prove: faces or vertices that the bound is proven for."),
+    SEARCHED("work", "--prove: the part of --prove-work that was used."),
 };
 static const starg_fields GUARD_REPORT_TABLE = {.name = "report", FIELD_ROWS(GUARD_REPORT)};
 
