@@ -27,6 +27,10 @@ typedef enum starg_guard_method {
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
+/* For refine_lines: what suits the model, which is 200,000, 60 for each face and 60,000 for each
+ * guard. */
+#define STARG_DEFAULT_LINES UINT64_MAX
+
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000
  * above the coarsest level. Each level costs a row of bits per candidate. */
 #define STARG_DEFAULT_STEP SIZE_MAX
@@ -61,10 +65,11 @@ typedef struct starg_guard_options {
     double significance; /* guards that see less than this fraction of a level's area are discarded,
                             0 to 1 */
 
-    /* STARG_GUARD_PILP with full coverage and generated candidates: add candidates that lower the
-     * bound, and choose again */
+    /* STARG_GUARD_PILP with full coverage and generated candidates: search fewer guards beside the
+     * candidates */
     bool refine;
-    uint64_t refine_lines; /* sight lines that refinement may test */
+    uint64_t refine_lines; /* budget in sight lines (about a microsecond each) and what takes as
+                              long, or STARG_DEFAULT_LINES */
 
     /* Guards anywhere: search fewer guards at every point of the solid, and prove how many are
      * needed, wherever they stand. For full coverage, redundancy 1, no cone, candidates not given
@@ -73,7 +78,7 @@ typedef struct starg_guard_options {
     uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_guard_options;
 
-/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (10 million sight lines), 1,000 skeletal
+/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (STARG_DEFAULT_LINES), 1,000 skeletal
  * candidates, the fastest engine, faces by vertices, full coverage once, no clearance,
  * STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
@@ -121,7 +126,7 @@ typedef struct starg_guards {
     double *curve_area;  /* the same for the area */
 
     size_t candidate_count;        /* including those added */
-    uint64_t lines_tested;         /* by refinement */
+    uint64_t lines_tested;         /* by refinement, and what takes as long */
     size_t cells, witnesses;       /* of the search over every point */
     uint64_t prove_work;           /* spent on it */
     size_t lower_bound;            /* no fewer candidates cover as much */

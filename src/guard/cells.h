@@ -29,12 +29,26 @@ void search_scene_close(search_scene *scene);
 
 /* A point where a guard may stand. */
 typedef struct search_point {
-    double place[3];
+    double place[3], direction[3]; /* the direction where views are cones */
     witness_row seen;
     uint32_t candidate; /* of the pool, or UINT32_MAX */
 } search_point;
 
+/* The middle of the face of witness j, or its vertex. */
+void search_scene_centre(const search_scene *scene, size_t j, double centre[3]);
+
+/* Does the point see witness j? Its place is in the free space. */
+bool search_scene_sees(const search_scene *scene, const search_point *point, size_t j,
+                       uint64_t *work);
+
+/* False: a guard at p does not see witness j, which its plane tells. */
+bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j);
+
 typedef STARG_ARRAY(search_point) search_points;
+
+/* Looks from points that are no candidates at some witnesses. Errors: MEMORY, CANCELLED. */
+starg_status points_look_at(search_scene *scene, search_point *points, size_t count,
+                            const witness_row *among);
 
 /* Looks from every point at the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
 starg_status points_look(search_scene *scene, search_points *points, size_t first);

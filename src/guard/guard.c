@@ -230,19 +230,14 @@ static starg_status choose_by_levels(const guard_problem *problem, const guard_d
     starg_status status = STARG_OK;
     guard_selection first = {0};
     STARG_TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
-    bool ends = must_end(problem, &first), refines = !ends && may_refine(problem->options);
-    if (refines)
-        STARG_TRY(refine_guards(problem, detail, &first, &out->pool, &out->selection,
-                                &out->lines_tested));
-    else if (!ends)
-        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
-    const guard_selection *of_levels = ends || refines ? &first : &out->selection;
-    STARG_TRY(record_level(&out->pool, of_levels, &out->records));
-    if (ends) {
+    bool ends = must_end(problem, &first);
+    if (ends || may_refine(problem->options)) {
         out->selection = first;
-        out->selection.time_limited = true;
+        out->selection.time_limited = first.time_limited || ends;
         first = (guard_selection){0};
-    }
+    } else
+        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
+    STARG_TRY(record_level(&out->pool, &out->selection, &out->records));
 done:
     selection_free(problem->context, &first);
     return status;
@@ -310,8 +305,10 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
     else
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
-    if (problem->options->prove)
-        STARG_TRY(search_guards(problem, &out->pool, &out->selection, &out->search));
+    bool improves = problem->options->method == STARG_GUARD_PILP && may_refine(problem->options);
+    if (improves || problem->options->prove)
+        STARG_TRY(
+            search_guards(problem, &detail, improves, &out->pool, &out->selection, &out->search));
 done:
     starg_solid_free(detail.proxy);
     starg_levels_free(problem->context, detail.levels);

@@ -185,7 +185,7 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->options.points = NULL;
     result->options.visibility.directions = NULL;
     result->candidate_count = pool_count(&outcome->pool);
-    result->lines_tested = outcome->lines_tested;
+    result->lines_tested = outcome->search.improve_work;
     result->time_limited = selection->time_limited;
     result->area_bound = 1;
     if (bounds_area(problem->options))
@@ -196,7 +196,7 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->optimal_everywhere = selection->chosen.count == outcome->search.bound;
     result->cells = outcome->search.cells;
     result->witnesses = outcome->search.witnesses;
-    result->prove_work = outcome->search.work;
+    result->prove_work = outcome->search.prove_work;
 }
 
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
