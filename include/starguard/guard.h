@@ -138,6 +138,17 @@ typedef struct starg_guards {
  * and are not an error. Errors: ARGUMENT, MESH (no candidate inside), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_guard(starg_context *context, const starg_solid *solid,
                                    const starg_guard_options *options, starg_guards **out);
+/* The same with `prove`, and the certificate of lower_bound_everywhere: a text (docs/formats.md) of
+ * `size` bytes, followed by a zero byte, that starg_verify_certified checks. Free it with
+ * starg_text_free. Errors: those of starg_guard, ARGUMENT (without `prove`). */
+STARG_API starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
+                                             const starg_guard_options *options, starg_guards **out,
+                                             char **certificate, size_t *size);
+
+/* Writes a certificate; path "-" is standard output. Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_certificate_write(starg_context *context, const char *certificate,
+                                               size_t size, const char *path);
+
 /* Evaluates `count` given guards in this order; they are the candidates of the result. The lower
  * bound is 0, since nothing is chosen. Errors: ARGUMENT (one is not strictly inside), MEMORY,
  * CANCELLED. */

@@ -148,7 +148,7 @@ done:
     return status;
 }
 
-static int longest_side(const bvh_box *box) {
+int cell_cut_axis(const bvh_box *box) {
     int longest = 0;
     for (int k = 1; k < 3; k++)
         if (box->upper[k] - box->lower[k] > box->upper[longest] - box->lower[longest])
@@ -161,14 +161,14 @@ static double middle(const bvh_box *box, int k) {
 }
 
 bool cell_splits(const bvh_box *box) {
-    int k = longest_side(box);
+    int k = cell_cut_axis(box);
     double at = middle(box, k);
     return at > box->lower[k] && at < box->upper[k];
 }
 
 static bvh_box half(const bvh_box *box, bool upper) {
     bvh_box part = *box;
-    int k = longest_side(box);
+    int k = cell_cut_axis(box);
     if (upper)
         part.lower[k] = middle(box, k);
     else
@@ -176,7 +176,7 @@ static bvh_box half(const bvh_box *box, bool upper) {
     return part;
 }
 
-static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
+starg_status cells_worker_make(starg_context *context, void *shared, void **scratch) {
     const search_scene *const *scene = shared;
     box_worker *worker = NULL;
     (void)context;
@@ -185,7 +185,7 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     return status;
 }
 
-static void free_worker(starg_context *context, void *scratch) {
+void cells_worker_free(starg_context *context, void *scratch) {
     (void)context;
     box_worker_free(scratch);
 }
@@ -212,7 +212,7 @@ static uint64_t look_from_box(const search_scene *scene, box_worker *worker, con
 /* ---- looking at more witnesses ---- */
 
 typedef struct asking {
-    const search_scene *scene; /* first: as make_worker wants it */
+    const search_scene *scene; /* first: as cells_worker_make wants it */
     search_cell *cells;
     const uint32_t *list, *parents; /* by item */
     witness_row among;
@@ -256,8 +256,8 @@ starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) 
                                           .count = list.count,
                                           .shared = &a,
                                           .item = ask_item,
-                                          .make_scratch = make_worker,
-                                          .free_scratch = free_worker,
+                                          .make_scratch = cells_worker_make,
+                                          .free_scratch = cells_worker_free,
                                           .silent = true};
         STARG_TRY(starg_parallel_for(context, &loop));
         next.count = next_parents.count = 0;
@@ -297,7 +297,7 @@ typedef struct part {
 } part;
 
 typedef struct splitting {
-    const search_scene *scene; /* first: as make_worker wants it */
+    const search_scene *scene; /* first: as cells_worker_make wants it */
     const search_cell *cells;
     const uint32_t *leaves;
     size_t first; /* number of the first part among the cells */
@@ -352,8 +352,8 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
                                       .count = 2 * count,
                                       .shared = &s,
                                       .item = make_part,
-                                      .make_scratch = make_worker,
-                                      .free_scratch = free_worker,
+                                      .make_scratch = cells_worker_make,
+                                      .free_scratch = cells_worker_free,
                                       .silent = true};
     STARG_TRY(starg_parallel_for(context, &loop));
     for (size_t i = 0; i < 2 * count; i++) {

@@ -54,8 +54,15 @@ starg_status cells_begin(const search_scene *scene, search_cells *cells);
 /* Looks from the cells at the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
 starg_status cells_look(search_scene *scene, search_cells *cells, size_t first);
 
+/* A cell is cut in the middle of this axis. */
+int cell_cut_axis(const bvh_box *box);
 /* Can the box be cut in half? */
 bool cell_splits(const bvh_box *box);
+
+/* Memory of a thread in parallel loops over cells, whose shared data begin with a pointer to the
+ * scene. */
+starg_status cells_worker_make(starg_context *context, void *shared, void **scratch);
+void cells_worker_free(starg_context *context, void *scratch);
 
 enum { MOST_TRIES = 12 };
 

@@ -15,6 +15,7 @@
 #include <math.h>
 
 #include "core/fields.h"
+#include "guard/certificate.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
 #include "starguard/kernel.h"
@@ -324,13 +325,29 @@ static void outcome_free(starg_context *context, guard_outcome *outcome) {
     pool_free(&outcome->pool);
 }
 
-starg_status starg_guard(starg_context *context, const starg_solid *solid,
-                         const starg_guard_options *options, starg_guards **out) {
+/* Where the search had nothing to prove: one guard is needed for whatever is to be seen. */
+static starg_status certify_one(const guard_problem *problem, const guard_outcome *outcome) {
+    const guard_pool *pool = &outcome->pool;
+    uint32_t witness = UINT32_MAX;
+    if (problem->certificate == NULL || problem->certificate->text != NULL)
+        return STARG_OK;
+    for (uint32_t j = 0; j < pool->columns && outcome->search.bound > 0 && witness == UINT32_MAX;
+         j++)
+        if (starg_bits_test(pool->rows, outcome->selection.chosen.data[0], j))
+            witness = j;
+    return certificate_of_one(problem->context, problem->solid, &problem->options->visibility,
+                              witness, problem->certificate);
+}
+
+static starg_status guard_solid(starg_context *context, const starg_solid *solid,
+                                const starg_guard_options *options, guard_certificate *why,
+                                starg_guards **out) {
     starg_status status = STARG_OK;
     starg_guard_options defaults;
     starg_guard_options_default(&defaults);
     starg_guard_options used = options ? *options : defaults;
-    guard_problem problem = {.context = context, .solid = solid, .options = &used};
+    guard_problem problem = {
+        .context = context, .solid = solid, .options = &used, .certificate = why};
     guard_outcome outcome = {0};
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
@@ -338,10 +355,37 @@ starg_status starg_guard(starg_context *context, const starg_solid *solid,
     STARG_TRY(
         column_weights_create(context, solid->mesh, used.visibility.target, &problem.weights));
     STARG_TRY(find_guards(&problem, &outcome));
+    STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
 done:
     outcome_free(context, &outcome);
     column_weights_free(context, &problem.weights);
+    return status;
+}
+
+starg_status starg_guard(starg_context *context, const starg_solid *solid,
+                         const starg_guard_options *options, starg_guards **out) {
+    return guard_solid(context, solid, options, NULL, out);
+}
+
+starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
+                                   const starg_guard_options *options, starg_guards **out,
+                                   char **text, size_t *size) {
+    guard_certificate why = {0};
+    *out = NULL;
+    *text = NULL;
+    *size = 0;
+    if (options == NULL || !options->prove)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate says why a bound for guards anywhere holds, which is not "
+                          "asked for; ask for a proof (prove)");
+    starg_status status = guard_solid(context, solid, options, &why, out);
+    if (status == STARG_OK) {
+        *text = why.text;
+        *size = why.size;
+        why.text = NULL;
+    }
+    certificate_free(context, &why);
     return status;
 }
 

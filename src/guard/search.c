@@ -28,7 +28,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "guard/bound.h"
+#include "guard/certificate.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";
@@ -182,6 +182,8 @@ static starg_status prove(search *s) {
             rows[count++] = &s->cells.data[i].open;
     bound_round(s->prices.price, whole);
     size_t bound = bound_of_prices(rows, count, whole);
+    if (bound > s->bound)
+        certificate_note_prices(s->problem->certificate, bound, whole);
     s->bound = bound > s->bound ? bound : s->bound;
 done:
     starg_release(context_of(s), rows);
@@ -322,6 +324,8 @@ starg_status search_guards(const guard_problem *problem, guard_pool *pool,
     STARG_TRY(begin(&s, selection));
     STARG_TRY(run(&s));
     selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
+    if (problem->certificate != NULL && problem->certificate->proof.bound > 1)
+        STARG_TRY(certificate_of_search(&s.scene, &s.cells, problem->certificate));
     if (s.better)
         STARG_TRY(join_guards(&s, pool, selection));
     *out = (search_record){s.bound, s.cells.count, s.scene.witnesses.count, s.scene.work};

@@ -13,6 +13,8 @@ typedef struct guard_problem {
     const starg_solid *solid;
     const starg_guard_options *options;
     column_weights weights;
+    struct guard_certificate
+        *certificate; /* to be made of the bound for all points; NULL: not wanted */
 } guard_problem;
 
 /* Simpler versions of the solid. */
