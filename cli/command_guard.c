@@ -23,7 +23,7 @@ static const struct {
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
 
 typedef struct values {
-    const char *output, *marks, *picture, *candidates;
+    const char *output, *marks, *picture, *certificate, *candidates;
     starg_guard_options wanted;
     double *points; /* --candidates FILE */
 } values;
@@ -37,6 +37,9 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
         "Picture of the translucent model with its guards; uncovered faces are dark red."),
+    CLI_TEXT_OPTION("certificate", certificate, "FILE",
+                    "With --prove: writes why the bound for guards anywhere holds, for 'starguard "
+                    "verify' (docs/formats.md)."),
     CLI_TEXT_OPTION("marks", marks, "FILE.ply",
                     "Model with each face in the colour of the first guard that sees it; uncovered "
                     "faces are dark red."),
@@ -179,8 +182,11 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
 
 /* Standard output comes last: what has gone there cannot be taken back. */
 static starg_status write_files(cli_session *session, const values *v, const starg_solid *solid,
-                                const starg_guards *g) {
+                                const starg_guards *g, const char *why, size_t size) {
     starg_status status = STARG_OK;
+    if (v->certificate != NULL)
+        CLI_TRY(starg_certificate_write(session->context, why, size,
+                                        cli_outputs_place(&session->outputs, v->certificate)));
     if (v->marks != NULL)
         CLI_TRY(write_marks(session, solid, g, v->marks));
     if (v->picture != NULL)
@@ -195,6 +201,10 @@ static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
+    CLI_TRY(cli_announce(session, v->certificate));
+    if (v->certificate != NULL && !v->wanted.prove)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--certificate says why the bound of --prove holds; add --prove");
     CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     if (v->candidates != NULL)
@@ -207,12 +217,19 @@ static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     starg_guards *guards = NULL;
-    CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
-    CLI_TRY(write_files(session, v, session->solid, guards));
+    char *why = NULL;
+    size_t size = 0;
+    if (v->certificate != NULL)
+        CLI_TRY(starg_guard_certified(session->context, session->solid, &v->wanted, &guards, &why,
+                                      &size));
+    else
+        CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
+    CLI_TRY(write_files(session, v, session->solid, guards, why, size));
     say_guards(session, guards);
     if (session->report != NULL)
         CLI_TRY(report_guards(session, guards, v->output));
 done:
+    starg_text_free(session->context, why);
     starg_guards_free(session->context, guards);
     return status;
 }

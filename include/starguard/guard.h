@@ -72,8 +72,9 @@ typedef struct starg_guard_options {
                               long, or STARG_DEFAULT_LINES */
 
     /* Guards anywhere: search fewer guards at every point of the solid, and prove how many are
-     * needed, wherever they stand. For full coverage, redundancy 1, no cone, candidates not given
-     */
+     * needed, wherever they stand, or with max_guards how much so many could see. Given candidates
+     * stay: the fewest of them are chosen, beside a bound for guards anywhere. A bound with a cone
+     * holds for guards that look in all directions. */
     bool prove;
     uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_guard_options;
@@ -136,13 +137,26 @@ typedef struct starg_guards {
     bool optimal_everywhere;       /* count == lower_bound_everywhere */
     double area_bound; /* max_guards, redundancy 1: upper bound on the area fraction that so many
                           guards cover; else 1 */
-    bool time_limited; /* the time limit stopped the search */
+    double area_bound_everywhere; /* max_guards, prove, faces: so many guards cover no more of the
+                                     area, wherever they stand; 0: not sought */
+    bool time_limited;            /* the time limit stopped the search */
 } starg_guards;
 
 /* Places guards. `options` may be NULL for the defaults. Faces that no candidate sees are listed
  * and are not an error. Errors: ARGUMENT, MESH (no candidate inside), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_guard(starg_context *context, const starg_solid *solid,
                                    const starg_guard_options *options, starg_guards **out);
+/* The same with `prove`, and the certificate of lower_bound_everywhere: a text (docs/formats.md) of
+ * `size` bytes, followed by a zero byte, that starg_verify_certified checks. Free it with
+ * starg_text_free. Errors: those of starg_guard, ARGUMENT (without `prove`). */
+STARG_API starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
+                                             const starg_guard_options *options, starg_guards **out,
+                                             char **certificate, size_t *size);
+
+/* Writes a certificate; path "-" is standard output. Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_certificate_write(starg_context *context, const char *certificate,
+                                               size_t size, const char *path);
+
 /* Evaluates `count` given guards in this order; they are the candidates of the result. The lower
  * bound is 0, since nothing is chosen. Errors: ARGUMENT (one is not strictly inside), MEMORY,
  * CANCELLED. */

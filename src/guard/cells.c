@@ -155,6 +155,24 @@ starg_status points_look(search_scene *scene, search_points *points, size_t firs
 
 /* ---- cells ---- */
 
+static double middle(const bvh_box *box, int k) {
+    return 0.5 * box->lower[k] + 0.5 * box->upper[k];
+}
+
+/* Half the diagonal and the distance of the middle from the boundary are off by rounding: a
+ * thousandth of the clearance is more than that, unless coordinates are huge beside it. */
+bool search_scene_bars(const search_scene *scene, const bvh_box *box) {
+    double centre[3], reach = 0.5 * vec3_distance(box->lower, box->upper), largest = 0;
+    if (!scene->bars || !(scene->clearance > 0) || !(reach < scene->clearance))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        centre[k] = middle(box, k);
+        largest = fmax(largest, fmax(fabs(box->lower[k]), fabs(box->upper[k])));
+    }
+    return largest < 1e9 * scene->clearance &&
+           starg_solid_distance(scene->solid, centre) + reach < 0.999 * scene->clearance;
+}
+
 starg_status cells_begin(const search_scene *scene, search_cells *cells) {
     starg_status status = STARG_OK;
     const bvh_box *all = &scene->solid->tree->nodes[0].box;
@@ -178,7 +196,7 @@ done:
     return status;
 }
 
-static int longest_side(const bvh_box *box) {
+int cell_cut_axis(const bvh_box *box) {
     int longest = 0;
     for (int k = 1; k < 3; k++)
         if (box->upper[k] - box->lower[k] > box->upper[longest] - box->lower[longest])
@@ -186,19 +204,15 @@ static int longest_side(const bvh_box *box) {
     return longest;
 }
 
-static double middle(const bvh_box *box, int k) {
-    return 0.5 * box->lower[k] + 0.5 * box->upper[k];
-}
-
 bool cell_splits(const bvh_box *box) {
-    int k = longest_side(box);
+    int k = cell_cut_axis(box);
     double at = middle(box, k);
     return at > box->lower[k] && at < box->upper[k];
 }
 
-static bvh_box half(const bvh_box *box, bool upper) {
+bvh_box cell_half(const bvh_box *box, bool upper) {
     bvh_box part = *box;
-    int k = longest_side(box);
+    int k = cell_cut_axis(box);
     if (upper)
         part.lower[k] = middle(box, k);
     else
@@ -206,7 +220,7 @@ static bvh_box half(const bvh_box *box, bool upper) {
     return part;
 }
 
-static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
+starg_status cells_worker_make(starg_context *context, void *shared, void **scratch) {
     const search_scene *const *scene = shared;
     box_worker *worker = NULL;
     (void)context;
@@ -215,7 +229,7 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     return status;
 }
 
-static void free_worker(starg_context *context, void *scratch) {
+void cells_worker_free(starg_context *context, void *scratch) {
     (void)context;
     box_worker_free(scratch);
 }
@@ -233,7 +247,8 @@ static uint64_t look_from_box(const search_scene *scene, box_worker *worker, con
                                    .range = scene->view->range,
                                    .among = among->bits,
                                    .known = known != NULL ? known->bits : NULL};
-    box_look(worker, &question, found.bits, NULL);
+    if (!search_scene_bars(scene, box))
+        box_look(worker, &question, found.bits, NULL);
     for (int w = 0; w < WITNESS_WORDS; w++)
         open->bits[w] |= found.bits[w];
     return box_worker_tests(worker) - before;
@@ -242,7 +257,7 @@ static uint64_t look_from_box(const search_scene *scene, box_worker *worker, con
 /* ---- looking at more witnesses ---- */
 
 typedef struct asking {
-    const search_scene *scene; /* first: as make_worker wants it */
+    const search_scene *scene; /* first: as cells_worker_make wants it */
     search_cell *cells;
     const uint32_t *list, *parents; /* by item */
     witness_row among;
@@ -286,8 +301,8 @@ starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) 
                                           .count = list.count,
                                           .shared = &a,
                                           .item = ask_item,
-                                          .make_scratch = make_worker,
-                                          .free_scratch = free_worker,
+                                          .make_scratch = cells_worker_make,
+                                          .free_scratch = cells_worker_free,
                                           .silent = true};
         STARG_TRY(starg_parallel_for(context, &loop));
         next.count = next_parents.count = 0;
@@ -327,7 +342,7 @@ typedef struct part {
 } part;
 
 typedef struct splitting {
-    const search_scene *scene; /* first: as make_worker wants it */
+    const search_scene *scene; /* first: as cells_worker_make wants it */
     const search_cell *cells;
     const uint32_t *leaves;
     size_t first; /* number of the first part among the cells */
@@ -372,7 +387,7 @@ static starg_status make_part(starg_context *context, void *shared, void *scratc
     starg_rng rng = starg_rng_make(context->seed, RANDOM_STAGE, s->first + item);
     witness_row known = {{0}};
     double p[3];
-    *out = (part){.cell.box = half(&whole->box, item % 2 != 0)};
+    *out = (part){.cell.box = cell_half(&whole->box, item % 2 != 0)};
     const bvh_box *box = &out->cell.box;
     for (int i = 0; i < s->tries; i++) {
         for (int k = 0; k < 3; k++)
@@ -401,8 +416,8 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
                                       .count = 2 * count,
                                       .shared = &s,
                                       .item = make_part,
-                                      .make_scratch = make_worker,
-                                      .free_scratch = free_worker,
+                                      .make_scratch = cells_worker_make,
+                                      .free_scratch = cells_worker_free,
                                       .silent = true};
     STARG_TRY(starg_parallel_for(context, &loop));
     for (size_t i = 0; i < 2 * count; i++) {

@@ -190,6 +190,9 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->area_bound = 1;
     if (bounds_area(problem->options))
         result->area_bound = (double)selection->weight_bound / (double)problem->weights.total;
+    if (problem->options->visibility.target == STARG_TARGET_FACES)
+        result->area_bound_everywhere =
+            (double)outcome->search.weight_bound / (double)problem->weights.total;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
     result->lower_bound_everywhere = outcome->search.bound;

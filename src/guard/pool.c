@@ -109,6 +109,19 @@ done:
     return status;
 }
 
+void pool_truncate(guard_pool *pool, size_t count) {
+    if (count >= pool_count(pool))
+        return;
+    pool->points.data.count = 3 * count;
+    if (pool->points.directions.count > 0)
+        pool->points.directions.count = 3 * count;
+    pool->rows->rows = count;
+    memset(pool->coverable, 0, pool->rows->words * sizeof *pool->coverable);
+    for (size_t i = 0; i < count; i++)
+        for (size_t w = 0; w < pool->rows->words; w++)
+            pool->coverable[w] |= starg_bits_row(pool->rows, i)[w];
+}
+
 starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out) {
     starg_status status = STARG_OK;
     starg_context *context = finest->context;

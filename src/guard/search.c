@@ -32,7 +32,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "guard/bound.h"
+#include "guard/certificate.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";
@@ -223,6 +223,8 @@ static starg_status prove(search *s) {
             rows[count++] = &s->cells.data[i].open;
     bound_round(s->prices.price, whole);
     size_t bound = bound_of_prices(rows, count, whole, s->redundancy);
+    if (bound > s->bound)
+        certificate_note_prices(s->problem->certificate, bound, whole);
     s->bound = bound > s->bound ? bound : s->bound;
 done:
     starg_release(context_of(s), rows);
@@ -349,6 +351,7 @@ static starg_status begin(search *s, const guard_detail *detail, const guard_sel
     s->first_count = pool_count(s->pool);
     STARG_TRY(search_scene_open(p->context, p->solid, &p->options->visibility,
                                 p->options->clearance, &s->scene));
+    s->scene.bars = p->certificate == NULL;
     STARG_TRY(find_need(s, selection));
     STARG_TRY(search_count_views(s));
     STARG_TRY(begin_points(s));
@@ -463,16 +466,32 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
                            guard_pool *pool, guard_selection *selection, search_record *out) {
     starg_status status = STARG_OK;
     search s = {.problem = problem, .pool = pool};
+    bool keeps = problem->options->candidates == STARG_CANDIDATES_GIVEN;
+    if (!improves && !problem->options->prove)
+        return STARG_OK;
     starg_progress_begin(problem->context, STAGE);
-    out->bound = selection->chosen.count > 0;
+    out->bound = problem->options->prove && selection->chosen.count > 0;
     if (starg_time_is_over(problem->context))
         goto done;
     STARG_TRY(begin(&s, detail, selection));
     STARG_TRY(run(&s, improves));
     selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
-    STARG_TRY(choose_again(&s, selection));
-    *out = (search_record){s.bound, s.cells.count, s.scene.witnesses.count, s.improve_work,
-                           s.scene.work - s.improve_work};
+    if (problem->certificate != NULL && problem->certificate->proof.bound > 1)
+        STARG_TRY(certificate_of_search(&s.scene, &s.cells, problem->certificate));
+    if (keeps) {
+        pool_truncate(pool, s.first_count);
+        selection->lower_bound =
+            s.bound > selection->lower_bound ? s.bound : selection->lower_bound;
+    } else
+        STARG_TRY(choose_again(&s, selection));
+    if (!problem->options->prove && s.bound < 2)
+        s.bound = 0; /* that is no news */
+    *out = (search_record){s.bound,
+                           s.cells.count,
+                           s.scene.witnesses.count,
+                           s.improve_work,
+                           s.scene.work - s.improve_work,
+                           0};
 done:
     end(&s);
     starg_progress_end(problem->context);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "guard/bound.h"
+#include "guard/certificate.h"
 #include "guard/search_parts.h"
 #include "starguard/cover.h"
 
@@ -181,6 +181,7 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     starg_bits *rows = NULL;
     starg_cover *cover = NULL;
     bool proven = false;
+    branch_record branches = {0};
     const witness_row all = all_witnesses(s);
     *again = false;
     STARG_TRY(list_columns(s, &columns));
@@ -190,11 +191,16 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     if (cover->count < s->count)
         STARG_TRY(follow_cover(s, &columns, cover, changed, again));
     else if (s->redundancy == 1)
-        STARG_TRY(bound_by_branching(context, columns.rows.rows, columns.rows.count, &all,
-                                     s->count - 1, BRANCHES, &proven, &s->scene.work));
-    if (proven)
+        STARG_TRY(bound_by_branching(
+            context, columns.rows.rows, columns.rows.count, &all, s->count - 1, BRANCHES, &proven,
+            s->problem->certificate != NULL ? &branches : NULL, &s->scene.work));
+    if (proven) {
         s->bound = s->count;
+        STARG_TRY(certificate_note_rows(context, s->problem->certificate, s->bound,
+                                        columns.rows.rows, columns.rows.count, &branches));
+    }
 done:
+    branch_record_free(context, &branches);
     row_list_free(context, &columns.rows);
     starg_release(context, columns.cells);
     starg_cover_free(cover);

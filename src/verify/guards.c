@@ -13,7 +13,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "verify/claims.h"
-#include "verify/facts.h"
+#include "verify/everywhere.h"
 #include "verify/measure.h"
 #include "verify/sight.h"
 
@@ -534,7 +534,8 @@ static starg_status claim_bound(starg_verdict *verdict, const verify_facts *know
     return STARG_OK;
 }
 
-static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *known) {
+static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *known,
+                                  const starg_certificate *certificate) {
     starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
     target goal = target_of(known);
@@ -565,8 +566,12 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
             "the result is called %s",
             guards->lower_bound_everywhere,
             guards->optimal_everywhere ? "the fewest possible" : "not proven such");
-    if (guards->lower_bound_everywhere > 0)
-        verify_leave(verdict, "that at least %zu guards are needed, wherever they stand",
+    if (certificate != NULL)
+        STARG_TRY(verify_claim_everywhere(verdict, known, certificate));
+    else if (guards->lower_bound_everywhere > 0)
+        verify_leave(verdict,
+                     "that at least %zu guards are needed, wherever they stand: the certificate "
+                     "would say why",
                      guards->lower_bound_everywhere);
     double seen = fraction(known->covered_area, known->total_area);
     verify_claim(verdict, seen <= guards->area_bound * (1 + TOLERANCE),
@@ -574,12 +579,27 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
     if (guards->area_bound < 1)
         verify_leave(verdict, "that so many candidates see at most a fraction of %.17g of the area",
                      guards->area_bound);
+    if (guards->area_bound_everywhere > 0) {
+        verify_claim(verdict, seen <= guards->area_bound_everywhere * (1 + TOLERANCE),
+                     "the area seen, %.17g, is within the bound for guards anywhere, %.17g", seen,
+                     guards->area_bound_everywhere);
+        verify_leave(verdict,
+                     "that so many guards see at most a fraction of %.17g of the area, wherever "
+                     "they stand",
+                     guards->area_bound_everywhere);
+    }
 done:
     return status;
 }
 
 starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
                                  const starg_guards *guards, starg_verdict **out) {
+    return starg_verify_certified(context, mesh, guards, NULL, out);
+}
+
+starg_status starg_verify_certified(starg_context *context, const starg_mesh *mesh,
+                                    const starg_guards *guards,
+                                    const starg_certificate *certificate, starg_verdict **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     starg_verdict *verdict = NULL;
@@ -602,7 +622,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     STARG_TRY(claim_coverable(verdict, &known));
     claim_goal(verdict, &known);
     STARG_TRY(claim_redundancy(verdict, &known));
-    STARG_TRY(claim_numbers(verdict, &known));
+    STARG_TRY(claim_numbers(verdict, &known, certificate));
     *out = verdict;
     verdict = NULL;
 done:

@@ -263,6 +263,25 @@ done:
     return status;
 }
 
+starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin) {
+    starg_status status = STARG_OK;
+    starg_context *context = surface->context;
+    const uint32_t *faces = surface->faces;
+    edge_table table = {.faces = faces, .mask = 1};
+    size_t edge_count = 3 * surface->face_count;
+    *twin = NULL;
+    while (table.mask < 2 * edge_count)
+        table.mask = 2 * table.mask + 1;
+    STARG_NEW_ZERO(context, STAGE, table.slots, table.mask + 1);
+    STARG_NEW(context, STAGE, *twin, edge_count);
+    STARG_TRY(insert_edges(context, &table, edge_count));
+    for (uint64_t e = 0; e < edge_count; e++)
+        (*twin)[e] = (uint32_t)(*find_edge(&table, edge_to(faces, e), edge_from(faces, e)) - 1);
+done:
+    starg_release(context, table.slots);
+    return status;
+}
+
 /* Of the vertices that faces name: one that none does may be anywhere. */
 static void find_bounds(verify_surface *surface) {
     for (size_t k = 0; k < 3; k++) {

@@ -29,6 +29,10 @@ starg_status verify_surface_wrap(starg_context *context, const double *vertices,
                                  verify_surface **out);
 void verify_surface_free(verify_surface *surface);
 
+/* By directed edge 3 f + k, from corner k of face f to the next: the one that runs back. `surface`
+ * has been checked. *twin is a block of the context. Errors: MEMORY. */
+starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin);
+
 /* The corners of a face. */
 static inline void verify_corners(const verify_surface *surface, size_t face, const double *t[3]) {
     for (size_t i = 0; i < 3; i++)
