@@ -9,19 +9,25 @@
  *   3. the integer program over the points: better guards, or witnesses that these miss;
  *   4. faces that the fractional cover sees too little become witnesses;
  *   5. cells that may be worth more than 1 are split, each with two more points.
- * It ends when rounds have found nothing PATIENCE times, or with the budget. At last the most
- * valuable points become candidates, and an integer program over all faces chooses among these. */
+ * It ends when rounds have found nothing PATIENCE times, or with the budget. At last the points are
+ * asked again; if that comes to no end, the most valuable points become candidates, and an integer
+ * program over all faces chooses among these. */
 #include <stdlib.h>
 
 #include "guard/search_parts.h"
 
-enum { TRIES = 2, PATIENCE = 4, MOST_HELD = 250 };
+enum { TRIES = 2, PATIENCE = 4, MOST_HELD = 250, ASKED = 4 };
 
 static const char STAGE[] = "search";
 
+/* Programs grow with the guards, and what each point is held against with the faces. */
+static uint64_t default_work(const search *s) {
+    return 400000 + 70 * s->pool->columns + 40000 * s->count + 3 * s->count * s->pool->columns;
+}
+
 uint64_t search_improve_work(const search *s) {
     uint64_t asked = s->problem->options->refine_lines;
-    return asked == STARG_DEFAULT_LINES ? 200000 + 60 * s->pool->columns + 60000 * s->count : asked;
+    return asked == STARG_DEFAULT_LINES ? default_work(s) : asked;
 }
 
 starg_status search_improve(search *s, row_list *list) {
@@ -61,20 +67,31 @@ done:
     return status;
 }
 
-starg_status search_close(search *s) {
+/* Asks for fewer guards among the points that are known. *open: there may be some. */
+static starg_status ask_again(search *s, bool *open) {
+    starg_status status = STARG_OK;
+    row_list list = {0};
+    *open = true;
+    STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
+    for (int k = 0; k < ASKED && *open; k++) {
+        STARG_TRY(search_find_prices(s, &list));
+        STARG_TRY(search_bound_points(s));
+        *open = s->known < s->count;
+        if (*open)
+            STARG_TRY(search_ask_points(s, open));
+    }
+done:
+    row_list_free(context_of(s), &list);
+    return status;
+}
+
+/* The most valuable points become candidates. */
+static starg_status hold_best(search *s) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    row_list list = {0};
     scored_leaf *scored = NULL;
     uint32_t *best = NULL;
     size_t count = 0;
-    starg_cover *cover = NULL;
-    const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
-    STARG_TRY(row_list_make(context, 2 * s->points.count, &list));
-    STARG_TRY(search_find_prices(s, &list));
-    STARG_TRY(search_bound_points(s));
-    if (s->known >= s->count)
-        goto done;
     STARG_NEW(context, STAGE, scored, s->points.count);
     STARG_NEW(context, STAGE, best, s->points.count);
     for (size_t i = 0; i < s->points.count; i++) {
@@ -88,13 +105,25 @@ starg_status search_close(search *s) {
     for (size_t i = 0; i < count; i++)
         best[i] = scored[i].cell;
     STARG_TRY(search_hold(s, best, count));
+done:
+    starg_release(context, scored);
+    starg_release(context, best);
+    return status;
+}
+
+starg_status search_close(search *s) {
+    starg_status status = STARG_OK;
+    starg_cover *cover = NULL;
+    bool open = false;
+    const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
+    STARG_TRY(ask_again(s, &open));
+    if (!open || starg_time_is_over(context_of(s)))
+        goto done;
+    STARG_TRY(hold_best(s));
     STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
     STARG_TRY(search_take_cover(s, cover));
     s->known = cover->lower_bound > s->known ? cover->lower_bound : s->known;
 done:
-    row_list_free(context, &list);
     starg_cover_free(cover);
-    starg_release(context, scored);
-    starg_release(context, best);
     return status;
 }
