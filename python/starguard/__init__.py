@@ -34,7 +34,7 @@ from .catalogue import SampleInfo, sample, samples
 from .skeletons import Skeleton, skeleton
 from .solid import Solid
 from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, is_tetrahedral, tetrahedralize
-from .verification import Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
+from .verification import Certificate, Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
 from .views import page_available, write_page, write_scene
 from .visibility import Bits, cone_cosine, visible, visible_from_box
 
