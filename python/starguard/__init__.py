@@ -39,7 +39,7 @@ from .views import page_available, write_page, write_scene
 from .visibility import Bits, cone_cosine, visible, visible_from_box
 
 __all__ = [
-    "Added", "ArgumentError", "Bits", "CancelledError", "Check", "Claim", "Cover", "Database",
+    "Added", "ArgumentError", "Bits", "CancelledError", "Certificate", "Check", "Claim", "Cover", "Database",
     "Decomposition", "Defaults", "Descriptor", "Error", "Finding", "FormatError", "FrameMeasures",
     "GuardLevel", "Guards", "Kernel", "Level", "Mesh", "MeshError", "Models", "Morph", "NO_CLASS",
     "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",
