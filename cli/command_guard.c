@@ -9,6 +9,7 @@
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
+#include "scene.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "suggest.h"
@@ -25,6 +26,7 @@ static const uint8_t UNCOVERED[3] = {139, 0, 0};
 typedef struct values {
     const char *output, *marks, *picture, *candidates;
     starg_guard_options wanted;
+    cli_scene scene;
     double *points; /* --candidates FILE */
 } values;
 
@@ -40,6 +42,8 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION("marks", marks, "FILE.ply",
                     "Model with each face in the colour of the first guard that sees it; uncovered "
                     "faces are dark red."),
+    CLI_SCENE_OPTIONS,
+    CLI_PLACE_OPTIONS,
 };
 
 /* ---- what was asked for ---- */
@@ -106,7 +110,8 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "area bound    %g %% with %s\n", cli_percent(g->area_bound),
                 cli_count_of(g->options.max_guards, "guard", "guards").text);
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
-    size_t hidden = g->face_count - g->coverable_faces;
+    size_t wanted = g->target_count > 0 ? g->target_count : g->face_count;
+    size_t hidden = wanted - g->coverable_faces;
     if (hidden > 0)
         cli_say(session, " (%s that no candidate sees)",
                 cli_count_of(hidden, "face", "faces").text);
@@ -197,6 +202,7 @@ static starg_status prepare(cli_session *session, void *data) {
     CLI_TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
     CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
         CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
 done:
@@ -207,7 +213,9 @@ static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     starg_guards *guards = NULL;
+    CLI_TRY(cli_scene_make(session, &v->scene));
     CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
+    CLI_TRY(starg_guards_name_obstacles(session->context, guards, v->scene.obstacles.values));
     CLI_TRY(write_files(session, v, session->solid, guards));
     say_guards(session, guards);
     if (session->report != NULL)
@@ -246,7 +254,7 @@ const cli_command cli_command_guard = {
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_guard_options_fields, wanted),
-    .input = CLI_INPUT_SOLID,
+    .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,
     .release = release,

@@ -155,7 +155,7 @@ static starg_status guard_level(const guard_problem *problem, const guard_pool *
     starg_status status = STARG_OK;
     starg_cover *added = NULL;
     level_work work = {.problem = problem, .pool = pool, .level = level};
-    STARG_TRY(column_weights_create(problem->context, pool->solid->mesh,
+    STARG_TRY(column_weights_create(problem->context, pool->solid,
                                     problem->options->visibility.target, &work.weights));
     STARG_TRY(keep_significant(&work, before));
     const choice how = {.method = STARG_COVER_ILP,
