@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "model.h"
 #include "report.h"
+#include "scene.h"
 #include "starguard/verify.h"
 #include "terminal.h"
 
@@ -106,14 +107,18 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
 
 static starg_status verify_guards(cli_session *session, const model *given, size_t operand,
                                   const starg_result *result, json_t *list) {
+    starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
-    starg_status status =
-        starg_verify_guards(session->context, given->mesh, result->guards, &verdict);
-    if (status != STARG_OK)
-        return status;
+    starg_mesh **obstacles = NULL;
+    CLI_TRY(cli_scene_read_obstacles(session, result->guards, &obstacles));
+    CLI_TRY(starg_verify_guards_among(session->context, given->mesh,
+                                      (const starg_mesh *const *)obstacles,
+                                      result->guards->obstacle_count, result->guards, &verdict));
     tell_verdict(session, session->operands[operand], verdict, json_object(), list);
+done:
+    cli_scene_free_obstacles(obstacles, result->guards->obstacle_count);
     starg_verdict_free(session->context, verdict);
-    return STARG_OK;
+    return status;
 }
 
 static starg_status verify_pieces(cli_session *session, const model *given, decomposition found,

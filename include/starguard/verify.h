@@ -45,6 +45,12 @@ typedef struct starg_verdict {
  * is not an error. */
 STARG_API starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
                                            const starg_guards *guards, starg_verdict **out);
+/* The same where the result is of a scene with obstacles: the meshes that it names, in its order.
+ * Errors: also ARGUMENT (other obstacles than those of the result). */
+STARG_API starg_status starg_verify_guards_among(starg_context *context, const starg_mesh *mesh,
+                                                 const starg_mesh *const *obstacles,
+                                                 size_t obstacle_count, const starg_guards *guards,
+                                                 starg_verdict **out);
 STARG_API void starg_verdict_free(starg_context *context, starg_verdict *verdict);
 
 /* ---- star decompositions ---- */
