@@ -50,7 +50,8 @@ STARG_API void starg_verdict_free(starg_context *context, starg_verdict *verdict
 /* Why lower_bound_everywhere holds, as read (docs/formats.md). */
 typedef struct starg_certificate starg_certificate;
 
-/* Reads a certificate; `name` is used in messages. Errors: FORMAT (with the line), MEMORY, CANCELLED.
+/* Reads a certificate; `name` is used in messages. Errors: FORMAT (with the line), MEMORY,
+ * CANCELLED.
  */
 STARG_API starg_status starg_certificate_read_memory(starg_context *context, const void *bytes,
                                                      size_t size, const char *name,
@@ -64,6 +65,18 @@ STARG_API starg_status starg_verify_certified(starg_context *context, const star
                                               const starg_guards *guards,
                                               const starg_certificate *certificate,
                                               starg_verdict **out);
+
+/* What a check of guards may use beside the model. */
+typedef struct starg_guards_evidence {
+    const starg_mesh *const *obstacles; /* the meshes that the result names, in its order */
+    size_t obstacle_count;
+    const starg_certificate *certificate; /* or NULL */
+} starg_guards_evidence;
+
+/* The same with all of it. Errors: also ARGUMENT (other obstacles than those of the result). */
+STARG_API starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,
+                                                const starg_guards_evidence *evidence,
+                                                const starg_guards *guards, starg_verdict **out);
 
 /* ---- star decompositions ---- */
 
@@ -134,8 +147,8 @@ typedef struct starg_result {
     starg_certificate *certificate;
 } starg_result;
 
-/* Reads GUARDS.json, a certificate, PIECES.vtk or PIECES.json, recognized by content. "-" is standard input.
- * Errors: READ, and those of the readers. */
+/* Reads GUARDS.json, a certificate, PIECES.vtk or PIECES.json, recognized by content. "-" is
+ * standard input. Errors: READ, and those of the readers. */
 STARG_API starg_status starg_result_read(starg_context *context, const char *path,
                                          starg_result **out);
 STARG_API void starg_result_free(starg_context *context, starg_result *result);
