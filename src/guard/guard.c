@@ -52,6 +52,7 @@ done:
 static starg_status take_given(const guard_problem *problem, candidate_points *points) {
     starg_status status = STARG_OK;
     const starg_guard_options *options = problem->options;
+    bool looks = options->visibility.cone < 360;
     size_t dropped = 0;
     for (size_t i = 0; i < options->point_count; i++) {
         const double *p = options->points + 3 * i;
@@ -61,8 +62,9 @@ static starg_status take_given(const guard_problem *problem, candidate_points *p
                                  STARG_ELEMENT_CANDIDATE, &index, 1,
                                  "candidate %zu has a coordinate that is not finite", i);
         bool usable = candidates_allowed(problem->solid, p, options->clearance);
+        const double *d = looks && options->directions != NULL ? options->directions + 3 * i : NULL;
         if (usable)
-            STARG_TRY(candidates_push(problem->context, points, p, NULL));
+            STARG_TRY(candidates_push(problem->context, points, p, d));
         dropped += !usable;
     }
     if (dropped > 0)

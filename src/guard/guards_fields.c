@@ -245,7 +245,7 @@ static const starg_field GUARDS[] = {
      .kind = STARG_FIELD_POINT,
      RESULT(directions),
      .applies = has_directions,
-     .help = "With a cone: viewing direction, a unit vector."},
+     .help = "With a cone: viewing direction, a unit vector unless it was given."},
 };
 static const starg_fields GUARDS_TABLE = {.columns = true, .name = "guards", FIELD_ROWS(GUARDS)};
 

@@ -396,15 +396,18 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
     *out = solid->model_tree != NULL ? solid->model_tree->nodes[0].box : solid->tree->nodes[0].box;
     if (!solid->scene)
         return;
-    double grow = !o->outside                ? 0
-                  : o->standoff_most < 1e100 ? o->standoff_most
-                                             : 4 * solid->check->diagonal;
+    bool open = solid->ambient > 0;
+    double grow = 0; /* of a soup without distances: its own box */
+    if (open && o->standoff_most < 1e100)
+        grow = o->standoff_most;
+    else if (o->outside)
+        grow = 4 * solid->check->diagonal;
     for (int k = 0; k < 3; k++) {
         out->lower[k] -= grow;
         out->upper[k] += grow;
         if (is_bounded(o)) {
-            out->lower[k] = o->outside ? o->within[k] : fmax(out->lower[k], o->within[k]);
-            out->upper[k] = o->outside ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
+            out->lower[k] = open ? o->within[k] : fmax(out->lower[k], o->within[k]);
+            out->upper[k] = open ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
         }
     }
 }

@@ -151,6 +151,23 @@ class Scenes(Case):
         self.guards("room.off", "--weights", "w.txt", "--coverage", "0.5")
         self.verified("room.off")
 
+    def test_poses(self):
+        """Given cameras look where they were told, and their results are candidates again."""
+        cameras = ["1 1 1.5 1 1 0", "7 5 1.5 -1 -1 0", "7 1 1.5 0 1 0", "1 5 1.5 1 0 0"]
+        self.write("cameras.txt", "\n".join(cameras))
+        result = self.guards("room.off", "--candidates", "cameras.txt", "--cone", "90")
+        for guard in result["guards"]:
+            line = " ".join(f"{x:g}" for x in guard["position"] + guard["direction"])
+            self.assertIn(line, cameras)
+        self.verified("room.off")
+        self.write("again.json", self.read("g.json"))
+        again = self.guards("room.off", "--candidates", "again.json", "--cone", "90")
+        self.assertEqual(again["guards"], result["guards"])
+        self.write("bad.txt", "1 1 1.5 0 0 0\n")
+        _, err = self.run_text("guard", "room.off", "-o", "bad.json", "--candidates", "bad.txt",
+                               status=2)
+        self.assertIn("line 1", err)
+
     def test_visible(self):
         """`visible` takes scenes as well; what is behind the crate is hidden by it."""
         plain = self.run_json("visible", "room.off", "--from", "1,3,0.5")
