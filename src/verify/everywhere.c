@@ -52,7 +52,7 @@ static starg_status check_cell(starg_context *context, void *shared, void *scrat
             own->wrong[item] = k;
             break;
         }
-    return STARG_OK;
+    return verify_watch_failed(scratch) ? STARG_ERROR_MEMORY : STARG_OK;
 }
 
 /* Reasons that hold only if the surface is embedded. */

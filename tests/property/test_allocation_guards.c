@@ -177,7 +177,9 @@ static starg_status guards(starg_context *context) {
     GUARD(starg_guard, "cone, at most 2",
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
     GUARD(starg_guard, "anywhere", (o.prove = true, o.prove_work = 3000, o.visibility.range = 2));
-    FAILING_BY(starg_guard_certified, "", certified(context, &o));
+    FAILING_BY(
+        starg_guard_certified, "",
+        (o.prove = true, o.prove_work = 3000, o.visibility.range = 2, certified(context, &o)));
     FAILING_MAKES(starg_certificate_read_memory, "", starg_certificate, starg_certificate_free(out),
                   why_text.data, why_text.size, "c");
     FAILING_MAKES(starg_verify_certified, "", starg_verdict, starg_verdict_free(context, out),
