@@ -87,9 +87,21 @@ static void say_bound(cli_session *session, const starg_guards *g) {
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
+/* A number of guards was given: what counts is what they see. */
+static void say_area_bound(cli_session *session, const starg_guards *g) {
+    bool anywhere = g->area_bound_everywhere > 0;
+    cli_say(session, "area          %g %% seen, at most %g %% possible with %s%s\n",
+            cli_percent(g->coverage_area),
+            cli_percent(anywhere ? g->area_bound_everywhere : g->area_bound),
+            cli_count_of(g->options.max_guards, "guard", "guards").text,
+            anywhere ? ", wherever they stand" : " of these candidates");
+}
+
 static void say_count(cli_session *session, const starg_guards *g) {
     cli_say(session, "guards        %zu", g->count);
-    if (g->optimal_everywhere)
+    if (g->options.max_guards > 0)
+        cli_say(session, " of at most %zu", (size_t)g->options.max_guards);
+    else if (g->optimal_everywhere)
         cli_say(session, ", the fewest possible, wherever they stand");
     else if (g->lower_bound_everywhere > 0)
         cli_say(session, "; at least %zu %s needed, wherever they stand", g->lower_bound_everywhere,
@@ -99,15 +111,15 @@ static void say_count(cli_session *session, const starg_guards *g) {
 
 static void say_guards(cli_session *session, const starg_guards *g) {
     say_count(session, g);
-    say_bound(session, g);
+    if (g->options.max_guards == 0)
+        say_bound(session, g);
+    else
+        say_area_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
             cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
-    if (g->options.max_guards > 0)
-        cli_say(session, "area bound    %g %% with %s\n", cli_percent(g->area_bound),
-                cli_count_of(g->options.max_guards, "guard", "guards").text);
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
     size_t hidden = g->face_count - g->coverable_faces;
     if (hidden > 0)
@@ -246,9 +258,10 @@ const cli_command cli_command_guard = {
     .description =
         "Generates candidate points inside the solid, computes exactly which faces each one sees, "
         "and chooses the fewest that together see every visible face. The result contains the "
-        "guards, their coverage, and a proven lower bound: no choice of fewer candidates covers as "
-        "much. With --prove every point of the solid is a candidate. Faces that no candidate sees "
-        "are listed; they are not an error.\n"
+        "guards, their coverage, and a proven lower bound of these candidates: no fewer of them "
+        "cover "
+        "as much. With --prove every point of the solid is a candidate, and the bound holds "
+        "wherever guards stand. Faces that no candidate sees are listed; they are not an error.\n"
         "With --time-limit the best result so far is written with its bound.",
     .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"

@@ -27,6 +27,10 @@ typedef enum starg_guard_method {
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
 
+/* For refine_lines: what suits the model, which is 400,000, 70 for each face, 40,000 for each guard
+ * of the candidates, and 3 for each of both. */
+#define STARG_DEFAULT_LINES UINT64_MAX
+
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000
  * above the coarsest level. Each level costs a row of bits per candidate. */
 #define STARG_DEFAULT_STEP SIZE_MAX
@@ -61,19 +65,21 @@ typedef struct starg_guard_options {
     double significance; /* guards that see less than this fraction of a level's area are discarded,
                             0 to 1 */
 
-    /* STARG_GUARD_PILP with full coverage and generated candidates: add candidates that lower the
-     * bound, and choose again */
+    /* STARG_GUARD_PILP with full coverage and generated candidates: search fewer guards beside the
+     * candidates */
     bool refine;
-    uint64_t refine_lines; /* sight lines that refinement may test */
+    uint64_t refine_lines; /* budget in sight lines (about a microsecond each) and what takes as
+                              long, or STARG_DEFAULT_LINES */
 
     /* Guards anywhere: search fewer guards at every point of the solid, and prove how many are
-     * needed, wherever they stand. For full coverage, redundancy 1, no cone, candidates not given
-     */
+     * needed, wherever they stand, or with max_guards how much so many could see. Given candidates
+     * stay: the fewest of them are chosen, beside a bound for guards anywhere. A bound with a cone
+     * holds for guards that look in all directions. */
     bool prove;
     uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_guard_options;
 
-/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (10 million sight lines), 1,000 skeletal
+/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (STARG_DEFAULT_LINES), 1,000 skeletal
  * candidates, the fastest engine, faces by vertices, full coverage once, no clearance,
  * STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
@@ -121,7 +127,7 @@ typedef struct starg_guards {
     double *curve_area;  /* the same for the area */
 
     size_t candidate_count;        /* including those added */
-    uint64_t lines_tested;         /* by refinement */
+    uint64_t lines_tested;         /* by refinement, and what takes as long */
     size_t cells, witnesses;       /* of the search over every point */
     uint64_t prove_work;           /* spent on it */
     size_t lower_bound;            /* no fewer candidates cover as much */
@@ -131,7 +137,9 @@ typedef struct starg_guards {
     bool optimal_everywhere;       /* count == lower_bound_everywhere */
     double area_bound; /* max_guards, redundancy 1: upper bound on the area fraction that so many
                           guards cover; else 1 */
-    bool time_limited; /* the time limit stopped the search */
+    double area_bound_everywhere; /* max_guards, prove, faces: so many guards cover no more of the
+                                     area, wherever they stand; 0: not sought */
+    bool time_limited;            /* the time limit stopped the search */
 } starg_guards;
 
 /* Places guards. `options` may be NULL for the defaults. Faces that no candidate sees are listed

@@ -86,6 +86,8 @@ class Guards:
     optimal_everywhere: bool
     #: With max_guards: upper bound on the area fraction that so many guards cover.
     area_bound: float
+    #: With max_guards and prove: the same wherever they stand; 0 if this was not sought.
+    area_bound_everywhere: float
     time_limited: bool
     #: The options of `guard` that were used.
     options: dict[str, Any]

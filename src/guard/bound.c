@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The bound of a search, in whole numbers: whatever floating point has found the prices, this sum
  * and this maximum are exact. Prices are below 2^44 and witnesses at most 2^10, so that sums stay
- * below 2^54. */
+ * below 2^54, and below 2^64 when each witness is to be seen 1,000 times. */
 #include "guard/bound.h"
 
 #include "guard/prices.h"
@@ -34,10 +34,11 @@ static void sum_prices(const witness_row *const *rows, size_t count, const uint6
 }
 
 size_t bound_of_prices(const witness_row *const *rows, size_t count,
-                       const uint64_t price[MOST_WITNESSES]) {
+                       const uint64_t price[MOST_WITNESSES], size_t times) {
     uint64_t all, most;
     sum_prices(rows, count, price, &all, &most);
-    return most == 0 ? 0 : (size_t)((all + most - 1) / most);
+    all *= times;
+    return most == 0 ? 0 : (size_t)(all / most + (all % most != 0));
 }
 
 /* ---- branching ---- */

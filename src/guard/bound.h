@@ -11,11 +11,11 @@
 /* Prices as whole numbers of 1 / BOUND_ONE, rounded down; they must be below 16. */
 void bound_round(const double price[MOST_WITNESSES], uint64_t whole[MOST_WITNESSES]);
 
-/* No fewer rows than that hold all witnesses that have a price: one row holds at most the largest
- * sum of prices over a row, so that k of them hold at most k times that. 0 where no row holds
- * anything. */
+/* No fewer rows than that hold all witnesses that have a price, each so many `times` (1,000 at
+ * most): one row holds at most the largest sum of prices over a row, so that k of them hold at most
+ * k times that. 0 where no row holds anything. */
 size_t bound_of_prices(const witness_row *const *rows, size_t count,
-                       const uint64_t price[MOST_WITNESSES]);
+                       const uint64_t price[MOST_WITNESSES], size_t times);
 
 /* A node of a proof by branching: prices of its own, or one branch for each of some rows that hold
  * a witness. A node without any row to take has no node of the record. */

@@ -22,37 +22,26 @@
 
 static const char STAGE[] = "guard";
 
-static void set_defaults(starg_guard_options *o, size_t vertices) {
-    if (o->max_nodes == STARG_DEFAULT_NODES)
-        o->max_nodes = o->method == STARG_GUARD_PILP ? 30 : 100000;
-    if (o->step == STARG_DEFAULT_STEP)
-        o->step = proxy_step(vertices, o->coarsest);
+/* Are the fewest of the given candidates asked for, and a bound for guards anywhere? Then the
+ * choice is exact, whatever the method. */
+static bool chooses_exactly(const starg_guard_options *o) {
+    return o->prove && o->candidates == STARG_CANDIDATES_GIVEN;
 }
 
-/* What the search over every point cannot do. */
-static starg_status check_prove(starg_context *context, const starg_guard_options *o) {
-    const char *why = NULL;
-    if (o->candidates == STARG_CANDIDATES_GIVEN)
-        why = "candidates are given, and guards would stand elsewhere; leave the candidates out";
-    else if (o->coverage < 1)
-        why = "a part of the area is enough; ask for a coverage of 1";
-    else if (o->max_guards > 0)
-        why = "the number of guards is limited; leave the limit out";
-    else if (o->redundancy > 1)
-        why = "faces are to be seen more than once; ask for a redundancy of 1";
-    else if (o->visibility.cone < 360)
-        why = "guards look in one direction; ask for a cone of 360 degrees";
-    if (why == NULL)
-        return STARG_OK;
-    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                      "a bound for guards anywhere (prove) cannot be found where %s", why);
+static bool wants_part(const starg_guard_options *o) {
+    return o->coverage < 1 || o->max_guards > 0;
+}
+
+static void set_defaults(starg_guard_options *o, size_t vertices) {
+    if (o->max_nodes == STARG_DEFAULT_NODES)
+        o->max_nodes = o->method == STARG_GUARD_PILP && !chooses_exactly(o) ? 30 : 100000;
+    if (o->step == STARG_DEFAULT_STEP)
+        o->step = proxy_step(vertices, o->coarsest);
 }
 
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
     starg_status status = STARG_OK;
     STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
-    if (o->prove)
-        STARG_TRY(check_prove(context, o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
 done:
@@ -205,7 +194,8 @@ static starg_status choose_at_once(const guard_problem *problem, const guard_poo
                                    bool time_limited, guard_selection *out) {
     starg_status status = STARG_OK;
     starg_cover *cover = NULL;
-    bool greedy = problem->options->method == STARG_GUARD_GREEDY;
+    bool greedy =
+        problem->options->method == STARG_GUARD_GREEDY && !chooses_exactly(problem->options);
     const guard_selection none = {.time_limited = time_limited};
     const choice how = {.method = greedy ? STARG_COVER_GREEDY : STARG_COVER_ILP,
                         .max_nodes = problem->options->max_nodes};
@@ -217,7 +207,7 @@ done:
 }
 
 static bool may_refine(const starg_guard_options *options) {
-    return options->refine && options->coverage == 1 && options->max_guards == 0 &&
+    return options->method == STARG_GUARD_PILP && options->refine && !wants_part(options) &&
            options->candidates != STARG_CANDIDATES_GIVEN;
 }
 
@@ -231,19 +221,14 @@ static starg_status choose_by_levels(const guard_problem *problem, const guard_d
     starg_status status = STARG_OK;
     guard_selection first = {0};
     STARG_TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
-    bool ends = must_end(problem, &first), refines = !ends && may_refine(problem->options);
-    if (refines)
-        STARG_TRY(refine_guards(problem, detail, &first, &out->pool, &out->selection,
-                                &out->lines_tested));
-    else if (!ends)
-        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
-    const guard_selection *of_levels = ends || refines ? &first : &out->selection;
-    STARG_TRY(record_level(&out->pool, of_levels, &out->records));
-    if (ends) {
+    bool ends = must_end(problem, &first);
+    if (ends || may_refine(problem->options)) {
         out->selection = first;
-        out->selection.time_limited = true;
+        out->selection.time_limited = first.time_limited || ends;
         first = (guard_selection){0};
-    }
+    } else
+        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
+    STARG_TRY(record_level(&out->pool, &out->selection, &out->records));
 done:
     selection_free(problem->context, &first);
     return status;
@@ -252,7 +237,7 @@ done:
 /* May one point be enough, and stand where no candidate does? */
 static bool may_be_star(const guard_problem *problem) {
     const starg_guard_options *o = problem->options;
-    bool free = o->prove || (o->method == STARG_GUARD_PILP && may_refine(o));
+    bool free = (o->prove && !chooses_exactly(o)) || may_refine(o);
     return free && o->redundancy == 1 && o->visibility.cone == 360;
 }
 
@@ -306,13 +291,16 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
         return STARG_OK;
     STARG_TRY(find_detail(problem, &detail));
     STARG_TRY(find_pool(problem, &detail, &out->pool));
-    if (problem->options->method == STARG_GUARD_PILP)
+    if (problem->options->method == STARG_GUARD_PILP && !chooses_exactly(problem->options))
         STARG_TRY(choose_by_levels(problem, &detail, out));
     else
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
-    if (problem->options->prove)
-        STARG_TRY(search_guards(problem, &out->pool, &out->selection, &out->search));
+    if (!wants_part(problem->options))
+        STARG_TRY(search_guards(problem, &detail, may_refine(problem->options), &out->pool,
+                                &out->selection, &out->search));
+    else if (problem->options->prove)
+        STARG_TRY(search_area(problem, &out->pool, &out->selection, &out->search));
 done:
     starg_solid_free(detail.proxy);
     starg_levels_free(problem->context, detail.levels);
@@ -375,6 +363,10 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
     *out = NULL;
     *text = NULL;
     *size = 0;
+    if (options != NULL && (wants_part(options) || options->redundancy > 1))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate is only written where everything is to be seen once; ask "
+                          "for a coverage of 1 without a limit of guards, and a redundancy of 1");
     if (options == NULL || !options->prove)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate says why a bound for guards anywhere holds, which is not "

@@ -135,19 +135,23 @@ static const starg_field OPTIONS[] = {
      OPTION(refine),
      .applies = has_levels,
      .initial = true,
-     .help = "pilp: skip refinement of the guard positions."},
+     .help = "pilp: skip refinement, the search for fewer guards beside the candidates."},
     {.option = "refine-lines",
      .kind = STARG_FIELD_COUNT,
      OPTION(refine_lines),
      .most = UINT32_MAX,
-     .initial = 10000000,
+     .initial = STARG_DEFAULT_LINES,
      .value = "N",
-     .help = "pilp: number of sight lines that refinement may test."},
+     .help = "pilp: budget of refinement, counted in sight lines (about a microsecond each) and "
+             "what takes as long.",
+     .default_text =
+         "400,000, 70 for each face, 40,000 for each guard, and 3 for each face and guard"},
     {.option = "prove",
      .kind = STARG_FIELD_FLAG,
      OPTION(prove),
      .help = "Search fewer guards at every point of the solid, and prove how many are needed, "
-             "wherever they stand."},
+             "wherever they stand (with --max-guards: how much so many could see). With candidates "
+             "from a file the fewest of these are chosen."},
     {.option = "prove-work",
      .kind = STARG_FIELD_COUNT,
      OPTION(prove_work),
@@ -188,6 +192,10 @@ static bool targets_vertices(const void *record) {
 
 static bool has_area_bound(const void *record) {
     return of(record)->options.max_guards > 0;
+}
+
+static bool has_area_bound_everywhere(const void *record) {
+    return of(record)->area_bound_everywhere > 0;
 }
 
 static bool is_bounded_everywhere(const void *record) {
@@ -339,6 +347,14 @@ static const starg_field COVERAGE[] = {
      .applies = has_area_bound,
      .help = "With max_guards: upper bound on the area fraction that any choice of that many "
              "candidates covers; trivially 1 with redundancy above 1 or target vertices."},
+    {.key = "area_bound_everywhere",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(area_bound_everywhere),
+     .high = 1,
+     .applies = has_area_bound_everywhere,
+     .help = "With max_guards and prove: upper bound on the area fraction that so many guards "
+             "cover, wherever they stand."},
 };
 static const starg_fields COVERAGE_TABLE = {.name = "coverage", FIELD_ROWS(COVERAGE)};
 
@@ -376,12 +392,13 @@ static const starg_field FILE_ROWS[] = {
      .kind = STARG_FIELD_COUNT,
      RESULT(lower_bound),
      .most = UINT32_MAX,
-     .help = "Proven lower bound: no fewer candidates cover as much. In files of morph --guards: "
+     .help = "Proven lower bound of these candidates: no fewer of them cover as much. In files of "
+             "morph --guards: "
              "no fewer pairs of candidates cover what some pair sees in both shapes."},
     {.key = "optimal",
      .kind = STARG_FIELD_FLAG,
      RESULT(optimal),
-     .help = "The number of guards equals lower_bound."},
+     .help = "The number of guards equals lower_bound: no fewer of these candidates do."},
     {.key = "lower_bound_everywhere",
      .kind = STARG_FIELD_COUNT,
      .flags = STARG_FIELD_OPTIONAL,

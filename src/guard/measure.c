@@ -185,18 +185,21 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->options.points = NULL;
     result->options.visibility.directions = NULL;
     result->candidate_count = pool_count(&outcome->pool);
-    result->lines_tested = outcome->lines_tested;
+    result->lines_tested = outcome->search.improve_work;
     result->time_limited = selection->time_limited;
     result->area_bound = 1;
     if (bounds_area(problem->options))
         result->area_bound = (double)selection->weight_bound / (double)problem->weights.total;
+    if (problem->options->visibility.target == STARG_TARGET_FACES)
+        result->area_bound_everywhere =
+            (double)outcome->search.weight_bound / (double)problem->weights.total;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
     result->lower_bound_everywhere = outcome->search.bound;
     result->optimal_everywhere = selection->chosen.count == outcome->search.bound;
     result->cells = outcome->search.cells;
     result->witnesses = outcome->search.witnesses;
-    result->prove_work = outcome->search.work;
+    result->prove_work = outcome->search.prove_work;
 }
 
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,

@@ -579,6 +579,15 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
     if (guards->area_bound < 1)
         verify_leave(verdict, "that so many candidates see at most a fraction of %.17g of the area",
                      guards->area_bound);
+    if (guards->area_bound_everywhere > 0) {
+        verify_claim(verdict, seen <= guards->area_bound_everywhere * (1 + TOLERANCE),
+                     "the area seen, %.17g, is within the bound for guards anywhere, %.17g", seen,
+                     guards->area_bound_everywhere);
+        verify_leave(verdict,
+                     "that so many guards see at most a fraction of %.17g of the area, wherever "
+                     "they stand",
+                     guards->area_bound_everywhere);
+    }
 done:
     return status;
 }
