@@ -40,8 +40,8 @@ struct verify_watch {
     verify_box box;            /* what is looked at: no point of the solid is lost */
     bool empty;                /* nothing of it is within the bounds of the surface */
     STARG_ARRAY(uint32_t) met; /* faces that meet the box; valid if `met_known` */
-    bool met_known, failed; /* memory was out: nothing is proven then */
-    uint32_t *visit; /* by face: number of the last flood that came here */
+    bool met_known, failed;    /* memory was out: nothing is proven then */
+    uint32_t *visit;           /* by face: number of the last flood that came here */
     uint32_t flood;
     uint32_t *stack; /* faces */
 };
