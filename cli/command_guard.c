@@ -9,6 +9,7 @@
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
+#include "scene.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "suggest.h"
@@ -25,6 +26,7 @@ static const uint8_t UNCOVERED[3] = {139, 0, 0};
 typedef struct values {
     const char *output, *marks, *picture, *certificate, *candidates;
     starg_guard_options wanted;
+    cli_scene scene;
     double *points; /* --candidates FILE */
 } values;
 
@@ -43,6 +45,8 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION("marks", marks, "FILE.ply",
                     "Model with each face in the colour of the first guard that sees it; uncovered "
                     "faces are dark red."),
+    CLI_SCENE_OPTIONS,
+    CLI_PLACE_OPTIONS,
 };
 
 /* ---- what was asked for ---- */
@@ -121,7 +125,8 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
-    size_t hidden = g->face_count - g->coverable_faces;
+    size_t wanted = g->target_count > 0 ? g->target_count : g->face_count;
+    size_t hidden = wanted - g->coverable_faces;
     if (hidden > 0)
         cli_say(session, " (%s that no candidate sees)",
                 cli_count_of(hidden, "face", "faces").text);
@@ -219,6 +224,7 @@ static starg_status prepare(cli_session *session, void *data) {
                         "--certificate says why the bound of --prove holds; add --prove");
     CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
         CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
 done:
@@ -231,11 +237,13 @@ static starg_status run(cli_session *session, void *data) {
     starg_guards *guards = NULL;
     char *why = NULL;
     size_t size = 0;
+    CLI_TRY(cli_scene_make(session, &v->scene));
     if (v->certificate != NULL)
         CLI_TRY(starg_guard_certified(session->context, session->solid, &v->wanted, &guards, &why,
                                       &size));
     else
         CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
+    CLI_TRY(starg_guards_name_obstacles(session->context, guards, v->scene.obstacles.values));
     CLI_TRY(write_files(session, v, session->solid, guards, why, size));
     say_guards(session, guards);
     if (session->report != NULL)
@@ -276,7 +284,7 @@ const cli_command cli_command_guard = {
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_guard_options_fields, wanted),
-    .input = CLI_INPUT_SOLID,
+    .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,
     .release = release,

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "model.h"
 #include "report.h"
+#include "scene.h"
 #include "starguard/verify.h"
 #include "terminal.h"
 
@@ -117,22 +118,26 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
 /* A certificate stands directly behind its guards. */
 static starg_status verify_guards(cli_session *session, const model *given, size_t operand,
                                   starg_result *const *results, json_t *list) {
+    starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
-    json_t *entry = json_object();
+    starg_mesh **obstacles = NULL;
+    const starg_guards *guards = results[operand]->guards;
     bool certified =
         operand + 1 < session->operand_count && results[operand + 1]->certificate != NULL;
-    starg_status status =
-        starg_verify_certified(session->context, given->mesh, results[operand]->guards,
-                               certified ? results[operand + 1]->certificate : NULL, &verdict);
-    if (status != STARG_OK) {
-        json_decref(entry);
-        return status;
-    }
+    CLI_TRY(cli_scene_read_obstacles(session, guards, &obstacles));
+    const starg_guards_evidence evidence = {
+        .obstacles = (const starg_mesh *const *)obstacles,
+        .obstacle_count = guards->obstacle_count,
+        .certificate = certified ? results[operand + 1]->certificate : NULL};
+    CLI_TRY(starg_verify_guards_with(session->context, given->mesh, &evidence, guards, &verdict));
+    json_t *entry = json_object();
     if (certified)
         cli_put(session, entry, "certificate", cli_json_text(session->operands[operand + 1]));
     tell_verdict(session, session->operands[operand], verdict, entry, list);
+done:
+    cli_scene_free_obstacles(obstacles, guards->obstacle_count);
     starg_verdict_free(session->context, verdict);
-    return STARG_OK;
+    return status;
 }
 
 static starg_status verify_pieces(cli_session *session, const model *given, decomposition found,

@@ -12,6 +12,7 @@
 #include "fields.h"
 #include "simplify.h"
 #include "solid.h"
+#include "space.h"
 #include "visibility.h"
 
 #ifdef __cplusplus
@@ -96,11 +97,25 @@ typedef struct starg_guard_level {
     size_t kept;       /* significant guards of the coarser level */
 } starg_guard_level;
 
-/* A guarding result. Faces are indices into the solid's mesh. */
+/* An obstacle of a scene. */
+typedef struct starg_guard_obstacle {
+    char *file; /* as given; NULL if made in memory */
+    size_t vertex_count, face_count;
+} starg_guard_obstacle;
+
+/* A guarding result. Faces are indices into the model's mesh. */
 typedef struct starg_guards {
     char *file; /* the model's path as given; NULL if made in memory          */
     size_t vertex_count, face_count; /* of the model                                          */
     starg_guard_options options;     /* as used; `points` is NULL                             */
+
+    /* of a scene (starguard/space.h); the defaults and nothing for a plain solid */
+    starg_space_options space;
+    size_t obstacle_count;
+    starg_guard_obstacle *obstacles;
+    size_t target_count; /* faces to be seen; 0: all                              */
+    uint32_t *targets;   /* ascending; NULL: all */
+    double *importance;  /* of each target: starg_space_weigh, the largest is 1 */
 
     size_t count;
     double *positions;  /* count x 3                                                  */
@@ -171,6 +186,11 @@ STARG_API starg_status starg_candidate_points(starg_context *context, const star
                                               starg_candidates source, size_t wanted,
                                               double clearance, double **points, size_t *count);
 STARG_API void starg_points_free(starg_context *context, double *points);
+
+/* Keeps the file names of the obstacles with the result, one for each in their order. Errors:
+ * MEMORY. */
+STARG_API starg_status starg_guards_name_obstacles(starg_context *context, starg_guards *guards,
+                                                   const char *const *files);
 
 /* Writes GUARDS.json (docs/formats.md); path "-" is standard output. `model_file` is stored as the
  * model's path and may be NULL. `guards` is not changed. */

@@ -66,6 +66,18 @@ STARG_API starg_status starg_verify_certified(starg_context *context, const star
                                               const starg_certificate *certificate,
                                               starg_verdict **out);
 
+/* What a check of guards may use beside the model. */
+typedef struct starg_guards_evidence {
+    const starg_mesh *const *obstacles; /* the meshes that the result names, in its order */
+    size_t obstacle_count;
+    const starg_certificate *certificate; /* or NULL */
+} starg_guards_evidence;
+
+/* The same with all of it. Errors: also ARGUMENT (other obstacles than those of the result). */
+STARG_API starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,
+                                                const starg_guards_evidence *evidence,
+                                                const starg_guards *guards, starg_verdict **out);
+
 /* ---- star decompositions ---- */
 
 /* Labelled tetrahedra as read from PIECES.vtk, without any guarantee. */

@@ -175,8 +175,10 @@ bool search_scene_bars(const search_scene *scene, const bvh_box *box) {
 
 starg_status cells_begin(const search_scene *scene, search_cells *cells) {
     starg_status status = STARG_OK;
-    const bvh_box *all = &scene->solid->tree->nodes[0].box;
-    search_cell root = {.box = *all};
+    bvh_box reach;
+    solid_reach(scene->solid, &reach);
+    const bvh_box *all = &reach;
+    search_cell root = {.box = reach};
     double extent = 0;
     for (int k = 0; k < 3; k++)
         extent = fmax(extent, all->upper[k] - all->lower[k]);

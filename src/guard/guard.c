@@ -92,6 +92,8 @@ static starg_status make_levels(const guard_problem *problem, guard_detail *out)
 static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
     starg_status status = STARG_OK;
     bool proxy = needs_proxy(problem);
+    if (problem->solid->scene)
+        return STARG_OK; /* obstacles and outsides have no levels of detail */
     if (problem->options->method == STARG_GUARD_PILP || proxy)
         STARG_TRY(make_levels(problem, out));
     if (proxy && out->levels != NULL)
@@ -238,7 +240,7 @@ done:
 static bool may_be_star(const guard_problem *problem) {
     const starg_guard_options *o = problem->options;
     bool free = (o->prove && !chooses_exactly(o)) || may_refine(o);
-    return free && o->redundancy == 1 && o->visibility.cone == 360;
+    return free && !problem->solid->scene && o->redundancy == 1 && o->visibility.cone == 360;
 }
 
 /* Does the only candidate see all that anyone could? */
@@ -340,8 +342,7 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
     STARG_TRY(check_options(context, &used));
-    STARG_TRY(
-        column_weights_create(context, solid->mesh, used.visibility.target, &problem.weights));
+    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
     STARG_TRY(find_guards(&problem, &outcome));
     STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
@@ -367,6 +368,10 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate is only written where everything is to be seen; ask for a "
                           "coverage of 1 without a limit of guards");
+    if (solid->scene)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate is only written for a plain solid: without obstacles, "
+                          "outsides, weights and bounds for where guards stand");
     if (options == NULL || !options->prove)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate says why a bound for guards anywhere holds, which is not "
@@ -413,8 +418,7 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
-    STARG_TRY(
-        column_weights_create(context, solid->mesh, used.visibility.target, &problem.weights));
+    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
     STARG_TRY(find_candidates(&problem, &(guard_detail){0}, &outcome.pool));
     STARG_TRY(choose_all(&problem, &outcome.pool, &outcome.selection));
     STARG_TRY(report_guards(&problem, &outcome, out));
@@ -436,6 +440,11 @@ void starg_guards_free(starg_context *context, starg_guards *guards) {
         return;
     guard_records records = {.data = guards->level_list, .count = guards->level_count};
     records_free(context, &records);
+    for (size_t i = 0; guards->obstacles != NULL && i < guards->obstacle_count; i++)
+        starg_release(context, guards->obstacles[i].file);
+    starg_release(context, guards->obstacles);
+    starg_release(context, guards->targets);
+    starg_release(context, guards->importance);
     starg_release(context, guards->file);
     starg_release(context, guards->positions);
     starg_release(context, guards->directions);

@@ -3,6 +3,8 @@
  * ranges and descriptions. Rows are in the order of the file. */
 #include "guard/guards_fields.h"
 
+#include <math.h>
+
 #include "starguard/guard.h"
 #include "visibility/fields.h"
 
@@ -358,6 +360,99 @@ static const starg_field COVERAGE[] = {
 };
 static const starg_fields COVERAGE_TABLE = {.name = "coverage", FIELD_ROWS(COVERAGE)};
 
+/* ---- the scene ---- */
+
+static const char *const ORIENTATIONS[] = {"nested", "keep", NULL};
+
+static const starg_field OBSTACLES[] = {
+    {.key = "file",
+     .kind = STARG_FIELD_TEXT,
+     .flags = STARG_FIELD_OPTIONAL,
+     FIELD_MEMBER(starg_guard_obstacle, file),
+     .help = "Its path as given."},
+    {.key = "vertices",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_guard_obstacle, vertex_count),
+     .most = UINT32_MAX,
+     .help = "Number in the obstacle."},
+    {.key = "faces",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_guard_obstacle, face_count),
+     .most = UINT32_MAX,
+     .help = "Number in the obstacle."},
+};
+static const starg_fields OBSTACLES_TABLE = {
+    .name = "obstacles", .size = sizeof(starg_guard_obstacle), FIELD_ROWS(OBSTACLES)};
+
+static const starg_field TARGETS[] = {
+    {.key = "face",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, targets),
+     .size = sizeof(uint32_t),
+     .most = UINT32_MAX},
+    {.key = "weight",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_ABOVE,
+     .offset = offsetof(starg_guards, importance),
+     .size = sizeof(double),
+     .high = 1},
+};
+static const starg_fields TARGETS_TABLE = {
+    .columns = true, .name = "targets", .form = STARG_FORM_TUPLE, FIELD_ROWS(TARGETS)};
+
+#define USUALLY_NOT .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE
+
+static const starg_field SCENE[] = {
+    {.key = "orientation",
+     .kind = STARG_FIELD_CHOICE,
+     USUALLY_NOT,
+     RESULT(space.orientation),
+     .words = ORIENTATIONS,
+     .help = "Shells by their nesting, or as given."},
+    {.key = "outside",
+     .kind = STARG_FIELD_FLAG,
+     USUALLY_NOT,
+     RESULT(space.outside),
+     .help = "Guards stand outside of the model."},
+    {.key = "standoff_least",
+     .kind = STARG_FIELD_REAL,
+     USUALLY_NOT,
+     RESULT(space.standoff_least),
+     .high = 1e100,
+     .help = "Smallest distance of guards from the model."},
+    {.key = "standoff_most",
+     .kind = STARG_FIELD_REAL,
+     USUALLY_NOT,
+     RESULT(space.standoff_most),
+     .high = 1e100,
+     .standard = INFINITY,
+     .help = "Largest distance of guards from the model."},
+    {.key = "within",
+     .kind = STARG_FIELD_NUMBERS,
+     USUALLY_NOT,
+     RESULT(space.within),
+     .length = 6,
+     .low = -1e100,
+     .high = 1e100,
+     .help = "Guards stand in this box: lower corner, upper corner."},
+    {.key = "obstacles",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(obstacles),
+     .of = &OBSTACLES_TABLE,
+     LENGTH(starg_guards, obstacle_count),
+     .help = "What stands in the way and need not be seen."},
+    {.key = "targets",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     .of = &TARGETS_TABLE,
+     LENGTH(starg_guards, target_count),
+     .help = "The faces to be seen, ascending, each with how much its area counts; absent if all "
+             "count alike. Fractions of faces are of these, those of the area of their weighted "
+             "area."},
+};
+static const starg_fields SCENE_TABLE = {.name = "scene", FIELD_ROWS(SCENE)};
+
 /* ---- the file ---- */
 
 static const starg_field FILE_ROWS[] = {
@@ -369,6 +464,13 @@ static const starg_field FILE_ROWS[] = {
      .offset = offsetof(starg_guards, options),
      .of = &OPTIONS_TABLE,
      .help = "The options used."},
+    {.key = "scene",
+     .kind = STARG_FIELD_RECORD,
+     USUALLY_NOT,
+     .of = &SCENE_TABLE,
+     .help =
+         "Where guards may stand, what is in the way and what is to be seen, if that is not all "
+         "as usual."},
     {.key = "guards",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_LINES,

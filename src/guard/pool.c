@@ -161,6 +161,7 @@ static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
                         !starg_bit_test(pool->coverable, c[2]);
         else
             unseen[f] = !starg_bit_test(pool->coverable, f);
+        unseen[f] = unseen[f] && solid_is_target(pool->solid, false, f);
     }
 }
 

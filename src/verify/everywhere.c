@@ -119,8 +119,12 @@ static bool is_of_this(const starg_certificate *c, const verify_facts *known,
     for (size_t f = 0; f < surface->face_count; f++)
         sum = starg_checksum_face(sum, surface->vertices, surface->faces + 3 * f);
     *difference = NULL;
-    if (c->vertex_count != surface->vertex_count || c->face_count != surface->face_count ||
-        c->checksum != sum)
+    if (surface->ambient != 0 || surface->importance != NULL ||
+        surface->model_faces != surface->face_count ||
+        known->guards->space.orientation != STARG_ORIENTATION_NESTED)
+        *difference = ": such are of plain solids alone";
+    else if (c->vertex_count != surface->vertex_count || c->face_count != surface->face_count ||
+             c->checksum != sum)
         *difference = ": it is of another model";
     else if (c->target != view->target)
         *difference = ": its targets are others";
