@@ -327,8 +327,8 @@ static starg_status certify_one(const guard_problem *problem, const guard_outcom
          j++)
         if (starg_bits_test(pool->rows, outcome->selection.chosen.data[0], j))
             witness = j;
-    return certificate_of_one(problem->context, problem->solid, &problem->options->visibility,
-                              witness, problem->certificate);
+    return certificate_of_one(problem->context, problem->solid, problem->options, witness,
+                              problem->certificate);
 }
 
 /* Under the rule of unions a crate in a room is a part of the room: so one may well be meant to be
@@ -386,10 +386,10 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
     *out = NULL;
     *text = NULL;
     *size = 0;
-    if (options != NULL && (wants_part(options) || options->redundancy > 1))
+    if (options != NULL && wants_part(options))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a certificate is only written where everything is to be seen once; ask "
-                          "for a coverage of 1 without a limit of guards, and a redundancy of 1");
+                          "a certificate is only written where everything is to be seen; ask for a "
+                          "coverage of 1 without a limit of guards");
     if (solid->scene)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate is only written for a plain solid: without obstacles, "
