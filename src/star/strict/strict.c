@@ -9,7 +9,8 @@
  *
  * The first start runs to its end whatever the time limit says, in a hurry once that has passed:
  * so there is a result. Where it fails, which takes roundings that spoil every cut of some piece,
- * given tetrahedra are grown into regions instead (region_growing.c), which always succeeds. */
+ * others are tried; then given tetrahedra are grown into regions instead (region_growing.c), which
+ * always succeeds. */
 #include "star/strict/strict.h"
 
 #include "mesh/mesh.h"
@@ -138,10 +139,11 @@ static bsp_options start_options(const searches *s) {
 /* The first start; the partition has no pieces when there is none. */
 static starg_status begin(searches *s, partition *p) {
     starg_status status = STARG_OK;
-    bsp_report report;
+    bsp_report report = {.done = false};
     bsp_options options = start_options(s);
     options.to_the_end = true;
-    STARG_TRY(start_by_bsp(&s->of, &options, p, &report));
+    for (; !report.done && options.stream < SEARCHES; options.stream++)
+        STARG_TRY(start_by_bsp(&s->of, &options, p, &report));
     s->budget = EVALUATIONS_TIMES * report.evaluations;
     if (report.done)
         goto done;

@@ -46,7 +46,7 @@ enum { PROOFS_MOST = 40 }; /* rounds of them */
 /* Numbers of stages are below. */
 static const uint64_t STREAMS = 1000;
 
-static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9, MARGIN_REFLEX = 1e-13,
+static const double MARGIN = 2e-5, MARGIN_LEAST = 2e-9,
                     SMALL_COMPONENT = 1e-7;       /* unit coordinates */
 static const double TURN = 1e-5, TURN_MOST = 0.1; /* radians, about */
 
@@ -55,7 +55,8 @@ typedef struct job {
     uint32_t number;
     int attempts;
     double above;            /* so large the ball must be: a smaller one has failed */
-    double radius, guard[3]; /* of the ball in its kernel; unit coordinates */
+    double radius;   /* of the ball in its kernel, in unit coordinates */
+    double guard[3]; /* the middle of it, in those of the solid */
     partition_plane plane;
     bool found;
 } job;
@@ -81,11 +82,12 @@ static double ease_of(const job *j) {
 }
 
 static double margin_of(const job *j) {
-    return fmax(MARGIN * ease_of(j), j->attempts < REFLEX_FROM ? MARGIN_LEAST : MARGIN_REFLEX);
+    return fmax(MARGIN * ease_of(j), MARGIN_LEAST);
 }
 
+/* In pieces that resist, what exact proof there is will do. */
 static bool is_star(const job *j) {
-    return j->radius >= margin_of(j) && j->radius > j->above;
+    return j->radius >= (j->attempts < HALVE_FROM ? margin_of(j) : 0) && j->radius > j->above;
 }
 
 /* ---- looking at open pieces ---- */
@@ -105,6 +107,40 @@ static starg_status find_plane(const bsp_builder *b, job *j, const region *r, st
     return split_plane_find(r, &options, rng, scratch, &j->plane, &j->found);
 }
 
+/* A guard for a piece too thin for rounded programs, by exact proof. */
+static starg_status find_kernel(const partition *p, job *j) {
+    starg_status status = STARG_OK;
+    partition_triangles triangles = {0};
+    kernel_faces surface = {.vertices = p->points.data};
+    starg_kernel_result result;
+    STARG_TRY(partition_gather(p, j->number, &triangles));
+    surface.faces = triangles.data;
+    surface.count = triangles.count / 3;
+    STARG_TRY(kernel_find(p->context, &surface, &result));
+    if (result.verdict == STARG_KERNEL_INTERIOR) {
+        vec3_copy(result.guard, j->guard);
+        j->radius = ldexp(fabs(result.radius), -p->exponent);
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
+}
+
+static starg_status find_guard(const partition *p, const region *r, job *j,
+                               region_scratch *scratch) {
+    starg_status status = STARG_OK;
+    double center[3];
+    STARG_TRY(region_find_center(r, NULL, 0, scratch, center, &j->radius));
+    if (j->radius > 0)
+        partition_from_unit(p, center, j->guard);
+    if (j->attempts >= HALVE_FROM && j->radius < margin_of(j)) {
+        j->radius = -1;
+        STARG_TRY(find_kernel(p, j));
+    }
+done:
+    return status;
+}
+
 static starg_status look_at(starg_context *context, void *shared, void *scratch, size_t item) {
     starg_status status = STARG_OK;
     bsp_builder *b = shared;
@@ -114,7 +150,7 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
         starg_rng_make(context->seed, 78 + STREAMS * b->options->stream, b->done + item);
     j->found = false;
     STARG_TRY(region_gather(b->p, &j->number, 1, scratch, &r));
-    STARG_TRY(region_find_center(&r, NULL, 0, scratch, j->guard, &j->radius));
+    STARG_TRY(find_guard(b->p, &r, j, scratch));
     if (!is_star(j))
         STARG_TRY(find_plane(b, j, &r, &rng, scratch));
 done:
@@ -221,7 +257,7 @@ done:
 
 static void settle(bsp_builder *b, const job *j) {
     piece *it = &b->p->pieces.data[j->number];
-    partition_from_unit(b->p, j->guard, it->guard);
+    vec3_copy(j->guard, it->guard);
     it->radius = j->radius;
     b->finished += it->volume;
     starg_progress_step(b->p->context, (size_t)(1e6 * fmin(1, b->finished / b->volume)), 1000000);
