@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
+/* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
 #include <math.h>
 
 #include "geometry/vec3.h"
@@ -31,7 +31,9 @@ static const starg_field OPTIONS[] = {
      .high = 1e6,
      .standard = STARG_DECOMPOSE_DENSITY,
      .value = "T",
-     .help = "Initial tetrahedra per surface vertex; 0: as few as possible.",
+     .help =
+         "Initial tetrahedra per surface vertex; 0: as few as possible. strict needs none unless "
+         "the surface intersects itself.",
      .default_text = "0 for strict, 17.5 (as published) for paper"},
     {.key = "max_pieces",
      .option = "max-pieces",
@@ -70,7 +72,7 @@ void starg_decompose_options_default(starg_decompose_options *options) {
     starg_fields_default(&OPTIONS_TABLE, options);
 }
 
-/* Strict pieces are made of their surfaces: the tetrahedra to start from may be few. */
+/* Strict pieces are made of their surfaces: where tetrahedra are needed, they may be few. */
 static starg_tetra_options tetra_options(const starg_decompose_options *o) {
     starg_tetra_options tetra = o->tetra, usual;
     starg_tetra_options_default(&usual);
@@ -189,7 +191,9 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     STARG_TRY(check_options(context, options));
     if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && is_embedded(solid))
         STARG_TRY(strict_decompose_surface(context, solid->mesh, options, out));
-    if (*out == NULL)
+    if (*out != NULL)
+        (*out)->flattest_given = -1;
+    else
         STARG_TRY(decompose_filled(context, solid, surface, options, out));
     const starg_mesh *model = solid != NULL ? solid->mesh : surface;
     (*out)->model_vertices = model->vertex_count;
