@@ -163,6 +163,92 @@ static void test_cavity(void **state) {
 
 /* ---- cuts ---- */
 
+/* Random cubes of a grid, which touch in edges and vertices. */
+static partition random_cubes(starg_context *context, starg_rng *rng) {
+    int places[27][3];
+    size_t count = 0;
+    for (int i = 0; i < 27; i++)
+        if (starg_rng_below(rng, 2) == 0 || (i == 26 && count == 0)) {
+            const int at[3] = {i % 3, i / 3 % 3, i / 9};
+            memcpy(places[count++], at, sizeof at);
+        }
+    return cubes(context, (const int(*)[3])places, count);
+}
+
+/* Through a point of the grid, across a direction of small integers: through vertices, along edges,
+ * through faces. */
+static partition_plane random_grid_plane(const partition *p, starg_rng *rng) {
+    partition_plane plane = {.normal = {0, 0, 0}};
+    double point[3], unit[3], length = 0;
+    while (length == 0)
+        for (int k = 0; k < 3; k++) {
+            plane.normal[k] = (double)starg_rng_below(rng, 3) - 1;
+            length += plane.normal[k] * plane.normal[k];
+        }
+    for (int k = 0; k < 3; k++) {
+        plane.normal[k] /= sqrt(length);
+        point[k] = (double)starg_rng_below(rng, 4);
+    }
+    partition_to_unit(p, point, unit);
+    for (int k = 0; k < 3; k++)
+        plane.offset += plane.normal[k] * unit[k];
+    return plane;
+}
+
+/* No facet of a part is beyond the plane, and one is as far on its side as the piece was. */
+static void check_sides(const partition *p, uint32_t high, const partition_plane *plane) {
+    for (size_t i = 0; i < 2 * p->facets.count; i++)
+        for (int k = 0; k < 3; k++) {
+            const facet *f = &p->facets.data[i / 2];
+            const double *v = partition_unit(p, f->corners[k]);
+            double height = plane->normal[0] * v[0] + plane->normal[1] * v[1] +
+                            plane->normal[2] * v[2] - plane->offset;
+            if (f->side[i % 2] == 0)
+                assert_true(height < SLICE_ON);
+            if (f->side[i % 2] == high)
+                assert_true(height > -SLICE_ON);
+        }
+}
+
+static void test_cuts_of_cubes(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t cut = 0;
+    for (uint64_t seed = 0; seed < 60; seed++) {
+        starg_rng rng = starg_rng_make(seed, 88, 0);
+        partition p = random_cubes(context, &rng);
+        double whole = volume_of_all(&p);
+        for (int i = 0; i < 12; i++) {
+            const partition_plane plane = random_grid_plane(&p, &rng);
+            partition next = partition_oracle_copy(&p);
+            uint32_t high = (uint32_t)next.pieces.count;
+            const piece fresh = {.volume = 0};
+            starg_status status = STARG_OK;
+            bool done = false;
+            STARG_PUSH(context, PARTITION_STAGE, &next.pieces, fresh);
+        done:
+            test_ok(context, status);
+            test_ok(context, partition_slice(&next, 0, high, &plane, &done));
+            if (!done) {
+                partition_free(&next);
+                continue;
+            }
+            test_ok(context, partition_build_index(&next));
+            partition_oracle_check(&next);
+            check_sides(&next, high, &plane);
+            assert_true(partition_oracle_volume(&next, 0) > 1e-6);
+            assert_true(partition_oracle_volume(&next, high) > 1e-6);
+            assert_true(fabs(volume_of_all(&next) - whole) < 1e-12);
+            partition_free(&p);
+            p = next;
+            cut++;
+        }
+        partition_free(&p);
+    }
+    assert_true(cut > 100);
+    test_context_free(context);
+}
+
 static bool start_stream(partition *p, uint64_t stream, size_t budget, bool to_the_end) {
     const bsp_options options = {.stream = stream, .budget = budget, .to_the_end = to_the_end};
     bsp_report report;
@@ -322,10 +408,10 @@ static void test_limits(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_parts),        cmocka_unit_test(test_cavity),
-        cmocka_unit_test(test_cubes),        cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_random_cells), cmocka_unit_test(test_fins),
-        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_parts),         cmocka_unit_test(test_cavity),
+        cmocka_unit_test(test_cuts_of_cubes), cmocka_unit_test(test_cubes),
+        cmocka_unit_test(test_samples),       cmocka_unit_test(test_random_cells),
+        cmocka_unit_test(test_fins),          cmocka_unit_test(test_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

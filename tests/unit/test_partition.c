@@ -8,11 +8,13 @@
 #include <string.h>
 
 #include "exact_oracle.h"
+#include "models.h"
 #include "partition_oracle.h"
 #include "star/strict/partition/apply.h"
 #include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/partition/slice.h"
 #include "star/strict/search/improve.h"
+#include "starguard/sample.h"
 #include "tetrahedra.h"
 
 enum { CUTS_MOST = 8 };
@@ -84,6 +86,33 @@ static void test_create(void **state) {
         free(labels);
         free(guards);
         starg_tetmesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
+/* A surface is one piece with its faces as facets, in planes of their own. */
+static void test_create_from_surface(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < starg_sample_count(); i++) {
+        starg_solid *solid = test_sample(context, starg_sample_at(i)->name, 500);
+        const starg_mesh *mesh = starg_solid_mesh(solid);
+        const kernel_faces surface = {starg_mesh_vertices(mesh), starg_mesh_faces(mesh),
+                                      starg_mesh_face_count(mesh)};
+        partition p;
+        test_ok(context, partition_create_from_surface(context, &surface, &p));
+        partition_oracle_check(&p);
+        assert_int_equal(p.pieces.count, 1);
+        assert_int_equal(p.facets.count, surface.count);
+        assert_int_equal(p.first_planes, surface.count);
+        assert_int_equal(p.first_points, starg_mesh_vertex_count(mesh));
+        assert_memory_equal(p.points.data, surface.vertices, 24 * p.first_points);
+        for (size_t f = 0; f < surface.count; f++)
+            assert_memory_equal(p.facets.data[f].corners, surface.faces + 3 * f, 12);
+        double scale = ldexp(1, 3 * p.exponent);
+        assert_true(fabs(volume_of_all(&p) * scale - starg_mesh_volume(mesh)) < 1e-12 * scale);
+        partition_free(&p);
+        starg_solid_free(solid);
     }
     test_context_free(context);
 }
@@ -316,8 +345,8 @@ static void test_slices_through_edges(void **state) {
     test_context_free(context);
 }
 
-/* Planes that nearly go through a vertex, or do, and those that pass the piece by, which are refused.
- */
+/* Planes that nearly go through a vertex, or do, and those that pass the piece by, which are
+ * refused. */
 static void test_planes_at_vertices(void **state) {
     (void)state;
     static const double near[] = {0, 2e-12, -2e-12, 9e-10, -9e-10, 1e-8};
@@ -895,6 +924,7 @@ static void test_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create),
+        cmocka_unit_test(test_create_from_surface),
         cmocka_unit_test(test_gather),
         cmocka_unit_test(test_certify),
         cmocka_unit_test(test_slices_of_samples),
