@@ -255,12 +255,13 @@ static uint32_t around(const triangulation *t, uint32_t h) {
     return t->twin.data[corner_previous(h)];
 }
 
-/* The halfedge between two vertices, which is there. */
+/* The halfedge from a to b, which is there. One of them is no enclosing point, about which one does
+ * not get all around. */
 static uint32_t find_edge(const triangulation *t, uint32_t a, uint32_t b) {
     uint32_t h = t->at.data[a];
-    while (end_of(t, h) != b)
+    while (h != TRIANGULATION_NONE && end_of(t, h) != b)
         h = around(t, h);
-    return h;
+    return h != TRIANGULATION_NONE ? h : t->twin.data[find_edge(t, b, a)];
 }
 
 /* Does c, on the line of a and b, lie on the same side of a as b? */
