@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
+/* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
 #include <math.h>
 
 #include "geometry/vec3.h"
@@ -31,7 +31,9 @@ static const starg_field OPTIONS[] = {
      .high = 1e6,
      .standard = STARG_DECOMPOSE_DENSITY,
      .value = "T",
-     .help = "Initial tetrahedra per surface vertex; 0: as few as possible.",
+     .help =
+         "Initial tetrahedra per surface vertex; 0: as few as possible. strict needs none unless "
+         "the surface intersects itself.",
      .default_text = "0 for strict, 17.5 (as published) for paper"},
     {.key = "max_pieces",
      .option = "max-pieces",
@@ -70,7 +72,7 @@ void starg_decompose_options_default(starg_decompose_options *options) {
     starg_fields_default(&OPTIONS_TABLE, options);
 }
 
-/* Strict pieces are made of their surfaces: the tetrahedra to start from may be few. */
+/* Strict pieces are made of their surfaces: where tetrahedra are needed, they may be few. */
 static starg_tetra_options tetra_options(const starg_decompose_options *o) {
     starg_tetra_options tetra = o->tetra, usual;
     starg_tetra_options_default(&usual);
@@ -99,12 +101,10 @@ static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
                              const starg_decompose_options *options, starg_decomposition **out) {
     bool paper = options->mode == STARG_DECOMPOSE_PAPER;
     starg_status status = paper ? paper_decompose(context, mesh, options, out)
-                                : strict_decompose(context, mesh, options, out);
-    if (status != STARG_OK)
-        return status;
-    (*out)->flattest = tetmesh_flattest((*out)->mesh);
-    (*out)->flattest_given = tetmesh_flattest(mesh);
-    return STARG_OK;
+                                : strict_decompose_tetmesh(context, mesh, options, out);
+    if (status == STARG_OK)
+        (*out)->flattest_given = tetmesh_flattest(mesh);
+    return status;
 }
 
 starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
@@ -120,6 +120,7 @@ starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh
     STARG_TRY(run_mode(context, mesh, options, out));
     (*out)->model_vertices = mesh->vertex_count;
     (*out)->model_tetrahedra = mesh->count;
+    (*out)->flattest = tetmesh_flattest((*out)->mesh);
 done:
     return status;
 }
@@ -157,35 +158,59 @@ static starg_status decompose_filled(starg_context *context, const starg_solid *
                                      const starg_decompose_options *options,
                                      starg_decomposition **out) {
     starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    starg_decompose_options_default(&defaults);
     starg_tetra_report report;
     starg_tetmesh *mesh = NULL;
-    if (options == NULL)
-        options = &defaults;
-    *out = NULL;
-    STARG_TRY(check_options(context, options));
     STARG_TRY(fill(context, solid, surface, options, &report, &mesh));
     if (solid == NULL && !options->fill)
         STARG_TRY(check_filling(context, surface, &report));
     STARG_TRY(run_mode(context, mesh, options, out));
-    const starg_mesh *model = solid != NULL ? solid->mesh : surface;
-    (*out)->model_vertices = model->vertex_count;
-    (*out)->model_faces = model->face_count;
-    (*out)->model_tetrahedra = 0;
     (*out)->tetra = report;
 done:
     starg_tetmesh_free(mesh);
     return status;
 }
 
+/* Nothing but the surface is needed where it bounds the solid as it is. */
+static bool is_embedded(const starg_solid *solid) {
+    const starg_finding *found = solid->check->findings;
+    return found[STARG_FINDING_SELF_INTERSECTION].count == 0 &&
+           found[STARG_FINDING_SELF_CONTACT].count == 0 &&
+           found[STARG_FINDING_DEGENERATE_FACE].count == 0;
+}
+
+static starg_status decompose_model(starg_context *context, const starg_solid *solid,
+                                    const starg_mesh *surface,
+                                    const starg_decompose_options *options,
+                                    starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    starg_decompose_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && is_embedded(solid))
+        STARG_TRY(strict_decompose_surface(context, solid->mesh, options, out));
+    if (*out != NULL)
+        (*out)->flattest_given = -1;
+    else
+        STARG_TRY(decompose_filled(context, solid, surface, options, out));
+    const starg_mesh *model = solid != NULL ? solid->mesh : surface;
+    (*out)->model_vertices = model->vertex_count;
+    (*out)->model_faces = model->face_count;
+    (*out)->model_tetrahedra = 0;
+    (*out)->flattest = tetmesh_flattest((*out)->mesh);
+done:
+    return status;
+}
+
 starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                              const starg_decompose_options *options, starg_decomposition **out) {
-    return decompose_filled(context, solid, NULL, options, out);
+    return decompose_model(context, solid, NULL, options, out);
 }
 
 starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out) {
-    return decompose_filled(context, NULL, surface, options, out);
+    return decompose_model(context, NULL, surface, options, out);
 }

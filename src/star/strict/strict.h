@@ -6,8 +6,16 @@
 #include "core/context.h"
 #include "starguard/decompose.h"
 
-/* Errors: MESH, MEMORY, CANCELLED. */
-starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
-                              const starg_decompose_options *options, starg_decomposition **out);
+/* From the surface alone, which must be embedded, without degenerate faces, and face outward. *out
+ * is NULL when roundings have spoilt all cuts of some piece. Errors: MEMORY, CANCELLED. */
+starg_status strict_decompose_surface(starg_context *context, const starg_mesh *surface,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out);
+
+/* From the boundary of tetrahedra, or from tetrahedra grown into regions where that resists.
+ * Errors: MESH (a tetrahedron too thin to contain a point), MEMORY, CANCELLED. */
+starg_status strict_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out);
 
 #endif

@@ -42,7 +42,8 @@ typedef struct tidier {
     uint32_t (*around)[2];       /* per vertex: its neighbours along borders, or NONE */
     bool *needed;                /* per vertex */
     STARG_ARRAY(facet) facets;   /* made anew */
-    cap_indices corners, starts, triangles;
+    cap_edges edges;             /* of the filling under way */
+    cap_indices triangles;
     bool *visited; /* per border edge */
 } tidier;
 
@@ -182,20 +183,35 @@ static uint32_t edge_from(const tidier *t, const group *g, uint32_t vertex) {
     return low;
 }
 
+/* One loop of a group's border, without the vertices that are not needed. */
+static starg_status trace_loop(tidier *t, const group *g, uint32_t start) {
+    starg_status status = STARG_OK;
+    uint32_t first = NONE, last = NONE;
+    for (uint32_t at = start; !t->visited[at]; at = edge_from(t, g, t->borders.data[at].to)) {
+        uint32_t vertex = t->borders.data[at].from;
+        t->visited[at] = true;
+        if (!t->needed[vertex])
+            continue;
+        const constrained_edge edge = {last, vertex, 1};
+        if (last == NONE)
+            first = vertex;
+        else
+            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, edge);
+        last = vertex;
+    }
+    const constrained_edge closing = {last, first, 1};
+    if (last != NONE)
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, closing);
+done:
+    return status;
+}
+
 static starg_status trace(tidier *t, const group *g) {
     starg_status status = STARG_OK;
-    t->corners.count = t->starts.count = t->triangles.count = 0;
-    STARG_PUSH(t->p->context, PARTITION_STAGE, &t->starts, 0);
-    for (uint32_t i = g->border_first; i < g->border_first + g->border_count; i++) {
-        if (t->visited[i])
-            continue;
-        for (uint32_t at = i; !t->visited[at]; at = edge_from(t, g, t->borders.data[at].to)) {
-            t->visited[at] = true;
-            if (t->needed[t->borders.data[at].from])
-                STARG_PUSH(t->p->context, PARTITION_STAGE, &t->corners, t->borders.data[at].from);
-        }
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->starts, (uint32_t)t->corners.count);
-    }
+    t->edges.count = t->triangles.count = 0;
+    for (uint32_t i = g->border_first; i < g->border_first + g->border_count; i++)
+        if (!t->visited[i])
+            STARG_TRY(trace_loop(t, g, i));
 done:
     return status;
 }
@@ -219,12 +235,13 @@ done:
 static starg_status fill(tidier *t, group *g) {
     starg_status status = STARG_OK;
     facet fresh = t->p->facets.data[g->first];
+    const cap_indices none = {0};
     bool done = false;
     if (g->kept || all_needed(t, g))
         return copy_facets(t, g);
     STARG_TRY(trace(t, g));
     STARG_TRY(cap_fill(t->p->context, t->p->points.data, t->p->planes.data[fresh.plane].normal,
-                       t->corners.data, t->starts.data, t->starts.count - 1, &t->triangles, &done));
+                       &t->edges, &none, &t->triangles, &done));
     g->kept = !done;
     for (size_t i = 0; done && i + 2 < t->triangles.count; i += 3) {
         memcpy(fresh.corners, t->triangles.data + i, sizeof fresh.corners);
@@ -353,8 +370,7 @@ static void tidier_free(tidier *t) {
     STARG_ARRAY_FREE(context, &t->groups);
     STARG_ARRAY_FREE(context, &t->borders);
     STARG_ARRAY_FREE(context, &t->facets);
-    STARG_ARRAY_FREE(context, &t->corners);
-    STARG_ARRAY_FREE(context, &t->starts);
+    STARG_ARRAY_FREE(context, &t->edges);
     STARG_ARRAY_FREE(context, &t->triangles);
     starg_release(context, t->around);
     starg_release(context, t->needed);
