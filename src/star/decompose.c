@@ -8,6 +8,7 @@
 #include "star/decomposition.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
+#include "star/united.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
 
@@ -191,6 +192,8 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     STARG_TRY(check_options(context, options));
     if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && is_embedded(solid))
         STARG_TRY(strict_decompose_surface(context, solid->mesh, options, out));
+    else if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
+        STARG_TRY(united_decompose(context, solid, options, out));
     if (*out != NULL)
         (*out)->flattest_given = -1;
     else
