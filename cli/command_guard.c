@@ -9,6 +9,7 @@
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
+#include "scene.h"
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "suggest.h"
@@ -23,8 +24,9 @@ static const struct {
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
 
 typedef struct values {
-    const char *output, *marks, *picture, *candidates;
+    const char *output, *marks, *picture, *certificate, *candidates;
     starg_guard_options wanted;
+    cli_scene scene;
     double *points; /* --candidates FILE */
 } values;
 
@@ -37,9 +39,14 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
         "Picture of the translucent model with its guards; uncovered faces are dark red."),
+    CLI_TEXT_OPTION("certificate", certificate, "FILE",
+                    "With --prove: writes why the bound for guards anywhere holds, for 'starguard "
+                    "verify' (docs/formats.md)."),
     CLI_TEXT_OPTION("marks", marks, "FILE.ply",
                     "Model with each face in the colour of the first guard that sees it; uncovered "
                     "faces are dark red."),
+    CLI_SCENE_OPTIONS,
+    CLI_PLACE_OPTIONS,
 };
 
 /* ---- what was asked for ---- */
@@ -84,9 +91,21 @@ static void say_bound(cli_session *session, const starg_guards *g) {
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
+/* A number of guards was given: what counts is what they see. */
+static void say_area_bound(cli_session *session, const starg_guards *g) {
+    bool anywhere = g->area_bound_everywhere > 0;
+    cli_say(session, "area          %g %% seen, at most %g %% possible with %s%s\n",
+            cli_percent(g->coverage_area),
+            cli_percent(anywhere ? g->area_bound_everywhere : g->area_bound),
+            cli_count_of(g->options.max_guards, "guard", "guards").text,
+            anywhere ? ", wherever they stand" : " of these candidates");
+}
+
 static void say_count(cli_session *session, const starg_guards *g) {
     cli_say(session, "guards        %zu", g->count);
-    if (g->optimal_everywhere)
+    if (g->options.max_guards > 0)
+        cli_say(session, " of at most %zu", (size_t)g->options.max_guards);
+    else if (g->optimal_everywhere)
         cli_say(session, ", the fewest possible, wherever they stand");
     else if (g->lower_bound_everywhere > 0)
         cli_say(session, "; at least %zu %s needed, wherever they stand", g->lower_bound_everywhere,
@@ -96,17 +115,18 @@ static void say_count(cli_session *session, const starg_guards *g) {
 
 static void say_guards(cli_session *session, const starg_guards *g) {
     say_count(session, g);
-    say_bound(session, g);
+    if (g->options.max_guards == 0)
+        say_bound(session, g);
+    else
+        say_area_bound(session, g);
     cli_say(session, "coverage      %g %% of the faces, %g %% of the area\n",
             cli_percent(g->coverage_faces), cli_percent(g->coverage_area));
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
-    if (g->options.max_guards > 0)
-        cli_say(session, "area bound    %g %% with %s\n", cli_percent(g->area_bound),
-                cli_count_of(g->options.max_guards, "guard", "guards").text);
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
-    size_t hidden = g->face_count - g->coverable_faces;
+    size_t wanted = g->target_count > 0 ? g->target_count : g->face_count;
+    size_t hidden = wanted - g->coverable_faces;
     if (hidden > 0)
         cli_say(session, " (%s that no candidate sees)",
                 cli_count_of(hidden, "face", "faces").text);
@@ -179,8 +199,11 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
 
 /* Standard output comes last: what has gone there cannot be taken back. */
 static starg_status write_files(cli_session *session, const values *v, const starg_solid *solid,
-                                const starg_guards *g) {
+                                const starg_guards *g, const char *why, size_t size) {
     starg_status status = STARG_OK;
+    if (v->certificate != NULL)
+        CLI_TRY(starg_certificate_write(session->context, why, size,
+                                        cli_outputs_place(&session->outputs, v->certificate)));
     if (v->marks != NULL)
         CLI_TRY(write_marks(session, solid, g, v->marks));
     if (v->picture != NULL)
@@ -195,8 +218,13 @@ static starg_status prepare(cli_session *session, void *data) {
     values *v = data;
     starg_status status = STARG_OK;
     CLI_TRY(cli_announce_needed(session, v->output, "GUARDS.json"));
+    CLI_TRY(cli_announce(session, v->certificate));
+    if (v->certificate != NULL && !v->wanted.prove)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--certificate says why the bound of --prove holds; add --prove");
     CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
         CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
 done:
@@ -207,12 +235,21 @@ static starg_status run(cli_session *session, void *data) {
     const values *v = data;
     starg_status status = STARG_OK;
     starg_guards *guards = NULL;
-    CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
-    CLI_TRY(write_files(session, v, session->solid, guards));
+    char *why = NULL;
+    size_t size = 0;
+    CLI_TRY(cli_scene_make(session, &v->scene));
+    if (v->certificate != NULL)
+        CLI_TRY(starg_guard_certified(session->context, session->solid, &v->wanted, &guards, &why,
+                                      &size));
+    else
+        CLI_TRY(starg_guard(session->context, session->solid, &v->wanted, &guards));
+    CLI_TRY(starg_guards_name_obstacles(session->context, guards, v->scene.obstacles.values));
+    CLI_TRY(write_files(session, v, session->solid, guards, why, size));
     say_guards(session, guards);
     if (session->report != NULL)
         CLI_TRY(report_guards(session, guards, v->output));
 done:
+    starg_text_free(session->context, why);
     starg_guards_free(session->context, guards);
     return status;
 }
@@ -229,9 +266,10 @@ const cli_command cli_command_guard = {
     .description =
         "Generates candidate points inside the solid, computes exactly which faces each one sees, "
         "and chooses the fewest that together see every visible face. The result contains the "
-        "guards, their coverage, and a proven lower bound: no choice of fewer candidates covers as "
-        "much. With --prove every point of the solid is a candidate. Faces that no candidate sees "
-        "are listed; they are not an error.\n"
+        "guards, their coverage, and a proven lower bound of these candidates: no fewer of them "
+        "cover "
+        "as much. With --prove every point of the solid is a candidate, and the bound holds "
+        "wherever guards stand. Faces that no candidate sees are listed; they are not an error.\n"
         "With --time-limit the best result so far is written with its bound.",
     .examples = "# guard a model and verify the result\n"
                 "starguard guard model.off -o guards.json\n"
@@ -246,7 +284,7 @@ const cli_command cli_command_guard = {
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_guard_options_fields, wanted),
-    .input = CLI_INPUT_SOLID,
+    .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,
     .release = release,

@@ -6,6 +6,7 @@
 #include "commands.h"
 #include "model.h"
 #include "report.h"
+#include "scene.h"
 #include "starguard/verify.h"
 #include "terminal.h"
 
@@ -69,6 +70,16 @@ static starg_status read_results(cli_session *session, starg_result **results) {
     return status;
 }
 
+/* What a certificate is of stands before it. */
+static starg_status check_certificates(cli_session *session, starg_result *const *results) {
+    for (size_t i = 1; i < session->operand_count; i++)
+        if (results[i]->certificate != NULL && (i == 1 || results[i - 1]->guards == NULL))
+            return cli_fail(session, STARG_ERROR_ARGUMENT,
+                            "'%.200s' is a certificate; it belongs behind its GUARDS.json",
+                            session->operands[i]);
+    return STARG_OK;
+}
+
 /* The two files of a decomposition: operands, 0 where there is none. */
 typedef struct decomposition {
     size_t pieces, report;
@@ -104,16 +115,29 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
 
 /* ---- verification ---- */
 
+/* A certificate stands directly behind its guards. */
 static starg_status verify_guards(cli_session *session, const model *given, size_t operand,
-                                  const starg_result *result, json_t *list) {
+                                  starg_result *const *results, json_t *list) {
+    starg_status status = STARG_OK;
     starg_verdict *verdict = NULL;
-    starg_status status =
-        starg_verify_guards(session->context, given->mesh, result->guards, &verdict);
-    if (status != STARG_OK)
-        return status;
-    tell_verdict(session, session->operands[operand], verdict, json_object(), list);
+    starg_mesh **obstacles = NULL;
+    const starg_guards *guards = results[operand]->guards;
+    bool certified =
+        operand + 1 < session->operand_count && results[operand + 1]->certificate != NULL;
+    CLI_TRY(cli_scene_read_obstacles(session, guards, &obstacles));
+    const starg_guards_evidence evidence = {
+        .obstacles = (const starg_mesh *const *)obstacles,
+        .obstacle_count = guards->obstacle_count,
+        .certificate = certified ? results[operand + 1]->certificate : NULL};
+    CLI_TRY(starg_verify_guards_with(session->context, given->mesh, &evidence, guards, &verdict));
+    json_t *entry = json_object();
+    if (certified)
+        cli_put(session, entry, "certificate", cli_json_text(session->operands[operand + 1]));
+    tell_verdict(session, session->operands[operand], verdict, entry, list);
+done:
+    cli_scene_free_obstacles(obstacles, guards->obstacle_count);
     starg_verdict_free(session->context, verdict);
-    return STARG_OK;
+    return status;
 }
 
 static starg_status verify_pieces(cli_session *session, const model *given, decomposition found,
@@ -159,10 +183,11 @@ static starg_status run(cli_session *session, void *data) {
     }
     CLI_TRY(read_model(session, &given));
     CLI_TRY(read_results(session, results));
+    CLI_TRY(check_certificates(session, results));
     CLI_TRY(find_decomposition(session, results, &found));
     for (size_t i = 1; i < session->operand_count; i++) {
         if (results[i]->guards != NULL)
-            CLI_TRY(verify_guards(session, &given, i, results[i], list));
+            CLI_TRY(verify_guards(session, &given, i, results, list));
         else if (i == found.pieces)
             CLI_TRY(verify_pieces(session, &given, found, results, list));
     }
@@ -189,7 +214,8 @@ const cli_command cli_command_verify = {
         "GUARDS.json of 'starguard guard': every guard is inside and sees as many faces "
         "as stated; coverage, uncovered faces, counts and bounds are right. Claims about "
         "candidates are refuted by counterexamples; otherwise they are listed as not "
-        "checked.\n"
+        "checked. With the certificate of 'starguard guard --prove --certificate' behind it, the "
+        "bound for guards anywhere is checked as well: every reason, and every sum.\n"
         "PIECES.vtk and PIECES.json of 'starguard decompose', in any order: tetrahedra "
         "are positive, conforming and labelled, fill the model and do not overlap; each "
         "piece is connected, has the stated size and contacts, and is star-shaped about "
@@ -197,6 +223,9 @@ const cli_command cli_command_verify = {
         "PIECES.vtk alone, guards are not checked.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
+                "# and that no fewer guards would do, wherever they stand\n"
+                "starguard guard model.off --prove --certificate why.txt -o guards.json\n"
+                "starguard verify model.off guards.json why.txt\n"
                 "# several at once, for a script\n"
                 "starguard verify model.off ilp.json greedy.json --quiet && echo verified\n"
                 "# a star decomposition\n"

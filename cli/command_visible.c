@@ -7,6 +7,7 @@
 #include "model.h"
 #include "numbers.h"
 #include "report.h"
+#include "scene.h"
 #include "starguard/picture.h"
 #include "starguard/visibility.h"
 
@@ -14,6 +15,7 @@ typedef struct values {
     starg_places from, boxes;
     starg_visibility_options view;
     const char *output;
+    cli_scene scene;
 } values;
 
 static const cli_option options[] = {
@@ -26,6 +28,7 @@ static const cli_option options[] = {
         "FILE.ply",
         "Model with each face in the colour of the first point or box that sees it; unseen faces "
         "are grey. With --target vertices, a face counts if one point sees all its vertices."),
+    CLI_SCENE_OPTIONS,
 };
 
 /* Everything about one call. */
@@ -141,7 +144,9 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--from and --box exclude each other: visibility from points is exact, "
                         "from boxes conservative");
-    return cli_announce_with_extension(session, "-o", v->output, ".ply");
+    starg_status status = cli_scene_prepare(session, &v->scene);
+    return status != STARG_OK ? status
+                              : cli_announce_with_extension(session, "-o", v->output, ".ply");
 }
 
 /* Boxes by opposite corners become boxes by lower and upper ones. */
@@ -165,10 +170,11 @@ static starg_status see(cli_session *session, values *v, starg_bits **seen) {
 
 static starg_status run(cli_session *session, void *data) {
     values *v = data;
-    const starg_solid *solid = session->solid;
     starg_status status = STARG_OK;
     starg_bits *seen = NULL;
     double *fractions = NULL;
+    CLI_TRY(cli_scene_make(session, &v->scene));
+    const starg_solid *solid = session->solid;
     CLI_TRY(see(session, v, &seen));
     fractions = cli_area_fractions(starg_solid_mesh(solid));
     if (fractions == NULL) {
@@ -206,7 +212,7 @@ const cli_command cli_command_visible = {
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_visibility_options_fields, view),
-    .input = CLI_INPUT_SOLID,
+    .input = CLI_INPUT_MESH,
     .prepare = prepare,
     .run = run,
 };

@@ -15,7 +15,7 @@ void completion_visit_words(FILE *stream, const cli_option *o, completion_word_f
     if (o->kind == STARG_FIELD_CHOICE)
         for (size_t i = 0; o->words[i] != NULL; i++)
             visit(stream, o->words[i], (int)strlen(o->words[i]));
-    if (o->kind != STARG_FIELD_TEXT)
+    if (o->kind != STARG_FIELD_TEXT && o->kind != STARG_FIELD_TEXTS)
         return;
     size_t size;
     for (const char *at = o->value, *word; (word = cli_option_next_word(&at, &size)) != NULL;)

@@ -27,7 +27,8 @@ static void bash_values(FILE *stream, const cli_command *command) {
         bash_names(stream, o, "|");
         fputs(") words=\"", stream);
         completion_visit_words(stream, o, completion_put_word);
-        fprintf(stream, "\" files=%s ;;\n", o->kind == STARG_FIELD_TEXT ? "yes" : "");
+        fprintf(stream, "\" files=%s ;;\n",
+                o->kind == STARG_FIELD_TEXT || o->kind == STARG_FIELD_TEXTS ? "yes" : "");
     }
 }
 

@@ -16,7 +16,8 @@ static void fish_options(FILE *stream, const cli_command *command, const cli_com
             fprintf(stream, " -s %c", o->letter);
         fprintf(stream, " -l %s", o->option);
         if (o->kind != STARG_FIELD_FLAG) {
-            fprintf(stream, " %s -a '", o->kind == STARG_FIELD_TEXT ? "-rF" : "-x");
+            fprintf(stream, " %s -a '",
+                    o->kind == STARG_FIELD_TEXT || o->kind == STARG_FIELD_TEXTS ? "-rF" : "-x");
             completion_visit_words(stream, o, completion_put_word);
             fputc('\'', stream);
         }

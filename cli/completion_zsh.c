@@ -5,7 +5,7 @@
 #include "completion_parts.h"
 
 static void zsh_option(FILE *stream, const cli_option *o, const char *name) {
-    bool repeats = o->kind == STARG_FIELD_PLACES;
+    bool repeats = o->kind == STARG_FIELD_PLACES || o->kind == STARG_FIELD_TEXTS;
     fprintf(stream, "            '%s%s[", repeats ? "*" : "", name);
     completion_put_brief(stream, o->help, "[]:\\");
     fputc(']', stream);
@@ -18,7 +18,7 @@ static void zsh_option(FILE *stream, const cli_option *o, const char *name) {
         fputc('(', stream);
         completion_visit_words(stream, o, completion_put_word);
         fputc(')', stream);
-    } else if (o->kind == STARG_FIELD_TEXT) {
+    } else if (o->kind == STARG_FIELD_TEXT || o->kind == STARG_FIELD_TEXTS) {
         fputs("{_files; compadd --", stream);
         completion_visit_words(stream, o, completion_put_word);
         fputc('}', stream);

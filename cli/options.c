@@ -83,15 +83,25 @@ static bool add_place(parser *p, const match *m, const char *word, starg_places 
     size_t width = m->option->length;
     double place[6];
     if (!cli_number_list(word, place, (int)width))
-        return fail_parse(p, "%s takes a %s (%s numbers, no spaces), not '%.100s'", m->shown,
-                          width == 3 ? "point as X,Y,Z" : "box as X0,Y0,Z0,X1,Y1,Z1",
-                          width == 3 ? "three" : "six", word);
+        return fail_parse(p, "%s takes %s (%zu numbers, no spaces), not '%.100s'", m->shown,
+                          m->option->value, width, word);
     double *grown = realloc(points->values, (points->count + 1) * width * sizeof *place);
     if (grown == NULL)
         return fail_parse(p, "%s: out of memory", m->shown);
     memcpy(grown + width * points->count, place, width * sizeof *place);
     points->values = grown;
     points->count++;
+    return true;
+}
+
+static bool add_text(parser *p, const match *m, const char *word, starg_texts *texts) {
+    if (*word == '\0')
+        return fail_parse(p, "%s takes a name, not an empty word", m->shown);
+    const char **grown = realloc((void *)texts->values, (texts->count + 1) * sizeof *texts->values);
+    if (grown == NULL)
+        return fail_parse(p, "%s: out of memory", m->shown);
+    texts->values = grown;
+    texts->values[texts->count++] = word;
     return true;
 }
 
@@ -114,6 +124,8 @@ static bool set_value(parser *p, const match *m, const char *word) {
         return set_choice(p, m, word);
     case STARG_FIELD_PLACES:
         return add_place(p, m, word, variable);
+    case STARG_FIELD_TEXTS:
+        return add_text(p, m, word, variable);
     default:
         *(const char **)variable = word;
         return *word != '\0' || fail_parse(p, "%s takes a name, not an empty word", m->shown);
@@ -237,11 +249,14 @@ const char *cli_option_next_word(const char **at, size_t *size) {
 
 void cli_options_free(const cli_group *group) {
     for (size_t i = 0; i < group->count; i++) {
-        if (group->options[i].kind != STARG_FIELD_PLACES)
-            continue;
-        starg_places *places = (starg_places *)((char *)group->values + group->options[i].offset);
-        free(places->values);
-        *places = (starg_places){0};
+        void *member = (char *)group->values + group->options[i].offset;
+        if (group->options[i].kind == STARG_FIELD_PLACES) {
+            free(((starg_places *)member)->values);
+            *(starg_places *)member = (starg_places){0};
+        } else if (group->options[i].kind == STARG_FIELD_TEXTS) {
+            free((void *)((starg_texts *)member)->values);
+            *(starg_texts *)member = (starg_texts){0};
+        }
     }
 }
 

@@ -110,11 +110,27 @@ export class GuardsView extends View {
         const number = told.list.length;
         return facts([
             ["Guards", count(number), METHODS[told.method]],
-            told.optimal
-                ? ["Lower bound", count(told.lower_bound), "optimal", "good"]
-                : ["Lower bound", count(told.lower_bound), "proven"],
+            ...this.makeBounds(),
             ["Area seen", percent(told.coverage_area), `${percent(told.coverage_faces)} of faces`],
         ]);
+    }
+
+    /** "Needed" holds for guards anywhere. With a given number of guards the area is what counts. */
+    makeBounds() {
+        const { told } = this;
+        if (told.max_guards > 0)
+            return told.area_bound_everywhere > 0
+                ? [["Possible", percent(told.area_bound_everywhere), "at most, anywhere"]]
+                : [["Possible", percent(told.area_bound), "at most, of these candidates"]];
+        const bounds = [];
+        if (told.lower_bound_everywhere > 0)
+            bounds.push(
+                told.optimal_everywhere
+                    ? ["Needed", count(told.lower_bound_everywhere), "anywhere: optimal", "good"]
+                    : ["Needed", count(told.lower_bound_everywhere), "at least, anywhere"],
+            );
+        bounds.push(["Of these candidates", count(told.lower_bound), "needed at least"]);
+        return bounds;
     }
 
     makeCurve() {

@@ -17,8 +17,8 @@
 extern "C" {
 #endif
 
-/* The type of a member. Types up to CHOICE occur in options and results, PLACES only in options,
- * the others only in results. */
+/* The type of a member. Types up to CHOICE occur in options and results, PLACES and TEXTS only in
+ * options, the others only in results. */
 typedef enum starg_field_kind {
     STARG_FIELD_FLAG = 0,    /* bool                                                           */
     STARG_FIELD_COUNT = 1,   /* size_t, uint64_t, uint32_t or int */
@@ -33,6 +33,7 @@ typedef enum starg_field_kind {
     STARG_FIELD_RECORD = 9, /* a nested struct, or (at offset 0) more members of the same struct, as
                                `of` says: a JSON object */
     STARG_FIELD_LIST = 10,  /* an array of `of`, count in the member at `length` */
+    STARG_FIELD_TEXTS = 12, /* starg_texts, only in options: each occurrence adds one */
     STARG_FIELD_CONSTANT = 11 /* no member: the word `value`, or the number `initial`; readers also
                                  accept numbers from `least` on if that is not 0 */
 } starg_field_kind;
@@ -43,6 +44,12 @@ typedef struct starg_places {
     size_t count;
 } starg_places;
 
+/* Words from a command line. */
+typedef struct starg_texts {
+    const char **values; /* borrowed */
+    size_t count;
+} starg_texts;
+
 /* Flags of a member; combined by |. */
 enum {
     STARG_FIELD_OPTIONAL = 1, /* may be missing in files: then the default */
@@ -51,7 +58,9 @@ enum {
     STARG_FIELD_MATCHING = 8, /* a list as long as the member at `length`, read before */
     STARG_FIELD_ABOVE = 16,   /* a real above `low`, not `low` itself                            */
     STARG_FIELD_INPUT = 32,   /* an input file name, or a word of `value` */
-    STARG_FIELD_COUNTED = 64  /* numbers of a column: count in the member at `length` */
+    STARG_FIELD_COUNTED = 64, /* numbers of a column: count in the member at `length` */
+    STARG_FIELD_RARE = 128    /* with OPTIONAL: not in files where it is the default, which is 0 for
+                                 NUMBERS; a RECORD, where all of it is */
 };
 
 typedef struct starg_fields starg_fields;

@@ -12,6 +12,7 @@
 #include "fields.h"
 #include "simplify.h"
 #include "solid.h"
+#include "space.h"
 #include "visibility.h"
 
 #ifdef __cplusplus
@@ -26,6 +27,10 @@ typedef enum starg_guard_method {
 
 /* Branch-and-bound nodes: 100,000 for ILP, 30 for each solve of PILP. */
 #define STARG_DEFAULT_NODES SIZE_MAX
+
+/* For refine_lines: what suits the model, which is 400,000, 70 for each face, 40,000 for each guard
+ * of the candidates, and 3 for each of both. */
+#define STARG_DEFAULT_LINES UINT64_MAX
 
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000
  * above the coarsest level. Each level costs a row of bits per candidate. */
@@ -61,19 +66,21 @@ typedef struct starg_guard_options {
     double significance; /* guards that see less than this fraction of a level's area are discarded,
                             0 to 1 */
 
-    /* STARG_GUARD_PILP with full coverage and generated candidates: add candidates that lower the
-     * bound, and choose again */
+    /* STARG_GUARD_PILP with full coverage and generated candidates: search fewer guards beside the
+     * candidates */
     bool refine;
-    uint64_t refine_lines; /* sight lines that refinement may test */
+    uint64_t refine_lines; /* budget in sight lines (about a microsecond each) and what takes as
+                              long, or STARG_DEFAULT_LINES */
 
     /* Guards anywhere: search fewer guards at every point of the solid, and prove how many are
-     * needed, wherever they stand. For full coverage, redundancy 1, no cone, candidates not given
-     */
+     * needed, wherever they stand, or with max_guards how much so many could see. Given candidates
+     * stay: the fewest of them are chosen, beside a bound for guards anywhere. A bound with a cone
+     * holds for guards that look in all directions. */
     bool prove;
     uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_guard_options;
 
-/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (10 million sight lines), 1,000 skeletal
+/* PILP (5,000, STARG_DEFAULT_STEP, 0.1) with refinement (STARG_DEFAULT_LINES), 1,000 skeletal
  * candidates, the fastest engine, faces by vertices, full coverage once, no clearance,
  * STARG_DEFAULT_NODES. */
 STARG_API void starg_guard_options_default(starg_guard_options *options);
@@ -90,11 +97,25 @@ typedef struct starg_guard_level {
     size_t kept;       /* significant guards of the coarser level */
 } starg_guard_level;
 
-/* A guarding result. Faces are indices into the solid's mesh. */
+/* An obstacle of a scene. */
+typedef struct starg_guard_obstacle {
+    char *file; /* as given; NULL if made in memory */
+    size_t vertex_count, face_count;
+} starg_guard_obstacle;
+
+/* A guarding result. Faces are indices into the model's mesh. */
 typedef struct starg_guards {
     char *file; /* the model's path as given; NULL if made in memory          */
     size_t vertex_count, face_count; /* of the model                                          */
     starg_guard_options options;     /* as used; `points` is NULL                             */
+
+    /* of a scene (starguard/space.h); the defaults and nothing for a plain solid */
+    starg_space_options space;
+    size_t obstacle_count;
+    starg_guard_obstacle *obstacles;
+    size_t target_count; /* faces to be seen; 0: all                              */
+    uint32_t *targets;   /* ascending; NULL: all */
+    double *importance;  /* of each target: starg_space_weigh, the largest is 1 */
 
     size_t count;
     double *positions;  /* count x 3                                                  */
@@ -121,7 +142,7 @@ typedef struct starg_guards {
     double *curve_area;  /* the same for the area */
 
     size_t candidate_count;        /* including those added */
-    uint64_t lines_tested;         /* by refinement */
+    uint64_t lines_tested;         /* by refinement, and what takes as long */
     size_t cells, witnesses;       /* of the search over every point */
     uint64_t prove_work;           /* spent on it */
     size_t lower_bound;            /* no fewer candidates cover as much */
@@ -131,13 +152,26 @@ typedef struct starg_guards {
     bool optimal_everywhere;       /* count == lower_bound_everywhere */
     double area_bound; /* max_guards, redundancy 1: upper bound on the area fraction that so many
                           guards cover; else 1 */
-    bool time_limited; /* the time limit stopped the search */
+    double area_bound_everywhere; /* max_guards, prove, faces: so many guards cover no more of the
+                                     area, wherever they stand; 0: not sought */
+    bool time_limited;            /* the time limit stopped the search */
 } starg_guards;
 
 /* Places guards. `options` may be NULL for the defaults. Faces that no candidate sees are listed
  * and are not an error. Errors: ARGUMENT, MESH (no candidate inside), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_guard(starg_context *context, const starg_solid *solid,
                                    const starg_guard_options *options, starg_guards **out);
+/* The same with `prove`, and the certificate of lower_bound_everywhere: a text (docs/formats.md) of
+ * `size` bytes, followed by a zero byte, that starg_verify_certified checks. Free it with
+ * starg_text_free. Errors: those of starg_guard, ARGUMENT (without `prove`). */
+STARG_API starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
+                                             const starg_guard_options *options, starg_guards **out,
+                                             char **certificate, size_t *size);
+
+/* Writes a certificate; path "-" is standard output. Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_certificate_write(starg_context *context, const char *certificate,
+                                               size_t size, const char *path);
+
 /* Evaluates `count` given guards in this order; they are the candidates of the result. The lower
  * bound is 0, since nothing is chosen. Errors: ARGUMENT (one is not strictly inside), MEMORY,
  * CANCELLED. */
@@ -152,6 +186,11 @@ STARG_API starg_status starg_candidate_points(starg_context *context, const star
                                               starg_candidates source, size_t wanted,
                                               double clearance, double **points, size_t *count);
 STARG_API void starg_points_free(starg_context *context, double *points);
+
+/* Keeps the file names of the obstacles with the result, one for each in their order. Errors:
+ * MEMORY. */
+STARG_API starg_status starg_guards_name_obstacles(starg_context *context, starg_guards *guards,
+                                                   const char *const *files);
 
 /* Writes GUARDS.json (docs/formats.md); path "-" is standard output. `model_file` is stored as the
  * model's path and may be NULL. `guards` is not changed. */

@@ -47,6 +47,37 @@ STARG_API starg_status starg_verify_guards(starg_context *context, const starg_m
                                            const starg_guards *guards, starg_verdict **out);
 STARG_API void starg_verdict_free(starg_context *context, starg_verdict *verdict);
 
+/* Why lower_bound_everywhere holds, as read (docs/formats.md). */
+typedef struct starg_certificate starg_certificate;
+
+/* Reads a certificate; `name` is used in messages. Errors: FORMAT (with the line), MEMORY,
+ * CANCELLED.
+ */
+STARG_API starg_status starg_certificate_read_memory(starg_context *context, const void *bytes,
+                                                     size_t size, const char *name,
+                                                     starg_certificate **out);
+STARG_API void starg_certificate_free(starg_certificate *certificate);
+
+/* The same as starg_verify_guards, and lower_bound_everywhere against its certificate, which is
+ * checked in full with exact signs and whole numbers: no solver's word is taken. Errors: those of
+ * starg_verify_guards. */
+STARG_API starg_status starg_verify_certified(starg_context *context, const starg_mesh *mesh,
+                                              const starg_guards *guards,
+                                              const starg_certificate *certificate,
+                                              starg_verdict **out);
+
+/* What a check of guards may use beside the model. */
+typedef struct starg_guards_evidence {
+    const starg_mesh *const *obstacles; /* the meshes that the result names, in its order */
+    size_t obstacle_count;
+    const starg_certificate *certificate; /* or NULL */
+} starg_guards_evidence;
+
+/* The same with all of it. Errors: also ARGUMENT (other obstacles than those of the result). */
+STARG_API starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,
+                                                const starg_guards_evidence *evidence,
+                                                const starg_guards *guards, starg_verdict **out);
+
 /* ---- star decompositions ---- */
 
 /* Labelled tetrahedra as read from PIECES.vtk, without any guarantee. */
@@ -113,10 +144,11 @@ typedef struct starg_result {
     starg_guards *guards;
     starg_pieces_mesh *pieces;
     starg_pieces_report *report;
+    starg_certificate *certificate;
 } starg_result;
 
-/* Reads GUARDS.json, PIECES.vtk or PIECES.json, recognized by content. "-" is standard input.
- * Errors: READ, and those of the readers. */
+/* Reads GUARDS.json, a certificate, PIECES.vtk or PIECES.json, recognized by content. "-" is
+ * standard input. Errors: READ, and those of the readers. */
 STARG_API starg_status starg_result_read(starg_context *context, const char *path,
                                          starg_result **out);
 STARG_API void starg_result_free(starg_context *context, starg_result *result);

@@ -34,12 +34,12 @@ from .catalogue import SampleInfo, sample, samples
 from .skeletons import Skeleton, skeleton
 from .solid import Solid
 from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, is_tetrahedral, tetrahedralize
-from .verification import Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
+from .verification import Certificate, Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
 from .views import page_available, write_page, write_scene
 from .visibility import Bits, cone_cosine, visible, visible_from_box
 
 __all__ = [
-    "Added", "ArgumentError", "Bits", "CancelledError", "Check", "Claim", "Cover", "Database",
+    "Added", "ArgumentError", "Bits", "CancelledError", "Certificate", "Check", "Claim", "Cover", "Database",
     "Decomposition", "Defaults", "Descriptor", "Error", "Finding", "FormatError", "FrameMeasures",
     "GuardLevel", "Guards", "Kernel", "Level", "Mesh", "MeshError", "Models", "Morph", "NO_CLASS",
     "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",

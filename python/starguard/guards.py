@@ -86,6 +86,8 @@ class Guards:
     optimal_everywhere: bool
     #: With max_guards: upper bound on the area fraction that so many guards cover.
     area_bound: float
+    #: With max_guards and prove: the same wherever they stand; 0 if this was not sought.
+    area_bound_everywhere: float
     time_limited: bool
     #: The options of `guard` that were used.
     options: dict[str, Any]
@@ -151,15 +153,30 @@ class Guards:
                      _arrays.path(name) if name is not None else ffi.NULL, _arrays.path(path))
 
 
+def _certified(session: Session, path: PathLike, solid: Any, wanted: Any, **call: Any) -> Any:
+    """Guards, and the file that says why their bound holds."""
+    text, size = ffi.new("char **"), ffi.new("size_t *")
+    out = ffi.new("starg_guards **")
+    try:
+        session.call(lib.starg_guard_certified, session.context, solid, wanted, out, text, size, **call)
+    finally:  # an interrupted call may still have finished
+        handle = session.own(out[0], lib.starg_guards_free, shared=True) if out[0] else None
+        why = session.own(text[0], lib.starg_text_free, shared=True) if text[0] else None
+    session.call(lib.starg_certificate_write, session.context, why, size[0], _arrays.path(path))
+    return handle
+
+
 @takes(_OPTIONS)
-def guard(model: Any, *, candidates: str | ArrayLike | None = None, threads: int | None = None,
+def guard(model: Any, *, candidates: str | ArrayLike | None = None,
+          certificate: PathLike | None = None, threads: int | None = None,
           seed: int | None = None, time_limit: float | None = None,
           progress: Progress | None = None, **options: Unpack[GuardOptions]) -> Guards:
     """Places few guards that together see the whole boundary.
 
     `candidates` selects candidate positions: on the curve "skeleton" (default), on the "medial"
     axis, on a lattice in the "interior", or points of shape (n, 3). Faces that no candidate sees
-    are listed in `uncovered` and are not an error.
+    are listed in `uncovered` and are not an error. With `prove=True`, `certificate` is a file to write
+    that says why `lower_bound_everywhere` holds; `verify(model, guards, file)` checks it.
 
     >>> import starguard
     >>> guards = starguard.guard(starguard.sample("l-room", vertices=500))
@@ -177,9 +194,13 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None, threads: int
         wanted.pointer.candidates = lib.STARG_CANDIDATES_GIVEN
         wanted.pointer.points = points
         wanted.pointer.point_count = len(places)
-    handle = session.make("starg_guards", lib.starg_guards_free, lib.starg_guard, session.context,
-                          solid._handle, wanted.pointer, shared=True, progress=progress,
-                          time_limit=time_limit)
+    if certificate is not None:
+        handle = _certified(session, certificate, solid._handle, wanted.pointer, progress=progress,
+                            time_limit=time_limit)
+    else:
+        handle = session.make("starg_guards", lib.starg_guards_free, lib.starg_guard,
+                              session.context, solid._handle, wanted.pointer, shared=True,
+                              progress=progress, time_limit=time_limit)
     return Guards._of(handle, solid.mesh.file)
 
 

@@ -98,6 +98,25 @@ class PiecesReport:
                              lib.starg_pieces_report_read_memory))
 
 
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """Why `lower_bound_everywhere` of guards holds, as `guard(prove=True, certificate=FILE)` writes
+    it."""
+
+    _handle: Any = field(repr=False)
+    _owner: Any = field(repr=False)
+
+    @classmethod
+    def from_bytes(cls, data: bytes, name: str = "memory") -> Certificate:
+        """Reads the bytes of a certificate (docs/formats.md)."""
+        session = Session()
+        handle = session.make("starg_certificate", lib.starg_certificate_free,
+                              lib.starg_certificate_read_memory, session.context,
+                              ffi.from_buffer(data) if data else ffi.NULL, len(data),
+                              _arrays.path(name))
+        return cls(handle, handle)
+
+
 def _read(data: bytes, name: str, kind: str, free: Any, function: Any) -> Any:
     session = Session()
     return session.make(kind, free, function, session.context,
@@ -105,11 +124,11 @@ def _read(data: bytes, name: str, kind: str, free: Any, function: Any) -> Any:
                         shared=True)
 
 
-Result = Union[Guards, Decomposition, PiecesMesh, PiecesReport]
+Result = Union[Guards, Certificate, Decomposition, PiecesMesh, PiecesReport]
 
 
-def read_result(path: PathLike) -> Guards | PiecesMesh | PiecesReport:
-    """Reads GUARDS.json, PIECES.vtk or PIECES.json, recognized by content.
+def read_result(path: PathLike) -> Guards | Certificate | PiecesMesh | PiecesReport:
+    """Reads GUARDS.json, a certificate, PIECES.vtk or PIECES.json, recognized by content.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -122,6 +141,8 @@ def read_result(path: PathLike) -> Guards | PiecesMesh | PiecesReport:
                           session.context, _arrays.path(path), shared=True)
     if result.guards:
         return Guards._of(result.guards, owner=result)
+    if result.certificate:
+        return Certificate(result.certificate, result)
     if result.pieces:
         return PiecesMesh._of(result.pieces, result)
     return PiecesReport._of(result.report, result)
@@ -131,7 +152,7 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
            seed: int | None = None, progress: Progress | None = None) -> Verdict:
     """Checks the claims of results about a model with independent algorithms. A result is an object
     from `guard` or `decompose`, or a file name; a PIECES.vtk and its PIECES.json are checked
-    together.
+    together, and a certificate with the guards before it.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -146,11 +167,15 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     session = Session(threads, seed)
     claims: list[Claim] = []
     rest: list[str] = []
-    for result in given:
+    for before, result in zip([None, *given], given):
+        if isinstance(result, Certificate) and not isinstance(before, Guards):
+            raise ArgumentError("a certificate belongs behind its guards")
+    for result, behind in zip(given, [*given[1:], None]):
         if isinstance(result, Guards):
             surface = shape.surface()[0] if isinstance(shape, TetMesh) else shape
-            _judge(session, lib.starg_verify_guards, surface, result._handle, claims=claims,
-                   rest=rest, progress=progress)
+            why = behind._handle if isinstance(behind, Certificate) else ffi.NULL
+            _judge(session, lib.starg_verify_certified, surface, result._handle, why,
+                   claims=claims, rest=rest, progress=progress)
     for mesh, report in _decompositions(given):
         function = (lib.starg_verify_pieces_of_tetmesh if isinstance(shape, TetMesh)
                     else lib.starg_verify_pieces)

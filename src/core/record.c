@@ -149,10 +149,37 @@ static json_t *field_json(const starg_field *f, const void *record) {
     }
 }
 
+static bool is_written(const starg_field *f, const void *record);
+
+static bool is_default(const starg_field *f, const void *record) {
+    const char *at = (const char *)record + f->offset;
+    bool same = true;
+    double value;
+    switch (f->kind) {
+    case STARG_FIELD_REAL:
+        memcpy(&value, at, sizeof value);
+        return value == f->standard;
+    case STARG_FIELD_NUMBERS:
+        for (size_t i = 0; i < f->length; i++) {
+            memcpy(&value, at + i * sizeof value, sizeof value);
+            same = same && value == 0;
+        }
+        return same;
+    case STARG_FIELD_RECORD:
+        for (size_t i = 0; i < f->of->count; i++)
+            same = same && !is_written(&f->of->fields[i], at);
+        return same;
+    default:
+        return starg_field_count(f, record) == f->initial;
+    }
+}
+
 /* A list that was never filled is no part of the record, nor is a default that no file can hold. */
 static bool is_absent(const starg_field *f, const void *record) {
     if (!(f->flags & STARG_FIELD_OPTIONAL))
         return false;
+    if (f->flags & STARG_FIELD_RARE)
+        return is_default(f, record);
     if (f->kind <= STARG_FIELD_CHOICE)
         return !field_fits(f, record);
     if (f->kind != STARG_FIELD_LIST)

@@ -30,7 +30,7 @@ static void find_memory() {
         own();
     } else if (is_inside) {
         std::fputs("starguard: out of memory in the solver library, which cannot recover; use "
-                   "fewer candidates or --method greedy\n",
+                   "fewer candidates\n",
                    stderr);
         std::_Exit(OUT_OF_MEMORY);
     } else {

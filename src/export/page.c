@@ -318,11 +318,14 @@ static json_t *guards_json(book *b) {
     json_t *list = json_array();
     for (size_t i = 0; i < g->count; i++)
         append(b, list, guard_json(b, i));
-    return json_pack("{s:o, s:I, s:s, s:f, s:f, s:I, s:b, s:b, s:o}", "list", list, "faces",
-                     (json_int_t)g->face_count, "method", method, "coverage_faces",
+    return json_pack("{s:o, s:I, s:s, s:f, s:f, s:I, s:I, s:b, s:I, s:f, s:f, s:b, s:o}", "list",
+                     list, "faces", (json_int_t)g->face_count, "method", method, "coverage_faces",
                      g->coverage_faces, "coverage_area", g->coverage_area, "lower_bound",
-                     (json_int_t)g->lower_bound, "optimal", (int)g->optimal, "seen",
-                     (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
+                     (json_int_t)g->lower_bound, "lower_bound_everywhere",
+                     (json_int_t)g->lower_bound_everywhere, "optimal_everywhere",
+                     (int)g->optimal_everywhere, "max_guards", (json_int_t)g->options.max_guards,
+                     "area_bound", g->area_bound, "area_bound_everywhere", g->area_bound_everywhere,
+                     "seen", (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
 }
 
 static json_t *piece_json(book *b, size_t i) {

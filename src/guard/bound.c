@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The bound of a search, in whole numbers: whatever floating point has found the prices, this sum
  * and this maximum are exact. Prices are below 2^44 and witnesses at most 2^10, so that sums stay
- * below 2^54. */
+ * below 2^54, and below 2^64 when each witness is to be seen 1,000 times. */
 #include "guard/bound.h"
 
 #include "guard/prices.h"
@@ -34,10 +34,11 @@ static void sum_prices(const witness_row *const *rows, size_t count, const uint6
 }
 
 size_t bound_of_prices(const witness_row *const *rows, size_t count,
-                       const uint64_t price[MOST_WITNESSES]) {
+                       const uint64_t price[MOST_WITNESSES], size_t times) {
     uint64_t all, most;
     sum_prices(rows, count, price, &all, &most);
-    return most == 0 ? 0 : (size_t)((all + most - 1) / most);
+    all *= times;
+    return most == 0 ? 0 : (size_t)(all / most + (all % most != 0));
 }
 
 /* ---- branching ---- */
@@ -46,10 +47,34 @@ typedef struct branching {
     starg_context *context;
     const witness_row *const *rows;
     size_t count;
-    uint8_t *gone; /* by row: a branch before has dealt with the covers that have it */
-    size_t nodes;  /* that may still be looked at */
+    uint8_t *gone;         /* by row: a branch before has dealt with the covers that have it */
+    size_t nodes;          /* that may still be looked at */
+    branch_record *record; /* or NULL */
     uint64_t work;
 } branching;
+
+void branch_record_free(starg_context *context, branch_record *record) {
+    STARG_ARRAY_FREE(context, &record->nodes);
+    STARG_ARRAY_FREE(context, &record->numbers);
+    *record = (branch_record){0};
+}
+
+static starg_status record_prices(const branching *b, const uint64_t *price) {
+    starg_status status = STARG_OK;
+    branch_record *record = b->record;
+    if (record == NULL)
+        return STARG_OK;
+    branch_node node = {UINT32_MAX, record->numbers.count, 0};
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        if (price[j] > 0) {
+            STARG_PUSH(b->context, STAGE, &record->numbers, j);
+            STARG_PUSH(b->context, STAGE, &record->numbers, price[j]);
+        }
+    node.count = record->numbers.count - node.first;
+    STARG_PUSH(b->context, STAGE, &record->nodes, node);
+done:
+    return status;
+}
 
 /* Rows that may be taken, each cut down to the witnesses that are wanted, without those that are
  * within another one. */
@@ -138,6 +163,21 @@ static size_t rarest(const rest *r, const witness_row *wanted, size_t *fewest) {
     return best;
 }
 
+static starg_status record_rows(const branching *b, const rest *r, size_t witness) {
+    starg_status status = STARG_OK;
+    branch_record *record = b->record;
+    if (record == NULL)
+        return STARG_OK;
+    branch_node node = {(uint32_t)witness, record->numbers.count, 0};
+    for (size_t i = 0; i < r->count; i++)
+        if (starg_bit_test(r->cut[i].bits, witness))
+            STARG_PUSH(b->context, STAGE, &record->numbers, r->names[i]);
+    node.count = record->numbers.count - node.first;
+    STARG_PUSH(b->context, STAGE, &record->nodes, node);
+done:
+    return status;
+}
+
 static starg_status bound_by_own_prices(branching *b, const rest *r, const witness_row *wanted,
                                         size_t most, bool *proven) {
     starg_status status = STARG_OK;
@@ -149,6 +189,8 @@ static starg_status bound_by_own_prices(branching *b, const rest *r, const witne
     prices_free(b->context, &prices);
     sum_prices(r->rows, r->count, whole, &all, &largest);
     *proven = all > most * largest;
+    if (*proven)
+        STARG_TRY(record_prices(b, whole));
 done:
     return status;
 }
@@ -161,6 +203,7 @@ static starg_status branch_on(branching *b, const rest *r, size_t witness,
     starg_status status = STARG_OK;
     size_t ended = 0;
     *proven = true;
+    STARG_TRY(record_rows(b, r, witness));
     for (size_t i = 0; i < r->count && *proven; i++) {
         witness_row left = *wanted;
         if (!starg_bit_test(r->cut[i].bits, witness))
@@ -191,8 +234,7 @@ static starg_status branch(branching *b, const witness_row *wanted, size_t most,
     STARG_TRY(rest_make(b, wanted, &r));
     b->work += b->count / 10 + r.count * r.count / 100;
     size_t witness = rarest(&r, wanted, &fewest);
-    *proven = fewest == 0;
-    if (!*proven)
+    if (fewest > 0)
         STARG_TRY(bound_by_own_prices(b, &r, wanted, most, proven));
     if (!*proven)
         STARG_TRY(branch_on(b, &r, witness, wanted, most, proven));
@@ -203,9 +245,10 @@ done:
 
 starg_status bound_by_branching(starg_context *context, const witness_row *const *rows,
                                 size_t count, const witness_row *wanted, size_t most, size_t nodes,
-                                bool *proven, uint64_t *work) {
+                                bool *proven, branch_record *record, uint64_t *work) {
     starg_status status = STARG_OK;
-    branching b = {.context = context, .rows = rows, .count = count, .nodes = nodes};
+    branching b = {
+        .context = context, .rows = rows, .count = count, .nodes = nodes, .record = record};
     *proven = false;
     STARG_NEW_ZERO(context, STAGE, b.gone, count);
     STARG_TRY(branch(&b, wanted, most, proven));

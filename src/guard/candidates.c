@@ -27,7 +27,7 @@ void candidates_free(starg_context *context, candidate_points *points) {
 }
 
 bool candidates_allowed(const starg_solid *solid, const double p[3], double clearance) {
-    return starg_solid_contains(solid, p) &&
+    return starg_space_admits(solid, p) &&
            (clearance <= 0 || starg_solid_distance(solid, p) >= clearance);
 }
 
@@ -82,10 +82,11 @@ static double lattice_size(const double extent[3], double step) {
 /* The step, doubled until there are no more points to look at than that: a solid may be so thin in
  * its box that none of very many is inside. */
 static double coarse_enough(const starg_solid *solid, double step, double most) {
-    double lower[3], upper[3], extent[3];
-    starg_mesh_bounds(solid->mesh, lower, upper);
+    double extent[3];
+    bvh_box all;
+    solid_reach(solid, &all);
     for (int k = 0; k < 3; k++)
-        extent[k] = upper[k] - lower[k];
+        extent[k] = all.upper[k] - all.lower[k];
     step = fmax(step, 5e-324); /* where the volume underflows */
     while (!(lattice_size(extent, step) <= most))
         step *= 2;
@@ -97,11 +98,12 @@ static double coarse_enough(const starg_solid *solid, double step, double most) 
 static starg_status lattice_points(starg_context *context, const starg_solid *solid, double step,
                                    double clearance, candidate_points *points) {
     starg_status status = STARG_OK;
-    double lower[3], upper[3];
-    starg_mesh_bounds(solid->mesh, lower, upper);
+    bvh_box all;
+    solid_reach(solid, &all);
+    const double *lower = all.lower;
     size_t cells[3];
     for (int k = 0; k < 3; k++)
-        cells[k] = (size_t)((upper[k] - lower[k]) / step) + 1;
+        cells[k] = (size_t)((all.upper[k] - lower[k]) / step) + 1;
     points->data.count = 0;
     for (size_t i = 0; i < 2 * cells[0]; i++) {
         STARG_TRY(starg_check_cancel(context, STAGE));
@@ -118,13 +120,25 @@ done:
     return status;
 }
 
+/* Of a scene that of the box in which guards may stand. */
+static double free_volume(const starg_solid *solid) {
+    bvh_box reach;
+    if (!solid->scene)
+        return solid->check->volume;
+    solid_reach(solid, &reach);
+    double volume = 1;
+    for (int k = 0; k < 3; k++)
+        volume *= reach.upper[k] - reach.lower[k];
+    return volume;
+}
+
 /* The step follows from the volume, two points a cubic cell; where clearance or thin walls leave
  * fewer points than wanted it is made smaller, some times. */
 static starg_status interior_candidates(starg_context *context, const candidate_shape *shape,
                                         size_t wanted, candidate_points *points) {
     enum { ROUNDS = 6 };
     const double most = 10000 * (double)wanted + 1000;
-    double step = cbrt(2 * shape->solid->check->volume / (double)wanted);
+    double step = cbrt(2 * free_volume(shape->solid) / (double)wanted);
     for (int round = 0; round < ROUNDS; round++) {
         double used = coarse_enough(shape->solid, step, most);
         starg_status status = lattice_points(context, shape->solid, used, shape->clearance, points);
@@ -152,8 +166,16 @@ starg_status candidates_check(starg_context *context, starg_candidates source, s
     return STARG_OK;
 }
 
+/* Curve skeletons are of solids, the medial axis is of an inside. */
+static starg_candidates source_in(const starg_solid *solid, starg_candidates wanted) {
+    if (solid->ambient > 0)
+        return STARG_CANDIDATES_INTERIOR;
+    return solid->scene && wanted == STARG_CANDIDATES_SKELETON ? STARG_CANDIDATES_MEDIAL : wanted;
+}
+
 static starg_status find(starg_context *context, const candidate_shape *shape,
                          starg_candidates source, size_t wanted, candidate_points *points) {
+    source = source_in(shape->solid, source);
     if (source == STARG_CANDIDATES_SKELETON)
         return skeletal_candidates(context, shape, wanted, points);
     if (source == STARG_CANDIDATES_MEDIAL)

@@ -16,6 +16,7 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
 
@@ -64,21 +65,46 @@ void search_scene_close(search_scene *scene) {
 
 /* ---- points ---- */
 
+void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) {
+    const visibility_scene *points = scene->points;
+    uint32_t column = scene->witnesses.data[j], place = scene->places[column];
+    if (scene->view->target == STARG_TARGET_VERTICES) {
+        vec3_copy(points->mesh->vertices + 3 * (size_t)column, centre);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        centre[k] = scene_corner(points, place, 0)[k] / 3 + scene_corner(points, place, 1)[k] / 3 +
+                    scene_corner(points, place, 2)[k] / 3;
+}
+
+bool search_scene_sees(const search_scene *scene, const search_point *point, size_t j,
+                       uint64_t *work) {
+    starg_visibility_options view = *scene->view;
+    uint32_t place = scene->places[scene->witnesses.data[j]];
+    bool vertices = view.target == STARG_TARGET_VERTICES;
+    view.directions = point->direction;
+    bool sees = vertices ? scene_sees_vertex(scene->points, point->place, place, &view)
+                         : scene_sees_face(scene->points, point->place, place, &view);
+    *work += sees && !vertices ? 3 : 1;
+    return sees;
+}
+
+bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j) {
+    const visibility_scene *points = scene->points;
+    uint32_t place = scene->places[scene->witnesses.data[j]];
+    return scene->view->target == STARG_TARGET_VERTICES ||
+           orient3d(scene_corner(points, place, 0), scene_corner(points, place, 1),
+                    scene_corner(points, place, 2), p) > 0;
+}
+
 /* Sets what the point sees of the witnesses in `among`; returns how many were looked at. */
-static uint64_t look_from(const search_scene *scene, const double p[3], const witness_row *among,
-                          witness_row *seen) {
-    bool vertices = scene->view->target == STARG_TARGET_VERTICES;
+static uint64_t look_from(const search_scene *scene, search_point *point,
+                          const witness_row *among) {
     uint64_t work = 0;
     for (size_t w = 0; w < WITNESS_WORDS; w++)
-        STARG_FOR_BITS (bit, among->bits[w]) {
-            size_t j = 64 * w + bit;
-            uint32_t place = scene->places[scene->witnesses.data[j]];
-            bool sees = vertices ? scene_sees_vertex(scene->points, p, place, scene->view)
-                                 : scene_sees_face(scene->points, p, place, scene->view);
-            if (sees)
-                starg_bit_set(seen->bits, j);
-            work += sees && !vertices ? 3 : 1;
-        }
+        STARG_FOR_BITS (bit, among->bits[w])
+            if (search_scene_sees(scene, point, 64 * w + bit, &work))
+                starg_bit_set(point->seen.bits, 64 * w + bit);
     return work;
 }
 
@@ -101,34 +127,58 @@ static starg_status look_from_item(starg_context *context, void *shared, void *s
     looking *l = shared;
     (void)context;
     (void)scratch;
-    l->work[item] = look_from(l->scene, l->points[item].place, &l->among, &l->points[item].seen);
+    if (l->points[item].candidate == UINT32_MAX)
+        l->work[item] = look_from(l->scene, &l->points[item], &l->among);
     return STARG_OK;
 }
 
-starg_status points_look(search_scene *scene, search_points *points, size_t first) {
+starg_status points_look_at(search_scene *scene, search_point *points, size_t count,
+                            const witness_row *among) {
     starg_status status = STARG_OK;
     starg_context *context = scene->context;
-    looking l = {scene, points->data, NULL, witnesses_from(scene, first)};
-    STARG_NEW_ZERO(context, STAGE, l.work, points->count);
-    const starg_parallel_loop loop = {.stage = STAGE,
-                                      .count = points->count,
-                                      .shared = &l,
-                                      .item = look_from_item,
-                                      .silent = true};
+    looking l = {scene, points, NULL, *among};
+    STARG_NEW_ZERO(context, STAGE, l.work, count);
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = count, .shared = &l, .item = look_from_item, .silent = true};
     STARG_TRY(starg_parallel_for(context, &loop));
-    for (size_t i = 0; i < points->count; i++)
+    for (size_t i = 0; i < count; i++)
         scene->work += l.work[i];
 done:
     starg_release(context, l.work);
     return status;
 }
 
+starg_status points_look(search_scene *scene, search_points *points, size_t first) {
+    const witness_row among = witnesses_from(scene, first);
+    return points_look_at(scene, points->data, points->count, &among);
+}
+
 /* ---- cells ---- */
+
+static double middle(const bvh_box *box, int k) {
+    return 0.5 * box->lower[k] + 0.5 * box->upper[k];
+}
+
+/* Half the diagonal and the distance of the middle from the boundary are off by rounding: a
+ * thousandth of the clearance is more than that, unless coordinates are huge beside it. */
+bool search_scene_bars(const search_scene *scene, const bvh_box *box) {
+    double centre[3], reach = 0.5 * vec3_distance(box->lower, box->upper), largest = 0;
+    if (!scene->bars || !(scene->clearance > 0) || !(reach < scene->clearance))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        centre[k] = middle(box, k);
+        largest = fmax(largest, fmax(fabs(box->lower[k]), fabs(box->upper[k])));
+    }
+    return largest < 1e9 * scene->clearance &&
+           starg_solid_distance(scene->solid, centre) + reach < 0.999 * scene->clearance;
+}
 
 starg_status cells_begin(const search_scene *scene, search_cells *cells) {
     starg_status status = STARG_OK;
-    const bvh_box *all = &scene->solid->tree->nodes[0].box;
-    search_cell root = {.box = *all};
+    bvh_box reach;
+    solid_reach(scene->solid, &reach);
+    const bvh_box *all = &reach;
+    search_cell root = {.box = reach};
     double extent = 0;
     for (int k = 0; k < 3; k++)
         extent = fmax(extent, all->upper[k] - all->lower[k]);
@@ -148,7 +198,7 @@ done:
     return status;
 }
 
-static int longest_side(const bvh_box *box) {
+int cell_cut_axis(const bvh_box *box) {
     int longest = 0;
     for (int k = 1; k < 3; k++)
         if (box->upper[k] - box->lower[k] > box->upper[longest] - box->lower[longest])
@@ -156,19 +206,15 @@ static int longest_side(const bvh_box *box) {
     return longest;
 }
 
-static double middle(const bvh_box *box, int k) {
-    return 0.5 * box->lower[k] + 0.5 * box->upper[k];
-}
-
 bool cell_splits(const bvh_box *box) {
-    int k = longest_side(box);
+    int k = cell_cut_axis(box);
     double at = middle(box, k);
     return at > box->lower[k] && at < box->upper[k];
 }
 
-static bvh_box half(const bvh_box *box, bool upper) {
+bvh_box cell_half(const bvh_box *box, bool upper) {
     bvh_box part = *box;
-    int k = longest_side(box);
+    int k = cell_cut_axis(box);
     if (upper)
         part.lower[k] = middle(box, k);
     else
@@ -176,7 +222,7 @@ static bvh_box half(const bvh_box *box, bool upper) {
     return part;
 }
 
-static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
+starg_status cells_worker_make(starg_context *context, void *shared, void **scratch) {
     const search_scene *const *scene = shared;
     box_worker *worker = NULL;
     (void)context;
@@ -185,7 +231,7 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     return status;
 }
 
-static void free_worker(starg_context *context, void *scratch) {
+void cells_worker_free(starg_context *context, void *scratch) {
     (void)context;
     box_worker_free(scratch);
 }
@@ -203,7 +249,8 @@ static uint64_t look_from_box(const search_scene *scene, box_worker *worker, con
                                    .range = scene->view->range,
                                    .among = among->bits,
                                    .known = known != NULL ? known->bits : NULL};
-    box_look(worker, &question, found.bits, NULL);
+    if (!search_scene_bars(scene, box))
+        box_look(worker, &question, found.bits, NULL);
     for (int w = 0; w < WITNESS_WORDS; w++)
         open->bits[w] |= found.bits[w];
     return box_worker_tests(worker) - before;
@@ -212,7 +259,7 @@ static uint64_t look_from_box(const search_scene *scene, box_worker *worker, con
 /* ---- looking at more witnesses ---- */
 
 typedef struct asking {
-    const search_scene *scene; /* first: as make_worker wants it */
+    const search_scene *scene; /* first: as cells_worker_make wants it */
     search_cell *cells;
     const uint32_t *list, *parents; /* by item */
     witness_row among;
@@ -256,8 +303,8 @@ starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) 
                                           .count = list.count,
                                           .shared = &a,
                                           .item = ask_item,
-                                          .make_scratch = make_worker,
-                                          .free_scratch = free_worker,
+                                          .make_scratch = cells_worker_make,
+                                          .free_scratch = cells_worker_free,
                                           .silent = true};
         STARG_TRY(starg_parallel_for(context, &loop));
         next.count = next_parents.count = 0;
@@ -297,7 +344,7 @@ typedef struct part {
 } part;
 
 typedef struct splitting {
-    const search_scene *scene; /* first: as make_worker wants it */
+    const search_scene *scene; /* first: as cells_worker_make wants it */
     const search_cell *cells;
     const uint32_t *leaves;
     size_t first; /* number of the first part among the cells */
@@ -305,14 +352,33 @@ typedef struct splitting {
     part *parts;
 } splitting;
 
+/* Where views are cones: towards a witness at random, of those that the cell may see. */
+static void look_somewhere(const search_scene *scene, search_point *point, const witness_row *among,
+                           starg_rng *rng) {
+    size_t count = starg_bit_count(among->bits, WITNESS_WORDS), at = 0;
+    if (scene->view->cone >= 360 || count == 0)
+        return;
+    uint64_t chosen = starg_rng_below(rng, count);
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, among->bits[w])
+            at = chosen-- == 0 ? 64 * w + bit : at;
+    double centre[3];
+    search_scene_centre(scene, at, centre);
+    vec3_subtract(centre, point->place, point->direction);
+    double length = vec3_length(point->direction);
+    for (int k = 0; k < 3 && length > 0; k++)
+        point->direction[k] /= length;
+}
+
 static void add_point(const search_scene *scene, part *out, const double p[3],
-                      const witness_row *among) {
+                      const witness_row *among, starg_rng *rng) {
     search_point *point = &out->points[out->count];
     if (!candidates_allowed(scene->solid, p, scene->clearance))
         return;
     *point = (search_point){.candidate = UINT32_MAX};
     vec3_copy(p, point->place);
-    out->work += look_from(scene, p, among, &point->seen);
+    look_somewhere(scene, point, among, rng);
+    out->work += look_from(scene, point, among);
     out->count++;
 }
 
@@ -323,13 +389,13 @@ static starg_status make_part(starg_context *context, void *shared, void *scratc
     starg_rng rng = starg_rng_make(context->seed, RANDOM_STAGE, s->first + item);
     witness_row known = {{0}};
     double p[3];
-    *out = (part){.cell.box = half(&whole->box, item % 2 != 0)};
+    *out = (part){.cell.box = cell_half(&whole->box, item % 2 != 0)};
     const bvh_box *box = &out->cell.box;
     for (int i = 0; i < s->tries; i++) {
         for (int k = 0; k < 3; k++)
             p[k] = i == 0 ? middle(box, k)
                           : box->lower[k] + starg_rng_unit(&rng) * (box->upper[k] - box->lower[k]);
-        add_point(s->scene, out, p, &whole->open);
+        add_point(s->scene, out, p, &whole->open, &rng);
     }
     for (int i = 0; i < out->count; i++)
         for (int w = 0; w < WITNESS_WORDS; w++)
@@ -352,8 +418,8 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
                                       .count = 2 * count,
                                       .shared = &s,
                                       .item = make_part,
-                                      .make_scratch = make_worker,
-                                      .free_scratch = free_worker,
+                                      .make_scratch = cells_worker_make,
+                                      .free_scratch = cells_worker_free,
                                       .silent = true};
     STARG_TRY(starg_parallel_for(context, &loop));
     for (size_t i = 0; i < 2 * count; i++) {

@@ -14,6 +14,7 @@ typedef struct search_scene {
     const starg_solid *solid;
     const starg_visibility_options *view;
     double clearance;
+    bool bars;                /* boxes that are too close to the boundary are found out */
     visibility_scene *points; /* what a point sees                                           */
     box_scene *boxes;         /* what a box may see                                          */
     uint32_t *places;         /* by column: where `points` has it: rank of the face, or slot */
@@ -29,12 +30,26 @@ void search_scene_close(search_scene *scene);
 
 /* A point where a guard may stand. */
 typedef struct search_point {
-    double place[3];
+    double place[3], direction[3]; /* the direction where views are cones */
     witness_row seen;
     uint32_t candidate; /* of the pool, or UINT32_MAX */
 } search_point;
 
+/* The middle of the face of witness j, or its vertex. */
+void search_scene_centre(const search_scene *scene, size_t j, double centre[3]);
+
+/* Does the point see witness j? Its place is in the free space. */
+bool search_scene_sees(const search_scene *scene, const search_point *point, size_t j,
+                       uint64_t *work);
+
+/* False: a guard at p does not see witness j, which its plane tells. */
+bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j);
+
 typedef STARG_ARRAY(search_point) search_points;
+
+/* Looks from points that are no candidates at some witnesses. Errors: MEMORY, CANCELLED. */
+starg_status points_look_at(search_scene *scene, search_point *points, size_t count,
+                            const witness_row *among);
 
 /* Looks from every point at the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
 starg_status points_look(search_scene *scene, search_points *points, size_t first);
@@ -54,8 +69,19 @@ starg_status cells_begin(const search_scene *scene, search_cells *cells);
 /* Looks from the cells at the witnesses from `first` on. Errors: MEMORY, CANCELLED. */
 starg_status cells_look(search_scene *scene, search_cells *cells, size_t first);
 
+/* A cell is cut in the middle of this axis. */
+int cell_cut_axis(const bvh_box *box);
 /* Can the box be cut in half? */
 bool cell_splits(const bvh_box *box);
+bvh_box cell_half(const bvh_box *box, bool upper);
+
+/* Is the whole box closer to the boundary than guards may stand? */
+bool search_scene_bars(const search_scene *scene, const bvh_box *box);
+
+/* Memory of a thread in parallel loops over cells, whose shared data begin with a pointer to the
+ * scene. */
+starg_status cells_worker_make(starg_context *context, void *shared, void **scratch);
+void cells_worker_free(starg_context *context, void *scratch);
 
 enum { MOST_TRIES = 12 };
 

@@ -9,6 +9,11 @@ static double whole_weight(const guard_pool *pool, const column_weights *weights
     return (double)(pool->curtailed ? weights->total : pool_coverable_weight(pool, weights));
 }
 
+uint64_t choose_target(const guard_pool *pool, const column_weights *weights) {
+    double coverage = pool->options->coverage;
+    return coverage < 1 ? (uint64_t)ceil(coverage * whole_weight(pool, weights)) : UINT64_MAX;
+}
+
 starg_status choose_candidates(const guard_pool *pool, const column_weights *weights,
                                const choice *how, starg_cover **out) {
     const starg_guard_options *wanted = pool->options;
@@ -24,8 +29,7 @@ starg_status choose_candidates(const guard_pool *pool, const column_weights *wei
         problem.max_rows = wanted->max_guards - how->given_count;
     if (wanted->coverage < 1 || wanted->max_guards > 0)
         problem.weights = weights->weights;
-    if (wanted->coverage < 1)
-        problem.target = (uint64_t)ceil(wanted->coverage * whole_weight(pool, weights));
+    problem.target = choose_target(pool, weights);
     options.method = how->method;
     options.max_nodes = how->max_nodes;
     options.prices = how->prices;

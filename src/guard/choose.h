@@ -16,6 +16,9 @@ typedef struct choice {
     bool prices;
 } choice;
 
+/* The weight that is to be seen: UINT64_MAX for all that can be. */
+uint64_t choose_target(const guard_pool *pool, const column_weights *weights);
+
 /* Chooses candidates of a pool that is not empty: as many as the options' coverage, redundancy and
  * limit ask for. Errors: MEMORY, CANCELLED. */
 starg_status choose_candidates(const guard_pool *pool, const column_weights *weights,

@@ -15,43 +15,33 @@
 #include <math.h>
 
 #include "core/fields.h"
+#include "guard/certificate.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
 #include "starguard/kernel.h"
 
 static const char STAGE[] = "guard";
 
-static void set_defaults(starg_guard_options *o, size_t vertices) {
-    if (o->max_nodes == STARG_DEFAULT_NODES)
-        o->max_nodes = o->method == STARG_GUARD_PILP ? 30 : 100000;
-    if (o->step == STARG_DEFAULT_STEP)
-        o->step = proxy_step(vertices, o->coarsest);
+/* Are the fewest of the given candidates asked for, and a bound for guards anywhere? Then the
+ * choice is exact, whatever the method. */
+static bool chooses_exactly(const starg_guard_options *o) {
+    return o->prove && o->candidates == STARG_CANDIDATES_GIVEN;
 }
 
-/* What the search over every point cannot do. */
-static starg_status check_prove(starg_context *context, const starg_guard_options *o) {
-    const char *why = NULL;
-    if (o->candidates == STARG_CANDIDATES_GIVEN)
-        why = "candidates are given, and guards would stand elsewhere; leave the candidates out";
-    else if (o->coverage < 1)
-        why = "a part of the area is enough; ask for a coverage of 1";
-    else if (o->max_guards > 0)
-        why = "the number of guards is limited; leave the limit out";
-    else if (o->redundancy > 1)
-        why = "faces are to be seen more than once; ask for a redundancy of 1";
-    else if (o->visibility.cone < 360)
-        why = "guards look in one direction; ask for a cone of 360 degrees";
-    if (why == NULL)
-        return STARG_OK;
-    return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                      "a bound for guards anywhere (prove) cannot be found where %s", why);
+static bool wants_part(const starg_guard_options *o) {
+    return o->coverage < 1 || o->max_guards > 0;
+}
+
+static void set_defaults(starg_guard_options *o, size_t vertices) {
+    if (o->max_nodes == STARG_DEFAULT_NODES)
+        o->max_nodes = o->method == STARG_GUARD_PILP && !chooses_exactly(o) ? 30 : 100000;
+    if (o->step == STARG_DEFAULT_STEP)
+        o->step = proxy_step(vertices, o->coarsest);
 }
 
 static starg_status check_options(starg_context *context, const starg_guard_options *o) {
     starg_status status = STARG_OK;
     STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
-    if (o->prove)
-        STARG_TRY(check_prove(context, o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
 done:
@@ -102,6 +92,8 @@ static starg_status make_levels(const guard_problem *problem, guard_detail *out)
 static starg_status find_detail(const guard_problem *problem, guard_detail *out) {
     starg_status status = STARG_OK;
     bool proxy = needs_proxy(problem);
+    if (problem->solid->scene)
+        return STARG_OK; /* obstacles and outsides have no levels of detail */
     if (problem->options->method == STARG_GUARD_PILP || proxy)
         STARG_TRY(make_levels(problem, out));
     if (proxy && out->levels != NULL)
@@ -204,7 +196,8 @@ static starg_status choose_at_once(const guard_problem *problem, const guard_poo
                                    bool time_limited, guard_selection *out) {
     starg_status status = STARG_OK;
     starg_cover *cover = NULL;
-    bool greedy = problem->options->method == STARG_GUARD_GREEDY;
+    bool greedy =
+        problem->options->method == STARG_GUARD_GREEDY && !chooses_exactly(problem->options);
     const guard_selection none = {.time_limited = time_limited};
     const choice how = {.method = greedy ? STARG_COVER_GREEDY : STARG_COVER_ILP,
                         .max_nodes = problem->options->max_nodes};
@@ -216,7 +209,7 @@ done:
 }
 
 static bool may_refine(const starg_guard_options *options) {
-    return options->refine && options->coverage == 1 && options->max_guards == 0 &&
+    return options->method == STARG_GUARD_PILP && options->refine && !wants_part(options) &&
            options->candidates != STARG_CANDIDATES_GIVEN;
 }
 
@@ -230,19 +223,14 @@ static starg_status choose_by_levels(const guard_problem *problem, const guard_d
     starg_status status = STARG_OK;
     guard_selection first = {0};
     STARG_TRY(progressive_guards(problem, detail, &out->pool, &out->records, &first));
-    bool ends = must_end(problem, &first), refines = !ends && may_refine(problem->options);
-    if (refines)
-        STARG_TRY(refine_guards(problem, detail, &first, &out->pool, &out->selection,
-                                &out->lines_tested));
-    else if (!ends)
-        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
-    const guard_selection *of_levels = ends || refines ? &first : &out->selection;
-    STARG_TRY(record_level(&out->pool, of_levels, &out->records));
-    if (ends) {
+    bool ends = must_end(problem, &first);
+    if (ends || may_refine(problem->options)) {
         out->selection = first;
-        out->selection.time_limited = true;
+        out->selection.time_limited = first.time_limited || ends;
         first = (guard_selection){0};
-    }
+    } else
+        STARG_TRY(bound_guards(problem, &out->pool, &first, &out->selection));
+    STARG_TRY(record_level(&out->pool, &out->selection, &out->records));
 done:
     selection_free(problem->context, &first);
     return status;
@@ -251,8 +239,8 @@ done:
 /* May one point be enough, and stand where no candidate does? */
 static bool may_be_star(const guard_problem *problem) {
     const starg_guard_options *o = problem->options;
-    bool free = o->prove || (o->method == STARG_GUARD_PILP && may_refine(o));
-    return free && o->redundancy == 1 && o->visibility.cone == 360;
+    bool free = (o->prove && !chooses_exactly(o)) || may_refine(o);
+    return free && !problem->solid->scene && o->redundancy == 1 && o->visibility.cone == 360;
 }
 
 /* Does the only candidate see all that anyone could? */
@@ -305,13 +293,16 @@ static starg_status find_guards(const guard_problem *problem, guard_outcome *out
         return STARG_OK;
     STARG_TRY(find_detail(problem, &detail));
     STARG_TRY(find_pool(problem, &detail, &out->pool));
-    if (problem->options->method == STARG_GUARD_PILP)
+    if (problem->options->method == STARG_GUARD_PILP && !chooses_exactly(problem->options))
         STARG_TRY(choose_by_levels(problem, &detail, out));
     else
         STARG_TRY(choose_at_once(problem, &out->pool, detail.time_limited || out->pool.time_limited,
                                  &out->selection));
-    if (problem->options->prove)
-        STARG_TRY(search_guards(problem, &out->pool, &out->selection, &out->search));
+    if (!wants_part(problem->options))
+        STARG_TRY(search_guards(problem, &detail, may_refine(problem->options), &out->pool,
+                                &out->selection, &out->search));
+    else if (problem->options->prove)
+        STARG_TRY(search_area(problem, &out->pool, &out->selection, &out->search));
 done:
     starg_solid_free(detail.proxy);
     starg_levels_free(problem->context, detail.levels);
@@ -324,24 +315,74 @@ static void outcome_free(starg_context *context, guard_outcome *outcome) {
     pool_free(&outcome->pool);
 }
 
-starg_status starg_guard(starg_context *context, const starg_solid *solid,
-                         const starg_guard_options *options, starg_guards **out) {
+/* Where the search had nothing to prove: one guard is needed for whatever is to be seen. */
+static starg_status certify_one(const guard_problem *problem, const guard_outcome *outcome) {
+    const guard_pool *pool = &outcome->pool;
+    uint32_t witness = UINT32_MAX;
+    if (problem->certificate == NULL || problem->certificate->text != NULL)
+        return STARG_OK;
+    for (uint32_t j = 0; j < pool->columns && outcome->search.bound > 0 && witness == UINT32_MAX;
+         j++)
+        if (starg_bits_test(pool->rows, outcome->selection.chosen.data[0], j))
+            witness = j;
+    return certificate_of_one(problem->context, problem->solid, &problem->options->visibility,
+                              witness, problem->certificate);
+}
+
+static starg_status guard_solid(starg_context *context, const starg_solid *solid,
+                                const starg_guard_options *options, guard_certificate *why,
+                                starg_guards **out) {
     starg_status status = STARG_OK;
     starg_guard_options defaults;
     starg_guard_options_default(&defaults);
     starg_guard_options used = options ? *options : defaults;
-    guard_problem problem = {.context = context, .solid = solid, .options = &used};
+    guard_problem problem = {
+        .context = context, .solid = solid, .options = &used, .certificate = why};
     guard_outcome outcome = {0};
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
     STARG_TRY(check_options(context, &used));
-    STARG_TRY(
-        column_weights_create(context, solid->mesh, used.visibility.target, &problem.weights));
+    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
     STARG_TRY(find_guards(&problem, &outcome));
+    STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
 done:
     outcome_free(context, &outcome);
     column_weights_free(context, &problem.weights);
+    return status;
+}
+
+starg_status starg_guard(starg_context *context, const starg_solid *solid,
+                         const starg_guard_options *options, starg_guards **out) {
+    return guard_solid(context, solid, options, NULL, out);
+}
+
+starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
+                                   const starg_guard_options *options, starg_guards **out,
+                                   char **text, size_t *size) {
+    guard_certificate why = {0};
+    *out = NULL;
+    *text = NULL;
+    *size = 0;
+    if (options != NULL && (wants_part(options) || options->redundancy > 1))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate is only written where everything is to be seen once; ask "
+                          "for a coverage of 1 without a limit of guards, and a redundancy of 1");
+    if (solid->scene)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate is only written for a plain solid: without obstacles, "
+                          "outsides, weights and bounds for where guards stand");
+    if (options == NULL || !options->prove)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate says why a bound for guards anywhere holds, which is not "
+                          "asked for; ask for a proof (prove)");
+    starg_status status = guard_solid(context, solid, options, &why, out);
+    if (status == STARG_OK) {
+        *text = why.text;
+        *size = why.size;
+        why.text = NULL;
+    }
+    certificate_free(context, &why);
     return status;
 }
 
@@ -377,8 +418,7 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);
-    STARG_TRY(
-        column_weights_create(context, solid->mesh, used.visibility.target, &problem.weights));
+    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
     STARG_TRY(find_candidates(&problem, &(guard_detail){0}, &outcome.pool));
     STARG_TRY(choose_all(&problem, &outcome.pool, &outcome.selection));
     STARG_TRY(report_guards(&problem, &outcome, out));
@@ -400,6 +440,11 @@ void starg_guards_free(starg_context *context, starg_guards *guards) {
         return;
     guard_records records = {.data = guards->level_list, .count = guards->level_count};
     records_free(context, &records);
+    for (size_t i = 0; guards->obstacles != NULL && i < guards->obstacle_count; i++)
+        starg_release(context, guards->obstacles[i].file);
+    starg_release(context, guards->obstacles);
+    starg_release(context, guards->targets);
+    starg_release(context, guards->importance);
     starg_release(context, guards->file);
     starg_release(context, guards->positions);
     starg_release(context, guards->directions);

@@ -3,6 +3,8 @@
  * ranges and descriptions. Rows are in the order of the file. */
 #include "guard/guards_fields.h"
 
+#include <math.h>
+
 #include "starguard/guard.h"
 #include "visibility/fields.h"
 
@@ -135,19 +137,23 @@ static const starg_field OPTIONS[] = {
      OPTION(refine),
      .applies = has_levels,
      .initial = true,
-     .help = "pilp: skip refinement of the guard positions."},
+     .help = "pilp: skip refinement, the search for fewer guards beside the candidates."},
     {.option = "refine-lines",
      .kind = STARG_FIELD_COUNT,
      OPTION(refine_lines),
      .most = UINT32_MAX,
-     .initial = 10000000,
+     .initial = STARG_DEFAULT_LINES,
      .value = "N",
-     .help = "pilp: number of sight lines that refinement may test."},
+     .help = "pilp: budget of refinement, counted in sight lines (about a microsecond each) and "
+             "what takes as long.",
+     .default_text =
+         "400,000, 70 for each face, 40,000 for each guard, and 3 for each face and guard"},
     {.option = "prove",
      .kind = STARG_FIELD_FLAG,
      OPTION(prove),
      .help = "Search fewer guards at every point of the solid, and prove how many are needed, "
-             "wherever they stand."},
+             "wherever they stand (with --max-guards: how much so many could see). With candidates "
+             "from a file the fewest of these are chosen."},
     {.option = "prove-work",
      .kind = STARG_FIELD_COUNT,
      OPTION(prove_work),
@@ -188,6 +194,10 @@ static bool targets_vertices(const void *record) {
 
 static bool has_area_bound(const void *record) {
     return of(record)->options.max_guards > 0;
+}
+
+static bool has_area_bound_everywhere(const void *record) {
+    return of(record)->area_bound_everywhere > 0;
 }
 
 static bool is_bounded_everywhere(const void *record) {
@@ -339,8 +349,109 @@ static const starg_field COVERAGE[] = {
      .applies = has_area_bound,
      .help = "With max_guards: upper bound on the area fraction that any choice of that many "
              "candidates covers; trivially 1 with redundancy above 1 or target vertices."},
+    {.key = "area_bound_everywhere",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(area_bound_everywhere),
+     .high = 1,
+     .applies = has_area_bound_everywhere,
+     .help = "With max_guards and prove: upper bound on the area fraction that so many guards "
+             "cover, wherever they stand."},
 };
 static const starg_fields COVERAGE_TABLE = {.name = "coverage", FIELD_ROWS(COVERAGE)};
+
+/* ---- the scene ---- */
+
+static const char *const ORIENTATIONS[] = {"nested", "keep", NULL};
+
+static const starg_field OBSTACLES[] = {
+    {.key = "file",
+     .kind = STARG_FIELD_TEXT,
+     .flags = STARG_FIELD_OPTIONAL,
+     FIELD_MEMBER(starg_guard_obstacle, file),
+     .help = "Its path as given."},
+    {.key = "vertices",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_guard_obstacle, vertex_count),
+     .most = UINT32_MAX,
+     .help = "Number in the obstacle."},
+    {.key = "faces",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_guard_obstacle, face_count),
+     .most = UINT32_MAX,
+     .help = "Number in the obstacle."},
+};
+static const starg_fields OBSTACLES_TABLE = {
+    .name = "obstacles", .size = sizeof(starg_guard_obstacle), FIELD_ROWS(OBSTACLES)};
+
+static const starg_field TARGETS[] = {
+    {.key = "face",
+     .kind = STARG_FIELD_COUNT,
+     .offset = offsetof(starg_guards, targets),
+     .size = sizeof(uint32_t),
+     .most = UINT32_MAX},
+    {.key = "weight",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_ABOVE,
+     .offset = offsetof(starg_guards, importance),
+     .size = sizeof(double),
+     .high = 1},
+};
+static const starg_fields TARGETS_TABLE = {
+    .columns = true, .name = "targets", .form = STARG_FORM_TUPLE, FIELD_ROWS(TARGETS)};
+
+#define USUALLY_NOT .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE
+
+static const starg_field SCENE[] = {
+    {.key = "orientation",
+     .kind = STARG_FIELD_CHOICE,
+     USUALLY_NOT,
+     RESULT(space.orientation),
+     .words = ORIENTATIONS,
+     .help = "Shells by their nesting, or as given."},
+    {.key = "outside",
+     .kind = STARG_FIELD_FLAG,
+     USUALLY_NOT,
+     RESULT(space.outside),
+     .help = "Guards stand outside of the model."},
+    {.key = "standoff_least",
+     .kind = STARG_FIELD_REAL,
+     USUALLY_NOT,
+     RESULT(space.standoff_least),
+     .high = 1e100,
+     .help = "Smallest distance of guards from the model."},
+    {.key = "standoff_most",
+     .kind = STARG_FIELD_REAL,
+     USUALLY_NOT,
+     RESULT(space.standoff_most),
+     .high = 1e100,
+     .standard = INFINITY,
+     .help = "Largest distance of guards from the model."},
+    {.key = "within",
+     .kind = STARG_FIELD_NUMBERS,
+     USUALLY_NOT,
+     RESULT(space.within),
+     .length = 6,
+     .low = -1e100,
+     .high = 1e100,
+     .help = "Guards stand in this box: lower corner, upper corner."},
+    {.key = "obstacles",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(obstacles),
+     .of = &OBSTACLES_TABLE,
+     LENGTH(starg_guards, obstacle_count),
+     .help = "What stands in the way and need not be seen."},
+    {.key = "targets",
+     .kind = STARG_FIELD_LIST,
+     .flags = STARG_FIELD_OPTIONAL,
+     .of = &TARGETS_TABLE,
+     LENGTH(starg_guards, target_count),
+     .help = "The faces to be seen, ascending, each with how much its area counts; absent if all "
+             "count alike. Fractions of faces are of these, those of the area of their weighted "
+             "area."},
+};
+static const starg_fields SCENE_TABLE = {.name = "scene", FIELD_ROWS(SCENE)};
 
 /* ---- the file ---- */
 
@@ -353,6 +464,13 @@ static const starg_field FILE_ROWS[] = {
      .offset = offsetof(starg_guards, options),
      .of = &OPTIONS_TABLE,
      .help = "The options used."},
+    {.key = "scene",
+     .kind = STARG_FIELD_RECORD,
+     USUALLY_NOT,
+     .of = &SCENE_TABLE,
+     .help =
+         "Where guards may stand, what is in the way and what is to be seen, if that is not all "
+         "as usual."},
     {.key = "guards",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_LINES,
@@ -376,12 +494,13 @@ static const starg_field FILE_ROWS[] = {
      .kind = STARG_FIELD_COUNT,
      RESULT(lower_bound),
      .most = UINT32_MAX,
-     .help = "Proven lower bound: no fewer candidates cover as much. In files of morph --guards: "
+     .help = "Proven lower bound of these candidates: no fewer of them cover as much. In files of "
+             "morph --guards: "
              "no fewer pairs of candidates cover what some pair sees in both shapes."},
     {.key = "optimal",
      .kind = STARG_FIELD_FLAG,
      RESULT(optimal),
-     .help = "The number of guards equals lower_bound."},
+     .help = "The number of guards equals lower_bound: no fewer of these candidates do."},
     {.key = "lower_bound_everywhere",
      .kind = STARG_FIELD_COUNT,
      .flags = STARG_FIELD_OPTIONAL,

@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* GUARDS.json: the result of guarding as text (docs/formats.md). */
+#include <string.h>
+
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/record.h"
@@ -14,6 +16,21 @@ static bool put(FILE *stream, const void *result, const char *model_file) {
     return record_put(stream, &guards_file_fields, &shown, 0);
 }
 
+starg_status starg_guards_name_obstacles(starg_context *context, starg_guards *guards,
+                                         const char *const *files) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < guards->obstacle_count; i++) {
+        size_t size = strlen(files[i]) + 1;
+        char *copy = NULL;
+        STARG_NEW(context, STAGE, copy, size);
+        memcpy(copy, files[i], size);
+        starg_release(context, guards->obstacles[i].file);
+        guards->obstacles[i].file = copy;
+    }
+done:
+    return status;
+}
+
 starg_status starg_guards_write(starg_context *context, const starg_guards *guards,
                                 const char *model_file, const char *path) {
     return starg_json_write(context, STAGE, path, put, guards, model_file);
@@ -25,6 +42,14 @@ starg_status starg_guards_write_memory(starg_context *context, const starg_guard
 }
 
 /* What no table knows. */
+static starg_status check_targets(starg_context *context, const char *name, const starg_guards *g) {
+    for (size_t i = 0; i < g->target_count; i++)
+        if (g->targets[i] >= g->face_count || (i > 0 && g->targets[i] <= g->targets[i - 1]))
+            return record_reject(context, name, &guards_file_fields, "targets",
+                                 "ascending faces of the model");
+    return STARG_OK;
+}
+
 static starg_status check_levels(starg_context *context, const char *name, const starg_guards *g) {
     for (size_t i = 0; i < g->level_count; i++)
         if (g->level_list[i].kept > g->level_list[i].count)
@@ -43,6 +68,7 @@ starg_status starg_guards_read_memory(starg_context *context, const void *bytes,
     STARG_NEW_ZERO(context, STAGE, guards, 1);
     STARG_TRY(record_read(context, name, root, &guards_file_fields, guards));
     STARG_TRY(check_levels(context, name, guards));
+    STARG_TRY(check_targets(context, name, guards));
     *out = guards;
 done:
     json_decref(root);

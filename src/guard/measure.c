@@ -16,14 +16,18 @@ static starg_visibility_options view_of(const guard_problem *problem, starg_targ
     return view;
 }
 
-/* Lists the columns that are not in `joined`; `skip` (may be NULL) leaves some out. */
+/* Lists the targets that are not in `joined`; `skip` (may be NULL) leaves some out. */
 static starg_status list_missing(const guard_problem *problem, const uint64_t *joined,
-                                 size_t columns, const uint64_t *skip, uint32_t **missing,
+                                 starg_target target, const uint64_t *skip, uint32_t **missing,
                                  size_t *count) {
     starg_status status = STARG_OK;
+    const starg_mesh *mesh = problem->solid->mesh;
+    bool vertices = target == STARG_TARGET_VERTICES;
+    size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
     STARG_NEW(problem->context, STAGE, *missing, columns);
     for (size_t j = 0; j < columns; j++)
-        if (!starg_bit_test(joined, j) && (skip == NULL || !starg_bit_test(skip, j)))
+        if (!starg_bit_test(joined, j) && solid_is_target(problem->solid, vertices, j) &&
+            (skip == NULL || !starg_bit_test(skip, j)))
             (*missing)[(*count)++] = (uint32_t)j;
 done:
     return status;
@@ -46,8 +50,8 @@ static starg_status measure_curve(const guard_problem *problem, const starg_bits
                 area += problem->weights.areas[64 * w + bit];
             }
         }
-        bool all = faces == result->face_count;
-        result->curve_faces[i] = (double)faces / (double)result->face_count;
+        bool all = faces == problem->weights.faces;
+        result->curve_faces[i] = (double)faces / (double)problem->weights.faces;
         result->curve_area[i] =
             all || !(problem->weights.area > 0) ? 1 : area / problem->weights.area;
     }
@@ -67,7 +71,7 @@ static starg_status measure_faces(const guard_problem *problem, starg_guards *re
         result->seen_faces[i] = starg_bits_count(seen, i);
     STARG_NEW_ZERO(problem->context, STAGE, joined, seen->words);
     STARG_TRY(measure_curve(problem, seen, joined, result));
-    STARG_TRY(list_missing(problem, joined, result->face_count, NULL, &result->uncovered,
+    STARG_TRY(list_missing(problem, joined, STARG_TARGET_FACES, NULL, &result->uncovered,
                            &result->uncovered_count));
     result->coverage_faces = result->count > 0 ? result->curve_faces[result->count - 1] : 0;
     result->coverage_area = result->count > 0 ? result->curve_area[result->count - 1] : 0;
@@ -77,7 +81,7 @@ done:
     return status;
 }
 
-/* Bits of the vertices that no face uses: they are nobody's target. */
+/* Bits of the vertices that no face uses: they are nobody's target. *used_count: those that are. */
 static starg_status find_unused(const guard_problem *problem, uint64_t **unused,
                                 size_t *used_count) {
     starg_status status = STARG_OK;
@@ -88,7 +92,7 @@ static starg_status find_unused(const guard_problem *problem, uint64_t **unused,
     for (size_t i = 0; i < 3 * mesh->face_count; i++)
         starg_bit_clear(*unused, mesh->faces[i]);
     for (size_t v = 0; v < mesh->vertex_count; v++)
-        *used_count += !starg_bit_test(*unused, v);
+        *used_count += !starg_bit_test(*unused, v) && solid_is_target(problem->solid, true, v);
 done:
     return status;
 }
@@ -105,8 +109,8 @@ static starg_status measure_vertices(const guard_problem *problem, const guard_p
     STARG_TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
                                &options, &seen));
     STARG_TRY(pool_join_rows(problem->context, seen, &joined));
-    STARG_TRY(list_missing(problem, joined, seen->columns, unused, &result->uncovered_vertices,
-                           &result->uncovered_vertex_count));
+    STARG_TRY(list_missing(problem, joined, STARG_TARGET_VERTICES, unused,
+                           &result->uncovered_vertices, &result->uncovered_vertex_count));
     result->coverage_vertices = (double)(used - result->uncovered_vertex_count) / (double)used;
     result->coverable_vertices = starg_bit_count(pool->coverable, pool->rows->words);
 done:
@@ -179,24 +183,65 @@ static bool bounds_area(const starg_guard_options *o) {
 static void copy_facts(const guard_problem *problem, const guard_outcome *outcome,
                        starg_guards *result) {
     const guard_selection *selection = &outcome->selection;
-    result->vertex_count = problem->solid->mesh->vertex_count;
-    result->face_count = problem->solid->mesh->face_count;
+    result->vertex_count = starg_space_model_vertices(problem->solid);
+    result->face_count = starg_space_model_faces(problem->solid);
     result->options = *problem->options;
     result->options.points = NULL;
     result->options.visibility.directions = NULL;
     result->candidate_count = pool_count(&outcome->pool);
-    result->lines_tested = outcome->lines_tested;
+    result->lines_tested = outcome->search.improve_work;
     result->time_limited = selection->time_limited;
     result->area_bound = 1;
     if (bounds_area(problem->options))
         result->area_bound = (double)selection->weight_bound / (double)problem->weights.total;
+    if (problem->options->visibility.target == STARG_TARGET_FACES)
+        result->area_bound_everywhere =
+            (double)outcome->search.weight_bound / (double)problem->weights.total;
     result->lower_bound = selection->lower_bound;
     result->optimal = selection->chosen.count == selection->lower_bound;
     result->lower_bound_everywhere = outcome->search.bound;
     result->optimal_everywhere = selection->chosen.count == outcome->search.bound;
     result->cells = outcome->search.cells;
     result->witnesses = outcome->search.witnesses;
-    result->prove_work = outcome->search.work;
+    result->prove_work = outcome->search.prove_work;
+}
+
+/* Which faces were to be seen, unless all count alike. */
+static starg_status list_targets(const guard_problem *problem, starg_guards *result) {
+    starg_status status = STARG_OK;
+    const double *importance = problem->solid->importance;
+    bool alike = true;
+    for (size_t f = 0; importance != NULL && f < result->face_count; f++)
+        alike = alike && importance[f] == 1;
+    if (alike)
+        return STARG_OK;
+    STARG_NEW(problem->context, STAGE, result->targets, problem->weights.faces);
+    STARG_NEW(problem->context, STAGE, result->importance, problem->weights.faces);
+    for (size_t f = 0; f < result->face_count; f++)
+        if (importance[f] > 0) {
+            result->targets[result->target_count] = (uint32_t)f;
+            result->importance[result->target_count++] = importance[f];
+        }
+done:
+    return status;
+}
+
+static starg_status copy_scene(const guard_problem *problem, starg_guards *result) {
+    starg_status status = STARG_OK;
+    const starg_solid *scene = problem->solid;
+    starg_space_options_default(&result->space);
+    if (scene->scene)
+        result->space = scene->space;
+    if (scene->obstacle_count > 0)
+        STARG_NEW_ZERO(problem->context, STAGE, result->obstacles, scene->obstacle_count);
+    result->obstacle_count = scene->obstacle_count;
+    for (size_t i = 0; i < scene->obstacle_count; i++) {
+        result->obstacles[i].vertex_count = scene->obstacle_sizes[2 * i];
+        result->obstacles[i].face_count = scene->obstacle_sizes[2 * i + 1];
+    }
+    status = list_targets(problem, result);
+done:
+    return status;
 }
 
 starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
@@ -207,6 +252,7 @@ starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
     starg_time_rule former = starg_time_begin(problem->context, STARG_TIME_IGNORED);
     STARG_NEW_ZERO(problem->context, STAGE, result, 1);
     copy_facts(problem, outcome, result);
+    STARG_TRY(copy_scene(problem, result));
     STARG_TRY(copy_choice(problem, &outcome->pool, &outcome->selection, result));
     STARG_TRY(measure_guards(problem, &outcome->pool, result));
     result->level_list = outcome->records.data;

@@ -32,19 +32,15 @@ static const double *direction_of(const candidate_points *points, size_t index) 
     return points->directions.count > 0 ? points->directions.data + 3 * index : NULL;
 }
 
-/* Most directions of a point see nothing whole. */
-static bool is_wanted(const guard_pool *pool, const starg_bits *rows, size_t i) {
-    return pool->options->visibility.cone >= 360 || starg_bits_count(rows, i) > 0;
-}
-
-/* Moves the finished rows together and appends their points. */
-static starg_status keep_finished(guard_pool *pool, const candidate_points *points,
+/* Moves the finished rows together and appends their points, but for those that are empty unless
+ * these may be. */
+static starg_status keep_finished(guard_pool *pool, const candidate_points *points, bool empty,
                                   const uint8_t *finished, starg_bits *rows) {
     starg_status status = STARG_OK;
     size_t kept = 0;
     for (size_t i = 0; i < rows->rows; i++) {
         pool->time_limited = pool->time_limited || !finished[i];
-        if (!finished[i] || !is_wanted(pool, rows, i))
+        if (!finished[i] || (!empty && starg_bits_count(rows, i) == 0))
             continue;
         STARG_TRY(candidates_push(pool->context, &pool->points, points->data.data + 3 * i,
                                   direction_of(points, i)));
@@ -81,7 +77,7 @@ done:
 }
 
 /* The rows of points that have all they need. */
-static starg_status add_rows(guard_pool *pool, const candidate_points *points) {
+static starg_status add_rows(guard_pool *pool, const candidate_points *points, bool empty) {
     starg_status status = STARG_OK;
     starg_visibility_options view = pool->options->visibility;
     starg_bits *added = NULL;
@@ -91,7 +87,7 @@ static starg_status add_rows(guard_pool *pool, const candidate_points *points) {
     STARG_NEW_ZERO(pool->context, STAGE, finished, count);
     STARG_TRY(visibility_rows(pool->context, pool->solid, points->data.data, count, &view, finished,
                               &added));
-    STARG_TRY(keep_finished(pool, points, finished, added));
+    STARG_TRY(keep_finished(pool, points, empty, finished, added));
     starg_bits *rows = added;
     added = NULL;
     STARG_TRY(append_rows(pool, rows));
@@ -105,12 +101,25 @@ starg_status pool_add(guard_pool *pool, const candidate_points *points) {
     starg_status status = STARG_OK;
     candidate_points turned = {0};
     if (pool->options->visibility.cone >= 360 || points->directions.count > 0)
-        return add_rows(pool, points);
+        return add_rows(pool, points, true);
     STARG_TRY(candidates_turn(pool->context, points, pool->options->visibility.cone, &turned));
-    STARG_TRY(add_rows(pool, &turned));
+    STARG_TRY(add_rows(pool, &turned, false)); /* most directions of a point see nothing whole */
 done:
     candidates_free(pool->context, &turned);
     return status;
+}
+
+void pool_truncate(guard_pool *pool, size_t count) {
+    if (count >= pool_count(pool))
+        return;
+    pool->points.data.count = 3 * count;
+    if (pool->points.directions.count > 0)
+        pool->points.directions.count = 3 * count;
+    pool->rows->rows = count;
+    memset(pool->coverable, 0, pool->rows->words * sizeof *pool->coverable);
+    for (size_t i = 0; i < count; i++)
+        for (size_t w = 0; w < pool->rows->words; w++)
+            pool->coverable[w] |= starg_bits_row(pool->rows, i)[w];
 }
 
 starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out) {
@@ -152,6 +161,7 @@ static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
                         !starg_bit_test(pool->coverable, c[2]);
         else
             unseen[f] = !starg_bit_test(pool->coverable, f);
+        unseen[f] = unseen[f] && solid_is_target(pool->solid, false, f);
     }
 }
 

@@ -56,6 +56,9 @@ starg_status pool_augment(guard_pool *pool, const column_weights *weights);
 /* The weight of the columns that some candidate holds. */
 uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *weights);
 
+/* Forgets all candidates but the first `count`. */
+void pool_truncate(guard_pool *pool, size_t count);
+
 /* Joins the rows of a matrix: a bit set per column that one of them holds; starg_release frees it.
  * Errors: MEMORY. */
 starg_status pool_join_rows(starg_context *context, const starg_bits *rows, uint64_t **joined);

@@ -128,9 +128,9 @@ done:
 starg_status record_level(const guard_pool *pool, const guard_selection *selection,
                           guard_records *records) {
     starg_status status = STARG_OK;
-    const starg_mesh *mesh = pool->solid->mesh;
     size_t count = selection->chosen.count;
-    starg_guard_level record = {mesh->vertex_count, mesh->face_count, 0, NULL, 0};
+    starg_guard_level record = {starg_space_model_vertices(pool->solid),
+                                starg_space_model_faces(pool->solid), 0, NULL, 0};
     STARG_NEW(pool->context, STAGE, record.positions, 3 * count);
     for (int kept = 1; kept >= 0; kept--) {
         for (size_t i = 0; i < count; i++) {
@@ -155,7 +155,7 @@ static starg_status guard_level(const guard_problem *problem, const guard_pool *
     starg_status status = STARG_OK;
     starg_cover *added = NULL;
     level_work work = {.problem = problem, .pool = pool, .level = level};
-    STARG_TRY(column_weights_create(problem->context, pool->solid->mesh,
+    STARG_TRY(column_weights_create(problem->context, pool->solid,
                                     problem->options->visibility.target, &work.weights));
     STARG_TRY(keep_significant(&work, before));
     const choice how = {.method = STARG_COVER_ILP,

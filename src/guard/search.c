@@ -6,9 +6,9 @@
  * Tozoni, de Rezende, de Souza 2016].
  *
  * Witnesses are some of the faces: guards that see everything see these, so that a bound for them
- * is a bound. Cells (guard/cells.c) hold every point of the space, and each knows the witnesses
- * that it may see. Points are candidates, centres of cells and points at random. One loop improves
- * both ends:
+ * is a bound. Cells (guard/cells.h) hold every point of the space, and each knows the witnesses
+ * that it may see. Points are candidates, moved points, centres of cells and points at random. A
+ * first loop looks for guards only (guard/search_improve.c). A second one improves both ends:
  *   1. prices of the witnesses from the points that are known (guard/prices.c): no point is worth
  *      more than 1;
  *   2. where the prices leave room for fewer guards than there are, an integer program over the
@@ -22,26 +22,29 @@
  *      could do with fewer guards than there are, are split, with more points; where no cells
  *      could, branching proves it, each branch by prices of its own.
  *
+ * Where faces are to be seen by several guards, those that enough guards see are witnesses, and k
+ * guards hold at most k times what one of them does. Where guards look in one direction points do,
+ * and cells look in all of them: the bound holds for both.
+ *
  * Invariant: the bound holds for guards anywhere in the free space; the guards see all that was to
  * be seen. Everything is counted in operations, nothing depends on threads. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "guard/bound.h"
+#include "guard/certificate.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";
 
-enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2 };
+enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 20, MANY_NODES = 300 };
 
-static const double ROUNDING = 1e-6, GAP = 2e-3;
+static const double ROUNDING = 1e-6;
 
 /* ---- points ---- */
 
-/* Leaves out points of the search that see no more than another one does, from `first` on. Those of
- * the pool stay: they may be worth more with other witnesses. */
-static void prune_points(search *s, size_t first) {
+/* Those of the pool stay: they may be worth more with other witnesses. */
+void search_prune_points(search *s, size_t first) {
     search_point *points = s->points.data;
     size_t kept = first;
     for (size_t i = first; i < s->points.count; i++) {
@@ -61,9 +64,34 @@ static starg_status begin_points(search *s) {
     for (size_t i = 0; i < pool_count(s->pool); i++) {
         search_point point = {.candidate = (uint32_t)i};
         vec3_copy(pool_point(s->pool, i), point.place);
+        if (s->scene.view->cone < 360)
+            vec3_copy(pool_direction(s->pool, i), point.direction);
         STARG_PUSH(context_of(s), STAGE, &s->points, point);
     }
 done:
+    return status;
+}
+
+/* The medial axis, unless guards stand there already. None where the time does not last for it, or
+ * views are cones. */
+static starg_status begin_places(search *s, const guard_detail *detail) {
+    starg_status status = STARG_OK;
+    const guard_problem *p = s->problem;
+    const candidate_shape shape = guard_shape(p, detail);
+    candidate_points places = {0};
+    if (p->options->candidates == STARG_CANDIDATES_MEDIAL || s->scene.view->cone < 360)
+        return STARG_OK;
+    status = candidates_find(p->context, &shape, STARG_CANDIDATES_MEDIAL,
+                             p->options->candidate_count, &places);
+    if (status == STARG_ERROR_TIME)
+        status = STARG_OK;
+    for (size_t i = 0; status == STARG_OK && i < candidates_count(&places); i++) {
+        search_point point = {.candidate = UINT32_MAX};
+        vec3_copy(places.data.data + 3 * i, point.place);
+        STARG_PUSH(context_of(s), STAGE, &s->points, point);
+    }
+done:
+    candidates_free(p->context, &places);
     return status;
 }
 
@@ -85,7 +113,7 @@ static void list_worthy(const search *s, const double *price, double least, cons
             row_list_add(s, list, i);
 }
 
-static double largest_value(const search *s) {
+double search_largest_value(const search *s) {
     double most = 1;
     for (size_t i = 0; i < s->points.count; i++)
         most = fmax(most, row_value(&s->points.data[i].seen, s->prices.price));
@@ -95,7 +123,7 @@ static double largest_value(const search *s) {
 /* Prices by which no point is worth more than 1, of as large a sum as can be. The program is made
  * of the points that were worth much by the prices before; what it leaves out joins it where it
  * turns out to be worth more than 1. */
-static starg_status find_prices(search *s, row_list *list) {
+starg_status search_find_prices(search *s, row_list *list) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
     uint8_t *listed = NULL;
@@ -111,9 +139,9 @@ static starg_status find_prices(search *s, row_list *list) {
         prices_free(context, &s->prices);
         STARG_TRY(prices_find(context, list->rows, list->count, &all, &s->prices));
         s->scene.work += s->prices.work;
-        most = largest_value(s);
+        most = search_largest_value(s);
         least = 1 + 1e-9;
-        if (most < 1 + GAP)
+        if (most < 1 + SEARCH_GAP)
             break;
     }
     for (size_t j = 0; j < MOST_WITNESSES; j++)
@@ -126,15 +154,14 @@ done:
 
 /* ---- cells ---- */
 
-static int by_leaf_score(const void *a, const void *b) {
+int search_by_score(const void *a, const void *b) {
     const scored_leaf *x = a, *y = b;
     if (x->score != y->score)
         return x->score > y->score ? -1 : 1;
     return (x->cell > y->cell) - (x->cell < y->cell);
 }
 
-/* Leaves that may be worth more than `most`. */
-static starg_status list_leaves(const search *s, double most, scored_leaf **out, size_t *count) {
+starg_status search_list_leaves(const search *s, double most, scored_leaf **out, size_t *count) {
     starg_status status = STARG_OK;
     *count = 0;
     STARG_NEW(context_of(s), STAGE, *out, s->cells.count);
@@ -158,15 +185,29 @@ starg_status search_split(search *s, scored_leaf *list, size_t count, int tries)
     size_t first = s->points.count, chosen = 0, batch = count / 4;
     batch = batch < LEAST_BATCH ? LEAST_BATCH : batch > MOST_BATCH ? MOST_BATCH : batch;
     STARG_NEW(context_of(s), STAGE, leaves, batch);
-    qsort(list, count, sizeof *list, by_leaf_score);
+    qsort(list, count, sizeof *list, search_by_score);
     for (size_t i = 0; i < count && chosen < batch; i++)
         if (cell_splits(&s->cells.data[list[i].cell].box))
             leaves[chosen++] = list[i].cell;
     s->ended = chosen == 0;
     STARG_TRY(cells_split(&s->scene, &s->cells, leaves, chosen, tries, &s->points));
-    prune_points(s, first);
+    search_prune_points(s, first);
 done:
     starg_release(context_of(s), leaves);
+    return status;
+}
+
+starg_status search_bound_points(search *s) {
+    starg_status status = STARG_OK;
+    const witness_row **rows = NULL;
+    uint64_t whole[MOST_WITNESSES];
+    STARG_NEW(context_of(s), STAGE, rows, s->points.count);
+    for (size_t i = 0; i < s->points.count; i++)
+        rows[i] = &s->points.data[i].seen;
+    bound_round(s->prices.price, whole);
+    s->known = bound_of_prices(rows, s->points.count, whole, s->redundancy);
+done:
+    starg_release(context_of(s), rows);
     return status;
 }
 
@@ -181,7 +222,9 @@ static starg_status prove(search *s) {
         if (s->cells.data[i].children == 0)
             rows[count++] = &s->cells.data[i].open;
     bound_round(s->prices.price, whole);
-    size_t bound = bound_of_prices(rows, count, whole);
+    size_t bound = bound_of_prices(rows, count, whole, s->redundancy);
+    if (bound > s->bound)
+        certificate_note_prices(s->problem->certificate, bound, whole);
     s->bound = bound > s->bound ? bound : s->bound;
 done:
     starg_release(context_of(s), rows);
@@ -190,12 +233,16 @@ done:
 
 /* ---- the loop ---- */
 
+bool search_has_room(const search *s) {
+    return search_value(s) <= (double)s->count - 1 + SEARCH_GAP;
+}
+
 /* Better guards or more witnesses, where the prices leave room. */
 static starg_status look_for_guards(search *s, bool last, bool *changed) {
     *changed = false;
     bool grown = s->cells.count > s->asked_at + s->asked_at / (last ? 10 : 3) ||
                  (last && s->scene.witnesses.count > s->asked_of);
-    if (s->prices.sum > (double)s->count - 1 + GAP || !grown)
+    if (!search_has_room(s) || !grown)
         return STARG_OK;
     return search_ask_points(s, changed);
 }
@@ -204,23 +251,23 @@ static starg_status look_for_guards(search *s, bool last, bool *changed) {
  * way of a lower bound stand in that of a higher one too, so that no work is lost, and where the
  * work ends before the highest bound is proven, another one is. */
 static size_t next_aim(const search *s) {
-    double allowed = fmin((double)s->count, ceil(s->prices.sum - ROUNDING));
+    double allowed = fmin((double)s->count, ceil(search_value(s) - ROUNDING));
     size_t most = allowed > 1 ? (size_t)allowed : 1;
     return s->bound < most ? s->bound + (most - s->bound + 2) / 3 : most;
 }
 
-static starg_status run_round(search *s, row_list *list) {
+static starg_status prove_round(search *s, row_list *list) {
     starg_status status = STARG_OK;
     scored_leaf *leaves = NULL;
     size_t count;
     bool changed;
-    STARG_TRY(find_prices(s, list));
+    STARG_TRY(search_find_prices(s, list));
     STARG_TRY(look_for_guards(s, false, &changed));
     if (changed)
         goto done;
     size_t aim = next_aim(s), before = s->bound;
-    double most = aim > 1 ? s->prices.sum / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
-    STARG_TRY(list_leaves(s, most, &leaves, &count));
+    double most = aim > 1 ? search_value(s) / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
+    STARG_TRY(search_list_leaves(s, most, &leaves, &count));
     if (count > 0) {
         STARG_TRY(search_split(s, leaves, count, TRIES));
         goto done;
@@ -239,20 +286,42 @@ done:
     return status;
 }
 
-static starg_status run(search *s) {
+typedef starg_status round_run(search *s, row_list *list);
+
+static starg_status run_rounds(search *s, round_run *round, uint64_t work) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    uint64_t most = s->problem->options->prove_work;
-    while (s->bound < s->count && !s->ended && s->scene.work < most &&
+    uint64_t begun = s->scene.work;
+    s->budget = begun + work;
+    s->ended = false;
+    while (s->bound < s->count && !s->ended && s->scene.work < s->budget &&
            !starg_time_is_over(context)) {
         row_list list = {0};
-        starg_progress_step(context, s->scene.work, most);
+        starg_progress_step(context, s->scene.work - begun, work);
         STARG_TRY(starg_check_cancel(context, STAGE));
         status = row_list_make(context, 2 * s->points.count, &list);
         if (status == STARG_OK)
-            status = run_round(s, &list);
+            status = round(s, &list);
         row_list_free(context, &list);
         STARG_TRY(status);
+    }
+done:
+    return status;
+}
+
+static starg_status run(search *s, bool improves) {
+    starg_status status = STARG_OK;
+    const starg_guard_options *o = s->problem->options;
+    s->nodes = FEW_NODES;
+    if (improves) {
+        STARG_TRY(run_rounds(s, search_improve, search_improve_work(s)));
+        STARG_TRY(search_close(s));
+        s->improve_work = s->scene.work;
+    }
+    s->nodes = MANY_NODES;
+    if (o->prove) {
+        STARG_TRY(run_rounds(s, prove_round, o->prove_work));
+        STARG_TRY(search_bound_points(s));
     }
     if (s->bound < s->count)
         STARG_TRY(prove(s));
@@ -260,18 +329,33 @@ done:
     return status;
 }
 
-static starg_status begin(search *s, const guard_selection *selection) {
+/* How often each column is to be seen: as often as the guards see it, but no more than is asked. */
+static starg_status find_need(search *s, const guard_selection *selection) {
+    starg_status status = STARG_OK;
+    const starg_bits *rows = s->pool->rows;
+    STARG_NEW_ZERO(context_of(s), STAGE, s->need, 64 * rows->words);
+    for (size_t i = 0; i < selection->chosen.count; i++)
+        for (size_t w = 0; w < rows->words; w++)
+            STARG_FOR_BITS (bit, starg_bits_row(rows, selection->chosen.data[i])[w])
+                s->need[64 * w + bit] += s->need[64 * w + bit] < s->redundancy;
+done:
+    return status;
+}
+
+static starg_status begin(search *s, const guard_detail *detail, const guard_selection *selection) {
     starg_status status = STARG_OK;
     const guard_problem *p = s->problem;
     s->count = selection->chosen.count;
     s->bound = s->count > 0;
+    s->redundancy = p->options->redundancy;
+    s->first_count = pool_count(s->pool);
     STARG_TRY(search_scene_open(p->context, p->solid, &p->options->visibility,
                                 p->options->clearance, &s->scene));
-    STARG_NEW_ZERO(p->context, STAGE, s->wanted, starg_bit_words(s->pool->columns));
-    for (size_t i = 0; i < s->count; i++)
-        for (size_t w = 0; w < s->pool->rows->words; w++)
-            s->wanted[w] |= starg_bits_row(s->pool->rows, selection->chosen.data[i])[w];
+    s->scene.bars = p->certificate == NULL;
+    STARG_TRY(find_need(s, selection));
+    STARG_TRY(search_count_views(s));
     STARG_TRY(begin_points(s));
+    STARG_TRY(begin_places(s, detail));
     STARG_TRY(cells_begin(&s->scene, &s->cells));
     STARG_TRY(search_first_witnesses(s));
 done:
@@ -284,49 +368,130 @@ static void end(search *s) {
     STARG_ARRAY_FREE(context, &s->cells);
     STARG_ARRAY_FREE(context, &s->points);
     STARG_ARRAY_FREE(context, &s->guards);
-    starg_release(context, s->wanted);
+    starg_release(context, s->need);
+    starg_release(context, s->views);
+    starg_release(context, s->viewers);
     search_scene_close(&s->scene);
 }
 
-/* The pool with the new guards in it, and the choice among all of it. */
-static starg_status join_guards(search *s, guard_pool *pool, guard_selection *selection) {
+/* Adds 1 for each column of a row. */
+static void count_columns(const starg_bits *rows, size_t row, uint32_t *counts) {
+    for (size_t w = 0; w < rows->words; w++)
+        STARG_FOR_BITS (bit, starg_bits_row(rows, row)[w])
+            counts[64 * w + bit]++;
+}
+
+/* The guards that were found, the one that adds most first. */
+static starg_status order_guards(const search *s, starg_cover **out) {
+    starg_status status = STARG_OK;
+    starg_cover_problem problem;
+    starg_cover_options options;
+    starg_bits *rows = NULL;
+    const starg_bits *all = s->pool->rows;
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    STARG_TRY(starg_bits_create(context_of(s), s->count, all->columns, &rows));
+    for (size_t i = 0; i < s->count; i++)
+        memcpy(starg_bits_row_mutable(rows, i), starg_bits_row(all, s->guards.data[i]),
+               all->words * sizeof *all->data);
+    problem.rows = rows;
+    problem.redundancy = (uint32_t)s->redundancy;
+    options.method = STARG_COVER_GREEDY;
+    STARG_TRY(starg_cover_solve(context_of(s), &problem, &options, out));
+    for (size_t i = 0; i < (*out)->count; i++)
+        (*out)->rows[i] = s->guards.data[(*out)->rows[i]];
+done:
+    starg_bits_free(rows);
+    return status;
+}
+
+/* Are the rows still enough? Candidates that were added may see what none did before, or what too
+ * few did for the redundancy. */
+static starg_status check_enough(const search *s, const uint32_t *chosen, size_t count,
+                                 bool *enough) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    candidate_points found = {0};
+    const starg_bits *rows = s->pool->rows;
+    uint32_t *supply = NULL, *held = NULL;
+    STARG_NEW_ZERO(context, STAGE, supply, 64 * rows->words);
+    STARG_NEW_ZERO(context, STAGE, held, 64 * rows->words);
+    for (size_t i = 0; i < rows->rows; i++)
+        count_columns(rows, i, supply);
+    for (size_t i = 0; i < count; i++)
+        count_columns(rows, chosen[i], held);
+    *enough = true;
+    for (size_t j = 0; j < rows->columns; j++)
+        *enough = *enough && (held[j] >= s->redundancy || held[j] == supply[j]);
+done:
+    starg_release(context, supply);
+    starg_release(context, held);
+    return status;
+}
+
+/* What was found takes the place of the choice, with its bound. Where candidates were added that
+ * see what none did before, all of them are asked again. */
+static starg_status choose_again(search *s, guard_selection *selection) {
+    starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
     starg_cover *cover = NULL;
     guard_selection next = {0};
+    bool enough = false;
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
-    for (size_t i = 0; i < s->count; i++)
-        STARG_TRY(candidates_push(context, &found, s->guards.data + 3 * i, NULL));
-    STARG_TRY(pool_add(pool, &found));
-    STARG_TRY(choose_candidates(pool, &s->problem->weights, &how, &cover));
-    STARG_TRY(selection_of_cover(context, cover, selection, selection->level, &next));
-    selection_free(context, selection);
-    *selection = next;
-    next = (guard_selection){0};
+    const uint32_t *best = s->better ? s->guards.data : selection->chosen.data;
+    STARG_TRY(check_enough(s, best, s->count, &enough));
+    if (!enough)
+        STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
+    else if (s->better)
+        STARG_TRY(order_guards(s, &cover));
+    size_t cover_bound = cover != NULL ? cover->lower_bound : 0;
+    if (cover != NULL) {
+        STARG_TRY(selection_of_cover(context, cover, selection, selection->level, &next));
+        selection_free(context, selection);
+        *selection = next;
+        next = (guard_selection){0};
+    }
+    if (!enough || pool_count(s->pool) > s->first_count)
+        selection->lower_bound = 0; /* it was that of fewer candidates */
+    size_t bound = enough ? s->known : cover_bound;
+    bound = bound > s->bound ? bound : s->bound;
+    if (bound > selection->lower_bound)
+        selection->lower_bound = bound;
 done:
     selection_free(context, &next);
-    candidates_free(context, &found);
     starg_cover_free(cover);
     return status;
 }
 
-starg_status search_guards(const guard_problem *problem, guard_pool *pool,
-                           guard_selection *selection, search_record *out) {
+starg_status search_guards(const guard_problem *problem, const guard_detail *detail, bool improves,
+                           guard_pool *pool, guard_selection *selection, search_record *out) {
     starg_status status = STARG_OK;
     search s = {.problem = problem, .pool = pool};
+    bool keeps = problem->options->candidates == STARG_CANDIDATES_GIVEN;
+    if (!improves && !problem->options->prove)
+        return STARG_OK;
     starg_progress_begin(problem->context, STAGE);
-    out->bound = selection->chosen.count > 0;
+    out->bound = problem->options->prove && selection->chosen.count > 0;
     if (starg_time_is_over(problem->context))
         goto done;
-    STARG_TRY(begin(&s, selection));
-    STARG_TRY(run(&s));
+    STARG_TRY(begin(&s, detail, selection));
+    STARG_TRY(run(&s, improves));
     selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
-    if (s.better)
-        STARG_TRY(join_guards(&s, pool, selection));
-    *out = (search_record){s.bound, s.cells.count, s.scene.witnesses.count, s.scene.work};
-    if (selection->lower_bound < s.bound)
-        selection->lower_bound = s.bound;
+    if (problem->certificate != NULL && problem->certificate->proof.bound > 1)
+        STARG_TRY(certificate_of_search(&s.scene, &s.cells, problem->certificate));
+    if (keeps) {
+        pool_truncate(pool, s.first_count);
+        selection->lower_bound =
+            s.bound > selection->lower_bound ? s.bound : selection->lower_bound;
+    } else
+        STARG_TRY(choose_again(&s, selection));
+    if (!problem->options->prove && s.bound < 2)
+        s.bound = 0; /* that is no news */
+    *out = (search_record){s.bound,
+                           s.cells.count,
+                           s.scene.witnesses.count,
+                           s.improve_work,
+                           s.scene.work - s.improve_work,
+                           0};
 done:
     end(&s);
     starg_progress_end(problem->context);

@@ -7,20 +7,38 @@
 #include "guard/prices.h"
 #include "guard/stages.h"
 
+/* By how much points may be worth more than 1 after all. */
+#define SEARCH_GAP 2e-3
+
 typedef struct search {
     const guard_problem *problem;
-    const guard_pool *pool;
+    guard_pool *pool; /* takes in the points that were held against all columns */
     search_scene scene;
     search_cells cells;
     search_points points;
     witness_prices prices;
-    uint64_t *wanted;           /* bits by column: what is to be seen */
-    STARG_ARRAY(double) guards; /* the best ones, three numbers each */
-    size_t count, bound;        /* guards, and how few could do */
-    size_t asked_at, asked_of;  /* cells and witnesses when the integer program was last asked */
-    bool better;                /* there are other guards than at first */
+    size_t redundancy;         /* how many guards are to see a witness                           */
+    uint16_t *need;            /* by column: how often it is to be seen                          */
+    uint32_t *views;           /* by column: how many of the first candidates see it             */
+    uint64_t *viewers;         /* by column: a number for the set of them                        */
+    size_t count, bound;       /* guards, and how few could do */
+    size_t asked_at, asked_of; /* cells and witnesses when the integer program was last asked */
+    uint64_t budget;           /* of the work that the scene counts */
+    size_t nodes;              /* that an integer program may take */
+    uint64_t improve_work;     /* what looking for better guards has taken */
+    uint64_t moves;            /* calls of search_move */
+    STARG_ARRAY(uint32_t) guards; /* the best ones: candidates of the pool */
+    size_t first_count;           /* candidates of the pool at the beginning */
+    size_t known;                 /* no fewer of the known points do */
+    int idle;                     /* rounds that looked for guards and found nothing */
+    bool better;                  /* there are other guards than at first */
     bool ended;
 } search;
+
+/* How many points could see all witnesses often enough, by the prices. */
+static inline double search_value(const search *s) {
+    return (double)s->redundancy * s->prices.sum;
+}
 
 static inline starg_context *context_of(const search *s) {
     return s->problem->context;
@@ -65,17 +83,59 @@ static inline witness_row all_witnesses(const search *s) {
     return row;
 }
 
-/* The faces that carry most of the price of the candidates' program become witnesses. Errors:
- * MEMORY, CANCELLED. */
+/* Do the prices leave room for fewer guards than there are? */
+bool search_has_room(const search *s);
+
+/* Sets `known`: no fewer of the known points see all witnesses often enough, by the prices. Errors:
+ * MEMORY. */
+starg_status search_bound_points(search *s);
+
+/* A round of looking for better guards, what rounds may cost together, and the end of them
+ * (guard/search_improve.c). Errors: MEMORY, CANCELLED. */
+starg_status search_improve(search *s, row_list *list);
+uint64_t search_improve_work(const search *s);
+starg_status search_close(search *s);
+
+/* Leaves out points of the search that see no more than another one does, from `first` on. */
+void search_prune_points(search *s, size_t first);
+
+/* What the most valuable point is worth, or 1. */
+double search_largest_value(const search *s);
+
+/* Prices by which no point is worth more than 1, of as large a sum as can be; the points of their
+ * program, which are some of all, are in the list. Errors: MEMORY. */
+starg_status search_find_prices(search *s, row_list *list);
+
+/* The faces that the fewest candidates see become witnesses. Errors: MEMORY, CANCELLED. */
 starg_status search_first_witnesses(search *s);
+
+/* How many of the first candidates see each column, and which: `views` and `viewers`. Errors:
+ * MEMORY. */
+starg_status search_count_views(search *s);
 
 /* So do faces that the fractional cover by the points of the list does not see often enough.
  * *changed: there are some. Errors: MEMORY, CANCELLED. */
 starg_status search_add_short(search *s, const row_list *list, bool *changed);
 
-/* Points that see all witnesses: better guards, or faces that they miss become witnesses. *changed:
- * either. Errors: MEMORY, CANCELLED. */
-starg_status search_try_guards(search *s, const double *places, size_t count, bool *changed);
+/* Points of the search that see all witnesses often enough: better guards, or faces that they miss
+ * become witnesses. *changed: either. Errors: MEMORY, CANCELLED. */
+starg_status search_try_guards(search *s, const uint32_t *points, size_t count, bool *changed);
+
+/* Points of the search become candidates: all that they see is known from then on. Errors: MEMORY,
+ * CANCELLED. */
+starg_status search_hold(search *s, const uint32_t *points, size_t count);
+
+/* The linear program over all columns and the candidates, which the points of the fractional cover
+ * join: the columns that it pays for become witnesses, and what covers all of them guards.
+ * *changed: either. Errors: MEMORY, CANCELLED. */
+starg_status search_ask_pool(search *s, const row_list *list, bool *changed);
+
+/* What was chosen among all of the pool as guards, if it is fewer. Errors: MEMORY. */
+starg_status search_take_cover(search *s, const starg_cover *cover);
+
+/* Points that are worth more than known ones join them (guard/search_moves.c). *most: what the best
+ * is worth, 0 where there is none. Errors: MEMORY, CANCELLED. */
+starg_status search_move(search *s, double *most);
 
 /* A leaf that is to be split, the highest score first. */
 typedef struct scored_leaf {
@@ -86,6 +146,13 @@ typedef struct scored_leaf {
 /* Sorts the leaves and splits those at the front that can be, a quarter of them or so, with so many
  * points a part. Errors: MEMORY, CANCELLED. */
 starg_status search_split(search *s, scored_leaf *list, size_t count, int tries);
+
+/* By falling score, then by number. */
+int search_by_score(const void *a, const void *b);
+
+/* Leaves that may be worth more than `most`, in an array that starg_release frees. Errors: MEMORY.
+ */
+starg_status search_list_leaves(const search *s, double most, scored_leaf **out, size_t *count);
 
 /* The integer program over the points: do fewer guards see all witnesses? *changed: there are
  * better guards, or more witnesses. Errors: MEMORY, CANCELLED. */

@@ -10,13 +10,15 @@
 #include <stdlib.h>
 
 #include "geometry/vec3.h"
-#include "guard/bound.h"
+#include "guard/certificate.h"
 #include "guard/search_parts.h"
 #include "starguard/cover.h"
 
 static const char STAGE[] = "search";
 
-enum { NODES = 300, FOLLOWED = 16 };
+enum { BRANCHES = 300, FOLLOWED = 16 };
+
+static const double ROUNDING = 1e-6;
 
 static starg_status make_program(const search *s, const row_list *list, starg_bits **out) {
     starg_status status =
@@ -27,11 +29,33 @@ static starg_status make_program(const search *s, const row_list *list, starg_bi
     return status;
 }
 
-static void list_needed(const search *s, row_list *list) {
+/* Points that are worth at least `least` and see what no other one of them does. */
+static void list_needed(const search *s, double least, row_list *list) {
     list->count = 0;
-    for (size_t i = 0; i < s->points.count; i++)
-        if (!is_needless(list, &s->points.data[i].seen))
+    for (size_t i = 0; i < s->points.count; i++) {
+        const witness_row *seen = &s->points.data[i].seen;
+        if (row_value(seen, s->prices.price) >= least && !is_needless(list, seen))
             row_list_add(s, list, i);
+    }
+}
+
+/* Points that may be among fewer guards than there are: together these are worth as much as all
+ * witnesses, and none of the others is worth more than the most valuable point. */
+static void list_useful(const search *s, row_list *list) {
+    double most = search_largest_value(s);
+    list_needed(s, search_value(s) - ((double)s->count - 2) * most - ROUNDING, list);
+}
+
+/* Solves a program of rows: how few see all witnesses often enough? */
+static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) {
+    starg_cover_problem problem;
+    starg_cover_options options;
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    problem.rows = rows;
+    problem.redundancy = (uint32_t)s->redundancy;
+    options.max_nodes = s->nodes;
+    return starg_cover_solve(context_of(s), &problem, &options, out);
 }
 
 /* The integer program over the points: do fewer guards see all witnesses? *changed: there are
@@ -41,32 +65,24 @@ starg_status search_ask_points(search *s, bool *changed) {
     starg_context *context = context_of(s);
     starg_bits *rows = NULL;
     starg_cover *cover = NULL;
-    starg_cover_problem problem;
-    starg_cover_options options;
-    STARG_ARRAY(double) places = {0};
     row_list list = {0};
     *changed = false;
     STARG_TRY(row_list_make(context, s->points.count, &list));
-    list_needed(s, &list);
+    list_useful(s, &list);
     STARG_TRY(make_program(s, &list, &rows));
-    starg_cover_problem_default(&problem);
-    starg_cover_options_default(&options);
-    problem.rows = rows;
-    options.max_nodes = NODES;
-    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    STARG_TRY(solve(s, rows, &cover));
     s->scene.work += list.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
     s->asked_at = s->cells.count;
     s->asked_of = s->scene.witnesses.count;
+    size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;
+    s->known = bound > s->known ? bound : s->known;
     if (cover->count < s->count) {
         for (size_t k = 0; k < cover->count; k++)
-            for (int c = 0; c < 3; c++)
-                STARG_PUSH(context, STAGE, &places,
-                           s->points.data[list.points[cover->rows[k]]].place[c]);
-        STARG_TRY(search_try_guards(s, places.data, cover->count, changed));
+            cover->rows[k] = list.points[cover->rows[k]];
+        STARG_TRY(search_try_guards(s, cover->rows, cover->count, changed));
     }
 done:
     row_list_free(context, &list);
-    STARG_ARRAY_FREE(context, &places);
     starg_cover_free(cover);
     starg_bits_free(rows);
     return status;
@@ -86,7 +102,7 @@ static starg_status list_columns(const search *s, column_list *out) {
     size_t most = s->points.count + s->cells.count, hint = 0;
     STARG_TRY(row_list_make(context_of(s), most, &out->rows));
     STARG_NEW(context_of(s), STAGE, out->cells, most);
-    list_needed(s, &out->rows);
+    list_needed(s, 0, &out->rows);
     for (size_t k = 0; k < out->rows.count; k++)
         out->cells[k] = UINT32_MAX;
     for (size_t i = 0; i < s->cells.count; i++) {
@@ -138,24 +154,20 @@ done:
 
 /* Fewer columns than there are guards hold all witnesses: their leaves are split, or all of them
  * are points, which are tried. */
-static starg_status follow_cover(search *s, const column_list *columns, const starg_cover *cover,
+static starg_status follow_cover(search *s, const column_list *columns, starg_cover *cover,
                                  bool *changed, bool *again) {
     starg_status status = STARG_OK;
     scored_leaf *leaves = NULL;
     size_t count;
-    STARG_ARRAY(double) places = {0};
     STARG_TRY(list_stand_ins(s, columns, cover, &leaves, &count));
     *changed = *again = count > 0;
     for (size_t c = 0; c < cover->count && count == 0; c++)
-        for (int k = 0; k < 3; k++)
-            STARG_PUSH(context_of(s), STAGE, &places,
-                       s->points.data[columns->rows.points[cover->rows[c]]].place[k]);
+        cover->rows[c] = columns->rows.points[cover->rows[c]];
     if (count > 0)
         STARG_TRY(search_split(s, leaves, count, MOST_TRIES));
     else
-        STARG_TRY(search_try_guards(s, places.data, cover->count, changed));
+        STARG_TRY(search_try_guards(s, cover->rows, cover->count, changed));
 done:
-    STARG_ARRAY_FREE(context_of(s), &places);
     starg_release(context_of(s), leaves);
     return status;
 }
@@ -168,27 +180,27 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     column_list columns = {0};
     starg_bits *rows = NULL;
     starg_cover *cover = NULL;
-    starg_cover_problem problem;
-    starg_cover_options options;
     bool proven = false;
+    branch_record branches = {0};
     const witness_row all = all_witnesses(s);
     *again = false;
     STARG_TRY(list_columns(s, &columns));
     STARG_TRY(make_program(s, &columns.rows, &rows));
-    starg_cover_problem_default(&problem);
-    starg_cover_options_default(&options);
-    problem.rows = rows;
-    options.max_nodes = NODES;
-    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    STARG_TRY(solve(s, rows, &cover));
     s->scene.work += columns.rows.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
     if (cover->count < s->count)
         STARG_TRY(follow_cover(s, &columns, cover, changed, again));
-    else
-        STARG_TRY(bound_by_branching(context, columns.rows.rows, columns.rows.count, &all,
-                                     s->count - 1, NODES, &proven, &s->scene.work));
-    if (proven)
+    else if (s->redundancy == 1)
+        STARG_TRY(bound_by_branching(
+            context, columns.rows.rows, columns.rows.count, &all, s->count - 1, BRANCHES, &proven,
+            s->problem->certificate != NULL ? &branches : NULL, &s->scene.work));
+    if (proven) {
         s->bound = s->count;
+        STARG_TRY(certificate_note_rows(context, s->problem->certificate, s->bound,
+                                        columns.rows.rows, columns.rows.count, &branches));
+    }
 done:
+    branch_record_free(context, &branches);
     row_list_free(context, &columns.rows);
     starg_release(context, columns.cells);
     starg_cover_free(cover);

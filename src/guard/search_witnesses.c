@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Witnesses of a search: which faces stand for all of them.
  *
- * Those that pay most in the candidates' program are the first. Later ones are faces that guards
- * which see all witnesses do not see, those first that the fewest candidates see, or that a
- * fractional cover sees too little. Of faces that the same candidates see one is enough. All points
- * and cells look at what is new.
+ * The first are faces that the fewest candidates see, and those that a fractional cover by
+ * candidates sees too little. Later ones are faces that guards which see all witnesses do not see
+ * (often enough), or that a fractional cover by all points sees too little. Of faces that the same
+ * candidates see one is enough. All points and cells look at what is new.
  *
- * Invariant: all witnesses are among the faces that the guards at the beginning saw. */
+ * Invariant: all witnesses are among the faces that the guards at the beginning saw as often as is
+ * asked for. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,37 +16,48 @@
 
 static const char STAGE[] = "search";
 
-enum { FIRST_WITNESSES = 150, MORE_WITNESSES = 20 };
+enum { FIRST_WITNESSES = 30, FIRST_ROUNDS = 8, MORE_WITNESSES = 10, MOST_CONSIDERED = 2000 };
+
+/* Of a fractional cover: what is left out of it, and what is enough for a column. */
+static const double LEAST_SHARE = 0.003, ENOUGH = 0.95;
 
 /* ---- witnesses ---- */
 
 typedef struct scored_column {
     double score;
-    uint64_t viewers; /* a number for the set of candidates that see it */
-    uint32_t column;
+    uint32_t views, column;
 } scored_column;
 
 static int by_score(const void *a, const void *b) {
     const scored_column *x = a, *y = b;
     if (x->score != y->score)
         return x->score < y->score ? -1 : 1;
+    if (x->views != y->views)
+        return x->views < y->views ? -1 : 1;
     return (x->column > y->column) - (x->column < y->column);
 }
 
-/* The sum of a random number for each candidate that sees the column. */
-static void number_viewers(const search *s, uint64_t *viewers) {
+starg_status search_count_views(search *s) {
+    starg_status status = STARG_OK;
     const starg_bits *rows = s->pool->rows;
+    STARG_NEW_ZERO(context_of(s), STAGE, s->views, 64 * rows->words);
+    STARG_NEW_ZERO(context_of(s), STAGE, s->viewers, 64 * rows->words);
     for (size_t i = 0; i < rows->rows; i++) {
         uint64_t number = starg_hash64(i + 1);
         for (size_t w = 0; w < rows->words; w++)
-            STARG_FOR_BITS (bit, starg_bits_row(rows, i)[w])
-                viewers[64 * w + bit] += number;
+            STARG_FOR_BITS (bit, starg_bits_row(rows, i)[w]) {
+                s->views[64 * w + bit]++;
+                s->viewers[64 * w + bit] += number;
+            }
     }
+done:
+    return status;
 }
 
-static bool is_alike(const scored_column *list, size_t count, const scored_column *one) {
+static bool is_alike(const search *s, const scored_column *list, size_t count,
+                     const scored_column *one) {
     for (size_t i = 0; i < count; i++)
-        if (list[i].viewers == one->viewers)
+        if (s->viewers[list[i].column] == s->viewers[one->column])
             return true;
     return false;
 }
@@ -57,15 +69,45 @@ static bool is_witness(const search *s, uint32_t column) {
     return false;
 }
 
+/* Marks the candidates that see a column; false: one of them is marked already. */
+static bool mark_viewers(const search *s, uint32_t column, uint8_t *marked) {
+    const starg_bits *rows = s->pool->rows;
+    for (size_t i = 0; i < rows->rows; i++)
+        if (marked[i] && starg_bits_test(rows, i, column))
+            return false;
+    for (size_t i = 0; i < rows->rows; i++)
+        if (starg_bits_test(rows, i, column))
+            marked[i] = 1;
+    return true;
+}
+
 /* Moves at most `most` columns to the front: the least scores first, no two of which the same
- * candidates see. */
-static size_t choose_columns(const search *s, scored_column *list, size_t count, size_t most) {
-    size_t kept = 0;
+ * candidates see. In each pass no candidate sees two of those that are chosen, so that they come
+ * from all over the solid, and a guard is needed for each. */
+static starg_status choose_columns(const search *s, scored_column *list, size_t count, size_t most,
+                                   size_t *kept) {
+    starg_status status = STARG_OK;
+    uint8_t *marked = NULL;
+    size_t rows = s->pool->rows->rows, before = SIZE_MAX, open = 0;
+    STARG_NEW(context_of(s), STAGE, marked, rows);
     qsort(list, count, sizeof *list, by_score);
-    for (size_t i = 0; i < count && kept < most; i++)
-        if (!is_alike(list, kept, &list[i]) && !is_witness(s, list[i].column))
-            list[kept++] = list[i];
-    return kept;
+    for (size_t i = 0; i < count && open < MOST_CONSIDERED; i++)
+        if (!is_alike(s, list, open, &list[i]) && !is_witness(s, list[i].column))
+            list[open++] = list[i];
+    *kept = 0;
+    while (*kept < most && *kept != before) {
+        before = *kept;
+        memset(marked, 0, rows);
+        for (size_t i = before; i < open && *kept < most; i++)
+            if (mark_viewers(s, list[i].column, marked)) {
+                scored_column chosen = list[i];
+                memmove(&list[*kept + 1], &list[*kept], (i - *kept) * sizeof *list);
+                list[(*kept)++] = chosen;
+            }
+    }
+done:
+    starg_release(context_of(s), marked);
+    return status;
 }
 
 static starg_status look_at_new(search *s, size_t first) {
@@ -89,17 +131,14 @@ static starg_status add_witnesses(search *s, const double *scores, double limit,
     starg_context *context = context_of(s);
     size_t columns = s->pool->columns, count = 0, first = s->scene.witnesses.count;
     scored_column *list = NULL;
-    uint64_t *viewers = NULL;
     *added = 0;
     STARG_NEW(context, STAGE, list, columns);
-    STARG_NEW_ZERO(context, STAGE, viewers, 64 * starg_bit_words(columns));
-    number_viewers(s, viewers);
     for (size_t j = 0; j < columns; j++)
-        if (starg_bit_test(s->wanted, j) && scores[j] < limit)
-            list[count++] = (scored_column){scores[j], viewers[j], (uint32_t)j};
+        if (s->need[j] == s->redundancy && scores[j] < limit)
+            list[count++] = (scored_column){scores[j], s->views[j], (uint32_t)j};
     if (most > MOST_WITNESSES - first)
         most = MOST_WITNESSES - first;
-    count = choose_columns(s, list, count, most);
+    STARG_TRY(choose_columns(s, list, count, most, &count));
     for (size_t i = 0; i < count; i++)
         STARG_PUSH(context, STAGE, &s->scene.witnesses, list[i].column);
     *added = count;
@@ -107,124 +146,197 @@ static starg_status add_witnesses(search *s, const double *scores, double limit,
         STARG_TRY(look_at_new(s, first));
 done:
     starg_release(context, list);
-    starg_release(context, viewers);
     return status;
 }
 
-/* The faces that carry most of the price of the candidates' program. */
+/* The rarest faces, and then those that the fractional cover by candidates does not see enough. */
 starg_status search_first_witnesses(search *s) {
     starg_status status = STARG_OK;
-    starg_context *context = context_of(s);
-    starg_cover *cover = NULL;
     double *scores = NULL;
+    row_list list = {0};
     size_t added;
-    const choice how = {.method = STARG_COVER_LP, .prices = true};
-    STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
-    STARG_NEW(context, STAGE, scores, s->pool->columns);
+    bool changed = true;
+    STARG_NEW(context_of(s), STAGE, scores, s->pool->columns);
     for (size_t j = 0; j < s->pool->columns; j++)
-        scores[j] = -cover->prices[j];
-    STARG_TRY(add_witnesses(s, scores, -1e-6, FIRST_WITNESSES, &added));
-done:
-    starg_cover_free(cover);
-    starg_release(context, scores);
-    return status;
-}
-
-/* ---- guards ---- */
-
-static starg_status see_all(const search *s, const double *places, size_t count, starg_bits **out) {
-    starg_visibility_options view = s->problem->options->visibility;
-    starg_time_rule former = starg_time_begin(context_of(s), STARG_TIME_IGNORED);
-    view.engine = STARG_VISIBILITY_FASTEST;
-    starg_status status =
-        starg_visibility(context_of(s), s->problem->solid, places, count, &view, out);
-    starg_time_end(context_of(s), former);
-    return status;
-}
-
-/* How many candidates see each column that is wanted and that no row holds; INFINITY for others. */
-static starg_status score_missing(const search *s, const starg_bits *rows, double *scores,
-                                  bool *any) {
-    starg_status status = STARG_OK;
-    uint64_t *joined = NULL;
-    STARG_TRY(pool_join_rows(context_of(s), rows, &joined));
-    *any = false;
-    for (size_t j = 0; j < s->pool->columns; j++) {
-        bool missing = starg_bit_test(s->wanted, j) && !starg_bit_test(joined, j);
-        scores[j] = missing ? 0 : INFINITY;
-        *any = *any || missing;
+        scores[j] = s->views[j];
+    STARG_TRY(add_witnesses(s, scores, INFINITY, FIRST_WITNESSES + s->count, &added));
+    for (int k = 0; k < FIRST_ROUNDS && changed; k++) {
+        row_list_free(context_of(s), &list);
+        list = (row_list){0};
+        STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
+        STARG_TRY(search_find_prices(s, &list));
+        STARG_TRY(search_add_short(s, &list, &changed));
     }
-    for (size_t i = 0; *any && i < s->pool->rows->rows; i++)
-        for (size_t w = 0; w < s->pool->rows->words; w++)
-            STARG_FOR_BITS (bit, starg_bits_row(s->pool->rows, i)[w] & ~joined[w])
-                scores[64 * w + bit] += 1;
 done:
-    starg_release(context_of(s), joined);
+    row_list_free(context_of(s), &list);
+    starg_release(context_of(s), scores);
     return status;
 }
 
-static starg_status take_guards(search *s, const double *places, size_t count) {
+/* ---- all columns ---- */
+
+starg_status search_hold(search *s, const uint32_t *points, size_t count) {
     starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
+    candidate_points found = {0};
+    starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
+    uint32_t next = (uint32_t)pool_count(s->pool);
+    for (size_t i = 0; i < count; i++) {
+        search_point *point = &s->points.data[points[i]];
+        if (point->candidate != UINT32_MAX)
+            continue;
+        STARG_TRY(candidates_push(context, &found, point->place,
+                                  s->scene.view->cone < 360 ? point->direction : NULL));
+        point->candidate = next++;
+    }
+    s->scene.work += candidates_count(&found) * s->pool->columns / 20;
+    if (found.data.count > 0)
+        STARG_TRY(pool_add(s->pool, &found));
+done:
+    starg_time_end(context, former);
+    candidates_free(context, &found);
+    return status;
+}
+
+/* Adds a share for each column that the point sees. */
+static void add_share(const search *s, uint32_t point, double share, double *sums) {
+    const starg_bits *rows = s->pool->rows;
+    const uint64_t *row = starg_bits_row(rows, s->points.data[point].candidate);
+    for (size_t w = 0; w < rows->words; w++)
+        STARG_FOR_BITS (bit, row[w])
+            sums[64 * w + bit] += share;
+}
+
+/* Takes out of `missing` what the candidate sees that sees most of it; false: none sees any. */
+static bool see_most(const search *s, uint64_t *missing, uint32_t *candidate) {
+    const starg_bits *rows = s->pool->rows;
+    size_t most = 0;
+    for (size_t i = 0; i < rows->rows; i++) {
+        size_t seen = 0;
+        for (size_t w = 0; w < rows->words; w++)
+            seen += (size_t)__builtin_popcountll(starg_bits_row(rows, i)[w] & missing[w]);
+        if (seen > most) {
+            most = seen;
+            *candidate = (uint32_t)i;
+        }
+    }
+    for (size_t w = 0; w < rows->words && most > 0; w++)
+        missing[w] &= ~starg_bits_row(rows, *candidate)[w];
+    return most > 0;
+}
+
+/* Takes the points as guards, with candidates that see what they miss, if that is fewer than there
+ * are. `seen`: by column, how many of the points see it. */
+static starg_status take_guards(search *s, const uint32_t *points, size_t count, const double *seen,
+                                bool *complete) {
+    starg_status status = STARG_OK;
+    STARG_ARRAY(uint32_t) guards = {0};
+    uint64_t *missing = NULL;
+    size_t lacking = 0;
+    STARG_NEW_ZERO(context_of(s), STAGE, missing, s->pool->rows->words);
+    for (size_t i = 0; i < count; i++)
+        STARG_PUSH(context_of(s), STAGE, &guards, s->points.data[points[i]].candidate);
+    for (size_t j = 0; j < s->pool->columns; j++)
+        if (seen[j] < s->need[j]) {
+            starg_bit_set(missing, j);
+            lacking++;
+        }
+    *complete = lacking == 0;
+    uint32_t next = 0;
+    while (lacking > 0 && s->redundancy == 1 && guards.count + 1 < s->count &&
+           see_most(s, missing, &next)) {
+        STARG_PUSH(context_of(s), STAGE, &guards, next);
+        lacking = starg_bit_count(missing, s->pool->rows->words);
+    }
+    if (lacking > 0 || guards.count >= s->count)
+        goto done;
     s->guards.count = 0;
-    for (size_t k = 0; k < 3 * count; k++)
-        STARG_PUSH(context_of(s), STAGE, &s->guards, places[k]);
-    s->count = count;
+    for (size_t i = 0; i < guards.count; i++)
+        STARG_PUSH(context_of(s), STAGE, &s->guards, guards.data[i]);
+    s->count = guards.count;
+    s->better = true;
+done:
+    STARG_ARRAY_FREE(context_of(s), &guards);
+    starg_release(context_of(s), missing);
+    return status;
+}
+
+starg_status search_try_guards(search *s, const uint32_t *points, size_t count, bool *changed) {
+    starg_status status = STARG_OK;
+    double *seen = NULL;
+    bool complete = false;
+    size_t added = 0;
+    STARG_TRY(search_hold(s, points, count));
+    STARG_NEW_ZERO(context_of(s), STAGE, seen, 64 * s->pool->rows->words);
+    for (size_t i = 0; i < count; i++)
+        add_share(s, points[i], 1, seen);
+    STARG_TRY(take_guards(s, points, count, seen, &complete));
+    if (!complete)
+        STARG_TRY(
+            add_witnesses(s, seen, (double)s->redundancy, MORE_WITNESSES + s->count / 2, &added));
+    *changed = complete || added > 0;
+done:
+    starg_release(context_of(s), seen);
+    return status;
+}
+
+starg_status search_take_cover(search *s, const starg_cover *cover) {
+    starg_status status = STARG_OK;
+    if (cover->count >= s->count)
+        return STARG_OK;
+    s->guards.count = 0;
+    for (size_t i = 0; i < cover->count; i++)
+        STARG_PUSH(context_of(s), STAGE, &s->guards, cover->rows[i]);
+    s->count = cover->count;
     s->better = true;
 done:
     return status;
 }
 
-/* Points that see all witnesses: better guards, or witnesses to come. */
-starg_status search_try_guards(search *s, const double *places, size_t count, bool *changed) {
+starg_status search_ask_pool(search *s, const row_list *list, bool *changed) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    starg_bits *rows = NULL;
-    double *scores = NULL;
-    bool missing;
-    size_t added = 0;
-    STARG_TRY(see_all(s, places, count, &rows));
-    s->scene.work += count * s->pool->columns / 4;
-    STARG_NEW(context, STAGE, scores, 64 * rows->words);
-    STARG_TRY(score_missing(s, rows, scores, &missing));
-    if (!missing)
-        STARG_TRY(take_guards(s, places, count));
-    else
-        STARG_TRY(add_witnesses(s, scores, INFINITY, MORE_WITNESSES, &added));
-    *changed = !missing || added > 0;
+    starg_cover *cover = NULL;
+    uint32_t *held = NULL;
+    size_t count = 0, before = s->count, added;
+    const choice how = {.method = STARG_COVER_LP, .prices = true};
+    STARG_NEW(context, STAGE, held, list->count);
+    for (size_t i = 0; i < list->count; i++)
+        if (s->prices.share[i] >= LEAST_SHARE)
+            held[count++] = list->points[i];
+    STARG_TRY(search_hold(s, held, count));
+    STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
+    STARG_TRY(search_take_cover(s, cover));
+    for (size_t j = 0; j < s->pool->columns; j++)
+        cover->prices[j] = -cover->prices[j];
+    STARG_TRY(add_witnesses(s, cover->prices, -LEAST_SHARE, MORE_WITNESSES + s->count, &added));
+    s->scene.work += pool_count(s->pool) * s->pool->columns / 100;
+    *changed = added > 0 || s->count < before;
 done:
-    starg_bits_free(rows);
-    starg_release(context, scores);
+    starg_release(context, held);
+    starg_cover_free(cover);
     return status;
 }
 
-/* Columns that the fractional cover does not see often enough become witnesses. */
 starg_status search_add_short(search *s, const row_list *list, bool *changed) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
-    STARG_ARRAY(double) places = {0}, shares = {0};
-    starg_bits *rows = NULL;
-    double *scores = NULL;
-    size_t added;
-    for (size_t i = 0; i < list->count; i++) {
-        if (s->prices.share[i] < 0.003)
-            continue;
-        for (int k = 0; k < 3; k++)
-            STARG_PUSH(context, STAGE, &places, s->points.data[list->points[i]].place[k]);
-        STARG_PUSH(context, STAGE, &shares, s->prices.share[i]);
-    }
-    STARG_TRY(see_all(s, places.data, shares.count, &rows));
-    s->scene.work += shares.count * s->pool->columns / 4;
-    STARG_NEW_ZERO(context, STAGE, scores, 64 * rows->words);
-    for (size_t i = 0; i < shares.count; i++)
-        for (size_t w = 0; w < rows->words; w++)
-            STARG_FOR_BITS (bit, starg_bits_row(rows, i)[w])
-                scores[64 * w + bit] += shares.data[i];
-    STARG_TRY(add_witnesses(s, scores, 0.95, MORE_WITNESSES, &added));
+    uint32_t *held = NULL;
+    double *sums = NULL;
+    size_t added, count = 0;
+    STARG_NEW(context, STAGE, held, list->count);
+    for (size_t i = 0; i < list->count; i++)
+        if (s->prices.share[i] >= LEAST_SHARE)
+            held[count++] = list->points[i];
+    STARG_TRY(search_hold(s, held, count));
+    STARG_NEW_ZERO(context, STAGE, sums, 64 * s->pool->rows->words);
+    for (size_t i = 0; i < list->count; i++)
+        if (s->prices.share[i] >= LEAST_SHARE)
+            add_share(s, list->points[i], s->prices.share[i], sums);
+    STARG_TRY(add_witnesses(s, sums, ENOUGH, MORE_WITNESSES + s->count / 2, &added));
     *changed = added > 0;
 done:
-    STARG_ARRAY_FREE(context, &places);
-    STARG_ARRAY_FREE(context, &shares);
-    starg_bits_free(rows);
-    starg_release(context, scores);
+    starg_release(context, held);
+    starg_release(context, sums);
     return status;
 }

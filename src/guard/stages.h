@@ -13,6 +13,8 @@ typedef struct guard_problem {
     const starg_solid *solid;
     const starg_guard_options *options;
     column_weights weights;
+    struct guard_certificate
+        *certificate; /* to be made of the bound for all points; NULL: not wanted */
 } guard_problem;
 
 /* Simpler versions of the solid. */
@@ -39,7 +41,8 @@ typedef STARG_ARRAY(starg_guard_level) guard_records;
 typedef struct search_record {
     size_t bound; /* no fewer guards do, wherever they stand; 0: not sought */
     size_t cells, witnesses;
-    uint64_t work;
+    uint64_t improve_work, prove_work;
+    uint64_t weight_bound; /* no max_guards guards see more, wherever they stand; 0: not sought */
 } search_record;
 
 /* What guards are reported from. */
@@ -47,7 +50,6 @@ typedef struct guard_outcome {
     guard_pool pool;
     guard_selection selection;
     guard_records records; /* of the levels */
-    uint64_t lines_tested;
     search_record search;
 } guard_outcome;
 
@@ -82,17 +84,17 @@ starg_status progressive_guards(const guard_problem *problem, const guard_detail
 starg_status bound_guards(const guard_problem *problem, const guard_pool *pool,
                           const guard_selection *first, guard_selection *out);
 
-/* Adds candidates where they pay, to the pool that it is given, and chooses again
- * (guard/refine.c). Errors: MEMORY, CANCELLED. */
-starg_status refine_guards(const guard_problem *problem, const guard_detail *detail,
-                           const guard_selection *first, guard_pool *pool, guard_selection *out,
-                           uint64_t *lines_tested);
-
 /* The search over every point of the solid: replaces the choice by fewer guards where it finds
- * them, which see all that the former ones saw, and adds them to the pool (guard/search.c). Errors:
- * MEMORY, CANCELLED. */
-starg_status search_guards(const guard_problem *problem, guard_pool *pool,
-                           guard_selection *selection, search_record *out);
+ * them, which see all that the former ones saw, and adds points to the pool (guard/search.c). It
+ * only `improves` the guards, or goes on to prove a bound where that is asked for, or both; given
+ * candidates stay, and so do the guards that are chosen of them. Errors: MEMORY, CANCELLED. */
+starg_status search_guards(const guard_problem *problem, const guard_detail *detail, bool improves,
+                           guard_pool *pool, guard_selection *selection, search_record *out);
+
+/* Where a part is enough: a bound for guards anywhere (guard/search_area.c). Raises that of the
+ * choice to it. Errors: MEMORY, CANCELLED. */
+starg_status search_area(const guard_problem *problem, const guard_pool *pool,
+                         guard_selection *selection, search_record *out);
 
 /* The result: what the chosen guards see, counted anew (guard/measure.c). Takes the records over.
  * Errors: MEMORY, CANCELLED. */

@@ -20,9 +20,10 @@ static int find_exponent(const starg_mesh *mesh) {
 
 /* Of the model made as large as 1 by a power of two: shares are the same, and areas of tiny or huge
  * models are numbers. */
-static starg_status measure_areas(starg_context *context, const starg_mesh *mesh,
+static starg_status measure_areas(starg_context *context, const starg_solid *solid,
                                   column_weights *out) {
     starg_status status = STARG_OK;
+    const starg_mesh *mesh = solid->mesh;
     int exponent = find_exponent(mesh);
     STARG_NEW(context, STAGE, out->areas, mesh->face_count);
     for (size_t f = 0; f < mesh->face_count; f++) {
@@ -31,21 +32,29 @@ static starg_status measure_areas(starg_context *context, const starg_mesh *mesh
             corner[k / 3][k % 3] =
                 ldexp(mesh->vertices[3 * (size_t)mesh->faces[3 * f + k / 3] + k % 3], -exponent);
         out->areas[f] = vec3_triangle_area(corner[0], corner[1], corner[2]);
+        if (solid->importance != NULL)
+            out->areas[f] *= solid->importance[f];
+        out->faces += solid_is_target(solid, false, f);
         out->area += out->areas[f];
     }
 done:
     return status;
 }
 
-starg_status column_weights_create(starg_context *context, const starg_mesh *mesh,
+starg_status column_weights_create(starg_context *context, const starg_solid *solid,
                                    starg_target target, column_weights *out) {
     starg_status status = STARG_OK;
+    const starg_mesh *mesh = solid->mesh;
     bool vertices = target == STARG_TARGET_VERTICES;
     size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
     *out = (column_weights){0};
-    STARG_TRY(measure_areas(context, mesh, out));
+    STARG_TRY(measure_areas(context, solid, out));
     STARG_NEW(context, STAGE, out->weights, columns);
     for (size_t j = 0; j < columns; j++) {
+        if (!solid_is_target(solid, vertices, j)) {
+            out->weights[j] = 0;
+            continue;
+        }
         double share = vertices || !(out->area > 0) ? 0 : out->areas[j] / out->area;
         uint64_t weight = (uint64_t)llround(share * 0x1p40);
         out->weights[j] = weight > 0 ? weight : 1;

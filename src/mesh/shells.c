@@ -28,15 +28,18 @@ static bool count_crossing(void *user, uint32_t triangle) {
     return true;
 }
 
-static size_t nesting_depth(line_query *query, const double *p, uint32_t own) {
+/* In how many other shells p lies, and their winding number about it. */
+static size_t nesting_depth(line_query *query, const double *p, uint32_t own, int *around) {
     bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
     size_t depth = 0;
+    *around = 0;
     query->p = p;
     query->touched_count = 0;
     bvh_query_box(query->tree, &line, count_crossing, query);
     for (size_t i = 0; i < query->touched_count; i++) {
         uint32_t touched = query->touched[i];
         depth += touched != own && query->winding[touched] != 0;
+        *around += touched != own ? query->winding[touched] : 0;
         query->winding[touched] = 0;
     }
     return depth;
@@ -65,7 +68,7 @@ starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
         mesh_shell *own = &shells[c];
         const double *p = mesh->vertices + 3 * (size_t)mesh->faces[3 * (size_t)own->first_face];
         if (!own->crossed)
-            own->cavity = nesting_depth(&query, p, (uint32_t)c) % 2 == 1;
+            own->cavity = nesting_depth(&query, p, (uint32_t)c, &own->around) % 2 == 1;
         own->turn = own->cavity ? own->volume > 0 : own->volume < 0;
     }
 done:

@@ -13,13 +13,14 @@
 typedef struct mesh_shell {
     uint32_t first_face;
     double volume; /* signed, as given, times 8^-starg_mesh_exponent */
+    int around;    /* winding number of the other shells about it, as given */
     bool crossed;  /* intersects other shells; set by the caller */
     bool cavity;   /* bounds a hole: it lies in an odd number of other shells */
     bool turn;     /* faces must be reversed */
 } mesh_shell;
 
-/* Fills volume, cavity and turn of topology->component_count shells of a closed, oriented mesh.
- * Shells nest: one inside an even number of others bounds the solid from outside (positive
+/* Fills volume, around, cavity and turn of topology->component_count shells of a closed, oriented
+ * mesh. Shells nest: one inside an even number of others bounds the solid from outside (positive
  * volume), one inside an odd number bounds a cavity (negative). Where shells intersect nesting
  * has no meaning; those all get positive volume. Errors: MEMORY. */
 starg_status shells_classify(starg_context *context, const starg_mesh *mesh,

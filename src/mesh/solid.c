@@ -117,7 +117,8 @@ void solid_tell(starg_context *context, const char *whose, const starg_check *ch
                   flat == 1 ? "it" : "them");
 }
 
-starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
+static starg_status make(starg_context *context, const starg_mesh *mesh, bool turns,
+                         starg_solid **out) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     mesh_examination all = {0};
@@ -134,7 +135,8 @@ starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_so
         status = fail_unusable(context, all.check);
         goto done;
     }
-    turn_shells(solid->mesh, all.topology, all.shells);
+    if (turns)
+        turn_shells(solid->mesh, all.topology, all.shells);
     solid->check = all.check;
     solid->tree = all.tree;
     all.check = NULL;
@@ -145,6 +147,15 @@ done:
     if (status != STARG_OK)
         starg_solid_free(solid);
     return status;
+}
+
+starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
+    return make(context, mesh, true, out);
+}
+
+starg_status solid_make_as_given(starg_context *context, const starg_mesh *mesh,
+                                 starg_solid **out) {
+    return make(context, mesh, false, out);
 }
 
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out) {
@@ -189,6 +200,12 @@ void starg_solid_free(starg_solid *solid) {
     starg_mesh_free(solid->mesh);
     starg_check_free(context, solid->check);
     bvh_free(solid->tree);
+    starg_release(context, solid->obstacle_sizes);
+    starg_release(context, solid->importance);
+    starg_release(context, solid->targets[0]);
+    starg_release(context, solid->targets[1]);
+    bvh_free(solid->model_tree);
+    starg_mesh_free(solid->model);
     starg_release(context, solid);
 }
 
@@ -203,7 +220,7 @@ const starg_check *starg_solid_check(const starg_solid *solid) {
 bool starg_solid_contains(const starg_solid *solid, const double p[3]) {
     bool on_surface;
     int winding = bvh_winding(solid->tree, p, &on_surface);
-    return winding > 0 && !on_surface;
+    return winding + solid->ambient > 0 && !on_surface;
 }
 
 double starg_solid_distance(const starg_solid *solid, const double p[3]) {

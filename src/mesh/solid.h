@@ -3,17 +3,52 @@
 #ifndef STARG_MESH_SOLID_H
 #define STARG_MESH_SOLID_H
 
+#include "core/bits.h"
 #include "core/private.h"
 #include "geometry/bvh.h"
 #include "mesh/mesh.h"
 #include "starguard/solid.h"
+#include "starguard/space.h"
 
+/* Free is where the winding number of the mesh plus `ambient` is at least 1. */
 struct starg_solid {
     starg_context *context;
-    starg_mesh *mesh; /* every shell faces out of the solid */
-    starg_check *check;
+    starg_mesh *mesh;   /* every shell faces out of the free space */
+    starg_check *check; /* `embedded` promises that no face has free space on its outer side */
     bvh *tree;
+
+    /* Scenes (mesh/space.c); all zero in a plain solid. */
+    bool scene;
+    int ambient;
+    size_t model_vertices, model_faces; /* those of obstacles follow */
+    size_t obstacle_count;
+    size_t *obstacle_sizes; /* vertices and faces of each, as given */
+    size_t sheet_faces;   /* the last so many: triangles of open obstacles, each twice, front and
+                             back one after the other */
+    double *importance;   /* by face; NULL: 1 each */
+    uint64_t *targets[2]; /* bits of the faces, and of the vertices, to be seen; NULL: all */
+    starg_space_options space;
+    starg_mesh *model; /* what distances are from, and its tree; NULL: `mesh` */
+    bvh *model_tree;
 };
+
+/* Is a face, or a vertex, to be seen? */
+static inline bool solid_is_target(const starg_solid *solid, bool vertices, size_t index) {
+    return solid->targets[vertices] == NULL || starg_bit_test(solid->targets[vertices], index);
+}
+
+/* Clears the bits of a row, by face or by vertex, that are no targets. */
+void solid_mask_row(const starg_solid *solid, bool vertices, uint64_t *row);
+
+/* A box that holds all places where guards may stand. */
+void solid_reach(const starg_solid *solid, bvh_box *out);
+
+/* A box that holds them and the mesh. */
+void solid_extent(const starg_solid *solid, bvh_box *out);
+
+/* The halfedge on the other side of one, by the topology of the mesh: that of the triangle's other
+ * copy for open obstacles, where more than two faces may meet. */
+uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t halfedge);
 
 /* Logs what is wrong with the surface of a solid. It names faces of the mesh that was given: for
  * the user's own, which `whose` may introduce ("A: "). */
@@ -24,6 +59,8 @@ void solid_tell(starg_context *context, const char *whose, const starg_check *ch
  * limit does not end it. */
 starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out)
     STARG_PRIVATE(solid_make);
+/* Without turning shells. */
+starg_status solid_make_as_given(starg_context *context, const starg_mesh *mesh, starg_solid **out);
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out)
     STARG_PRIVATE(solid_make_in_time);
 

@@ -2,12 +2,14 @@
 /* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
 #include <math.h>
 
+#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
+#include "star/touching.h"
 #include "star/united.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
@@ -171,12 +173,40 @@ done:
     return status;
 }
 
-/* Nothing but the surface is needed where it bounds the solid as it is. */
-static bool is_embedded(const starg_solid *solid) {
-    const starg_finding *found = solid->check->findings;
-    return found[STARG_FINDING_SELF_INTERSECTION].count == 0 &&
-           found[STARG_FINDING_SELF_CONTACT].count == 0 &&
-           found[STARG_FINDING_DEGENERATE_FACE].count == 0;
+/* Nothing but the surface is needed where that bounds the solid as it is; else *out stays NULL. */
+static starg_status decompose_surface(starg_context *context, const starg_solid *solid,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    uint32_t *faces = NULL;
+    STARG_TRY(touching_weld(context, solid, &faces));
+    if (faces == NULL)
+        goto done;
+    const kernel_faces surface = {solid->mesh->vertices, faces, solid->mesh->face_count};
+    STARG_TRY(strict_decompose_surface(context, &surface, options, out));
+    if (*out != NULL)
+        (*out)->flattest_given = -1;
+done:
+    starg_release(context, faces);
+    return status;
+}
+
+/* A surface that intersects itself is cut where it does; *out stays NULL where that cannot be. */
+static starg_status decompose_union(starg_context *context, const starg_solid *solid,
+                                    const starg_decompose_options *options,
+                                    starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_solid *united = NULL;
+    double rounding;
+    STARG_TRY(united_make(context, solid, &united, &rounding));
+    if (united == NULL)
+        goto done;
+    STARG_TRY(decompose_surface(context, united, options, out));
+    if (*out != NULL)
+        STARG_TRY(united_report(context, solid, united, rounding, *out));
+done:
+    starg_solid_free(united);
+    return status;
 }
 
 static starg_status decompose_model(starg_context *context, const starg_solid *solid,
@@ -190,13 +220,11 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
         options = &defaults;
     *out = NULL;
     STARG_TRY(check_options(context, options));
-    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && is_embedded(solid))
-        STARG_TRY(strict_decompose_surface(context, solid->mesh, options, out));
-    else if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
-        STARG_TRY(united_decompose(context, solid, options, out));
-    if (*out != NULL)
-        (*out)->flattest_given = -1;
-    else
+    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
+        STARG_TRY(decompose_surface(context, solid, options, out));
+    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && *out == NULL)
+        STARG_TRY(decompose_union(context, solid, options, out));
+    if (*out == NULL)
         STARG_TRY(decompose_filled(context, solid, surface, options, out));
     const starg_mesh *model = solid != NULL ? solid->mesh : surface;
     (*out)->model_vertices = model->vertex_count;
@@ -204,6 +232,10 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     (*out)->model_tetrahedra = 0;
     (*out)->flattest = tetmesh_flattest((*out)->mesh);
 done:
+    if (status != STARG_OK) {
+        starg_decomposition_free(context, *out);
+        *out = NULL;
+    }
     return status;
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A surface that intersects itself is replaced by the boundary of what it encloses (mesh/union),
- * from which the strict decomposition starts. The pieces then have that boundary: faces of the
+ * from which strict pieces are made. The pieces then have that boundary: faces of the
  * model that meet no others, exactly, parts of the others up to the rounding of new vertices, and
  * nothing of what lies inside. How far that is from the boundary is measured at points some
  * thousandth of the diagonal apart. */
@@ -11,9 +11,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
-#include "mesh/examine.h"
 #include "mesh/mesh.h"
-#include "star/strict/strict.h"
 #include "starguard/repair.h"
 #include "tetra/generate.h"
 
@@ -92,9 +90,8 @@ done:
     return status;
 }
 
-static starg_status report_union(starg_context *context, const starg_solid *solid,
-                                 const starg_solid *united, double rounding,
-                                 starg_decomposition *out) {
+starg_status united_report(starg_context *context, const starg_solid *solid,
+                           const starg_solid *united, double rounding, starg_decomposition *out) {
     starg_status status = STARG_OK;
     starg_mesh lost = {0};
     double step = STEP * solid->check->diagonal, farthest = 0;
@@ -118,15 +115,14 @@ static bool is_refusal(starg_status status) {
            status == STARG_ERROR_SOLVER;
 }
 
-static starg_status make_union(starg_context *context, const starg_solid *solid, double *rounding,
-                               starg_solid **out) {
+static starg_status make(starg_context *context, const starg_solid *solid, double *rounding,
+                         starg_solid **out) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     starg_repair_options options;
     starg_repair_report report;
     starg_repair_options_default(&options);
     options.unite = true;
-    *out = NULL;
     STARG_TRY(starg_mesh_repair(context, solid->mesh, &options, &mesh, &report));
     *rounding = report.rounding + report.largest_move;
     STARG_TRY(solid_make(context, mesh, out));
@@ -135,46 +131,18 @@ done:
     return status;
 }
 
-/* Faces of the boundary that touch share their vertices there: a partition wants no contacts. */
-static starg_status weld(starg_context *context, const starg_mesh *mesh, starg_mesh **out) {
-    starg_status status = STARG_OK;
-    uint32_t *first = NULL;
-    size_t count;
-    STARG_TRY(mesh_find_coincident(context, mesh, &first, &count));
-    STARG_TRY(starg_mesh_create(context, mesh->vertices, mesh->vertex_count, mesh->faces,
-                                mesh->face_count, out));
-    for (size_t i = 0; i < 3 * mesh->face_count; i++)
-        (*out)->faces[i] = first[mesh->faces[i]];
-done:
-    starg_release(context, first);
-    return status;
-}
-
-starg_status united_decompose(starg_context *context, const starg_solid *solid,
-                              const starg_decompose_options *options, starg_decomposition **out) {
-    starg_status status = STARG_OK;
-    starg_solid *united = NULL;
-    starg_mesh *welded = NULL;
-    double rounding;
+starg_status united_make(starg_context *context, const starg_solid *solid, starg_solid **out,
+                         double *rounding) {
+    const starg_finding *found = solid->check->findings;
     *out = NULL;
-    status = make_union(context, solid, &rounding, &united);
-    if (is_refusal(status)) {
-        starg_log(context, STARG_LOG_NOTICE, "the surface cannot be cut where it intersects: %s",
-                  starg_context_error(context)->message);
-        status = STARG_OK;
-        goto done;
-    }
-    STARG_TRY(status);
-    STARG_TRY(weld(context, united->mesh, &welded));
-    STARG_TRY(strict_decompose_surface(context, welded, options, out));
-    if (*out != NULL)
-        STARG_TRY(report_union(context, solid, united, rounding, *out));
-done:
-    starg_solid_free(united);
-    starg_mesh_free(welded);
-    if (status != STARG_OK) {
-        starg_decomposition_free(context, *out);
-        *out = NULL;
-    }
-    return status;
+    if (found[STARG_FINDING_SELF_INTERSECTION].count == 0 &&
+        found[STARG_FINDING_SELF_CONTACT].count == 0 &&
+        found[STARG_FINDING_DEGENERATE_FACE].count == 0)
+        return STARG_OK;
+    starg_status status = make(context, solid, rounding, out);
+    if (!is_refusal(status))
+        return status;
+    starg_log(context, STARG_LOG_NOTICE, "the surface cannot be cut where it intersects: %s",
+              starg_context_error(context)->message);
+    return STARG_OK;
 }

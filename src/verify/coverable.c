@@ -136,7 +136,7 @@ static bool in_cone(const prover *own, double height) {
 static bool is_inside(const prover *own, const double p[3]) {
     bool on_surface;
     int winding = verify_tree_winding(own->known->tree, p, &on_surface);
-    return !on_surface && winding >= 1;
+    return !on_surface && winding + own->known->surface->ambient >= 1;
 }
 
 /* Could a guard somewhere above the face see it? */

@@ -15,21 +15,26 @@ typedef struct verify_facts {
     int scale;
     bool *inside;         /* each guard                                             */
     double *distance;     /* from each guard to the surface; only with a clearance  */
+    double *standoff;     /* from each guard to the model; where that matters       */
     starg_bits *faces;    /* a row for each guard: the faces that it sees           */
     starg_bits *vertices; /* likewise; only where vertices are the target           */
     uint8_t *vertex;      /* 1: some guard sees the vertex; likewise                */
     uint8_t *face;        /* 1: some guard sees the face                            */
-    uint8_t *used;        /* vertices that faces name                               */
+    uint8_t *wanted;      /* 1: the face is to be seen; others have the area 0 and count as seen */
+    uint8_t *used;        /* vertices that such faces name                          */
     double *area;         /* of each face, in scaled units                          */
     verify_tree *tree;    /* of the surface                                         */
 
-    size_t covered_faces, used_vertices, covered_vertices;
+    size_t wanted_faces, covered_faces, used_vertices, covered_vertices;
     double covered_area, total_area;
 } verify_facts;
 
 static inline bool verify_targets_vertices(const verify_facts *known) {
     return known->guards->options.visibility.target == STARG_TARGET_VERTICES;
 }
+
+/* May guards stand in a part of the free space only? */
+bool verify_space_is_narrow(const starg_space_options *space);
 
 /* What must be seen: faces, or vertices. */
 static inline const starg_bits *verify_rows(const verify_facts *known) {

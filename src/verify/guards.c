@@ -13,13 +13,21 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "verify/claims.h"
-#include "verify/facts.h"
+#include "verify/everywhere.h"
 #include "verify/measure.h"
 #include "verify/sight.h"
+#include "verify/space.h"
 
 static const char STAGE[] = "verify";
 
 static const double TOLERANCE = 1e-9; /* relative; for lengths, areas and fractions */
+
+bool verify_space_is_narrow(const starg_space_options *o) {
+    bool narrow = o->standoff_least > 0 || o->standoff_most < 1e100;
+    for (int k = 0; k < 6; k++)
+        narrow = narrow || o->within[k] != 0;
+    return narrow;
+}
 
 /* ---- facts ---- */
 
@@ -41,10 +49,11 @@ static void free_sight(starg_context *context, void *scratch) {
     verify_sight_free(scratch);
 }
 
-static void note_row(starg_bits *rows, size_t row, const uint8_t *seen) {
+/* Notes those that are wanted; NULL: all. */
+static void note_row(starg_bits *rows, size_t row, const uint8_t *seen, const uint8_t *wanted) {
     uint64_t *bits = starg_bits_row_mutable(rows, row);
     for (size_t j = 0; j < rows->columns; j++)
-        if (seen[j])
+        if (seen[j] && (wanted == NULL || wanted[j]))
             starg_bit_set(bits, j);
 }
 
@@ -68,10 +77,12 @@ static starg_status examine_guard(starg_context *context, void *shared, void *sc
     if (!is_finite_point(p))
         return STARG_OK;
     if (options->clearance > 0)
-        known->distance[g] = verify_distance(surface, p, known->scale);
+        known->distance[g] = verify_distance(surface, p, surface->face_count, known->scale);
+    if (verify_space_is_narrow(&known->guards->space))
+        known->standoff[g] = verify_distance(surface, p, surface->model_faces, known->scale);
     bool on_surface;
     int winding = verify_winding(surface, NULL, surface->face_count, p, &on_surface);
-    known->inside[g] = !on_surface && winding >= 1;
+    known->inside[g] = !on_surface && winding + surface->ambient >= 1;
     if (!known->inside[g])
         return STARG_OK;
 
@@ -82,9 +93,9 @@ static starg_status examine_guard(starg_context *context, void *shared, void *sc
     starg_status status = verify_look(scratch, p, &view, &vertices, &faces);
     if (status != STARG_OK)
         return status;
-    note_row(known->faces, g, faces);
+    note_row(known->faces, g, faces, known->wanted);
     if (known->vertices != NULL)
-        note_row(known->vertices, g, vertices);
+        note_row(known->vertices, g, vertices, known->used);
     return STARG_OK;
 }
 
@@ -111,22 +122,35 @@ done:
 
 static void sum_up(verify_facts *known) {
     const verify_surface *surface = known->surface;
-    for (size_t i = 0; i < 3 * surface->face_count; i++)
-        known->used[surface->faces[i]] = 1;
     unite(known->faces, known->face);
     if (known->vertices != NULL)
         unite(known->vertices, known->vertex);
     for (size_t v = 0; v < surface->vertex_count; v++) {
         known->used_vertices += known->used[v];
         known->covered_vertices += known->vertex[v];
+        known->vertex[v] = known->vertex[v] || !known->used[v];
     }
     for (size_t f = 0; f < surface->face_count; f++) {
         known->area[f] = verify_area(surface, f, known->scale);
+        if (surface->importance != NULL)
+            known->area[f] *= surface->importance[f];
         known->total_area += known->area[f];
-        if (!known->face[f])
-            continue;
-        known->covered_faces++;
-        known->covered_area += known->area[f];
+        if (known->face[f]) {
+            known->covered_faces++;
+            known->covered_area += known->area[f];
+        }
+        known->face[f] = known->face[f] || !known->wanted[f];
+    }
+}
+
+/* What is to be seen: faces, and the vertices that these name. */
+static void mark_wanted(verify_facts *known) {
+    const verify_surface *surface = known->surface;
+    for (size_t f = 0; f < surface->face_count; f++) {
+        known->wanted[f] = verify_is_target(surface, f);
+        known->wanted_faces += known->wanted[f];
+        for (size_t k = 0; known->wanted[f] && k < 3; k++)
+            known->used[surface->faces[3 * f + k]] = 1;
     }
 }
 
@@ -136,6 +160,7 @@ static starg_status find_facts(starg_context *context, verify_facts *known) {
     known->scale = verify_scale(known->surface);
     STARG_NEW_ZERO(context, STAGE, known->inside, guards);
     STARG_NEW_ZERO(context, STAGE, known->distance, guards);
+    STARG_NEW_ZERO(context, STAGE, known->standoff, guards);
     STARG_TRY(starg_bits_create(context, guards, known->surface->face_count, &known->faces));
     if (verify_targets_vertices(known))
         STARG_TRY(
@@ -143,7 +168,9 @@ static starg_status find_facts(starg_context *context, verify_facts *known) {
     STARG_NEW_ZERO(context, STAGE, known->vertex, known->surface->vertex_count);
     STARG_NEW_ZERO(context, STAGE, known->used, known->surface->vertex_count);
     STARG_NEW_ZERO(context, STAGE, known->face, known->surface->face_count);
+    STARG_NEW_ZERO(context, STAGE, known->wanted, known->surface->face_count);
     STARG_NEW(context, STAGE, known->area, known->surface->face_count);
+    mark_wanted(known);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = guards,
                                       .shared = known,
@@ -160,11 +187,13 @@ done:
 static void free_facts(starg_context *context, verify_facts *known) {
     starg_release(context, known->inside);
     starg_release(context, known->distance);
+    starg_release(context, known->standoff);
     starg_bits_free(known->faces);
     starg_bits_free(known->vertices);
     starg_release(context, known->vertex);
     starg_release(context, known->used);
     starg_release(context, known->face);
+    starg_release(context, known->wanted);
     starg_release(context, known->area);
     verify_tree_free(known->tree);
 }
@@ -174,11 +203,12 @@ static void free_facts(starg_context *context, verify_facts *known) {
 static void claim_model(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const verify_surface *surface = known->surface;
-    verify_claim(
-        verdict,
-        guards->vertex_count == surface->vertex_count && guards->face_count == surface->face_count,
-        "the model has %zu vertices and %zu faces (the mesh: %zu and %zu)", guards->vertex_count,
-        guards->face_count, surface->vertex_count, surface->face_count);
+    verify_claim(verdict,
+                 guards->vertex_count == surface->model_vertices &&
+                     guards->face_count == surface->model_faces,
+                 "the model has %zu vertices and %zu faces (the mesh: %zu and %zu)",
+                 guards->vertex_count, guards->face_count, surface->model_vertices,
+                 surface->model_faces);
 }
 
 static void claim_options(starg_verdict *verdict, const starg_guard_options *options,
@@ -231,6 +261,39 @@ static void claim_clearance(starg_verdict *verdict, const verify_facts *known) {
                      "guards keep a clearance of %.17g: %zu do not, first guard %zu at a distance "
                      "of %.17g",
                      wanted, bad, first, known->distance[first]);
+}
+
+static bool stands_within(const verify_facts *known, size_t g) {
+    const starg_space_options *o = &known->guards->space;
+    const double *p = known->guards->positions + 3 * g;
+    double distance = known->standoff[g];
+    bool in = distance >= o->standoff_least * (1 - TOLERANCE) &&
+              distance <= o->standoff_most * (1 + TOLERANCE);
+    bool boxed = false;
+    for (int k = 0; k < 6; k++)
+        boxed = boxed || o->within[k] != 0;
+    for (int k = 0; boxed && k < 3; k++)
+        in = in && p[k] >= o->within[k] && p[k] <= o->within[k + 3];
+    return in;
+}
+
+static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    size_t bad = 0, first = 0;
+    if (!verify_space_is_narrow(&guards->space))
+        return;
+    for (size_t g = guards->count; g-- > 0;)
+        if (!stands_within(known, g)) {
+            bad++;
+            first = g;
+        }
+    if (bad == 0)
+        verify_claim(verdict, true, "guards keep their distances from the model, and to their box");
+    else
+        verify_claim(verdict, false,
+                     "guards keep their distances from the model, and to their box: %zu do not, "
+                     "first guard %zu at a distance of %.17g",
+                     bad, first, known->standoff[first]);
 }
 
 static void claim_seen(starg_verdict *verdict, const verify_facts *known) {
@@ -316,11 +379,11 @@ static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const verify_surface *surface = known->surface;
     const unseen_list faces = {
-        "faces", guards->uncovered, guards->uncovered_count, surface->face_count, known->face,
+        "faces", guards->uncovered, guards->uncovered_count, surface->model_faces, known->face,
         NULL};
     claim_unseen(verdict, &faces);
     claim_fraction(verdict, "faces", guards->coverage_faces,
-                   fraction((double)known->covered_faces, (double)surface->face_count));
+                   fraction((double)known->covered_faces, (double)known->wanted_faces));
     claim_fraction(verdict, "area", guards->coverage_area,
                    fraction(known->covered_area, known->total_area));
     if (guards->options.visibility.target != STARG_TARGET_VERTICES)
@@ -328,7 +391,7 @@ static void claim_coverage(starg_verdict *verdict, const verify_facts *known) {
     const unseen_list vertices = {"vertices",
                                   guards->uncovered_vertices,
                                   guards->uncovered_vertex_count,
-                                  surface->vertex_count,
+                                  surface->model_vertices,
                                   known->vertex,
                                   known->used};
     claim_unseen(verdict, &vertices);
@@ -359,7 +422,7 @@ static starg_status claim_curve(starg_context *context, starg_verdict *verdict,
             }
         }
         wrong += !about_equal(guards->curve_faces[g],
-                              fraction((double)sum, (double)known->surface->face_count)) ||
+                              fraction((double)sum, (double)known->wanted_faces)) ||
                  !about_equal(guards->curve_area[g], fraction(area, known->total_area));
     }
     verify_claim(verdict, wrong == 0, "the curve tells what the first guards see (wrong for %zu)",
@@ -399,8 +462,7 @@ static target target_of(const verify_facts *known) {
     if (guards->options.visibility.target == STARG_TARGET_VERTICES)
         return (target){"vertices", known->used_vertices, known->covered_vertices,
                         guards->coverable_vertices};
-    return (target){"faces", known->surface->face_count, known->covered_faces,
-                    guards->coverable_faces};
+    return (target){"faces", known->wanted_faces, known->covered_faces, guards->coverable_faces};
 }
 
 /* Why is nothing above the faces that no guard sees looked at? NULL: it is. Where a part is to be
@@ -409,6 +471,8 @@ static const char *excuse_of(const verify_facts *known) {
     const starg_guard_options *o = &known->guards->options;
     if (o->candidates == STARG_CANDIDATES_GIVEN)
         return "the candidates were given, and are not in the file";
+    if (verify_space_is_narrow(&known->guards->space))
+        return "guards may stand in a part of the free space only";
     if (known->guards->time_limited)
         return "a time limit cut the search for candidates short";
     double seen = verify_targets_vertices(known)
@@ -459,7 +523,8 @@ static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts 
     if (status != STARG_OK || found.lacking == 0)
         return status;
     const char *name = target_of(known).name;
-    if (4 * found.meeting >= 3 * found.points && 2 * found.points > VERIFY_PLACES)
+    bool anywhere = !verify_space_is_narrow(&guards->space);
+    if (anywhere && 4 * found.meeting >= 3 * found.points && 2 * found.points > VERIFY_PLACES)
         verify_claim(verdict, false,
                      "what fewer than %u guards see, %zu %s, no other of %zu candidates sees: "
                      "%zu of %zu points drawn inside see some",
@@ -534,7 +599,8 @@ static starg_status claim_bound(starg_verdict *verdict, const verify_facts *know
     return STARG_OK;
 }
 
-static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *known) {
+static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *known,
+                                  const starg_certificate *certificate) {
     starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
     target goal = target_of(known);
@@ -565,8 +631,12 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
             "the result is called %s",
             guards->lower_bound_everywhere,
             guards->optimal_everywhere ? "the fewest possible" : "not proven such");
-    if (guards->lower_bound_everywhere > 0)
-        verify_leave(verdict, "that at least %zu guards are needed, wherever they stand",
+    if (certificate != NULL)
+        STARG_TRY(verify_claim_everywhere(verdict, known, certificate));
+    else if (guards->lower_bound_everywhere > 0)
+        verify_leave(verdict,
+                     "that at least %zu guards are needed, wherever they stand: the certificate "
+                     "would say why",
                      guards->lower_bound_everywhere);
     double seen = fraction(known->covered_area, known->total_area);
     verify_claim(verdict, seen <= guards->area_bound * (1 + TOLERANCE),
@@ -574,19 +644,49 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
     if (guards->area_bound < 1)
         verify_leave(verdict, "that so many candidates see at most a fraction of %.17g of the area",
                      guards->area_bound);
+    if (guards->area_bound_everywhere > 0) {
+        verify_claim(verdict, seen <= guards->area_bound_everywhere * (1 + TOLERANCE),
+                     "the area seen, %.17g, is within the bound for guards anywhere, %.17g", seen,
+                     guards->area_bound_everywhere);
+        verify_leave(verdict,
+                     "that so many guards see at most a fraction of %.17g of the area, wherever "
+                     "they stand",
+                     guards->area_bound_everywhere);
+    }
 done:
     return status;
 }
 
+static bool is_plain(const starg_guards *guards) {
+    return guards->obstacle_count == 0 && guards->target_count == 0 && !guards->space.outside &&
+           guards->space.orientation == STARG_ORIENTATION_NESTED;
+}
+
 starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
                                  const starg_guards *guards, starg_verdict **out) {
+    return starg_verify_guards_with(context, mesh, &(starg_guards_evidence){0}, guards, out);
+}
+
+starg_status starg_verify_certified(starg_context *context, const starg_mesh *mesh,
+                                    const starg_guards *guards,
+                                    const starg_certificate *certificate, starg_verdict **out) {
+    const starg_guards_evidence evidence = {.certificate = certificate};
+    return starg_verify_guards_with(context, mesh, &evidence, guards, out);
+}
+
+starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,
+                                      const starg_guards_evidence *evidence,
+                                      const starg_guards *guards, starg_verdict **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     starg_verdict *verdict = NULL;
     verify_facts known = {.guards = guards};
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
-    STARG_TRY(verify_surface_create(context, mesh, &surface));
+    STARG_TRY(is_plain(guards) && evidence->obstacle_count == 0
+                  ? verify_surface_create(context, mesh, &surface)
+                  : verify_space_create(context, mesh, evidence->obstacles,
+                                        evidence->obstacle_count, guards, &surface));
     known.surface = surface;
     STARG_TRY(find_facts(context, &known));
 
@@ -595,6 +695,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     claim_options(verdict, &guards->options, guards->directions != NULL);
     claim_inside(verdict, &known);
     claim_clearance(verdict, &known);
+    claim_standoff(verdict, &known);
     claim_seen(verdict, &known);
     claim_coverage(verdict, &known);
     STARG_TRY(claim_curve(context, verdict, &known));
@@ -602,7 +703,7 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     STARG_TRY(claim_coverable(verdict, &known));
     claim_goal(verdict, &known);
     STARG_TRY(claim_redundancy(verdict, &known));
-    STARG_TRY(claim_numbers(verdict, &known));
+    STARG_TRY(claim_numbers(verdict, &known, evidence->certificate));
     *out = verdict;
     verdict = NULL;
 done:

@@ -17,10 +17,11 @@ static bool is_among(const double p[3], const starg_guard_level *level) {
 static bool is_inside(const verify_facts *known, const double p[3]) {
     bool on_surface;
     for (int k = 0; k < 3; k++)
-        if (!(p[k] >= known->surface->lower[k] && p[k] <= known->surface->upper[k]))
+        if (known->surface->ambient == 0 &&
+            !(p[k] >= known->surface->lower[k] && p[k] <= known->surface->upper[k]))
             return false;
     int winding = verify_tree_winding(known->tree, p, &on_surface);
-    return !on_surface && winding >= 1;
+    return !on_surface && winding + known->surface->ambient >= 1;
 }
 
 /* Is the guard among those of its level, and of the finer ones? */

@@ -135,9 +135,9 @@ double verify_squared_distance(const verify_surface *surface, size_t face, const
     return squared_to_triangle(a);
 }
 
-double verify_distance(const verify_surface *surface, const double p[3], int scale) {
+double verify_distance(const verify_surface *surface, const double p[3], size_t faces, int scale) {
     double least = INFINITY;
-    for (size_t f = 0; f < surface->face_count; f++)
+    for (size_t f = 0; f < faces; f++)
         least = fmin(least, verify_squared_distance(surface, f, p, scale));
     return ldexp(sqrt(least), -scale);
 }

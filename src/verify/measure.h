@@ -45,6 +45,6 @@ double verify_squared_distance(const verify_surface *surface, size_t face, const
                                int scale);
 
 /* Distance from p to the nearest face, in the model's own unit. */
-double verify_distance(const verify_surface *surface, const double p[3], int scale);
+double verify_distance(const verify_surface *surface, const double p[3], size_t faces, int scale);
 
 #endif

@@ -23,7 +23,7 @@ enum { ATTEMPTS = 4096, MANY = 20, RNG_STAGE = 0x7265646e };
 static bool is_place(const verify_facts *known, const double p[3]) {
     bool on_surface;
     int winding = verify_tree_winding(known->tree, p, &on_surface);
-    return !on_surface && winding >= 1 &&
+    return !on_surface && winding + known->surface->ambient >= 1 &&
            verify_tree_distance(known->tree, p, known->scale) >= known->guards->options.clearance;
 }
 

@@ -18,14 +18,16 @@ static bool has_format(const char *bytes, size_t size, const char *format) {
     return same;
 }
 
-static bool is_vtk(const char *bytes, size_t size) {
-    static const char magic[] = "# vtk";
-    return size >= sizeof magic - 1 && memcmp(bytes, magic, sizeof magic - 1) == 0;
+static bool begins_with(const char *bytes, size_t size, const char *magic) {
+    size_t length = strlen(magic);
+    return size >= length && memcmp(bytes, magic, length) == 0;
 }
 
 static starg_status read_bytes(starg_context *context, const char *bytes, size_t size,
                                const char *name, starg_result *result) {
-    if (is_vtk(bytes, size))
+    if (begins_with(bytes, size, "starguard-certificate"))
+        return starg_certificate_read_memory(context, bytes, size, name, &result->certificate);
+    if (begins_with(bytes, size, "# vtk"))
         return starg_pieces_mesh_read_memory(context, bytes, size, name, &result->pieces);
     if (has_format(bytes, size, "starguard-pieces"))
         return starg_pieces_report_read_memory(context, bytes, size, name, &result->report);
@@ -55,5 +57,6 @@ void starg_result_free(starg_context *context, starg_result *result) {
     starg_guards_free(context, result->guards);
     starg_pieces_mesh_free(context, result->pieces);
     starg_pieces_report_free(context, result->report);
+    starg_certificate_free(result->certificate);
     starg_release(context, result);
 }

@@ -240,7 +240,7 @@ done:
 
 /* ---- all of it ---- */
 
-static starg_status orient(verify_surface *surface) {
+static starg_status orient(verify_surface *surface, bool turns) {
     starg_context *context = surface->context;
     starg_status status = STARG_OK;
     edge_table table = {.faces = surface->faces, .mask = 1};
@@ -254,12 +254,32 @@ static starg_status orient(verify_surface *surface) {
     STARG_TRY(insert_edges(context, &table, edge_count));
     STARG_TRY(join_faces(context, &table, edge_count, parent));
     STARG_TRY(gather_shells(surface, parent, &shells));
-    STARG_TRY(turn_shells(surface, &shells));
+    if (turns)
+        STARG_TRY(turn_shells(surface, &shells));
 done:
     starg_release(context, table.slots);
     starg_release(context, parent);
     starg_release(context, shells.faces);
     STARG_ARRAY_FREE(context, &shells.list);
+    return status;
+}
+
+starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin) {
+    starg_status status = STARG_OK;
+    starg_context *context = surface->context;
+    const uint32_t *faces = surface->faces;
+    edge_table table = {.faces = faces, .mask = 1};
+    size_t edge_count = 3 * surface->face_count;
+    *twin = NULL;
+    while (table.mask < 2 * edge_count)
+        table.mask = 2 * table.mask + 1;
+    STARG_NEW_ZERO(context, STAGE, table.slots, table.mask + 1);
+    STARG_NEW(context, STAGE, *twin, edge_count);
+    STARG_TRY(insert_edges(context, &table, edge_count));
+    for (uint64_t e = 0; e < edge_count; e++)
+        (*twin)[e] = (uint32_t)(*find_edge(&table, edge_to(faces, e), edge_from(faces, e)) - 1);
+done:
+    starg_release(context, table.slots);
     return status;
 }
 
@@ -320,8 +340,8 @@ done:
     return status;
 }
 
-starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
-                                   verify_surface **out) {
+static starg_status copy_faces(starg_context *context, const starg_mesh *mesh,
+                               verify_surface **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     size_t face_count = starg_mesh_face_count(mesh);
@@ -330,21 +350,65 @@ starg_status verify_surface_create(starg_context *context, const starg_mesh *mes
         return starg_fail(context, STARG_ERROR_MESH, STAGE, "the model has no faces");
     STARG_NEW_ZERO(context, STAGE, surface, 1);
     surface->context = context;
-    surface->vertex_count = starg_mesh_vertex_count(mesh);
-    surface->face_count = face_count;
+    surface->vertex_count = surface->model_vertices = starg_mesh_vertex_count(mesh);
+    surface->face_count = surface->model_faces = face_count;
     surface->vertices = starg_mesh_vertices(mesh);
     STARG_NEW(context, STAGE, surface->faces, 3 * face_count);
     memcpy(surface->faces, starg_mesh_faces(mesh), 3 * face_count * sizeof *surface->faces);
     find_bounds(surface);
-    status = orient(surface);
+    *out = surface;
+done:
+    if (status != STARG_OK)
+        verify_surface_free(surface);
+    return status;
+}
+
+static starg_status create(starg_context *context, const starg_mesh *mesh, bool turns,
+                           verify_surface **out) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    *out = NULL;
+    STARG_TRY(copy_faces(context, mesh, &surface));
+    status = orient(surface, turns);
     if (status == STARG_ERROR_MESH) { /* nothing has been turned yet */
         STARG_TRY(weld(surface));
-        STARG_TRY(orient(surface));
+        STARG_TRY(orient(surface, turns));
     }
     *out = status == STARG_OK ? surface : NULL;
 done:
     if (status != STARG_OK)
         verify_surface_free(surface);
+    return status;
+}
+
+starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
+                                   verify_surface **out) {
+    return create(context, mesh, true, out);
+}
+
+starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
+                                     verify_surface **out) {
+    return create(context, mesh, false, out);
+}
+
+starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,
+                                   verify_surface **out) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    size_t kept = 0;
+    *out = NULL;
+    STARG_TRY(copy_faces(context, mesh, &surface));
+    STARG_TRY(weld(surface));
+    for (size_t f = 0; f < surface->face_count; f++) {
+        const uint32_t *c = surface->faces + 3 * f;
+        if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
+            memmove(surface->faces + 3 * kept++, c, 3 * sizeof *c);
+    }
+    surface->face_count = kept;
+    *out = surface;
+    surface = NULL;
+done:
+    verify_surface_free(surface);
     return status;
 }
 
@@ -358,6 +422,8 @@ starg_status verify_surface_wrap(starg_context *context, const double *vertices,
     *surface = (verify_surface){.context = context,
                                 .vertex_count = vertex_count,
                                 .face_count = face_count,
+                                .model_vertices = vertex_count,
+                                .model_faces = face_count,
                                 .vertices = vertices,
                                 .faces = faces};
     find_bounds(surface);
@@ -372,5 +438,7 @@ void verify_surface_free(verify_surface *surface) {
     if (surface == NULL)
         return;
     starg_release(surface->context, surface->faces);
+    starg_release(surface->context, surface->importance);
+    starg_release(surface->context, surface->own_vertices);
     starg_release(surface->context, surface);
 }

@@ -16,11 +16,29 @@ typedef struct verify_surface {
     const double *vertices;    /* of the mesh, which must outlive the surface */
     uint32_t *faces;           /* counter-clockwise seen from outside of the solid */
     double lower[3], upper[3]; /* bounds of the vertices that faces name */
+
+    /* of scenes (verify/space.h) */
+    int ambient;                        /* the winding number far away */
+    size_t model_vertices, model_faces; /* those of obstacles follow   */
+    double *importance;                 /* by face: how much its area counts; NULL: 1 each */
+    double *own_vertices;               /* freed with the surface */
 } verify_surface;
+
+/* Is the face to be seen? */
+static inline bool verify_is_target(const verify_surface *surface, size_t face) {
+    return surface->importance == NULL || surface->importance[face] > 0;
+}
 
 /* Checks that every edge has two faces, which run along it in opposite ways (if need be once
  * vertices at one position are one), and turns shells. Errors: MESH, MEMORY, CANCELLED. */
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
+                                   verify_surface **out);
+/* The same without turning shells. */
+starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
+                                     verify_surface **out);
+/* The faces of any mesh, with vertices at one position made one; nothing is checked or turned.
+ * Faces that repeat a corner then are left out. */
+starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
 /* The same for triangles of any kind, which are taken as they are: nothing is checked or turned.
  * `faces` is a block of the context and taken over, also on failure. Errors: MEMORY. */
@@ -28,6 +46,10 @@ starg_status verify_surface_wrap(starg_context *context, const double *vertices,
                                  size_t vertex_count, uint32_t *faces, size_t face_count,
                                  verify_surface **out);
 void verify_surface_free(verify_surface *surface);
+
+/* By directed edge 3 f + k, from corner k of face f to the next: the one that runs back. `surface`
+ * has been checked. *twin is a block of the context. Errors: MEMORY. */
+starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin);
 
 /* The corners of a face. */
 static inline void verify_corners(const verify_surface *surface, size_t face, const double *t[3]) {

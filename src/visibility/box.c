@@ -44,7 +44,7 @@ static void make_triangles(box_scene *scene, const mesh_topology *topology) {
         box_triangle *t = &scene->triangles[rank];
         size_t face = order[rank];
         for (size_t k = 0; k < 3; k++) {
-            uint32_t twin = topology->twin[3 * face + k];
+            uint32_t twin = solid_twin(scene->solid, topology->twin, (uint32_t)(3 * face + k));
             t->corner[k] = faces[3 * face + k];
             t->twin[k] = 3 * scene->rank_of[twin / 3] + twin % 3;
             if (scene->outgoing[t->corner[k]] == BOX_NONE)
@@ -68,7 +68,8 @@ starg_status box_scene_create(starg_context *context, const starg_solid *solid, 
     scene->vertex_count = solid->mesh->vertex_count;
     scene->face_count = solid->mesh->face_count;
     scene->embedded = solid->check->embedded;
-    const bvh_box *all = &scene->tree->nodes[0].box;
+    solid_extent(solid, &scene->all);
+    const bvh_box *all = &scene->all;
     for (int k = 0; k < 3; k++) {
         scene->centre[k] = 0.5 * all->lower[k] + 0.5 * all->upper[k];
         scene->extent = fmax(scene->extent, all->upper[k] - all->lower[k]);
@@ -299,14 +300,16 @@ static bool crop(const bvh_box *all, const bvh_box *box, bvh_box *out) {
 
 /* False: the box is outside of the solid. */
 static bool begin(box_worker *w, const bvh_box *box) {
-    if (!crop(&w->scene->tree->nodes[0].box, box, &w->box))
+    const starg_solid *solid = w->scene->solid;
+    w->box = *box;
+    if (solid->ambient == 0 && !crop(&w->scene->tree->nodes[0].box, box, &w->box))
         return false;
     renew_marks(w);
     w->question++;
     w->crossing_count = 0;
     set_current(w, &w->box);
     bvh_query_box(w->scene->tree, &w->box, add_crossing, w);
-    return w->crossing_count > 0 || starg_solid_contains(w->scene->solid, w->centre);
+    return w->crossing_count > 0 || starg_solid_contains(solid, w->centre);
 }
 
 static bool is_beyond(const bvh_box *box, const double v[3], double range) {
@@ -399,15 +402,22 @@ static box_reason ask(box_worker *w, const box_question *q, uint32_t target, boo
     return hidden_by(w->scene, kind, target, seed, false);
 }
 
+/* Outside of a solid there are boxes for which the error bounds do not hold. */
+static bool is_in_reach(const box_scene *scene, const bvh_box *box) {
+    return scene->solid->ambient == 0 ||
+           (holds(&scene->all, box->lower) && holds(&scene->all, box->upper));
+}
+
 void box_look(box_worker *w, const box_question *q, uint64_t *open, box_reason *reasons) {
     memset(open, 0, starg_bit_words(q->count) * sizeof *open);
-    bool outside = !begin(w, &q->box);
+    bool reached = is_in_reach(w->scene, &q->box);
+    bool outside = reached && !begin(w, &q->box);
     for (size_t i = 0; i < q->count; i++) {
         if (q->among != NULL && !starg_bit_test(q->among, i))
             continue;
         box_reason reason = {outside ? BOX_OUTSIDE : BOX_OPEN, BOX_NONE, BOX_NONE, false};
         bool known = q->known != NULL && starg_bit_test(q->known, i);
-        if (!outside && !known)
+        if (reached && !outside && !known)
             reason = ask(w, q, q->targets != NULL ? q->targets[i] : (uint32_t)i, reasons != NULL);
         if (reason.kind == BOX_OPEN)
             starg_bit_set(open, i);

@@ -10,6 +10,7 @@
 static const char STAGE[] = "visibility";
 
 typedef struct job {
+    const starg_solid *solid;
     const box_scene *scene;
     const starg_visibility_options *options;
     const double *boxes;
@@ -39,7 +40,9 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
         question.box.lower[k] = all->boxes[6 * item + k];
         question.box.upper[k] = all->boxes[6 * item + 3 + k];
     }
-    box_look(scratch, &question, starg_bits_row_mutable(all->rows, item), NULL);
+    uint64_t *row = starg_bits_row_mutable(all->rows, item);
+    box_look(scratch, &question, row, NULL);
+    solid_mask_row(all->solid, question.target == STARG_TARGET_VERTICES, row);
     return STARG_OK;
 }
 
@@ -79,7 +82,7 @@ starg_status starg_visibility_region(starg_context *context, const starg_solid *
                                 options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                                          : solid->mesh->face_count,
                                 &rows));
-    job all = {.scene = scene, .options = options, .boxes = boxes, .rows = rows};
+    job all = {.solid = solid, .scene = scene, .options = options, .boxes = boxes, .rows = rows};
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = count,
                                       .shared = &all,

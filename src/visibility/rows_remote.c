@@ -20,7 +20,7 @@ enum { LEAST_WORK = 1 << 22 };
 typedef struct job_head {
     uint64_t points, vertices, faces;
     double range, cone, diagonal;
-    uint32_t engine, target, face_rule, embedded;
+    uint32_t engine, target, face_rule, embedded, ambient;
 } job_head;
 
 typedef struct remote_job {
@@ -52,7 +52,8 @@ starg_status visibility_pack(starg_context *context, const visibility_job *job, 
                            .engine = o->engine,
                            .target = o->target,
                            .face_rule = o->face_rule,
-                           .embedded = solid->check->embedded};
+                           .embedded = solid->check->embedded,
+                           .ambient = (uint32_t)solid->ambient};
     STARG_TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
     STARG_TRY(starg_bytes_put(context, out, mesh->vertices, 3 * mesh->vertex_count, 8));
     STARG_TRY(starg_bytes_put(context, out, mesh->faces, 3 * mesh->face_count, 4));
@@ -106,6 +107,7 @@ static starg_status take_solid(starg_context *context, starg_bytes_reader *bytes
                                .vertices = head->vertices,
                                .faces = head->faces};
     STARG_TRY(solid_of_parts(context, vertices, head->vertices, faces, head->faces, &check, out));
+    (*out)->ambient = (int)head->ambient;
 done:
     starg_release(context, vertices);
     starg_release(context, faces);
@@ -116,7 +118,7 @@ done:
 static bool is_sound(const job_head *head, size_t left) {
     return head->points <= left / 24 && head->vertices <= left / 24 && head->faces <= left / 12 &&
            head->engine <= STARG_VISIBILITY_FASTEST && head->target <= STARG_TARGET_VERTICES &&
-           head->face_rule <= STARG_FACES_WHOLE && head->cone > 0 && head->range >= 0;
+           head->face_rule <= STARG_FACES_WHOLE && head->ambient <= 1 && head->cone > 0 && head->range >= 0;
 }
 
 static starg_status begin(starg_context *context, starg_bytes_reader *bytes, void **state) {

@@ -2,6 +2,7 @@
 #include "visibility/scene.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "geometry/intersect.h"
@@ -35,11 +36,11 @@ static void order_vertices(visibility_scene *scene) {
  * components are below 2 e^2 and carry 4 roundings, the products another 4; there are six terms
  * with factors up to h (which itself carries a rounding). 128 covers the sum. */
 static void compute_planes(visibility_scene *scene) {
-    double lower[3], upper[3], edge = 0;
-    starg_mesh_bounds(scene->mesh, lower, upper);
+    const bvh_box *all = &scene->all;
+    double edge = 0;
     for (int k = 0; k < 3; k++) {
-        scene->centre[k] = 0.5 * lower[k] + 0.5 * upper[k];
-        scene->extent = fmax(scene->extent, upper[k] - lower[k]);
+        scene->centre[k] = 0.5 * all->lower[k] + 0.5 * all->upper[k];
+        scene->extent = fmax(scene->extent, all->upper[k] - all->lower[k]);
     }
     for (size_t rank = 0; rank < scene->face_count; rank++) {
         const double *a = scene_corner(scene, rank, 0), *b = scene_corner(scene, rank, 1);
@@ -85,6 +86,7 @@ starg_status scene_create(starg_context *context, const starg_solid *solid,
     scene->cull = solid->check->embedded;
     scene->face_count = solid->mesh->face_count;
     scene->face_of = solid->tree->order;
+    solid_extent(solid, &scene->all);
     size_t n = solid->mesh->vertex_count, m = scene->face_count;
     STARG_NEW(context, "visibility", scene->vertex_of, n);
     STARG_NEW(context, "visibility", scene->slot_of, n);
@@ -127,8 +129,18 @@ starg_status scene_add_adjacency(visibility_scene *scene) {
     return scene->cull ? adjacency_create(scene->context, scene, &scene->adjacency) : STARG_OK;
 }
 
+static bool is_in_extent(const visibility_scene *scene, const double p[3]) {
+    bool in = true;
+    for (int k = 0; k < 3; k++)
+        in = in && p[k] >= scene->all.lower[k] && p[k] <= scene->all.upper[k];
+    return in;
+}
+
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side) {
-    scene->find_sides(scene, p, side);
+    if (is_in_extent(scene, p))
+        scene->find_sides(scene, p, side);
+    else
+        memset(side, 0, scene->face_count * sizeof *side);
     for (size_t rank = 0; rank < scene->face_count; rank++)
         if (side[rank] == 0)
             side[rank] =

@@ -42,8 +42,9 @@ typedef struct visibility_scene {
 
     /* Plane of each face by rank: normal . (centre - p) + offset is positive where p is inside. */
     double *nx, *ny, *nz, *offset;
-    double centre[3];
-    double extent;     /* longest side of the bounding box */
+    bvh_box all;       /* of the mesh and of places where guards may be */
+    double centre[3];  /* of it */
+    double extent;     /* its longest side */
     double side_bound; /* larger than the rounding error of that expression for p in the box */
     sides_run *find_sides;
 

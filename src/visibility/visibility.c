@@ -254,6 +254,9 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     if (status == STARG_ERROR_TIME && finished != NULL)
         status = STARG_OK;
     STARG_TRY(status);
+    for (size_t i = 0; i < count; i++)
+        solid_mask_row(solid, options->target == STARG_TARGET_VERTICES,
+                       starg_bits_row_mutable(rows, i));
     *out = rows;
 done:
     scene_free(scene);

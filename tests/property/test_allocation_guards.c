@@ -10,7 +10,9 @@
 
 static failing_inputs in;
 static starg_bits *cover_rows;
-static input_bytes guards_text, skeleton_text;
+static input_bytes guards_text, skeleton_text, why_text;
+static starg_guards *proven; /* of a range, so that there are several */
+static starg_certificate *why;
 
 /* ---- covers and visibility ---- */
 
@@ -146,6 +148,18 @@ static starg_guard_options few(void) {
 #define GUARD(NAME, VARIANT, SETTINGS)                                                             \
     FAILING_MAKES(NAME, VARIANT, starg_guards, starg_guards_free(context, out), in.solid,          \
                   (SETTINGS, &o))
+static starg_status certified(starg_context *context, const starg_guard_options *options) {
+    starg_guards *out = NULL;
+    char *text = NULL;
+    size_t size = 0;
+    starg_status status = starg_guard_certified(context, in.solid, options, &out, &text, &size);
+    assert_true((status == STARG_OK) == (text != NULL) && (text != NULL) == (size > 0));
+    failing_result(status, out);
+    starg_text_free(context, text);
+    starg_guards_free(context, out);
+    return status;
+}
+
 #define GUARDS(NAME, VARIANT, ...)                                                                 \
     FAILING_MAKES(NAME, VARIANT, starg_guards, starg_guards_free(context, out), __VA_ARGS__)
 
@@ -163,6 +177,12 @@ static starg_status guards(starg_context *context) {
     GUARD(starg_guard, "cone, at most 2",
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
     GUARD(starg_guard, "anywhere", (o.prove = true, o.prove_work = 3000, o.visibility.range = 2));
+    FAILING_BY(starg_guard_certified, "", certified(context, &o));
+    FAILING_MAKES(starg_certificate_read_memory, "", starg_certificate, starg_certificate_free(out),
+                  why_text.data, why_text.size, "c");
+    FAILING_MAKES(starg_verify_certified, "", starg_verdict, starg_verdict_free(context, out),
+                  in.room, proven, why);
+    FAILING(starg_certificate_write, "", why_text.data, why_text.size, failing_output("c.txt"));
     GUARDS(starg_guards_given, "", in.solid, in.guards->positions, in.guards->count);
     FAILING(starg_guards_write, "", in.guards, "room.off", failing_output("g.json"));
     FAILING_TEXT(starg_guards_write_memory, "", in.guards, "room.off");
@@ -203,6 +223,14 @@ static int set_up(void **state) {
     cover_rows = make_triples(in.context);
     guards_text = failing_input_bytes("guards.json");
     skeleton_text = failing_input_bytes("skeleton.vtk");
+    starg_guard_options options = few();
+    options.prove = true;
+    options.prove_work = 3000;
+    options.visibility.range = 2;
+    test_ok(in.context, starg_guard_certified(in.context, in.solid, &options, &proven,
+                                              &why_text.data, &why_text.size));
+    test_ok(in.context,
+            starg_certificate_read_memory(in.context, why_text.data, why_text.size, "c", &why));
     return 0;
 }
 
@@ -210,6 +238,9 @@ static int tear_down(void **state) {
     (void)state;
     free(guards_text.data);
     free(skeleton_text.data);
+    starg_text_free(in.context, why_text.data);
+    starg_guards_free(in.context, proven);
+    starg_certificate_free(why);
     starg_bits_free(cover_rows);
     failing_inputs_free(&in);
     return 0;

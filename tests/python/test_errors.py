@@ -31,7 +31,8 @@ class Errors(Case):
         error = self.fails(starguard.FormatError, "bad.off", starguard.Mesh.read, "bad.off")
         self.assertEqual((error.element, error.elements.tolist()), ("line", [5]))
         for read in (starguard.Guards.from_bytes, starguard.PiecesMesh.from_bytes,
-                     starguard.PiecesReport.from_bytes, starguard.Descriptor.from_bytes,
+                     starguard.PiecesReport.from_bytes, starguard.Certificate.from_bytes,
+                     starguard.Descriptor.from_bytes,
                      starguard.TetMesh.from_bytes, starguard.Mesh.from_bytes,
                      starguard.Skeleton.from_bytes,
                      starguard.points_from_bytes):

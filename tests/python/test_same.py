@@ -146,6 +146,13 @@ class Same(Case):
         verdict = starguard.verify(model, "g.json")
         self.assertEqual([(c.text, c.holds) for c in verdict.claims],
                          [(c["claim"], c["holds"]) for c in told["claims"]])
+        self.cli("guard", model, "-o", "proven.json", "--prove", "--certificate", "why.txt", "--quiet")
+        guards = starguard.guard(model, prove=True, certificate="same.txt")
+        self.assertEqual(self.read("why.txt"), self.read("same.txt"))
+        told = json.loads(self.cli("verify", model, "proven.json", "why.txt", "--json"))["results"][0]
+        verdict = starguard.verify(model, guards, "same.txt")
+        self.assertEqual([c.text for c in verdict.claims], [c["claim"] for c in told["claims"]])
+        self.assertTrue(verdict)
         lie = json.loads(self.read("g.json"))
         lie["guards"][0]["faces"] += 1
         verdict = starguard.verify(model, starguard.Guards.from_bytes(json.dumps(lie).encode()))

@@ -99,12 +99,12 @@ static void test_bounds_against_enumeration(void **state) {
             least++;
         test_ok(context, prices_find(context, p.list, p.count, &p.wanted, &prices));
         bound_round(prices.price, whole);
-        size_t bound = bound_of_prices(p.list, p.count, whole);
+        size_t bound = bound_of_prices(p.list, p.count, whole, 1);
         assert_true(bound <= least && (double)bound > prices.sum - 1e-2);
         for (size_t most = 0; most <= least; most++) {
             bool proven;
             test_ok(context, bound_by_branching(context, p.list, p.count, &p.wanted, most, 100000,
-                                                &proven, &work));
+                                                &proven, NULL, &work));
             assert_true(proven == (most < least));
             branched += proven && most >= bound;
         }
@@ -126,13 +126,13 @@ static void test_corrupted_row_is_noticed(void **state) {
         uint64_t whole[MOST_WITNESSES], work = 0;
         test_ok(context, prices_find(context, p.list, p.count, &p.wanted, &prices));
         bound_round(prices.price, whole);
-        size_t bound = bound_of_prices(p.list, p.count, whole);
+        size_t bound = bound_of_prices(p.list, p.count, whole, 1);
         if (bound > 1) {
             bool proven = true;
             p.rows[starg_hash64(item) % p.count] = p.wanted;
-            assert_int_equal(bound_of_prices(p.list, p.count, whole), 1);
+            assert_int_equal(bound_of_prices(p.list, p.count, whole, 1), 1);
             test_ok(context, bound_by_branching(context, p.list, p.count, &p.wanted, bound - 1,
-                                                1000, &proven, &work));
+                                                1000, &proven, NULL, &work));
             assert_false(proven);
             tried++;
         }

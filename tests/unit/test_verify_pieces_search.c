@@ -87,7 +87,7 @@ static void test_tree(void **state) {
                     free_lines += !blocks;
                 }
                 compare_boxes(surface, tree, p, q);
-                double near = verify_distance(surface, p, scale);
+                double near = verify_distance(surface, p, surface->face_count, scale);
                 double found = verify_tree_distance(tree, p, scale);
                 assert_true(near == found || fabs(near - found) <= ldexp(1e-12, -scale));
             }

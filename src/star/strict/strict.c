@@ -13,7 +13,6 @@
  * always succeeds. */
 #include "star/strict/strict.h"
 
-#include "mesh/mesh.h"
 #include "star/decomposition.h"
 #include "star/strict/partition/cone.h"
 #include "star/strict/search/improve.h"
@@ -62,7 +61,7 @@ done:
 
 /* One of the two is NULL. */
 typedef struct model {
-    const starg_mesh *surface;
+    const kernel_faces *surface;
     const starg_tetmesh *mesh;
 } model;
 
@@ -84,9 +83,7 @@ static starg_status make_one_piece(const model *m, partition *p) {
     static const double nowhere[3] = {0, 0, 0};
     uint32_t *labels = NULL;
     if (m->surface != NULL)
-        return partition_create_from_surface(p->context, m->surface->vertices,
-                                             m->surface->vertex_count, m->surface->faces,
-                                             m->surface->face_count, p);
+        return partition_create_from_surface(p->context, m->surface, p);
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(m->mesh));
     STARG_TRY(partition_create(p->context, m->mesh, labels, nowhere, 1, p));
 done:
@@ -218,7 +215,7 @@ done:
     return status;
 }
 
-starg_status strict_decompose_surface(starg_context *context, const starg_mesh *surface,
+starg_status strict_decompose_surface(starg_context *context, const kernel_faces *surface,
                                       const starg_decompose_options *options,
                                       starg_decomposition **out) {
     return decompose(context, (model){.surface = surface}, options, out);

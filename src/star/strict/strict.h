@@ -5,10 +5,12 @@
 
 #include "core/context.h"
 #include "starguard/decompose.h"
+#include "visibility/kernel.h"
 
-/* From the surface alone, which must be embedded, without degenerate faces, and face outward. *out
- * is NULL when roundings have spoilt all cuts of some piece. Errors: MEMORY, CANCELLED. */
-starg_status strict_decompose_surface(starg_context *context, const starg_mesh *surface,
+/* From the surface alone, which faces outward and meets itself in common vertices and edges at
+ * most. *out is NULL when roundings have spoilt all cuts of some piece. Errors: MEMORY, CANCELLED.
+ */
+starg_status strict_decompose_surface(starg_context *context, const kernel_faces *surface,
                                       const starg_decompose_options *options,
                                       starg_decomposition **out);
 

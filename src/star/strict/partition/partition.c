@@ -104,19 +104,22 @@ done:
 
 /* ---- from a surface ---- */
 
-starg_status partition_create_from_surface(starg_context *context, const double *vertices,
-                                           size_t vertex_count, const uint32_t *faces,
-                                           size_t face_count, partition *out) {
+starg_status partition_create_from_surface(starg_context *context, const kernel_faces *surface,
+                                           partition *out) {
     starg_status status = STARG_OK;
+    const uint32_t *faces = surface->faces;
+    size_t vertex_count = 0, face_count = surface->count;
     const piece whole = {.stamp = 1};
     uint32_t *numbers = NULL;
     *out = (partition){.context = context, .stamps = 1};
-    find_frame(vertices, faces, 3 * face_count, out);
+    for (size_t i = 0; i < 3 * face_count; i++)
+        vertex_count = faces[i] >= vertex_count ? faces[i] + (size_t)1 : vertex_count;
+    find_frame(surface->vertices, faces, 3 * face_count, out);
     STARG_NEW(context, PARTITION_STAGE, numbers, vertex_count);
     memset(numbers, 0xff, vertex_count * sizeof *numbers);
     for (size_t i = 0; i < 3 * face_count; i++)
         numbers[faces[i]] = 0;
-    STARG_TRY(add_points(out, vertices, vertex_count, numbers));
+    STARG_TRY(add_points(out, surface->vertices, vertex_count, numbers));
     STARG_PUSH(context, PARTITION_STAGE, &out->pieces, whole);
     for (size_t f = 0; f < face_count; f++) {
         const uint32_t *own = faces + 3 * f;

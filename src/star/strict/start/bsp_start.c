@@ -54,7 +54,7 @@ static const double TURN = 1e-5, TURN_MOST = 0.1; /* radians, about */
 typedef struct job {
     uint32_t number;
     int attempts;
-    double above;            /* so large the ball must be: a smaller one has failed */
+    double above;    /* so large the ball must be: a smaller one has failed */
     double radius;   /* of the ball in its kernel, in unit coordinates */
     double guard[3]; /* the middle of it, in those of the solid */
     partition_plane plane;

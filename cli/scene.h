@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Scenes as commands take them: obstacles, outsides, targets (starguard/space.h). */
+#ifndef STARGUARD_CLI_SCENE_H
+#define STARGUARD_CLI_SCENE_H
+
+#include "session.h"
+#include "starguard/guard.h"
+#include "starguard/space.h"
+
+typedef struct cli_scene {
+    starg_texts obstacles;
+    starg_orientation orientation;
+    bool outside;
+    starg_places standoff, within;
+    const char *see, *ignore, *weights;
+} cli_scene;
+
+extern const char *const cli_orientation_words[];
+
+/* Rows for a struct `values` with a member `scene`. */
+#define CLI_SCENE_OPTIONS                                                                          \
+    {CLI_OPTION("obstacles", STARG_FIELD_TEXTS, scene.obstacles, "FILE",                           \
+                "Mesh that stands in the way. A closed one is solid: no guard stands in it; an "   \
+                "open one blocks the view. Its faces need not be seen. Repeatable.")},             \
+        {CLI_OPTION("orientation", STARG_FIELD_CHOICE, scene.orientation, "nested|keep",           \
+                    "Shells bound matter and cavities by their nesting, or as their faces are "    \
+                    "turned, also where they touch or overlap."),                                  \
+         .words = cli_orientation_words},                                                          \
+        {CLI_OPTION("outside", STARG_FIELD_FLAG, scene.outside, NULL,                              \
+                    "See the model from outside.")},                                               \
+        CLI_INPUT_OPTION("see", scene.see, "FILE",                                                 \
+                         "Only these faces need to be seen: face numbers, from 0, in a text "      \
+                         "file."),                                                                 \
+        CLI_INPUT_OPTION("ignore", scene.ignore, "FILE",                                           \
+                         "All faces but these need to be seen: face numbers in a text file."),     \
+        CLI_INPUT_OPTION("weights", scene.weights, "FILE",                                         \
+                         "How much each face matters: a number for each face of the model in a "   \
+                         "text file. Its area counts so many times; 0: need not be seen.")
+
+/* Where guards may stand; for `guard` alone. */
+#define CLI_PLACE_OPTIONS                                                                          \
+    {CLI_OPTION("standoff", STARG_FIELD_PLACES, scene.standoff, "MIN,MAX",                         \
+                "Guards keep these distances from the model."),                                    \
+     .length = 2},                                                                                 \
+    {                                                                                              \
+        CLI_OPTION("within", STARG_FIELD_PLACES, scene.within, "X0,Y0,Z0,X1,Y1,Z1",                \
+                   "Guards stand in this box."),                                                   \
+            .length = 6                                                                            \
+    }
+
+/* Names the files that it reads. */
+starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene);
+
+/* Makes session->solid of session->mesh, which is given back. */
+starg_status cli_scene_make(cli_session *session, const cli_scene *scene);
+
+/* Reads the obstacles of a result, which names their files. */
+starg_status cli_scene_read_obstacles(cli_session *session, const starg_guards *guards,
+                                      starg_mesh ***obstacles);
+void cli_scene_free_obstacles(starg_mesh **obstacles, size_t count);
+
+#endif

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Scenes: where guards may stand, what blocks their view, and what they are to see.
+ *
+ * The plainest scene is that of starg_solid_create: the boundary of a solid blocks the view and is
+ * to be seen, and its inside is free. A scene is a starg_solid, too, and goes wherever one goes;
+ * its mesh has the faces of the model first, then those of the obstacles. */
+#ifndef STARGUARD_SPACE_H
+#define STARGUARD_SPACE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "context.h"
+#include "fields.h"
+#include "mesh.h"
+#include "solid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What the orientation of closed shells means. */
+typedef enum starg_orientation {
+    STARG_ORIENTATION_NESTED = 0, /* nothing: shells bound matter and cavities by their nesting;
+                                     where they overlap, their union is the solid */
+    STARG_ORIENTATION_KEEP = 1    /* every face as given. The inside of the solid is where the
+                                     winding number is at least 1, after all faces were reversed
+                                     if the signed volume is negative */
+} starg_orientation;
+
+typedef struct starg_space_options {
+    starg_orientation orientation; /* of the model's shells */
+    bool outside;                  /* guards stand outside of the model and see it from there */
+    double standoff_least;         /* distance of guards from the model */
+    double standoff_most;          /* may be INFINITY */
+    double within[6];              /* guards stand in this box: lower corner, upper corner; all 0:
+                                      anywhere */
+} starg_space_options;
+
+/* NESTED, inside, distances 0 to INFINITY, no box. */
+STARG_API void starg_space_options_default(starg_space_options *options);
+
+/* Creates a scene from copies of a model and of obstacles, which may be none. A closed obstacle is
+ * solid: its inside is not free. An open one blocks the view from both sides. Faces of obstacles
+ * are not to be seen. Errors: those of starg_solid_create for the model; ARGUMENT (numbers out of
+ * range; an obstacle that lies beyond the bounding box of the model, by its index: not with
+ * `outside`). */
+STARG_API starg_status starg_space_create(starg_context *context, const starg_mesh *model,
+                                          const starg_mesh *const *obstacles, size_t obstacle_count,
+                                          const starg_space_options *options, starg_solid **out);
+
+/* How much each face of the model matters: its area counts so many times, and 0 means that it need
+ * not be seen. `weights` has a number for each face of the model, or is NULL: all matter alike.
+ * Errors: ARGUMENT (a weight that is negative or not finite, by its face; all 0), MEMORY. */
+STARG_API starg_status starg_space_weigh(starg_solid *scene, const double *weights);
+
+/* Weights from text files, for starg_space_weigh. Of a list of face numbers: 1 for those in it, 0
+ * for the others. Of a list of weights: one for each face. # begins a comment. Free with
+ * starg_weights_free. Errors: READ, FORMAT (line and reason), MEMORY. */
+STARG_API starg_status starg_faces_read(starg_context *context, const char *path, size_t face_count,
+                                        double **weights);
+STARG_API starg_status starg_weights_read(starg_context *context, const char *path,
+                                          size_t face_count, double **weights);
+STARG_API void starg_weights_free(starg_context *context, double *weights);
+
+/* Number of vertices and faces of the model: those before the obstacles' in the mesh. */
+STARG_API size_t starg_space_model_vertices(const starg_solid *scene);
+STARG_API size_t starg_space_model_faces(const starg_solid *scene);
+
+/* Whether a guard may stand at p: starg_solid_contains, and within the distances and the box. */
+STARG_API bool starg_space_admits(const starg_solid *scene, const double p[3]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

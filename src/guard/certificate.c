@@ -1,0 +1,417 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The certificate of a bound for guards anywhere: docs/formats.md has its text,
+ * docs/verification.md why it suffices.
+ *
+ * While it searches, a search remembers only what has proven its bound: prices, or rows of
+ * witnesses and how branching went. Everything else is found again from the final tree of cells:
+ *   1. the coarsest tree that does: from the root down, a cell is a leaf as soon as the witnesses
+ *      that it may see are worth little enough, or lie in one of the rows;
+ *   2. for each cell of it, why it does not see what the cell around it may see and it does not
+ *      (visibility/box.h), in parallel; reasons do not depend on what was asked before;
+ *   3. the text, in the order of the tree.
+ *
+ * Invariant: what a leaf may see is what no reason of it or of a cell around it takes away. Cost:
+ * about the box tests of the search that ended in "hidden", once more. */
+#include "guard/certificate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/checksum.h"
+#include "core/file.h"
+#include "core/parallel.h"
+#include "starguard/guard.h"
+
+static const char STAGE[] = "certificate";
+
+void certificate_free(starg_context *context, guard_certificate *why) {
+    STARG_ARRAY_FREE(context, &why->proof.rows);
+    branch_record_free(context, &why->proof.branches);
+    starg_release(context, why->text);
+    *why = (guard_certificate){0};
+}
+
+/* ---- what proves the bound ---- */
+
+void certificate_note_prices(guard_certificate *why, size_t bound,
+                             const uint64_t price[MOST_WITNESSES]) {
+    if (why == NULL || bound <= why->proof.bound)
+        return;
+    why->proof.bound = bound;
+    why->proof.rows.count = 0;
+    memcpy(why->proof.price, price, sizeof why->proof.price);
+}
+
+starg_status certificate_note_rows(starg_context *context, guard_certificate *why, size_t bound,
+                                   const witness_row *const *rows, size_t count,
+                                   branch_record *branches) {
+    starg_status status = STARG_OK;
+    if (why == NULL || bound <= why->proof.bound)
+        return STARG_OK;
+    bound_proof *proof = &why->proof;
+    proof->bound = bound;
+    proof->rows.count = 0;
+    for (size_t i = 0; i < count; i++)
+        STARG_PUSH(context, STAGE, &proof->rows, *rows[i]);
+    branch_record_free(context, &proof->branches);
+    proof->branches = *branches;
+    *branches = (branch_record){0};
+done:
+    return status;
+}
+
+/* ---- the tree ---- */
+
+/* A cell of the certificate. Its number is that among the cells of the search. */
+typedef struct kept_cell {
+    uint32_t number;
+    uint32_t around; /* the number of the cell around it; UINT32_MAX: the root */
+    uint32_t row;    /* a leaf: that it lies in, if there are rows             */
+    bool leaf;
+    bool outside;        /* no point of it is in the free space                    */
+    size_t first, count; /* of the reasons                                         */
+} kept_cell;
+
+typedef struct stored_reason {
+    uint32_t vertex, seed;
+    uint16_t witness;
+    uint8_t kind;
+    bool clipped;
+} stored_reason;
+
+typedef struct making {
+    const search_scene *scene; /* first: as cells_worker_make wants it */
+    const search_cells *cells;
+    const bound_proof *proof;
+    witness_row wanted;              /* witnesses that the proof speaks of */
+    uint32_t number[MOST_WITNESSES]; /* of each of them in the text        */
+    uint64_t most;                   /* that a leaf may be worth           */
+    size_t hint;                     /* a row                              */
+    STARG_ARRAY(kept_cell) kept;     /* cells before their halves          */
+    stored_reason *reasons;
+} making;
+
+static void begin(making *m) {
+    uint64_t all = 0;
+    uint32_t count = 0;
+    bool rows = m->proof->rows.count > 0;
+    for (size_t j = 0; j < MOST_WITNESSES; j++) {
+        if (j < m->scene->witnesses.count && (rows || m->proof->price[j] > 0)) {
+            starg_bit_set(m->wanted.bits, j);
+            m->number[j] = count++;
+        }
+        all += m->proof->price[j];
+    }
+    if (!rows)
+        m->most = (all - 1) / (m->proof->bound - 1);
+}
+
+static bool is_cheap(const making *m, const witness_row *open) {
+    uint64_t sum = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, open->bits[w])
+            sum += m->proof->price[64 * w + bit];
+    return sum <= m->most;
+}
+
+/* The row that holds the witnesses, the one of the last time if it does; or UINT32_MAX. */
+static uint32_t row_around(making *m, const witness_row *open) {
+    const witness_row *rows = m->proof->rows.data;
+    if (row_is_within(open, &rows[m->hint]))
+        return (uint32_t)m->hint;
+    for (size_t i = 0; i < m->proof->rows.count; i++)
+        if (row_is_within(open, &rows[i])) {
+            m->hint = i;
+            return (uint32_t)i;
+        }
+    return UINT32_MAX;
+}
+
+static kept_cell judge(making *m, uint32_t number, uint32_t around) {
+    const search_cell *cell = &m->cells->data[number];
+    kept_cell kept = {.number = number, .around = around, .row = UINT32_MAX};
+    if (m->proof->rows.count > 0) {
+        kept.row = row_around(m, &cell->open);
+        kept.leaf = kept.row != UINT32_MAX;
+    } else
+        kept.leaf = is_cheap(m, &cell->open);
+    kept.leaf = kept.leaf || cell->children == 0;
+    return kept;
+}
+
+typedef struct pair {
+    uint32_t number, around;
+} pair;
+
+static starg_status choose_cells(making *m) {
+    starg_status status = STARG_OK;
+    starg_context *context = m->scene->context;
+    STARG_ARRAY(pair) stack = {0};
+    STARG_PUSH(context, STAGE, &stack, ((pair){0, UINT32_MAX}));
+    while (stack.count > 0) {
+        pair next = stack.data[--stack.count];
+        kept_cell kept = judge(m, next.number, next.around);
+        uint32_t children = m->cells->data[next.number].children;
+        STARG_PUSH(context, STAGE, &m->kept, kept);
+        if (kept.leaf)
+            continue;
+        STARG_PUSH(context, STAGE, &stack, ((pair){children + 1, next.number}));
+        STARG_PUSH(context, STAGE, &stack, ((pair){children, next.number}));
+    }
+done:
+    STARG_ARRAY_FREE(context, &stack);
+    return status;
+}
+
+/* ---- reasons ---- */
+
+/* What the cell does not see and the cell around it may see. */
+static witness_row hidden_here(const making *m, const kept_cell *kept) {
+    witness_row row = m->wanted;
+    for (int w = 0; w < WITNESS_WORDS; w++) {
+        if (kept->around != UINT32_MAX)
+            row.bits[w] &= m->cells->data[kept->around].open.bits[w];
+        row.bits[w] &= ~m->cells->data[kept->number].open.bits[w];
+    }
+    return row;
+}
+
+static starg_status find_reasons(starg_context *context, void *shared, void *scratch, size_t item) {
+    making *m = shared;
+    kept_cell *kept = &m->kept.data[item];
+    const search_scene *scene = m->scene;
+    const witness_row among = hidden_here(m, kept);
+    box_reason found[MOST_WITNESSES];
+    witness_row open;
+    size_t next = kept->first;
+    const box_question question = {.box = m->cells->data[kept->number].box,
+                                   .target = scene->view->target,
+                                   .targets = scene->witnesses.data,
+                                   .count = scene->witnesses.count,
+                                   .range = scene->view->range,
+                                   .among = among.bits};
+    (void)context;
+    box_look(scratch, &question, open.bits, found);
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, among.bits[w]) {
+            const box_reason *r = &found[64 * w + bit];
+            kept->outside = kept->outside || r->kind == BOX_OUTSIDE;
+            m->reasons[next++] = (stored_reason){r->vertex, r->seed, (uint16_t)(64 * w + bit),
+                                                 (uint8_t)r->kind, r->clipped};
+        }
+    return STARG_OK;
+}
+
+static starg_status find_all_reasons(making *m) {
+    starg_status status = STARG_OK;
+    starg_context *context = m->scene->context;
+    size_t count = 0;
+    for (size_t i = 0; i < m->kept.count; i++) {
+        const witness_row hidden = hidden_here(m, &m->kept.data[i]);
+        m->kept.data[i].first = count;
+        m->kept.data[i].count = starg_bit_count(hidden.bits, WITNESS_WORDS);
+        count += m->kept.data[i].count;
+    }
+    STARG_NEW(context, STAGE, m->reasons, count);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = m->kept.count,
+                                      .shared = m,
+                                      .item = find_reasons,
+                                      .make_scratch = cells_worker_make,
+                                      .free_scratch = cells_worker_free,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+done:
+    return status;
+}
+
+/* ---- the text ---- */
+
+/* A double as a whole number and a power of two. */
+static void put_double(FILE *stream, double x) {
+    int exponent;
+    long long whole = (long long)ldexp(frexp(x, &exponent), 53);
+    for (exponent -= 53; whole != 0 && whole % 2 == 0; exponent++)
+        whole /= 2;
+    fprintf(stream, " %lld:%d", whole, whole == 0 ? 0 : exponent);
+}
+
+static void put_head(FILE *stream, const starg_solid *solid, const starg_visibility_options *view,
+                     const bvh_box *root, size_t bound) {
+    const starg_mesh *mesh = solid->mesh;
+    uint64_t sum = STARG_CHECKSUM_BEGIN;
+    for (size_t f = 0; f < mesh->face_count; f++)
+        sum = starg_checksum_face(sum, mesh->vertices, mesh->faces + 3 * f);
+    fprintf(stream, "starguard-certificate 1\nvertices %zu\nfaces %zu\nchecksum %016llx\n",
+            mesh->vertex_count, mesh->face_count, (unsigned long long)sum);
+    fprintf(stream, "target %s\nrange",
+            view->target == STARG_TARGET_VERTICES ? "vertices" : "faces");
+    if (isinf(view->range))
+        fprintf(stream, " none");
+    else
+        put_double(stream, view->range);
+    fprintf(stream, "\nbound %zu\nroot", bound);
+    for (int k = 0; k < 3; k++)
+        put_double(stream, root->lower[k]);
+    for (int k = 0; k < 3; k++)
+        put_double(stream, root->upper[k]);
+    fprintf(stream, "\n");
+}
+
+static void put_witnesses(FILE *stream, const making *m) {
+    fprintf(stream, "witnesses %zu\n", starg_bit_count(m->wanted.bits, WITNESS_WORDS));
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, m->wanted.bits[w])
+            fprintf(stream, "%u\n", m->scene->witnesses.data[64 * w + bit]);
+}
+
+static void put_rows(FILE *stream, const making *m) {
+    fprintf(stream, "rows %zu\n", m->proof->rows.count);
+    for (size_t i = 0; i < m->proof->rows.count; i++) {
+        const char *before = "";
+        for (size_t w = 0; w < WITNESS_WORDS; w++)
+            STARG_FOR_BITS (bit, m->proof->rows.data[i].bits[w]) {
+                fprintf(stream, "%s%u", before, m->number[64 * w + bit]);
+                before = " ";
+            }
+        fprintf(stream, "\n");
+    }
+}
+
+static void put_reason(FILE *stream, const making *m, const stored_reason *r) {
+    static const char letters[2][BOX_KINDS + 1] = {"??rnspfe", "??RNSPFE"};
+    fprintf(stream, " %u%c", m->number[r->witness], letters[r->clipped][r->kind]);
+    if (r->vertex != BOX_NONE)
+        fprintf(stream, "%u", r->vertex);
+    if (r->seed != BOX_NONE)
+        fprintf(stream, ":%u", r->seed);
+}
+
+static void put_cells(FILE *stream, const making *m) {
+    fprintf(stream, "cells %zu\n", m->kept.count);
+    for (size_t i = 0; i < m->kept.count; i++) {
+        const kept_cell *kept = &m->kept.data[i];
+        if (!kept->leaf)
+            fprintf(stream, "%c", "xyz"[cell_cut_axis(&m->cells->data[kept->number].box)]);
+        else if (kept->outside)
+            fprintf(stream, "o");
+        else if (kept->row != UINT32_MAX)
+            fprintf(stream, "=%u", kept->row);
+        else
+            fprintf(stream, ".");
+        for (size_t r = 0; r < kept->count && !kept->outside; r++)
+            put_reason(stream, m, &m->reasons[kept->first + r]);
+        fprintf(stream, "\n");
+    }
+}
+
+static void put_prices(FILE *stream, const making *m) {
+    fprintf(stream, "nodes 1\nprices");
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        if (m->proof->price[j] > 0)
+            fprintf(stream, " %u:%llu", m->number[j], (unsigned long long)m->proof->price[j]);
+    fprintf(stream, "\n");
+}
+
+static void put_branches(FILE *stream, const making *m) {
+    const branch_record *record = &m->proof->branches;
+    fprintf(stream, "nodes %zu\n", record->nodes.count);
+    for (size_t i = 0; i < record->nodes.count; i++) {
+        const branch_node *node = &record->nodes.data[i];
+        const uint64_t *numbers = record->numbers.data + node->first;
+        if (node->witness == UINT32_MAX) {
+            fprintf(stream, "prices");
+            for (size_t k = 0; k < node->count; k += 2)
+                fprintf(stream, " %u:%llu", m->number[numbers[k]],
+                        (unsigned long long)numbers[k + 1]);
+        } else {
+            fprintf(stream, "witness %u", m->number[node->witness]);
+            for (size_t k = 0; k < node->count; k++)
+                fprintf(stream, " %llu", (unsigned long long)numbers[k]);
+        }
+        fprintf(stream, "\n");
+    }
+}
+
+typedef void put_text(FILE *stream, const void *what);
+
+static starg_status write_text(starg_context *context, put_text *put, const void *what,
+                               guard_certificate *why) {
+    starg_status status = STARG_OK;
+    char *bytes = NULL;
+    FILE *stream = open_memstream(&bytes, &why->size);
+    if (stream != NULL)
+        put(stream, what);
+    bool whole = stream != NULL && !ferror(stream);
+    if (stream == NULL || fclose(stream) != 0 || !whole) {
+        status = starg_fail_memory(context, STAGE);
+        goto done;
+    }
+    STARG_NEW(context, STAGE, why->text, why->size + 1);
+    memcpy(why->text, bytes, why->size + 1);
+done:
+    free(bytes);
+    return status;
+}
+
+static void put_search(FILE *stream, const void *what) {
+    const making *m = what;
+    put_head(stream, m->scene->solid, m->scene->view, &m->cells->data[0].box, m->proof->bound);
+    put_witnesses(stream, m);
+    put_rows(stream, m);
+    put_cells(stream, m);
+    if (m->proof->rows.count > 0)
+        put_branches(stream, m);
+    else
+        put_prices(stream, m);
+}
+
+starg_status certificate_of_search(const search_scene *scene, const search_cells *cells,
+                                   guard_certificate *why) {
+    starg_status status = STARG_OK;
+    making m = {.scene = scene, .cells = cells, .proof = &why->proof};
+    begin(&m);
+    STARG_TRY(choose_cells(&m));
+    STARG_TRY(find_all_reasons(&m));
+    STARG_TRY(write_text(scene->context, put_search, &m, why));
+done:
+    STARG_ARRAY_FREE(scene->context, &m.kept);
+    starg_release(scene->context, m.reasons);
+    return status;
+}
+
+/* ---- one guard or none ---- */
+
+typedef struct single {
+    const starg_solid *solid;
+    const starg_visibility_options *view;
+    uint32_t witness;
+} single;
+
+static void put_single(FILE *stream, const void *what) {
+    const single *s = what;
+    put_head(stream, s->solid, s->view, &s->solid->tree->nodes[0].box, s->witness != UINT32_MAX);
+    if (s->witness == UINT32_MAX)
+        fprintf(stream, "witnesses 0\nrows 0\ncells 1\n.\nnodes 0\n");
+    else
+        fprintf(stream, "witnesses 1\n%u\nrows 0\ncells 1\n.\nnodes 0\n", s->witness);
+}
+
+starg_status certificate_of_one(starg_context *context, const starg_solid *solid,
+                                const starg_visibility_options *view, uint32_t witness,
+                                guard_certificate *why) {
+    const single s = {solid, view, witness};
+    return write_text(context, put_single, &s, why);
+}
+
+starg_status starg_certificate_write(starg_context *context, const char *text, size_t size,
+                                     const char *path) {
+    starg_status status = STARG_OK;
+    starg_output output = {0};
+    STARG_TRY(starg_output_open(context, STAGE, path, &output));
+    fwrite(text, 1, size, output.stream);
+    STARG_TRY(starg_output_commit(&output));
+done:
+    return status;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Why a bound for guards anywhere holds, as a text that verify checks (docs/formats.md). */
+#ifndef STARG_GUARD_CERTIFICATE_H
+#define STARG_GUARD_CERTIFICATE_H
+
+#include "guard/bound.h"
+#include "guard/cells.h"
+
+/* What proves the bound: prices, or rows that cannot do with fewer, by branching. */
+typedef struct bound_proof {
+    size_t bound;
+    uint64_t price[MOST_WITNESSES]; /* without rows */
+    STARG_ARRAY(witness_row) rows;  /* each leaf is within one of them */
+    branch_record branches;
+} bound_proof;
+
+typedef struct guard_certificate {
+    bound_proof proof;
+    char *text; /* NULL until it is written */
+    size_t size;
+} guard_certificate;
+
+void certificate_free(starg_context *context, guard_certificate *why);
+
+/* Remembers what has proven `bound`, if that is more than before. `why` may be NULL. */
+void certificate_note_prices(guard_certificate *why, size_t bound,
+                             const uint64_t price[MOST_WITNESSES]);
+/* The same for rows; `branches` is taken over. Errors: MEMORY. */
+starg_status certificate_note_rows(starg_context *context, guard_certificate *why, size_t bound,
+                                   const witness_row *const *rows, size_t count,
+                                   branch_record *branches);
+
+/* Writes the text from what was noted and the tree of cells, whose reasons are found again. Errors:
+ * MEMORY, CANCELLED. */
+starg_status certificate_of_search(const search_scene *scene, const search_cells *cells,
+                                   guard_certificate *why);
+
+/* The text for a bound of 1, where `witness` is to be seen, or of 0 where nothing is (UINT32_MAX).
+ * Errors: MEMORY. */
+starg_status certificate_of_one(starg_context *context, const starg_solid *solid,
+                                const starg_visibility_options *view, uint32_t witness,
+                                guard_certificate *why);
+
+#endif

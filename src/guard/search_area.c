@@ -1,0 +1,265 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* How much could guards anywhere see, and how few could see a part of everything?
+ *
+ * With a part of the area as the goal every face counts, so that each cell has a row over all of
+ * them: what it may see. k guards stand in k cells or fewer, and see no more than the rows of these
+ * cells hold together. So a bound for choosing rows of cells is one for guards anywhere: of the
+ * weight that max_guards rows hold, or of how few rows hold the weight that is wanted; it comes
+ * from the integer bounds of the cover (starguard/cover.h). Where faces are to be seen by several
+ * guards, what is seen often enough is seen once, and the bound holds as well.
+ *
+ * Cells are split in the middle of their longest sides: first those of the best choice, then those
+ * that may see most. The cover is asked whenever there are half as many more.
+ *
+ * Invariant: the rows' cells hold all of the free space. Cost: a box test for each face that the
+ * cell before may see; it ends with the budget. Independent of the number of threads. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/parallel.h"
+#include "guard/candidates.h"
+#include "guard/search_parts.h"
+
+static const char STAGE[] = "search";
+
+enum { LEAST_BATCH = 8 };
+
+typedef struct area_cell {
+    bvh_box box;
+    uint64_t *open; /* bits by column: what any point of the box sees, and perhaps more */
+    uint64_t weight, work;
+    bool chosen; /* by the best choice of cells */
+} area_cell;
+
+typedef struct area_search {
+    const search_scene *scene; /* first: as cells_worker_make wants it */
+    const guard_problem *problem;
+    const guard_pool *pool;
+    STARG_ARRAY(area_cell) cells; /* leaves only */
+    size_t asked_at;              /* cells when the cover was asked */
+    size_t bound;                 /* how few could see what is wanted   */
+    uint64_t weight_bound;        /* how much max_guards could see      */
+    uint64_t seen;                /* how much the guards see            */
+    uint64_t work;
+    scored_leaf *list; /* cells that are being split, each followed by its other half */
+    area_cell *parts;
+} area_search;
+
+static void look(const area_search *a, box_worker *worker, const uint64_t *among, area_cell *cell) {
+    uint64_t before = box_worker_tests(worker);
+    const box_question question = {.box = cell->box,
+                                   .target = a->scene->view->target,
+                                   .count = a->pool->columns,
+                                   .range = a->scene->view->range,
+                                   .among = among};
+    if (!search_scene_bars(a->scene, &cell->box))
+        box_look(worker, &question, cell->open, NULL);
+    cell->weight = 0;
+    for (size_t w = 0; w < starg_bit_words(a->pool->columns); w++)
+        STARG_FOR_BITS (bit, cell->open[w])
+            cell->weight += a->problem->weights.weights[64 * w + bit];
+    cell->work = box_worker_tests(worker) - before + a->pool->columns / 100 + 1;
+}
+
+static starg_status look_from_part(starg_context *context, void *shared, void *scratch,
+                                   size_t item) {
+    const area_search *a = shared;
+    (void)context;
+    look(a, scratch, a->cells.data[a->list[item / 2].cell].open, &a->parts[item]);
+    return STARG_OK;
+}
+
+static void free_parts(area_search *a, size_t count) {
+    for (size_t i = 0; a->parts != NULL && i < count; i++)
+        starg_release(a->scene->context, a->parts[i].open);
+    starg_release(a->scene->context, a->parts);
+    a->parts = NULL;
+}
+
+/* One half takes the place of the cell, the other one comes last. */
+static starg_status take_parts(area_search *a, size_t count) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < 2 * count; i++) {
+        area_cell part = a->parts[i];
+        a->work += part.work;
+        if (i % 2 == 0) {
+            a->parts[i].open = a->cells.data[a->list[i / 2].cell].open;
+            a->cells.data[a->list[i / 2].cell] = part;
+            continue;
+        }
+        STARG_PUSH(a->scene->context, STAGE, &a->cells, part);
+        a->parts[i].open = NULL;
+    }
+done:
+    return status;
+}
+
+/* Splits the cells at the front of the list. */
+static starg_status split(area_search *a, size_t count) {
+    starg_status status = STARG_OK;
+    starg_context *context = a->scene->context;
+    STARG_NEW_ZERO(context, STAGE, a->parts, 2 * count);
+    for (size_t i = 0; i < 2 * count; i++) {
+        a->parts[i].box = cell_half(&a->cells.data[a->list[i / 2].cell].box, i % 2 != 0);
+        STARG_NEW_ZERO(context, STAGE, a->parts[i].open, starg_bit_words(a->pool->columns));
+    }
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = 2 * count,
+                                      .shared = a,
+                                      .item = look_from_part,
+                                      .make_scratch = cells_worker_make,
+                                      .free_scratch = cells_worker_free,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    STARG_TRY(take_parts(a, count));
+done:
+    free_parts(a, 2 * count);
+    return status;
+}
+
+static starg_status begin(area_search *a) {
+    starg_status status = STARG_OK;
+    search_cells root = {0};
+    area_cell cell = {0};
+    STARG_TRY(cells_begin(a->scene, &root));
+    cell.box = root.data[0].box;
+    STARG_NEW(a->scene->context, STAGE, cell.open, starg_bit_words(a->pool->columns));
+    memset(cell.open, 0xff, starg_bit_words(a->pool->columns) * sizeof *cell.open);
+    for (size_t j = a->pool->columns; j < 64 * starg_bit_words(a->pool->columns); j++)
+        starg_bit_clear(cell.open, j);
+    cell.weight = a->problem->weights.total;
+    STARG_PUSH(a->scene->context, STAGE, &a->cells, cell);
+    cell.open = NULL;
+done:
+    STARG_ARRAY_FREE(a->scene->context, &root);
+    starg_release(a->scene->context, cell.open);
+    return status;
+}
+
+/* How few rows of cells, or how much they hold. */
+static starg_status ask_cover(area_search *a) {
+    starg_status status = STARG_OK;
+    starg_context *context = a->scene->context;
+    const starg_guard_options *o = a->problem->options;
+    starg_bits *rows = NULL;
+    starg_cover *cover = NULL;
+    starg_cover_problem problem;
+    starg_cover_options options;
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    STARG_TRY(starg_bits_create(context, a->cells.count, a->pool->columns, &rows));
+    for (size_t i = 0; i < a->cells.count; i++) {
+        memcpy(starg_bits_row_mutable(rows, i), a->cells.data[i].open,
+               rows->words * sizeof *rows->data);
+        a->cells.data[i].chosen = false;
+    }
+    problem.rows = rows;
+    problem.weights = a->problem->weights.weights;
+    problem.max_rows = o->max_guards;
+    problem.target = choose_target(a->pool, &a->problem->weights);
+    options.max_nodes = 0;
+    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    for (size_t i = 0; i < cover->count; i++)
+        a->cells.data[cover->rows[i]].chosen = true;
+    if (o->max_guards > 0 && cover->weight_bound < a->weight_bound)
+        a->weight_bound = cover->weight_bound;
+    if (o->max_guards == 0 && cover->lower_bound > a->bound)
+        a->bound = cover->lower_bound;
+    a->work += a->cells.count * a->pool->columns / 16;
+    a->asked_at = a->cells.count;
+done:
+    starg_bits_free(rows);
+    starg_cover_free(cover);
+    return status;
+}
+
+static starg_status split_best(area_search *a, bool *any) {
+    starg_status status = STARG_OK;
+    size_t count = 0, batch = a->cells.count / 4;
+    batch = batch < LEAST_BATCH ? LEAST_BATCH : batch;
+    STARG_NEW(a->scene->context, STAGE, a->list, a->cells.count);
+    for (size_t i = 0; i < a->cells.count; i++) {
+        const area_cell *cell = &a->cells.data[i];
+        if (cell->weight > 0 && cell_splits(&cell->box))
+            a->list[count++] =
+                (scored_leaf){cell->chosen ? INFINITY : (double)cell->weight, (uint32_t)i};
+    }
+    qsort(a->list, count, sizeof *a->list, search_by_score);
+    *any = count > 0;
+    STARG_TRY(split(a, count < batch ? count : batch));
+done:
+    starg_release(a->scene->context, a->list);
+    a->list = NULL;
+    return status;
+}
+
+/* The weight that the chosen candidates see. */
+static uint64_t seen_weight(const area_search *a, const guard_selection *selection) {
+    uint64_t seen = 0;
+    for (size_t w = 0; w < a->pool->rows->words; w++) {
+        uint64_t joined = 0;
+        for (size_t i = 0; i < selection->chosen.count; i++)
+            joined |= starg_bits_row(a->pool->rows, selection->chosen.data[i])[w];
+        STARG_FOR_BITS (bit, joined)
+            seen += a->problem->weights.weights[64 * w + bit];
+    }
+    return seen;
+}
+
+/* Is there nothing left to prove? */
+static bool is_proven(const area_search *a, const guard_selection *selection) {
+    if (a->problem->options->max_guards > 0)
+        return a->weight_bound <= a->seen;
+    return a->bound >= selection->chosen.count;
+}
+
+static starg_status run(area_search *a, const guard_selection *selection) {
+    starg_status status = STARG_OK;
+    starg_context *context = a->scene->context;
+    uint64_t most = a->problem->options->prove_work;
+    bool any = true;
+    while (any && a->work < most && !is_proven(a, selection) && !starg_time_is_over(context)) {
+        starg_progress_step(context, a->work, most);
+        STARG_TRY(starg_check_cancel(context, STAGE));
+        STARG_TRY(split_best(a, &any));
+        if (2 * a->cells.count > 3 * a->asked_at)
+            STARG_TRY(ask_cover(a));
+    }
+    if (!is_proven(a, selection) && a->cells.count > a->asked_at)
+        STARG_TRY(ask_cover(a));
+done:
+    return status;
+}
+
+starg_status search_area(const guard_problem *problem, const guard_pool *pool,
+                         guard_selection *selection, search_record *out) {
+    starg_status status = STARG_OK;
+    search_scene scene = {0};
+    area_search a = {.scene = &scene,
+                     .problem = problem,
+                     .pool = pool,
+                     .bound = selection->chosen.count > 0,
+                     .weight_bound = problem->weights.total};
+    starg_progress_begin(problem->context, STAGE);
+    STARG_TRY(search_scene_open(problem->context, problem->solid, &problem->options->visibility,
+                                problem->options->clearance, &scene));
+    scene.bars = true;
+    a.seen = seen_weight(&a, selection);
+    STARG_TRY(begin(&a));
+    STARG_TRY(run(&a, selection));
+    selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
+    *out = (search_record){.cells = a.cells.count, .prove_work = a.work};
+    if (problem->options->max_guards > 0)
+        out->weight_bound = a.weight_bound;
+    else
+        out->bound = a.bound;
+    selection->lower_bound =
+        out->bound > selection->lower_bound ? out->bound : selection->lower_bound;
+done:
+    for (size_t i = 0; i < a.cells.count; i++)
+        starg_release(problem->context, a.cells.data[i].open);
+    STARG_ARRAY_FREE(problem->context, &a.cells);
+    search_scene_close(&scene);
+    starg_progress_end(problem->context);
+    return status;
+}

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Better guards, without a bound: what `guard` does with its candidates unless told otherwise.
+ *
+ * A round does the first of these that finds something, by turns:
+ *   1. points that are worth more than 1 by the prices, by moving known ones
+ * (guard/search_moves.c);
+ *   2. the linear program over all faces and the candidates: faces that it pays for become
+ *      witnesses, and what covers everything with fewer guards is taken;
+ *   3. the integer program over the points: better guards, or witnesses that these miss;
+ *   4. faces that the fractional cover sees too little become witnesses;
+ *   5. cells that may be worth more than 1 are split, each with two more points.
+ * It ends when rounds have found nothing PATIENCE times, or with the budget. At last the points are
+ * asked again; if that comes to no end, the most valuable points become candidates, and an integer
+ * program over all faces chooses among these. */
+#include <stdlib.h>
+
+#include "guard/search_parts.h"
+
+enum { TRIES = 2, PATIENCE = 4, MOST_HELD = 250, ASKED = 4 };
+
+static const char STAGE[] = "search";
+
+/* Programs grow with the guards, and what each point is held against with the faces. */
+static uint64_t default_work(const search *s) {
+    return 400000 + 70 * s->pool->columns + 40000 * s->count + 3 * s->count * s->pool->columns;
+}
+
+uint64_t search_improve_work(const search *s) {
+    uint64_t asked = s->problem->options->refine_lines;
+    return asked == STARG_DEFAULT_LINES ? default_work(s) : asked;
+}
+
+starg_status search_improve(search *s, row_list *list) {
+    starg_status status = STARG_OK;
+    scored_leaf *leaves = NULL;
+    size_t count;
+    double most;
+    bool changed = false;
+    STARG_TRY(search_find_prices(s, list));
+    if (s->moves % 4 < 2) {
+        STARG_TRY(search_move(s, &most));
+        if (most > 1 + SEARCH_GAP)
+            goto done;
+    }
+    if (s->moves++ % 4 != 3) {
+        STARG_TRY(search_ask_pool(s, list, &changed));
+        if (changed)
+            goto done;
+    }
+    if (search_has_room(s)) {
+        size_t before = s->count;
+        STARG_TRY(search_ask_points(s, &changed));
+        if (s->count < before)
+            s->idle = 0;
+    }
+    if (changed)
+        goto done;
+    STARG_TRY(search_add_short(s, list, &changed));
+    if (changed)
+        goto done;
+    STARG_TRY(search_list_leaves(s, 1, &leaves, &count));
+    if (count > 0)
+        STARG_TRY(search_split(s, leaves, count, TRIES));
+    s->ended = count == 0 || ++s->idle > PATIENCE;
+done:
+    starg_release(context_of(s), leaves);
+    return status;
+}
+
+/* Asks for fewer guards among the points that are known. *open: there may be some. */
+static starg_status ask_again(search *s, bool *open) {
+    starg_status status = STARG_OK;
+    row_list list = {0};
+    *open = true;
+    STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
+    for (int k = 0; k < ASKED && *open; k++) {
+        STARG_TRY(search_find_prices(s, &list));
+        STARG_TRY(search_bound_points(s));
+        *open = s->known < s->count;
+        if (*open)
+            STARG_TRY(search_ask_points(s, open));
+    }
+done:
+    row_list_free(context_of(s), &list);
+    return status;
+}
+
+/* The most valuable points become candidates. */
+static starg_status hold_best(search *s) {
+    starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
+    scored_leaf *scored = NULL;
+    uint32_t *best = NULL;
+    size_t count = 0;
+    STARG_NEW(context, STAGE, scored, s->points.count);
+    STARG_NEW(context, STAGE, best, s->points.count);
+    for (size_t i = 0; i < s->points.count; i++) {
+        double value = row_value(&s->points.data[i].seen, s->prices.price);
+        if (s->points.data[i].candidate == UINT32_MAX && value > 0.9)
+            scored[count++] = (scored_leaf){value, (uint32_t)i};
+    }
+    qsort(scored, count, sizeof *scored, search_by_score);
+    if (count > MOST_HELD)
+        count = MOST_HELD;
+    for (size_t i = 0; i < count; i++)
+        best[i] = scored[i].cell;
+    STARG_TRY(search_hold(s, best, count));
+done:
+    starg_release(context, scored);
+    starg_release(context, best);
+    return status;
+}
+
+starg_status search_close(search *s) {
+    starg_status status = STARG_OK;
+    starg_cover *cover = NULL;
+    bool open = false;
+    const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
+    STARG_TRY(ask_again(s, &open));
+    if (!open || starg_time_is_over(context_of(s)))
+        goto done;
+    STARG_TRY(hold_best(s));
+    STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
+    STARG_TRY(search_take_cover(s, cover));
+    s->known = cover->lower_bound > s->known ? cover->lower_bound : s->known;
+done:
+    starg_cover_free(cover);
+    return status;
+}

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Column generation for a search: which points are worth more than 1 by the prices?
+ *
+ * Each priced witness, a source, remembers the most valuable point known that sees it, and lets it
+ * move:
+ *   - about where it stands, by a step that shrinks from generation to generation;
+ *   - towards the best point of another source nearby, into the space that both could share;
+ *   - in front of its own face, where it is seen from.
+ * All proposals of a generation are looked at together, and a point that is better for any source
+ * replaces that source's point; one that is as good does too, so that sources wander over plateaus.
+ * At the end the new points of the sources that are worth 1 or more join the points of the search:
+ * with less than 1 a point cannot pay, with just 1 it may, together with others, because the prices
+ * of a program with many optima are only some of those that would do.
+ *
+ * A proposal is held against the planes of the witnesses first, and then against the witnesses, the
+ * dearest first, until it is clear that it is worth less than what its source has.
+ *
+ * Everything depends on the seed, the call and the source only. Cost: O(log n) for each sight line;
+ * at most PROPOSALS x GENERATIONS x sources x witnesses of them a call. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "guard/candidates.h"
+#include "guard/search_parts.h"
+
+static const char STAGE[] = "search";
+
+enum {
+    MOST_SOURCES = 512,
+    GENERATIONS = 2,
+    LEAST_PROPOSALS = 1000,
+    NEIGHBOURS = 8,
+    RANDOM_STAGE = 28
+};
+
+static const double LEAST_PRICE = 1e-3, WORTH = 1 - 2e-3, FIRST_STEP = 0.6, TIE = 1e-6,
+                    STEP_FACTOR = 0.6;
+
+typedef struct source {
+    uint32_t witness;
+    double price;
+    double centre[3];  /* of the face; the vertex */
+    search_point best; /* the most valuable point known that sees it */
+    double value;
+    bool is_new;               /* `best` is no point of the search yet */
+    uint32_t near[NEIGHBOURS]; /* sources; count in near_count */
+    int near_count;
+} source;
+
+typedef struct proposal {
+    search_point point;
+    double value; /* 0: less than `least` */
+    double least;
+    uint32_t by; /* witness of its source, which it must see */
+    uint64_t work;
+} proposal;
+
+typedef struct moving {
+    search *s;
+    source *sources;
+    size_t count;
+    proposal *proposals; /* of a generation: `each` a source */
+    size_t each;
+    witness_row rest; /* witnesses that are no sources */
+} moving;
+
+static int by_price(const void *a, const void *b) {
+    const source *x = a, *y = b;
+    if (x->price != y->price)
+        return x->price > y->price ? -1 : 1;
+    return (x->witness > y->witness) - (x->witness < y->witness);
+}
+
+/* Sources, the dearest first, and what is left. */
+static starg_status list_sources(moving *m) {
+    starg_status status = STARG_OK;
+    const search_scene *scene = &m->s->scene;
+    size_t all = scene->witnesses.count;
+    STARG_NEW_ZERO(scene->context, STAGE, m->sources, all);
+    for (size_t j = 0; j < all; j++)
+        m->sources[j] = (source){.witness = (uint32_t)j, .price = m->s->prices.price[j]};
+    qsort(m->sources, all, sizeof *m->sources, by_price);
+    while (m->count < all && m->count < MOST_SOURCES && m->sources[m->count].price > LEAST_PRICE)
+        m->count++;
+    for (size_t i = m->count; i < all; i++)
+        starg_bit_set(m->rest.bits, m->sources[i].witness);
+    for (size_t i = 0; i < m->count; i++)
+        search_scene_centre(scene, m->sources[i].witness, m->sources[i].centre);
+done:
+    return status;
+}
+
+/* Offers a point to the sources that it sees. */
+static void offer(moving *m, const search_point *point, double value, bool is_new) {
+    for (size_t i = 0; i < m->count; i++) {
+        source *n = &m->sources[i];
+        if (value < (is_new ? n->value - TIE : n->value + TIE) ||
+            !starg_bit_test(point->seen.bits, n->witness))
+            continue;
+        n->value = value;
+        n->is_new = is_new;
+        n->best = *point;
+    }
+}
+
+static void offer_known(moving *m) {
+    for (size_t i = 0; i < m->s->points.count; i++) {
+        const search_point *point = &m->s->points.data[i];
+        offer(m, point, row_value(&point->seen, m->s->prices.price), false);
+    }
+}
+
+/* The sources whose best points stand closest, nearest first. */
+static void find_neighbours(moving *m) {
+    for (size_t i = 0; i < m->count; i++) {
+        source *n = &m->sources[i];
+        double distance[NEIGHBOURS];
+        n->near_count = 0;
+        for (size_t j = 0; j < m->count; j++) {
+            double d = vec3_distance(n->best.place, m->sources[j].best.place);
+            int at = n->near_count;
+            if (j == i || !(d > 0) || (at == NEIGHBOURS && d >= distance[at - 1]))
+                continue;
+            if (at < NEIGHBOURS)
+                n->near_count++;
+            else
+                at--;
+            for (; at > 0 && distance[at - 1] > d; at--) {
+                distance[at] = distance[at - 1];
+                n->near[at] = n->near[at - 1];
+            }
+            distance[at] = d;
+            n->near[at] = (uint32_t)j;
+        }
+    }
+}
+
+/* A vector in the unit ball. */
+static void random_ball(starg_rng *rng, double out[3]) {
+    do {
+        for (int k = 0; k < 3; k++)
+            out[k] = 2 * starg_rng_unit(rng) - 1;
+    } while (vec3_dot(out, out) > 1);
+}
+
+static void propose(const moving *m, const source *n, int kind, double step, starg_rng *rng,
+                    double p[3]) {
+    const double *best = n->best.place;
+    double shift[3], reach = vec3_distance(best, n->centre);
+    random_ball(rng, shift);
+    if (kind == 1 && n->near_count > 0) {
+        const double *other =
+            m->sources[n->near[starg_rng_below(rng, (uint64_t)n->near_count)]].best.place;
+        double t = starg_rng_unit(rng);
+        for (int k = 0; k < 3; k++)
+            p[k] = best[k] + t * (other[k] - best[k]);
+        vec3_along(p, 0.3 * step * vec3_distance(best, other), shift, p);
+    } else if (kind == 2) {
+        double t = 0.3 + 1.2 * starg_rng_unit(rng);
+        for (int k = 0; k < 3; k++)
+            p[k] = n->centre[k] + t * (best[k] - n->centre[k]);
+        vec3_along(p, step * t * reach, shift, p);
+    } else {
+        vec3_along(best, step * reach, shift, p);
+    }
+}
+
+/* A direction near that of the source's best. */
+static void turn(const source *n, double step, starg_rng *rng, double direction[3]) {
+    double shift[3];
+    random_ball(rng, shift);
+    vec3_along(n->best.direction, step, shift, direction);
+    double length = vec3_length(direction);
+    for (int k = 0; k < 3 && length > 0; k++)
+        direction[k] /= length;
+}
+
+static bool look_at(const search_scene *scene, proposal *q, uint32_t witness) {
+    uint64_t work = 0;
+    bool sees = search_scene_sees(scene, &q->point, witness, &work);
+    if (sees)
+        starg_bit_set(q->point.seen.bits, witness);
+    q->work += 2 * work;
+    return sees;
+}
+
+/* Sets what a proposal sees of the sources' witnesses, or gives up as soon as it is worth less than
+ * it must. */
+static starg_status look_from(starg_context *context, void *shared, void *scratch, size_t item) {
+    const moving *m = shared;
+    const search_scene *scene = &m->s->scene;
+    const double *price = m->s->prices.price;
+    proposal *q = &m->proposals[item];
+    uint32_t left[MOST_WITNESSES];
+    size_t count = 0;
+    double open = 0;
+    (void)context;
+    (void)scratch;
+    if (!candidates_allowed(scene->solid, q->point.place, scene->clearance) ||
+        !look_at(scene, q, q->by))
+        return STARG_OK;
+    for (size_t i = 0; i < m->count; i++) {
+        uint32_t j = m->sources[i].witness;
+        if (!search_scene_may_see(scene, q->point.place, j))
+            continue;
+        left[count++] = j;
+        open += price[j];
+    }
+    q->work += m->count / 50 + 1;
+    for (size_t i = 0; i < count && open >= q->least; i++) {
+        if (left[i] != q->by && !look_at(scene, q, left[i]))
+            open -= price[left[i]];
+    }
+    q->value = open >= q->least ? row_value(&q->point.seen, price) : 0;
+    return STARG_OK;
+}
+
+/* Every source proposes, and takes what is better. */
+static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, double step) {
+    starg_status status = STARG_OK;
+    search_scene *scene = &m->s->scene;
+    bool cone = scene->view->cone < 360;
+    for (size_t i = 0; i < m->count; i++) {
+        const source *n = &m->sources[i];
+        starg_rng rng =
+            starg_rng_make(scene->context->seed, RANDOM_STAGE + call * GENERATIONS + generation,
+                           scene->witnesses.data[n->witness]);
+        for (size_t kind = 0; kind < m->each; kind++) {
+            proposal *q = &m->proposals[m->each * i + kind];
+            *q = (proposal){.point.candidate = UINT32_MAX,
+                            .by = n->witness,
+                            .least = fmin(n->value, WORTH) - TIE};
+            propose(m, n, (int)kind % 3, step, &rng, q->point.place);
+            if (cone)
+                turn(n, step, &rng, q->point.direction);
+        }
+    }
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = m->each * m->count,
+                                      .shared = m,
+                                      .item = look_from,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(scene->context, &loop));
+    for (size_t k = 0; k < m->each * m->count; k++) {
+        const proposal *q = &m->proposals[k];
+        if (q->value > 0)
+            offer(m, &q->point, q->value, true);
+        scene->work += q->work;
+    }
+done:
+    return status;
+}
+
+static bool stands_before(const moving *m, size_t index) {
+    const search_point *p = &m->sources[index].best;
+    for (size_t i = 0; i < index; i++)
+        if (vec3_equal(m->sources[i].best.place, p->place) &&
+            vec3_equal(m->sources[i].best.direction, p->direction))
+            return true;
+    return false;
+}
+
+/* Points of the sources that are worth it join those of the search. */
+static starg_status take_best(moving *m, double *most) {
+    starg_status status = STARG_OK;
+    search *s = m->s;
+    size_t first = s->points.count;
+    *most = 0;
+    for (size_t i = 0; i < m->count; i++)
+        if (m->sources[i].is_new && m->sources[i].value > WORTH && !stands_before(m, i)) {
+            STARG_PUSH(context_of(s), STAGE, &s->points, m->sources[i].best);
+            *most = fmax(*most, m->sources[i].value);
+        }
+    STARG_TRY(points_look_at(&s->scene, s->points.data + first, s->points.count - first, &m->rest));
+    search_prune_points(s, first);
+done:
+    return status;
+}
+
+starg_status search_move(search *s, double *most) {
+    starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
+    moving m = {.s = s};
+    double step = FIRST_STEP;
+    *most = 0;
+    STARG_TRY(list_sources(&m));
+    m.each = 2 + LEAST_PROPOSALS / (m.count + 1);
+    STARG_NEW(context, STAGE, m.proposals, m.each * m.count);
+    offer_known(&m);
+    for (uint64_t g = 0; g < GENERATIONS && s->scene.work < s->budget; g++, step *= STEP_FACTOR) {
+        find_neighbours(&m);
+        STARG_TRY(move_sources(&m, s->moves, g, step));
+        if (starg_time_is_over(context))
+            break;
+    }
+    s->moves++;
+    STARG_TRY(take_best(&m, most));
+done:
+    starg_release(context, m.sources);
+    starg_release(context, m.proposals);
+    return status;
+}

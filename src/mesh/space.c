@@ -1,0 +1,409 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Scenes: a solid with obstacles in it, or what is around one.
+ *
+ * One representation serves all: a closed, oriented mesh, and a number, `ambient`, that is added to
+ * its winding number. Where the sum is at least 1, space is free.
+ *   - A solid as it is: ambient 0.
+ *   - Its outside: ambient 1 and all faces reversed.
+ *   - A closed obstacle: its faces, reversed, follow those of the model; the winding number within
+ *     it is one less.
+ *   - An open obstacle: each of its triangles stands twice, front and back. A triangle with its
+ *     back is a closed surface about nothing: it blocks the view and is wound around nowhere.
+ * So the exact engines see a closed mesh in any case. What they win by an embedded boundary, of
+ * which no face has free space on its outer side, they may win where the whole mesh is such a one;
+ * that is found out by examining it once more.
+ *
+ * Cost: that of the examinations. */
+#include <math.h>
+#include <string.h>
+
+#include "core/bits.h"
+#include "core/memory.h"
+#include "mesh/examine.h"
+#include "mesh/solid.h"
+
+static const char STAGE[] = "scene";
+
+void starg_space_options_default(starg_space_options *options) {
+    *options = (starg_space_options){.standoff_most = INFINITY};
+}
+
+static bool is_bounded(const starg_space_options *o) {
+    bool any = false;
+    for (int k = 0; k < 6; k++)
+        any = any || o->within[k] != 0;
+    return any;
+}
+
+/* ---- arguments ---- */
+
+static starg_status check_options(starg_context *context, const starg_space_options *o) {
+    if (o->orientation > STARG_ORIENTATION_KEEP)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "unknown orientation %d",
+                          (int)o->orientation);
+    if (!(o->standoff_least >= 0 && o->standoff_least < 1e100 &&
+          o->standoff_most >= o->standoff_least))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "guards cannot stand at distances from %g to %g; the least must be zero "
+                          "or more and the largest no smaller",
+                          o->standoff_least, o->standoff_most);
+    for (int k = 0; is_bounded(o) && k < 3; k++)
+        if (!(fabs(o->within[k]) < 1e100 && fabs(o->within[k + 3]) < 1e100 &&
+              o->within[k] < o->within[k + 3]))
+            return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                              "the box for guards reaches from %g to %g along %c; both must be "
+                              "finite and in this order",
+                              o->within[k], o->within[k + 3], "xyz"[k]);
+    return STARG_OK;
+}
+
+/* ---- the parts ---- */
+
+typedef struct parts {
+    starg_context *context;
+    STARG_ARRAY(double) vertices;
+    STARG_ARRAY(uint32_t) faces;
+    size_t sheet_faces;
+} parts;
+
+static void parts_free(parts *p) {
+    STARG_ARRAY_FREE(p->context, &p->vertices);
+    STARG_ARRAY_FREE(p->context, &p->faces);
+}
+
+static starg_status push_face(parts *p, const uint32_t *corners, uint32_t offset, bool reversed) {
+    starg_status status = STARG_OK;
+    STARG_PUSH(p->context, STAGE, &p->faces, corners[0] + offset);
+    STARG_PUSH(p->context, STAGE, &p->faces, corners[reversed ? 2 : 1] + offset);
+    STARG_PUSH(p->context, STAGE, &p->faces, corners[reversed ? 1 : 2] + offset);
+done:
+    return status;
+}
+
+static starg_status push_vertices(parts *p, const starg_mesh *mesh, uint32_t *offset) {
+    starg_status status = STARG_OK;
+    *offset = (uint32_t)(p->vertices.count / 3);
+    if (mesh->vertex_count + *offset >= UINT32_MAX / 4)
+        return starg_fail(p->context, STARG_ERROR_RANGE, STAGE, "too many vertices");
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        STARG_PUSH(p->context, STAGE, &p->vertices, mesh->vertices[i]);
+done:
+    return status;
+}
+
+static starg_status push_closed(parts *p, const starg_mesh *mesh, bool reversed) {
+    starg_status status = STARG_OK;
+    uint32_t offset;
+    STARG_TRY(push_vertices(p, mesh, &offset));
+    for (size_t f = 0; f < mesh->face_count; f++)
+        STARG_TRY(push_face(p, mesh->faces + 3 * f, offset, reversed));
+done:
+    return status;
+}
+
+static bool repeats_a_corner(const uint32_t *c) {
+    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
+}
+
+/* Corners at one position become one vertex: at its own corners a triangle blocks nothing. */
+static starg_status push_sheet(parts *p, const starg_mesh *mesh) {
+    starg_status status = STARG_OK;
+    uint32_t *first = NULL, offset;
+    size_t count;
+    STARG_TRY(mesh_find_coincident(p->context, mesh, &first, &count));
+    STARG_TRY(push_vertices(p, mesh, &offset));
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        const uint32_t *given = mesh->faces + 3 * f;
+        const uint32_t corners[3] = {first[given[0]], first[given[1]], first[given[2]]};
+        if (repeats_a_corner(corners))
+            continue;
+        STARG_TRY(push_face(p, corners, offset, false));
+        STARG_TRY(push_face(p, corners, offset, true));
+        p->sheet_faces += 2;
+    }
+done:
+    starg_release(p->context, first);
+    return status;
+}
+
+/* ---- the model ---- */
+
+/* A solid's faces face out of it, or as given; those of the scene face out of the free space. */
+static starg_status push_model(parts *p, const starg_mesh *model, const starg_space_options *o) {
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    bool keeps = o->orientation == STARG_ORIENTATION_KEEP;
+    starg_time_rule former = starg_time_begin(p->context, STARG_TIME_FAILS);
+    STARG_TRY(keeps ? solid_make_as_given(p->context, model, &solid)
+                    : solid_make(p->context, model, &solid));
+    bool inward = keeps && starg_mesh_volume(solid->mesh) < 0;
+    status = push_closed(p, solid->mesh, inward != o->outside);
+done:
+    starg_time_end(p->context, former);
+    starg_solid_free(solid);
+    return status;
+}
+
+/* ---- obstacles ---- */
+
+/* Does the obstacle come near the model at all? */
+static bool is_apart(const starg_mesh *a, const starg_mesh *b) {
+    double low[2][3], high[2][3];
+    bool apart = false;
+    starg_mesh_bounds(a, low[0], high[0]);
+    starg_mesh_bounds(b, low[1], high[1]);
+    for (int k = 0; k < 3; k++)
+        apart = apart || low[0][k] > high[1][k] || low[1][k] > high[0][k];
+    return apart;
+}
+
+/* Those that are closed are pushed at once, for open ones the time comes later: `sheets`. */
+static starg_status push_obstacle(parts *p, const starg_mesh *obstacle, bool sheets) {
+    starg_status status = STARG_OK;
+    starg_solid *solid = NULL;
+    status = solid_make(p->context, obstacle, &solid);
+    if (status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE) {
+        return sheets ? push_sheet(p, obstacle) : STARG_OK;
+    }
+    STARG_TRY(status);
+    if (!sheets)
+        status = push_closed(p, solid->mesh, true);
+done:
+    starg_solid_free(solid);
+    return status;
+}
+
+static starg_status push_obstacles(parts *p, const starg_mesh *model,
+                                   const starg_mesh *const *obstacles, size_t count, bool outside) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < count && !outside; i++)
+        if (is_apart(model, obstacles[i]))
+            return starg_fail(p->context, STARG_ERROR_ARGUMENT, STAGE,
+                              "obstacle %zu lies beyond the bounding box of the model; check that "
+                              "both have the same units and origin",
+                              i);
+    for (int sheets = 0; sheets < 2; sheets++)
+        for (size_t i = 0; i < count; i++)
+            STARG_TRY(push_obstacle(p, obstacles[i], sheets == 1));
+done:
+    return status;
+}
+
+/* ---- the whole ---- */
+
+/* Has no face free space on its outer side? */
+static bool faces_out(const starg_solid *solid, const mesh_examination *all) {
+    bool out = true;
+    for (size_t c = 0; c < all->topology->component_count; c++) {
+        const mesh_shell *shell = &all->shells[c];
+        out = out && shell->around - (shell->volume < 0) + solid->ambient <= 0;
+    }
+    return out;
+}
+
+/* A mesh with sheets is taken for what it is; any other is examined as a whole. */
+static starg_status examine(starg_context *context, starg_solid *scene) {
+    starg_status status = STARG_OK;
+    mesh_examination all = {0};
+    const starg_mesh *mesh = scene->mesh;
+    if (scene->sheet_faces > 0) {
+        double lower[3], upper[3];
+        STARG_NEW_ZERO(context, STAGE, scene->check, 1);
+        starg_mesh_bounds(mesh, lower, upper);
+        scene->check->vertices = mesh->vertex_count;
+        scene->check->faces = mesh->face_count;
+        scene->check->diagonal =
+            hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+        scene->check->usable = true;
+        return bvh_create(context, mesh->vertices, mesh->faces, mesh->face_count, &scene->tree);
+    }
+    STARG_TRY(mesh_examine(context, mesh, &all));
+    all.check->embedded = all.check->embedded && faces_out(scene, &all);
+    scene->check = all.check;
+    scene->tree = all.tree;
+    all.check = NULL;
+    all.tree = NULL;
+done:
+    mesh_examination_free(context, &all);
+    return status;
+}
+
+static starg_status keep_model(starg_context *context, const starg_mesh *model,
+                               starg_solid *scene) {
+    starg_status status = STARG_OK;
+    STARG_TRY(starg_mesh_create(context, model->vertices, model->vertex_count, model->faces,
+                                model->face_count, &scene->model));
+    status = bvh_create(context, scene->model->vertices, scene->model->faces,
+                        scene->model->face_count, &scene->model_tree);
+done:
+    return status;
+}
+
+static starg_status note_sizes(starg_solid *scene, const starg_mesh *const *obstacles,
+                               size_t count) {
+    starg_status status = STARG_OK;
+    STARG_NEW(scene->context, STAGE, scene->obstacle_sizes, 2 * count);
+    scene->obstacle_count = count;
+    for (size_t i = 0; i < count; i++) {
+        scene->obstacle_sizes[2 * i] = obstacles[i]->vertex_count;
+        scene->obstacle_sizes[2 * i + 1] = obstacles[i]->face_count;
+    }
+done:
+    return status;
+}
+
+/* ---- targets ---- */
+
+/* The bits of the faces that matter, and of their corners. */
+static starg_status mark_targets(starg_solid *scene) {
+    starg_status status = STARG_OK;
+    const starg_mesh *mesh = scene->mesh;
+    const size_t columns[2] = {mesh->face_count, mesh->vertex_count};
+    for (int k = 0; k < 2; k++) {
+        starg_release(scene->context, scene->targets[k]);
+        scene->targets[k] = NULL;
+        STARG_NEW_ZERO(scene->context, STAGE, scene->targets[k], starg_bit_words(columns[k]));
+    }
+    for (size_t f = 0; f < mesh->face_count; f++) {
+        if (!(scene->importance[f] > 0))
+            continue;
+        starg_bit_set(scene->targets[0], f);
+        for (size_t k = 0; k < 3; k++)
+            starg_bit_set(scene->targets[1], mesh->faces[3 * f + k]);
+    }
+done:
+    return status;
+}
+
+starg_status starg_space_weigh(starg_solid *scene, const double *weights) {
+    starg_status status = STARG_OK;
+    size_t faces = starg_space_model_faces(scene);
+    double most = 0;
+    for (size_t f = 0; f < faces && weights != NULL; f++) {
+        uint64_t face = f;
+        if (!(weights[f] >= 0 && weights[f] < 1e100))
+            return starg_fail_at(
+                scene->context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_FACE, &face, 1,
+                "face %zu has a weight of %g; it must be zero or more, and finite", f, weights[f]);
+        most = fmax(most, weights[f]);
+    }
+    if (weights != NULL && most == 0)
+        return starg_fail(scene->context, STARG_ERROR_ARGUMENT, STAGE,
+                          "all faces have a weight of 0: nothing is to be seen");
+    if (scene->importance == NULL)
+        STARG_NEW_ZERO(scene->context, STAGE, scene->importance, scene->mesh->face_count);
+    for (size_t f = 0; f < faces; f++)
+        scene->importance[f] = weights != NULL ? weights[f] / most : 1;
+    status = mark_targets(scene);
+done:
+    return status;
+}
+
+/* ---- the call ---- */
+
+starg_status starg_space_create(starg_context *context, const starg_mesh *model,
+                                const starg_mesh *const *obstacles, size_t obstacle_count,
+                                const starg_space_options *options, starg_solid **out) {
+    starg_status status = STARG_OK;
+    starg_space_options defaults;
+    starg_solid *scene = NULL;
+    parts p = {.context = context};
+    *out = NULL;
+    starg_space_options_default(&defaults);
+    const starg_space_options *o = options != NULL ? options : &defaults;
+    STARG_TRY(check_options(context, o));
+    STARG_TRY(push_model(&p, model, o));
+    STARG_TRY(push_obstacles(&p, model, obstacles, obstacle_count, o->outside));
+    STARG_NEW_ZERO(context, STAGE, scene, 1);
+    scene->context = context;
+    scene->scene = true;
+    scene->ambient = o->outside ? 1 : 0;
+    scene->space = *o;
+    scene->model_vertices = model->vertex_count;
+    scene->model_faces = model->face_count;
+    scene->sheet_faces = p.sheet_faces;
+    STARG_TRY(starg_mesh_create(context, p.vertices.data, p.vertices.count / 3, p.faces.data,
+                                p.faces.count / 3, &scene->mesh));
+    STARG_TRY(examine(context, scene));
+    STARG_TRY(note_sizes(scene, obstacles, obstacle_count));
+    if (obstacle_count > 0) {
+        STARG_TRY(keep_model(context, model, scene));
+        STARG_TRY(starg_space_weigh(scene, NULL));
+    }
+    *out = scene;
+    scene = NULL;
+done:
+    parts_free(&p);
+    starg_solid_free(scene);
+    return status;
+}
+
+/* ---- questions ---- */
+
+size_t starg_space_model_vertices(const starg_solid *scene) {
+    return scene->scene ? scene->model_vertices : scene->mesh->vertex_count;
+}
+
+size_t starg_space_model_faces(const starg_solid *scene) {
+    return scene->scene ? scene->model_faces : scene->mesh->face_count;
+}
+
+bool starg_space_admits(const starg_solid *scene, const double p[3]) {
+    const starg_space_options *o = &scene->space;
+    if (!scene->scene)
+        return starg_solid_contains(scene, p);
+    for (int k = 0; is_bounded(o) && k < 3; k++)
+        if (p[k] < o->within[k] || p[k] > o->within[k + 3])
+            return false;
+    if (o->standoff_least > 0 || o->standoff_most < 1e100) {
+        double distance =
+            bvh_distance(scene->model_tree != NULL ? scene->model_tree : scene->tree, p);
+        if (distance < o->standoff_least || distance > o->standoff_most)
+            return false;
+    }
+    return starg_solid_contains(scene, p);
+}
+
+void solid_reach(const starg_solid *solid, bvh_box *out) {
+    const starg_space_options *o = &solid->space;
+    *out = solid->model_tree != NULL ? solid->model_tree->nodes[0].box : solid->tree->nodes[0].box;
+    if (!solid->scene)
+        return;
+    double grow = !o->outside                ? 0
+                  : o->standoff_most < 1e100 ? o->standoff_most
+                                             : 4 * solid->check->diagonal;
+    for (int k = 0; k < 3; k++) {
+        out->lower[k] -= grow;
+        out->upper[k] += grow;
+        if (is_bounded(o)) {
+            out->lower[k] = o->outside ? o->within[k] : fmax(out->lower[k], o->within[k]);
+            out->upper[k] = o->outside ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
+        }
+    }
+}
+
+void solid_extent(const starg_solid *solid, bvh_box *out) {
+    const bvh_box *mesh = &solid->tree->nodes[0].box;
+    solid_reach(solid, out);
+    for (int k = 0; k < 3; k++) {
+        out->lower[k] = fmin(out->lower[k], mesh->lower[k]);
+        out->upper[k] = fmax(out->upper[k], mesh->upper[k]);
+    }
+}
+
+uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t halfedge) {
+    uint32_t first = (uint32_t)(3 * (solid->mesh->face_count - solid->sheet_faces));
+    if (halfedge < first)
+        return twins[halfedge];
+    /* (a, b, c) and (a, c, b): edges 0, 1 and 2 of the one are 2, 1 and 0 of the other */
+    uint32_t face = (halfedge - first) / 3, edge = (halfedge - first) % 3;
+    return first + 3 * (face ^ 1) + 2 - edge;
+}
+
+void solid_mask_row(const starg_solid *solid, bool vertices, uint64_t *row) {
+    const starg_mesh *mesh = solid->mesh;
+    const uint64_t *targets = solid->targets[vertices];
+    size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
+    for (size_t w = 0; targets != NULL && w < starg_bit_words(columns); w++)
+        row[w] &= targets[w];
+}

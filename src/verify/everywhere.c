@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The claim that so many guards are needed, wherever they stand, against its certificate: it is of
+ * this model and question; the result's guards see its witnesses; its cells hold the solid; each of
+ * its reasons holds (verify/hidden.h); the bound follows (verify/everywhere_bound.c).
+ *
+ * Cells are checked in parallel, each on its own. Cost: see verify/hidden.c for each reason. */
+#include "verify/everywhere.h"
+
+#include <stdio.h>
+
+#include "core/checksum.h"
+#include "core/parallel.h"
+#include "verify/claims.h"
+
+static const char STAGE[] = "verify";
+
+/* ---- cells ---- */
+
+typedef struct checking {
+    const starg_certificate *certificate;
+    verify_scene scene;
+    size_t *wrong; /* by cell: the first reason that does not hold, SIZE_MAX: the cell itself; or
+                      the number of all reasons */
+} checking;
+
+static starg_status make_watch(starg_context *context, void *shared, void **scratch) {
+    const checking *own = shared;
+    verify_watch *watch;
+    (void)context;
+    starg_status status = verify_watch_create(&own->scene, &watch);
+    *scratch = watch;
+    return status;
+}
+
+static void free_watch(starg_context *context, void *scratch) {
+    (void)context;
+    verify_watch_free(scratch);
+}
+
+static starg_status check_cell(starg_context *context, void *shared, void *scratch, size_t item) {
+    const checking *own = shared;
+    const starg_certificate *c = own->certificate;
+    const everywhere_cell *cell = &c->cells[item];
+    (void)context;
+    own->wrong[item] = c->reasons.count;
+    verify_watch_box(scratch, &cell->box);
+    if (cell->kind == EVERYWHERE_OUTSIDE && !verify_box_outside(scratch))
+        own->wrong[item] = SIZE_MAX;
+    for (size_t k = cell->first; k < cell->first + cell->count; k++)
+        if (!verify_box_hides(scratch, c->target, c->witnesses[c->reasons.data[k].witness],
+                              c->range, &c->reasons.data[k])) {
+            own->wrong[item] = k;
+            break;
+        }
+    return STARG_OK;
+}
+
+/* Reasons that hold only if the surface is embedded. */
+static bool needs_embedding(const starg_certificate *c) {
+    for (size_t i = 0; i < c->reasons.count; i++)
+        if (strchr("sfe", c->reasons.data[i].kind) != NULL)
+            return true;
+    return false;
+}
+
+starg_status verify_check_cells(const starg_certificate *certificate, const verify_facts *known,
+                                size_t *cell, size_t *reason) {
+    starg_status status = STARG_OK;
+    starg_context *context = known->surface->context;
+    checking own = {.certificate = certificate};
+    *cell = certificate->cell_count;
+    STARG_TRY(
+        verify_scene_create(known->surface, known->tree, needs_embedding(certificate), &own.scene));
+    STARG_NEW(context, STAGE, own.wrong, certificate->cell_count);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = certificate->cell_count,
+                                      .shared = &own,
+                                      .item = check_cell,
+                                      .make_scratch = make_watch,
+                                      .free_scratch = free_watch};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    for (size_t i = certificate->cell_count; i-- > 0;)
+        if (own.wrong[i] != certificate->reasons.count) {
+            *cell = i;
+            *reason = own.wrong[i];
+        }
+done:
+    verify_scene_free(&own.scene);
+    starg_release(context, own.wrong);
+    return status;
+}
+
+/* ---- claims ---- */
+
+static bool is_of_this(const starg_certificate *c, const verify_facts *known,
+                       const char **difference) {
+    const verify_surface *surface = known->surface;
+    const starg_visibility_options *view = &known->guards->options.visibility;
+    uint64_t sum = STARG_CHECKSUM_BEGIN;
+    for (size_t f = 0; f < surface->face_count; f++)
+        sum = starg_checksum_face(sum, surface->vertices, surface->faces + 3 * f);
+    *difference = NULL;
+    if (c->vertex_count != surface->vertex_count || c->face_count != surface->face_count ||
+        c->checksum != sum)
+        *difference = ": it is of another model";
+    else if (c->target != view->target)
+        *difference = ": its targets are others";
+    else if (c->range != view->range)
+        *difference = ": its range is another one";
+    return *difference == NULL;
+}
+
+static bool is_seen(const verify_facts *known, uint32_t witness) {
+    return verify_targets_vertices(known) ? known->vertex[witness] : known->face[witness];
+}
+
+static void claim_witnesses(starg_verdict *verdict, const verify_facts *known,
+                            const starg_certificate *c) {
+    const char *name = c->target == STARG_TARGET_VERTICES ? "vertices" : "faces";
+    size_t unseen = 0, first = 0;
+    for (size_t i = c->witness_count; i-- > 0;)
+        if (!is_seen(known, c->witnesses[i])) {
+            unseen++;
+            first = c->witnesses[i];
+        }
+    if (unseen == 0)
+        verify_claim(verdict, true, "the guards see all %zu %s that the certificate speaks of",
+                     c->witness_count, name);
+    else
+        verify_claim(verdict, false,
+                     "the guards see all %zu %s that the certificate speaks of: not %zu of them, "
+                     "one is %zu",
+                     c->witness_count, name, unseen, first);
+}
+
+static bool holds_all(const everywhere_cell *root, const verify_surface *surface) {
+    for (int k = 0; k < 3; k++)
+        if (!(root->box.lower[k] <= surface->lower[k] && surface->upper[k] <= root->box.upper[k]))
+            return false;
+    return true;
+}
+
+static const char *word_of(char kind) {
+    switch (kind) {
+    case 'n':
+        return "plane";
+    case 'r':
+        return "range";
+    case 's':
+        return "start";
+    case 'p':
+        return "patch";
+    case 'f':
+        return "fold";
+    default:
+        return "entry";
+    }
+}
+
+static starg_status claim_cells(starg_verdict *verdict, const verify_facts *known,
+                                const starg_certificate *c) {
+    size_t cell, reason;
+    if (!holds_all(&c->cells[0], known->surface)) {
+        verify_claim(verdict, false, "the cells of the certificate hold all of the model");
+        return STARG_OK;
+    }
+    starg_status status = verify_check_cells(c, known, &cell, &reason);
+    if (status != STARG_OK)
+        return status;
+    if (cell == c->cell_count) {
+        verify_claim(verdict, true,
+                     "%zu cells hold all of the model, and %zu reasons why they do not see "
+                     "something are right",
+                     c->cell_count, c->reasons.count);
+        return STARG_OK;
+    }
+    if (reason == SIZE_MAX)
+        verify_claim(verdict, false,
+                     "the cell on line %zu of the certificate is outside of the "
+                     "model: it is not, or that is not certain",
+                     c->cell_line + cell);
+    else {
+        const verify_reason *r = &c->reasons.data[reason];
+        verify_claim(verdict, false,
+                     "reasons of the certificate are right: the cell on line %zu may see %s %u in "
+                     "spite of reason %zu there (%s)",
+                     c->cell_line + cell, c->target == STARG_TARGET_VERTICES ? "vertex" : "face",
+                     c->witnesses[r->witness], reason - c->cells[cell].first + 1, word_of(r->kind));
+    }
+    return STARG_OK;
+}
+
+starg_status verify_claim_everywhere(starg_verdict *verdict, const verify_facts *known,
+                                     const starg_certificate *c) {
+    starg_status status = STARG_OK;
+    size_t claimed = known->guards->lower_bound_everywhere;
+    const char *difference;
+    bool follows;
+    everywhere_words why = {""};
+    bool same = is_of_this(c, known, &difference);
+    verify_claim(verdict, same, "the certificate is of this model and question%s",
+                 same ? "" : difference);
+    if (!same)
+        return STARG_OK;
+    claim_witnesses(verdict, known, c);
+    STARG_TRY(claim_cells(verdict, known, c));
+    STARG_TRY(verify_check_bound(c, &follows, &why));
+    if (follows && claimed <= c->bound)
+        verify_claim(verdict, true,
+                     "at least %zu guards are needed, wherever they stand: the certificate's bound "
+                     "of %zu follows",
+                     claimed, c->bound);
+    else if (follows)
+        verify_claim(verdict, false,
+                     "at least %zu guards are needed, wherever they stand: the certificate says no "
+                     "more than %zu",
+                     claimed, c->bound);
+    else
+        verify_claim(verdict, false,
+                     "at least %zu guards are needed, wherever they stand: the certificate's bound "
+                     "of %zu does not follow (%s)",
+                     claimed, c->bound, why.text);
+done:
+    return status;
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The certificate of a bound for guards anywhere (docs/formats.md), as read. Nothing in it is known
+ * to hold but that numbers of witnesses, rows, vertices and faces are within their ranges and that
+ * the tree of cells is complete. */
+#ifndef STARG_VERIFY_EVERYWHERE_H
+#define STARG_VERIFY_EVERYWHERE_H
+
+#include "core/bits.h"
+#include "core/memory.h"
+#include "starguard/verify.h"
+#include "verify/facts.h"
+#include "verify/hidden.h"
+
+enum { EVERYWHERE_WITNESSES = 4096, EVERYWHERE_WORDS = EVERYWHERE_WITNESSES / 64 };
+/* Cells within cells, and branches within branches. */
+enum { EVERYWHERE_DEPTH = 1024 };
+
+/* Prices are at most this, so that their sums fit. */
+#define EVERYWHERE_PRICE (UINT64_C(1) << 48)
+
+typedef enum everywhere_kind { /* cut across an axis (its number), or not */
+                               EVERYWHERE_LEAF = 3,
+                               EVERYWHERE_OUTSIDE
+} everywhere_kind;
+
+typedef struct everywhere_cell {
+    verify_box box;
+    size_t first, count; /* of the reasons                          */
+    uint32_t row;        /* a leaf's row, or UINT32_MAX             */
+    uint8_t kind;        /* 0, 1, 2: the axis; an everywhere_kind   */
+} everywhere_cell;
+
+/* What a proof by branching says of one node. */
+typedef struct everywhere_node {
+    uint32_t witness;    /* UINT32_MAX: prices                                           */
+    size_t first, count; /* of the numbers: rows; or witness, price, witness, price, ... */
+} everywhere_node;
+
+struct starg_certificate {
+    starg_context *context;
+    size_t vertex_count, face_count;
+    uint64_t checksum;
+    starg_target target;
+    double range;
+    size_t bound;
+    uint32_t *witnesses;
+    size_t witness_count, words; /* words of a row of bits over the witnesses */
+    uint64_t *rows;
+    size_t row_count;
+    everywhere_cell *cells; /* each before its two halves */
+    size_t cell_count;
+    STARG_ARRAY(verify_reason) reasons;
+    everywhere_node *nodes;
+    size_t node_count;
+    STARG_ARRAY(uint64_t) numbers;
+    size_t cell_line; /* of the file: where the first cell stands */
+};
+
+/* Finds the first reason that does not hold, in the order of the file; *cell is the number of its
+ * cell (or cell_count: all hold), *reason that of the reason (or SIZE_MAX: the cell is not
+ * outside). Errors: MEMORY, CANCELLED. */
+starg_status verify_check_cells(const starg_certificate *certificate, const verify_facts *known,
+                                size_t *cell, size_t *reason);
+
+/* Does the bound follow if all reasons hold? `why` says what is wrong if it does not. Errors:
+ * MEMORY, CANCELLED. */
+typedef struct everywhere_words {
+    char text[160];
+} everywhere_words;
+starg_status verify_check_bound(const starg_certificate *certificate, bool *follows,
+                                everywhere_words *why);
+
+/* Adds the claims about lower_bound_everywhere to the verdict. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_everywhere(starg_verdict *verdict, const verify_facts *known,
+                                     const starg_certificate *certificate);
+
+#endif

@@ -1,0 +1,439 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Reads a certificate: the lines of docs/formats.md, in this order, and nothing else. Words of a
+ * line stand one blank apart. Declared counts are compared with the bytes that are left before any
+ * memory is asked for. */
+#include <math.h>
+#include <stdio.h>
+
+#include "verify/everywhere.h"
+
+static const char STAGE[] = "certificate";
+
+enum { CANCEL_STEP = 1 << 16 };
+
+typedef struct reader {
+    starg_context *context;
+    const char *name;
+    const char *at, *end;
+    uint64_t line;
+    starg_certificate *own;
+} reader;
+
+static starg_status reject(const reader *r, const char *what) {
+    uint64_t line = r->line;
+    return starg_fail_at(r->context, STARG_ERROR_FORMAT, STAGE, STARG_ELEMENT_LINE, &line, 1,
+                         "'%.200s', line %llu: %s", r->name, (unsigned long long)line, what);
+}
+
+/* ---- words ---- */
+
+static bool take(reader *r, char c) {
+    bool taken = r->at < r->end && *r->at == c;
+    r->at += taken;
+    return taken;
+}
+
+static starg_status take_text(reader *r, const char *text) {
+    char message[64];
+    const char *at = r->at;
+    for (const char *c = text; *c != '\0'; c++, at++)
+        if (at == r->end || *at != *c) {
+            snprintf(message, sizeof message, "\"%s\" is expected here", text);
+            return reject(r, message);
+        }
+    r->at = at;
+    return STARG_OK;
+}
+
+static starg_status end_line(reader *r) {
+    if (!take(r, '\n'))
+        return reject(r, r->at == r->end ? "the file ends within the line"
+                                         : "the line goes on where its end is expected");
+    r->line++;
+    if (r->line % CANCEL_STEP == 0)
+        return starg_check_cancel(r->context, STAGE);
+    return STARG_OK;
+}
+
+/* A whole number of at most `most`, without a sign and without needless zeros. */
+static starg_status take_number(reader *r, uint64_t most, uint64_t *value) {
+    const char *begin = r->at;
+    char message[128];
+    *value = 0;
+    while (r->at < r->end && *r->at >= '0' && *r->at <= '9' && r->at - begin < 19)
+        *value = 10 * *value + (uint64_t)(*r->at++ - '0');
+    if (r->at == begin || (*begin == '0' && r->at - begin > 1))
+        return reject(r, "a whole number is expected here");
+    if (*value > most) {
+        snprintf(message, sizeof message,
+                 "%llu is out of range: %llu is the most that may stand here",
+                 (unsigned long long)*value, (unsigned long long)most);
+        return reject(r, message);
+    }
+    return STARG_OK;
+}
+
+/* A number of things of at least `size` bytes each, which are still to come. */
+static starg_status take_count(reader *r, const char *word, size_t size, size_t *count) {
+    starg_status status = STARG_OK;
+    uint64_t value;
+    STARG_TRY(take_text(r, word));
+    STARG_TRY(take_number(r, (uint64_t)(r->end - r->at) / size, &value));
+    *count = (size_t)value;
+    STARG_TRY(end_line(r));
+done:
+    return status;
+}
+
+/* M:K is M times 2 to the power of K. */
+static starg_status take_double(reader *r, double *value) {
+    starg_status status = STARG_OK;
+    uint64_t whole, power;
+    bool negative = take(r, '-');
+    STARG_TRY(take_number(r, UINT64_C(1) << 53, &whole));
+    STARG_TRY(take_text(r, ":"));
+    bool small = take(r, '-');
+    STARG_TRY(take_number(r, 1074, &power));
+    double size = ldexp((double)whole, small ? -(int)power : (int)power);
+    if (!(size < 1e100))
+        return reject(r, "numbers are below 1e100 in magnitude");
+    *value = negative ? -size : size;
+done:
+    return status;
+}
+
+/* ---- the head ---- */
+
+static starg_status read_checksum(reader *r) {
+    static const char digits[] = "0123456789abcdef";
+    starg_status status = STARG_OK;
+    STARG_TRY(take_text(r, "checksum "));
+    for (int i = 0; i < 16; i++) {
+        const char *digit = r->at < r->end && *r->at != '\0' ? strchr(digits, *r->at) : NULL;
+        if (digit == NULL)
+            return reject(r, "16 digits of base 16 are expected here");
+        r->own->checksum = r->own->checksum << 4 | (uint64_t)(digit - digits);
+        r->at++;
+    }
+    STARG_TRY(end_line(r));
+done:
+    return status;
+}
+
+static starg_status read_size(reader *r, const char *word, size_t *size) {
+    starg_status status = STARG_OK;
+    uint64_t value;
+    STARG_TRY(take_text(r, word));
+    STARG_TRY(take_number(r, UINT32_MAX / 4, &value));
+    *size = (size_t)value;
+    STARG_TRY(end_line(r));
+done:
+    return status;
+}
+
+static starg_status read_question(reader *r) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    STARG_TRY(take_text(r, "target "));
+    own->target = r->at < r->end && *r->at == 'v' ? STARG_TARGET_VERTICES : STARG_TARGET_FACES;
+    STARG_TRY(take_text(r, own->target == STARG_TARGET_VERTICES ? "vertices" : "faces"));
+    STARG_TRY(end_line(r));
+    STARG_TRY(take_text(r, "range "));
+    own->range = INFINITY;
+    if (r->at < r->end && *r->at == 'n')
+        STARG_TRY(take_text(r, "none"));
+    else
+        STARG_TRY(take_double(r, &own->range));
+    STARG_TRY(end_line(r));
+    STARG_TRY(read_size(r, "bound ", &own->bound));
+done:
+    return status;
+}
+
+static starg_status read_head(reader *r) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    STARG_TRY(take_text(r, "starguard-certificate 1"));
+    STARG_TRY(end_line(r));
+    STARG_TRY(read_size(r, "vertices ", &own->vertex_count));
+    STARG_TRY(read_size(r, "faces ", &own->face_count));
+    STARG_TRY(read_checksum(r));
+    STARG_TRY(read_question(r));
+done:
+    return status;
+}
+
+static starg_status read_root(reader *r, verify_box *root) {
+    starg_status status = STARG_OK;
+    STARG_TRY(take_text(r, "root"));
+    for (int k = 0; k < 6; k++) {
+        STARG_TRY(take_text(r, " "));
+        STARG_TRY(take_double(r, k < 3 ? &root->lower[k] : &root->upper[k - 3]));
+    }
+    for (int k = 0; k < 3; k++)
+        if (!(root->lower[k] <= root->upper[k]))
+            return reject(r, "the lower corner of the box is not below its upper one");
+    STARG_TRY(end_line(r));
+done:
+    return status;
+}
+
+static starg_status read_witnesses(reader *r) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    size_t most = own->target == STARG_TARGET_VERTICES ? own->vertex_count : own->face_count;
+    STARG_TRY(take_count(r, "witnesses ", 2, &own->witness_count));
+    if (own->witness_count > EVERYWHERE_WITNESSES || (most == 0 && own->witness_count > 0))
+        return reject(r, "there are too many witnesses");
+    own->words = starg_bit_words(own->witness_count);
+    STARG_NEW(r->context, STAGE, own->witnesses, own->witness_count);
+    for (size_t i = 0; i < own->witness_count; i++) {
+        uint64_t value;
+        STARG_TRY(take_number(r, most - 1, &value));
+        own->witnesses[i] = (uint32_t)value;
+        STARG_TRY(end_line(r));
+    }
+done:
+    return status;
+}
+
+static starg_status take_witness(reader *r, uint64_t *witness) {
+    if (r->own->witness_count == 0)
+        return reject(r, "there are no witnesses");
+    return take_number(r, r->own->witness_count - 1, witness);
+}
+
+static starg_status read_rows(reader *r) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    STARG_TRY(take_count(r, "rows ", 2, &own->row_count));
+    STARG_NEW_ZERO(r->context, STAGE, own->rows, own->row_count * own->words);
+    for (size_t i = 0; i < own->row_count; i++) {
+        do {
+            uint64_t witness;
+            STARG_TRY(take_witness(r, &witness));
+            starg_bit_set(own->rows + i * own->words, witness);
+        } while (take(r, ' '));
+        STARG_TRY(end_line(r));
+    }
+done:
+    return status;
+}
+
+/* ---- cells ---- */
+
+static starg_status read_reason(reader *r) {
+    starg_status status = STARG_OK;
+    verify_reason reason = {.vertex = UINT32_MAX, .seed = UINT32_MAX};
+    uint64_t value;
+    STARG_TRY(take_witness(r, &value));
+    reason.witness = (uint32_t)value;
+    char letter = r->at < r->end ? *r->at : '\0';
+    reason.clipped = letter >= 'A' && letter <= 'Z';
+    reason.kind = reason.clipped ? (char)(letter - 'A' + 'a') : letter;
+    if (reason.kind == '\0' || strchr("nrspfe", reason.kind) == NULL || letter == 'N')
+        return reject(r, "the letter of a reason is expected here: n, r, s, p, f or e");
+    r->at++;
+    if (reason.kind != 'n') {
+        if (r->own->vertex_count == 0)
+            return reject(r, "the model has no vertices");
+        STARG_TRY(take_number(r, r->own->vertex_count - 1, &value));
+        reason.vertex = (uint32_t)value;
+    }
+    if ((reason.kind == 'p' || reason.kind == 'f') && take(r, ':')) {
+        if (r->own->face_count == 0)
+            return reject(r, "the model has no faces");
+        STARG_TRY(take_number(r, r->own->face_count - 1, &value));
+        reason.seed = (uint32_t)value;
+    }
+    STARG_PUSH(r->context, STAGE, &r->own->reasons, reason);
+done:
+    return status;
+}
+
+static starg_status read_kind(reader *r, everywhere_cell *cell) {
+    starg_status status = STARG_OK;
+    uint64_t row;
+    cell->row = UINT32_MAX;
+    cell->kind = EVERYWHERE_LEAF;
+    if (take(r, 'x'))
+        cell->kind = 0;
+    else if (take(r, 'y'))
+        cell->kind = 1;
+    else if (take(r, 'z'))
+        cell->kind = 2;
+    else if (take(r, 'o'))
+        cell->kind = EVERYWHERE_OUTSIDE;
+    else if (take(r, '=')) {
+        if (r->own->row_count == 0)
+            return reject(r, "there are no rows");
+        STARG_TRY(take_number(r, r->own->row_count - 1, &row));
+        cell->row = (uint32_t)row;
+    } else if (!take(r, '.'))
+        return reject(r, "a cell is expected here: x, y, z, a dot, = or o");
+done:
+    return status;
+}
+
+static starg_status read_cell(reader *r, everywhere_cell *cell) {
+    starg_status status = STARG_OK;
+    STARG_TRY(read_kind(r, cell));
+    cell->first = r->own->reasons.count;
+    while (cell->kind != EVERYWHERE_OUTSIDE && take(r, ' '))
+        STARG_TRY(read_reason(r));
+    cell->count = r->own->reasons.count - cell->first;
+    STARG_TRY(end_line(r));
+done:
+    return status;
+}
+
+static void halve(const verify_box *box, int axis, verify_box halves[2]) {
+    double middle = 0.5 * box->lower[axis] + 0.5 * box->upper[axis];
+    middle = fmin(fmax(middle, box->lower[axis]), box->upper[axis]);
+    halves[0] = halves[1] = *box;
+    halves[0].upper[axis] = halves[1].lower[axis] = middle;
+}
+
+/* A cell is followed by all of its lower half, then the upper one. Boxes that are still to come
+ * stand on a stack, the next one on top. */
+static starg_status read_cells(reader *r, const verify_box *root) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    struct {
+        verify_box box;
+        int depth;
+    } *stack = NULL;
+    size_t left = 1;
+    STARG_TRY(take_count(r, "cells ", 2, &own->cell_count));
+    own->cell_line = (size_t)r->line;
+    STARG_NEW(r->context, STAGE, own->cells, own->cell_count);
+    STARG_NEW(r->context, STAGE, stack, EVERYWHERE_DEPTH + 2);
+    stack[0].box = *root;
+    stack[0].depth = 0;
+    for (size_t i = 0; i < own->cell_count; i++) {
+        everywhere_cell *cell = &own->cells[i];
+        verify_box halves[2];
+        if (left == 0) {
+            status = reject(r, "the cells before this one fill the root: none may follow");
+            goto done;
+        }
+        cell->box = stack[--left].box;
+        int depth = stack[left].depth + 1;
+        STARG_TRY(read_cell(r, cell));
+        if (cell->kind >= EVERYWHERE_LEAF)
+            continue;
+        if (depth > EVERYWHERE_DEPTH) {
+            status = reject(r, "cells are cut too often");
+            goto done;
+        }
+        halve(&cell->box, cell->kind, halves);
+        for (int k = 1; k >= 0; k--) {
+            stack[left].box = halves[k];
+            stack[left++].depth = depth;
+        }
+    }
+    if (left > 0)
+        status = reject(r, "halves of cells are missing");
+done:
+    starg_release(r->context, stack);
+    return status;
+}
+
+/* ---- branches ---- */
+
+static starg_status read_prices(reader *r) {
+    starg_status status = STARG_OK;
+    uint64_t witness, price;
+    while (take(r, ' ')) {
+        STARG_TRY(take_witness(r, &witness));
+        STARG_TRY(take_text(r, ":"));
+        STARG_TRY(take_number(r, EVERYWHERE_PRICE, &price));
+        STARG_PUSH(r->context, STAGE, &r->own->numbers, witness);
+        STARG_PUSH(r->context, STAGE, &r->own->numbers, price);
+    }
+done:
+    return status;
+}
+
+static starg_status read_branch_rows(reader *r) {
+    starg_status status = STARG_OK;
+    uint64_t row;
+    while (take(r, ' ')) {
+        if (r->own->row_count == 0)
+            return reject(r, "there are no rows");
+        STARG_TRY(take_number(r, r->own->row_count - 1, &row));
+        STARG_PUSH(r->context, STAGE, &r->own->numbers, row);
+    }
+done:
+    return status;
+}
+
+static starg_status read_nodes(reader *r) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = r->own;
+    STARG_TRY(take_count(r, "nodes ", 7, &own->node_count));
+    STARG_NEW(r->context, STAGE, own->nodes, own->node_count);
+    for (size_t i = 0; i < own->node_count; i++) {
+        everywhere_node *node = &own->nodes[i];
+        uint64_t witness = UINT32_MAX;
+        node->first = own->numbers.count;
+        if (r->at < r->end && *r->at == 'w') {
+            STARG_TRY(take_text(r, "witness "));
+            STARG_TRY(take_witness(r, &witness));
+            STARG_TRY(read_branch_rows(r));
+        } else {
+            STARG_TRY(take_text(r, "prices"));
+            STARG_TRY(read_prices(r));
+        }
+        node->witness = (uint32_t)witness;
+        node->count = own->numbers.count - node->first;
+        STARG_TRY(end_line(r));
+    }
+    if (r->at < r->end)
+        status = reject(r, "the file goes on where its end is expected");
+done:
+    return status;
+}
+
+static starg_status read_all(reader *r) {
+    starg_status status = STARG_OK;
+    verify_box root;
+    STARG_TRY(read_head(r));
+    STARG_TRY(read_root(r, &root));
+    STARG_TRY(read_witnesses(r));
+    STARG_TRY(read_rows(r));
+    STARG_TRY(read_cells(r, &root));
+    STARG_TRY(read_nodes(r));
+done:
+    return status;
+}
+
+starg_status starg_certificate_read_memory(starg_context *context, const void *bytes, size_t size,
+                                           const char *name, starg_certificate **out) {
+    starg_status status = STARG_OK;
+    starg_certificate *own = NULL;
+    *out = NULL;
+    STARG_NEW_ZERO(context, STAGE, own, 1);
+    own->context = context;
+    const char *text = size > 0 ? bytes : "";
+    reader r = {context, name, text, text + size, 1, own};
+    STARG_TRY(read_all(&r));
+    *out = own;
+done:
+    if (status != STARG_OK)
+        starg_certificate_free(own);
+    return status;
+}
+
+void starg_certificate_free(starg_certificate *own) {
+    if (own == NULL)
+        return;
+    starg_context *context = own->context;
+    starg_release(context, own->witnesses);
+    starg_release(context, own->rows);
+    starg_release(context, own->cells);
+    STARG_ARRAY_FREE(context, &own->reasons);
+    starg_release(context, own->nodes);
+    STARG_ARRAY_FREE(context, &own->numbers);
+    starg_release(context, own);
+}

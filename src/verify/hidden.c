@@ -1,0 +1,611 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Checks one by one why something is hidden from a box; docs/verification.md has the proofs.
+ * Written apart from the engine that finds reasons (visibility/box.h): nothing is rounded but one
+ * box, the rest of a box behind the plane of a face, and exact signs then say whether it holds all
+ * of that rest. What the engine calls apart for certain is apart here, so that its reasons pass.
+ *
+ * The shaft of a vertex v and a box is the union of the segments between them. An edge misses it if
+ * a plane keeps them apart: across an axis; through v and parallel to an axis, along the outline of
+ * the box as seen from v in that projection; or through v and the edge, with all of the box
+ * strictly on one side.
+ *
+ * Cost of a reason: the faces of a patch within the shaft, some 100 ns each. */
+#include "verify/hidden.h"
+
+#include <math.h>
+
+#include "core/memory.h"
+#include "verify/signs.h"
+
+/* Two lines through v at most in each projection. */
+enum { LINES = 6 };
+
+typedef struct outline {
+    int axis;
+    const double *through; /* with v: the line */
+    int outer;             /* the turn of points that are beyond it */
+} outline;
+
+typedef struct shaft {
+    uint32_t vertex;
+    const double *v;
+    const verify_box *box;
+    double corner[24]; /* of the box */
+    outline lines[LINES];
+    int line_count;
+} shaft;
+
+struct verify_watch {
+    const verify_scene *scene;
+    verify_box box;            /* what is looked at: no point of the solid is lost */
+    bool empty;                /* nothing of it is within the bounds of the surface */
+    STARG_ARRAY(uint32_t) met; /* faces that meet the box; valid if `met_known` */
+    bool met_known, met_failed;
+    uint32_t *visit; /* by face: number of the last flood that came here */
+    uint32_t flood;
+    uint32_t *stack; /* faces */
+};
+
+/* ---- faces and boxes ---- */
+
+static void box_corner(const verify_box *box, int i, double p[3]) {
+    for (int k = 0; k < 3; k++)
+        p[k] = i >> k & 1 ? box->upper[k] : box->lower[k];
+}
+
+static bool holds(const verify_box *box, const double p[3]) {
+    for (int k = 0; k < 3; k++)
+        if (p[k] < box->lower[k] || p[k] > box->upper[k])
+            return false;
+    return true;
+}
+
+static bool bounds_apart(const double *const t[3], const verify_box *box) {
+    for (int k = 0; k < 3; k++)
+        if ((t[0][k] < box->lower[k] && t[1][k] < box->lower[k] && t[2][k] < box->lower[k]) ||
+            (t[0][k] > box->upper[k] && t[1][k] > box->upper[k] && t[2][k] > box->upper[k]))
+            return true;
+    return false;
+}
+
+/* On which side of a b c are all corners strictly? 0: not all on one. */
+static int side_of_box(const double a[3], const double b[3], const double c[3],
+                       const double corner[24]) {
+    int side = verify_side(a, b, c, corner);
+    for (int i = 1; i < 8 && side != 0; i++)
+        if (verify_side(a, b, c, corner + 3 * i) != side)
+            return 0;
+    return side;
+}
+
+/* Corners of a box that are all of its outline along an axis. */
+static const int RECTANGLE[3][4] = {{0, 2, 4, 6}, {0, 1, 4, 5}, {0, 1, 2, 3}};
+
+/* Along an axis, is the box strictly beyond the line of an edge of the triangle? */
+static bool edge_keeps_apart(const double *const t[3], const double corner[24], int axis) {
+    for (int i = 0; i < 3; i++) {
+        const double *a = t[i], *b = t[(i + 1) % 3];
+        int side = verify_turn(a, b, corner, axis);
+        for (int j = 1; j < 4 && side != 0; j++)
+            if (verify_turn(a, b, corner + 3 * RECTANGLE[axis][j], axis) != side)
+                side = 0;
+        if (side != 0 && verify_turn(a, b, t[(i + 2) % 3], axis) != side)
+            return true;
+    }
+    return false;
+}
+
+/* Two convex bodies are apart exactly if an axis across a face of one or along two edges keeps them
+ * apart; the latter are the sides of the triangle seen along the edges of the box. */
+static bool face_meets_box(const double *const t[3], const verify_box *box) {
+    double corner[24];
+    if (bounds_apart(t, box))
+        return false;
+    for (int i = 0; i < 8; i++)
+        box_corner(box, i, corner + 3 * i);
+    if (side_of_box(t[0], t[1], t[2], corner) != 0)
+        return false;
+    for (int axis = 0; axis < 3; axis++)
+        if (edge_keeps_apart(t, corner, axis))
+            return false;
+    return true;
+}
+
+static bool add_met(void *data, uint32_t face) {
+    verify_watch *w = data;
+    const double *t[3];
+    verify_corners(w->scene->surface, face, t);
+    if (!face_meets_box(t, &w->box))
+        return true;
+    if (w->met.count == w->met.capacity) {
+        size_t capacity = 2 * w->met.capacity + 64;
+        uint32_t *grown = starg_reallocate(w->scene->surface->context, w->met.data, w->met.count,
+                                           capacity, sizeof *grown);
+        if (grown == NULL) {
+            w->met_failed = true; /* nothing is proven then */
+            return false;
+        }
+        w->met.data = grown;
+        w->met.capacity = capacity;
+    }
+    w->met.data[w->met.count++] = face;
+    return true;
+}
+
+/* Lists the faces that meet the box; false: memory is out. */
+static bool know_met(verify_watch *w) {
+    if (!w->met_known) {
+        w->met.count = 0;
+        w->met_failed = false;
+        verify_tree_visit(w->scene->tree, w->box.lower, w->box.upper, add_met, w);
+        w->met_known = true;
+    }
+    return !w->met_failed;
+}
+
+static void centre_of(const verify_box *box, double p[3]) {
+    for (int k = 0; k < 3; k++)
+        p[k] = fmin(fmax(0.5 * box->lower[k] + 0.5 * box->upper[k], box->lower[k]), box->upper[k]);
+}
+
+/* ---- the part of a box on the inner side of a face ---- */
+
+static bool no_corner_is_inner(const double *const t[3], const verify_box *box) {
+    double p[3];
+    for (int i = 0; i < 8; i++) {
+        box_corner(box, i, p);
+        if (verify_side(t[0], t[1], t[2], p) > 0)
+            return false;
+    }
+    return true;
+}
+
+/* Cuts away what is beyond `at` on one side of axis k, if nothing of that is on the inner side. */
+static void cut(const double *const t[3], const verify_box *whole, int k, bool upper, double at,
+                verify_box *out) {
+    verify_box away = *whole;
+    if (!(at >= whole->lower[k] && at <= whole->upper[k]))
+        return;
+    *(upper ? &away.lower[k] : &away.upper[k]) = at;
+    if (no_corner_is_inner(t, &away))
+        *(upper ? &out->upper[k] : &out->lower[k]) = at;
+}
+
+/* *out holds all of the box that is on the inner side. With the outward normal n the function
+ * n . (x - a) is negative there; on an axis the inner side reaches to where it is 0 if it is as low
+ * as can be on the others. The margins keep the signs from failing. */
+static void clip(const double *const t[3], const verify_box *box, verify_box *out) {
+    double normal[3], least[3], u[3], v[3], sum = 0, size = 0;
+    for (int k = 0; k < 3; k++) {
+        u[k] = t[1][k] - t[0][k];
+        v[k] = t[2][k] - t[0][k];
+    }
+    for (int k = 0; k < 3; k++) {
+        double x = u[(k + 1) % 3] * v[(k + 2) % 3], y = u[(k + 2) % 3] * v[(k + 1) % 3];
+        double low = box->lower[k] - t[0][k], high = box->upper[k] - t[0][k];
+        normal[k] = x - y;
+        least[k] = fmin(normal[k] * low, normal[k] * high);
+        sum += least[k];
+        size += (fabs(x) + fabs(y)) * fmax(fabs(low), fabs(high));
+    }
+    *out = *box;
+    double bound = 16 * 0x1p-53 * size + 1e-200;
+    for (int k = 0; k < 3; k++) {
+        double a = t[0][k], reach = (least[k] - sum) / normal[k];
+        double margin = 4 * bound / fabs(normal[k]) + 8 * 0x1p-53 * (fabs(reach) + fabs(a));
+        if (normal[k] > 0 && a + reach + margin < box->upper[k])
+            cut(t, box, k, true, fmax(a + reach + margin, box->lower[k]), out);
+        if (normal[k] < 0 && a + reach - margin > box->lower[k])
+            cut(t, box, k, false, fmin(a + reach - margin, box->upper[k]), out);
+    }
+}
+
+/* ---- the shaft ---- */
+
+/* The lines through v along the outline of the box, as seen along an axis; none if v is within it.
+ */
+static void add_lines(shaft *s, int axis) {
+    int u = (axis + 1) % 3, w = (axis + 2) % 3;
+    if (s->v[u] >= s->box->lower[u] && s->v[u] <= s->box->upper[u] && s->v[w] >= s->box->lower[w] &&
+        s->v[w] <= s->box->upper[w])
+        return;
+    bool done[2] = {false, false};
+    for (int i = 0; i < 4; i++) {
+        int plus = 0, minus = 0;
+        const double *through = s->corner + 3 * RECTANGLE[axis][i];
+        for (int j = 0; j < 4; j++) {
+            int turn =
+                i == j ? 0 : verify_turn(s->v, through, s->corner + 3 * RECTANGLE[axis][j], axis);
+            plus += turn > 0;
+            minus += turn < 0;
+        }
+        for (int outer = -1; outer <= 1; outer += 2)
+            if (!done[outer > 0] && (outer > 0 ? plus : minus) == 0) {
+                s->lines[s->line_count++] = (outline){axis, through, outer};
+                done[outer > 0] = true;
+            }
+    }
+}
+
+static void make_shaft(const verify_watch *w, uint32_t vertex, const verify_box *box, shaft *s) {
+    s->vertex = vertex;
+    s->v = w->scene->surface->vertices + 3 * (size_t)vertex;
+    s->box = box;
+    s->line_count = 0;
+    for (int i = 0; i < 8; i++)
+        box_corner(box, i, s->corner + 3 * i);
+    for (int axis = 0; axis < 3; axis++)
+        add_lines(s, axis);
+}
+
+static bool line_keeps_apart(const shaft *s, const double a[3], const double b[3]) {
+    for (int i = 0; i < s->line_count; i++) {
+        const outline *line = &s->lines[i];
+        if (verify_turn(s->v, line->through, a, line->axis) == line->outer &&
+            verify_turn(s->v, line->through, b, line->axis) == line->outer)
+            return true;
+    }
+    return false;
+}
+
+/* Does the segment from a to b, which does not hold v, miss the shaft? */
+static bool misses(const shaft *s, const double a[3], const double b[3]) {
+    for (int k = 0; k < 3; k++) {
+        double lower = fmin(s->v[k], s->box->lower[k]), upper = fmax(s->v[k], s->box->upper[k]);
+        if ((a[k] < lower && b[k] < lower) || (a[k] > upper && b[k] > upper))
+            return true;
+    }
+    return line_keeps_apart(s, a, b) || side_of_box(s->v, a, b, s->corner) != 0;
+}
+
+/* Do the directions from v to the points between a and b miss those to the box? */
+static bool directions_miss(const shaft *s, const double a[3], const double b[3]) {
+    for (int k = 0; k < 3; k++)
+        if ((s->box->lower[k] > s->v[k] && a[k] <= s->v[k] && b[k] <= s->v[k]) ||
+            (s->box->upper[k] < s->v[k] && a[k] >= s->v[k] && b[k] >= s->v[k]))
+            return true;
+    return line_keeps_apart(s, a, b) || side_of_box(s->v, a, b, s->corner) != 0;
+}
+
+/* ---- patches ---- */
+
+/* Where a flood fails, or stops: see docs/verification.md. */
+typedef enum flood_kind { PATCH, FOLD, ENTRY } flood_kind;
+
+static bool has_corner(const verify_surface *surface, uint32_t face, uint32_t vertex) {
+    const uint32_t *c = surface->faces + 3 * (size_t)face;
+    return c[0] == vertex || c[1] == vertex || c[2] == vertex;
+}
+
+static bool admits(const verify_watch *w, const shaft *s, uint32_t face, int side,
+                   flood_kind kind) {
+    const verify_surface *surface = w->scene->surface;
+    const double *t[3];
+    verify_corners(surface, face, t);
+    return !has_corner(surface, face, s->vertex) && verify_side(t[0], t[1], t[2], s->v) == side &&
+           (kind == ENTRY || !face_meets_box(t, s->box));
+}
+
+static void begin_flood(verify_watch *w) {
+    if (w->flood == UINT32_MAX) {
+        memset(w->visit, 0, w->scene->surface->face_count * sizeof *w->visit);
+        w->flood = 0;
+    }
+    w->flood++;
+}
+
+/* Spreads from the seed over edges that do not miss the shaft. True: v is strictly on `side` of all
+ * faces of the patch, and none of them meets the box (but for entries). */
+static bool closes(verify_watch *w, const shaft *s, uint32_t seed, int side, flood_kind kind) {
+    const verify_scene *scene = w->scene;
+    size_t depth = 0;
+    begin_flood(w);
+    w->stack[depth++] = seed;
+    w->visit[seed] = w->flood;
+    while (depth > 0) {
+        uint32_t face = w->stack[--depth];
+        const double *t[3];
+        if (!admits(w, s, face, side, kind))
+            return false;
+        verify_corners(scene->surface, face, t);
+        for (uint32_t k = 0; k < 3; k++) {
+            uint32_t next = scene->twin[3 * (size_t)face + k] / 3;
+            if (w->visit[next] == w->flood || misses(s, t[k], t[(k + 1) % 3]) ||
+                (kind == FOLD && has_corner(scene->surface, next, s->vertex)))
+                continue;
+            w->visit[next] = w->flood;
+            w->stack[depth++] = next;
+        }
+    }
+    return true;
+}
+
+/* A patch with a face that the segment from v to the centre of the box meets. */
+static bool patch_hides(verify_watch *w, const shaft *s, uint32_t seed, flood_kind kind) {
+    const double *t[3];
+    double centre[3];
+    if (seed >= w->scene->surface->face_count)
+        return false;
+    verify_corners(w->scene->surface, seed, t);
+    centre_of(s->box, centre);
+    int side = verify_side(t[0], t[1], t[2], s->v);
+    return side != 0 && !verify_on_triangle(centre, t) && verify_blocks(centre, s->v, t) &&
+           closes(w, s, seed, side, kind);
+}
+
+/* All faces that meet the box turn their outer side to v, in patches that close. */
+static bool entry_hides(verify_watch *w, const shaft *s) {
+    bool any = false;
+    if (!know_met(w))
+        return false;
+    for (size_t i = 0; i < w->met.count; i++) {
+        const double *t[3];
+        verify_corners(w->scene->surface, w->met.data[i], t);
+        if (s->box != &w->box && !face_meets_box(t, s->box))
+            continue;
+        if (!closes(w, s, w->met.data[i], -1, ENTRY))
+            return false;
+        any = true;
+    }
+    return any;
+}
+
+/* ---- where segments begin ---- */
+
+/* The corners of the face of directed edge e, which begins at v, that follow v. */
+static void beyond_vertex(const verify_scene *scene, uint32_t e, const double *ends[2]) {
+    const double *t[3];
+    verify_corners(scene->surface, e / 3, t);
+    ends[0] = t[(e + 1) % 3];
+    ends[1] = t[(e + 2) % 3];
+}
+
+static uint32_t turn_about(const verify_scene *scene, uint32_t e) {
+    return scene->twin[e % 3 == 0 ? e + 2 : e - 1];
+}
+
+/* Does the arc of directions from d to e cross only arcs of the faces about v that have d on their
+ * outer side, and at least one, each of them properly? */
+static bool leads_in(const verify_scene *scene, const shaft *s, const double d[3],
+                     const double e[3]) {
+    uint32_t first = scene->outgoing[s->vertex], edge = first;
+    bool any = false;
+    do {
+        const double *end[2];
+        beyond_vertex(scene, edge, end);
+        int a = verify_side(d, e, end[0], s->v), b = verify_side(d, e, end[1], s->v);
+        int at_d = verify_side(end[0], end[1], d, s->v),
+            at_e = verify_side(end[0], end[1], e, s->v);
+        if (a == 0 || b == 0 || at_e == 0)
+            return false;
+        if (a != b && at_d == -at_e && a == at_e) {
+            if (verify_side(s->v, end[0], end[1], d) >= 0)
+                return false;
+            any = true;
+        }
+        edge = turn_about(scene, edge);
+    } while (edge != first);
+    return any;
+}
+
+/* A point somewhat beyond the middle of a b, as seen from v along the arc from d. */
+static void overshoot(const double v[3], const double d[3], const double *const end[2],
+                      double e[3]) {
+    double to_d[3], to_middle[3], long_d = 0, long_middle = 0;
+    for (int k = 0; k < 3; k++) {
+        to_d[k] = d[k] - v[k];
+        to_middle[k] = (0.5 * end[0][k] - 0.5 * v[k]) + (0.5 * end[1][k] - 0.5 * v[k]);
+        long_d += to_d[k] * to_d[k];
+        long_middle += to_middle[k] * to_middle[k];
+    }
+    double ratio = 0.03125 * sqrt(long_middle) / sqrt(long_d);
+    for (int k = 0; k < 3; k++)
+        e[k] = v[k] + 0.5 * (to_middle[k] - ratio * to_d[k]);
+}
+
+static bool is_near(const double p[3]) {
+    return fabs(p[0]) < 1e100 && fabs(p[1]) < 1e100 && fabs(p[2]) < 1e100;
+}
+
+/* Does the direction from v to the centre of the box lead out of the solid, or along a face? */
+static bool starts_outside(const verify_scene *scene, const shaft *s) {
+    uint32_t first = scene->outgoing[s->vertex], edge = first;
+    double d[3], e[3];
+    bool inner = false;
+    centre_of(s->box, d);
+    do {
+        const double *end[2];
+        beyond_vertex(scene, edge, end);
+        inner = inner || verify_side(s->v, end[0], end[1], d) > 0;
+        edge = turn_about(scene, edge);
+    } while (edge != first);
+    if (!inner)
+        return true;
+    do {
+        const double *end[2];
+        beyond_vertex(scene, edge, end);
+        if (verify_side(s->v, end[0], end[1], d) < 0) {
+            overshoot(s->v, d, end, e);
+            if (is_near(e) && leads_in(scene, s, d, e))
+                return true;
+        }
+        edge = turn_about(scene, edge);
+    } while (edge != first);
+    return false;
+}
+
+static bool start_hides(const verify_scene *scene, const shaft *s) {
+    uint32_t first = scene->outgoing[s->vertex], edge = first;
+    do {
+        const double *end[2];
+        beyond_vertex(scene, edge, end);
+        if (!directions_miss(s, end[0], end[1]))
+            return false;
+        edge = turn_about(scene, edge);
+    } while (edge != first);
+    return starts_outside(scene, s);
+}
+
+/* ---- folds ---- */
+
+/* Does a patch that closes go on, on the inner side, beyond the face of this edge, whose directions
+ * may meet those to the box? */
+static bool goes_on(verify_watch *w, const shaft *s, uint32_t edge) {
+    const verify_scene *scene = w->scene;
+    const double *t[3], *n[3];
+    uint32_t across = scene->twin[edge % 3 == 2 ? edge - 2 : edge + 1];
+    verify_corners(scene->surface, edge / 3, t);
+    verify_corners(scene->surface, across / 3, n);
+    if (face_meets_box(t, s->box) || verify_side(t[0], t[1], t[2], n[(across + 2) % 3]) <= 0)
+        return false;
+    int side = verify_side(n[0], n[1], n[2], s->v);
+    return side != 0 && closes(w, s, across / 3, side, FOLD);
+}
+
+static bool fold_hides(verify_watch *w, const shaft *s, uint32_t seed) {
+    const verify_scene *scene = w->scene;
+    uint32_t first = scene->outgoing[s->vertex], edge = first;
+    do {
+        const double *end[2];
+        beyond_vertex(scene, edge, end);
+        if (!directions_miss(s, end[0], end[1]) && !goes_on(w, s, edge))
+            return false;
+        edge = turn_about(scene, edge);
+    } while (edge != first);
+    return starts_outside(scene, s) || patch_hides(w, s, seed, FOLD);
+}
+
+/* ---- reasons ---- */
+
+static bool is_far(const verify_box *box, const double v[3], double range) {
+    double nearest[3];
+    for (int k = 0; k < 3; k++)
+        nearest[k] = fmin(fmax(v[k], box->lower[k]), box->upper[k]);
+    return !verify_within(nearest, v, range);
+}
+
+static bool hides_vertex(verify_watch *w, const verify_box *box, double range,
+                         const verify_reason *reason) {
+    const verify_scene *scene = w->scene;
+    const double *v = scene->surface->vertices + 3 * (size_t)reason->vertex;
+    shaft s;
+    if (reason->kind == 'r')
+        return is_far(box, v, range);
+    if (holds(box, v) || (reason->kind != 'p' && !scene->embedded))
+        return false;
+    make_shaft(w, reason->vertex, box, &s);
+    switch (reason->kind) {
+    case 's':
+        return start_hides(scene, &s);
+    case 'p':
+        return patch_hides(w, &s, reason->seed, PATCH);
+    case 'f':
+        return fold_hides(w, &s, reason->seed);
+    case 'e':
+        return entry_hides(w, &s);
+    default:
+        return false;
+    }
+}
+
+bool verify_box_hides(verify_watch *w, starg_target kind, uint32_t target, double range,
+                      const verify_reason *reason) {
+    const verify_surface *surface = w->scene->surface;
+    const double *t[3];
+    verify_box left;
+    if (w->empty)
+        return true;
+    if (reason->kind != 'n' && (reason->vertex >= surface->vertex_count ||
+                                w->scene->outgoing[reason->vertex] == UINT32_MAX))
+        return false;
+    if (kind == STARG_TARGET_VERTICES)
+        return reason->kind != 'n' && !reason->clipped && reason->vertex == target &&
+               hides_vertex(w, &w->box, range, reason);
+    verify_corners(surface, target, t);
+    if (reason->kind == 'n')
+        return no_corner_is_inner(t, &w->box);
+    if (!has_corner(surface, target, reason->vertex))
+        return false;
+    if (reason->clipped)
+        clip(t, &w->box, &left);
+    return hides_vertex(w, reason->clipped ? &left : &w->box, range, reason);
+}
+
+bool verify_box_outside(verify_watch *w) {
+    double centre[3];
+    bool on_surface;
+    if (w->empty)
+        return true;
+    if (!know_met(w) || w->met.count > 0)
+        return false;
+    centre_of(&w->box, centre);
+    int winding = verify_tree_winding(w->scene->tree, centre, &on_surface);
+    return !on_surface && winding < 1;
+}
+
+/* ---- memory ---- */
+
+/* Outside of the bounds of the surface nothing is in the solid. */
+void verify_watch_box(verify_watch *w, const verify_box *box) {
+    const verify_surface *surface = w->scene->surface;
+    w->met_known = w->empty = false;
+    for (int k = 0; k < 3; k++) {
+        w->box.lower[k] = fmax(box->lower[k], surface->lower[k]);
+        w->box.upper[k] = fmin(box->upper[k], surface->upper[k]);
+        w->empty = w->empty || !(w->box.lower[k] <= w->box.upper[k]);
+    }
+}
+
+starg_status verify_watch_create(const verify_scene *scene, verify_watch **out) {
+    starg_context *context = scene->surface->context;
+    size_t faces = scene->surface->face_count;
+    verify_watch *w = starg_allocate_zero(context, 1, sizeof *w);
+    *out = NULL;
+    if (w == NULL)
+        return STARG_ERROR_MEMORY;
+    w->scene = scene;
+    w->visit = starg_allocate_zero(context, faces, sizeof *w->visit);
+    w->stack = starg_allocate(context, faces, sizeof *w->stack);
+    if (w->visit == NULL || w->stack == NULL) {
+        verify_watch_free(w);
+        return STARG_ERROR_MEMORY;
+    }
+    *out = w;
+    return STARG_OK;
+}
+
+void verify_watch_free(verify_watch *w) {
+    if (w == NULL)
+        return;
+    starg_context *context = w->scene->surface->context;
+    STARG_ARRAY_FREE(context, &w->met);
+    starg_release(context, w->visit);
+    starg_release(context, w->stack);
+    starg_release(context, w);
+}
+
+starg_status verify_scene_create(const verify_surface *surface, const verify_tree *tree,
+                                 bool embedding, verify_scene *out) {
+    starg_status status = STARG_OK;
+    *out = (verify_scene){.surface = surface, .tree = tree};
+    STARG_TRY(verify_find_twins(surface, &out->twin));
+    STARG_NEW(surface->context, "verify", out->outgoing, surface->vertex_count);
+    for (size_t v = 0; v < surface->vertex_count; v++)
+        out->outgoing[v] = UINT32_MAX;
+    for (size_t e = 3 * surface->face_count; e-- > 0;)
+        out->outgoing[surface->faces[e]] = (uint32_t)e;
+    if (embedding)
+        STARG_TRY(verify_find_embedded(out, &out->embedded));
+done:
+    if (status != STARG_OK)
+        verify_scene_free(out);
+    return status;
+}
+
+void verify_scene_free(verify_scene *scene) {
+    if (scene->surface == NULL)
+        return;
+    starg_release(scene->surface->context, scene->twin);
+    starg_release(scene->surface->context, scene->outgoing);
+    *scene = (verify_scene){0};
+}

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Scenes, put together anew: the faces of the model, reversed where guards are outside of it, then
+ * those of closed obstacles, reversed, then every face of the open ones twice, once for each side.
+ * Free is where the winding number, plus 1 where guards are outside, is at least 1.
+ *
+ * Cost: that of the surfaces. */
+#include "verify/space.h"
+
+#include <string.h>
+
+#include "core/memory.h"
+#include "verify/exact_sum.h"
+
+static const char STAGE[] = "verify";
+
+typedef struct gathering {
+    starg_context *context;
+    STARG_ARRAY(double) vertices;
+    STARG_ARRAY(uint32_t) faces;
+} gathering;
+
+static starg_status add_vertices(gathering *g, const starg_mesh *mesh, uint32_t *first) {
+    starg_status status = STARG_OK;
+    *first = (uint32_t)(g->vertices.count / 3);
+    for (size_t i = 0; i < 3 * starg_mesh_vertex_count(mesh); i++)
+        STARG_PUSH(g->context, STAGE, &g->vertices, starg_mesh_vertices(mesh)[i]);
+done:
+    return status;
+}
+
+static starg_status add_faces(gathering *g, const uint32_t *faces, size_t count, uint32_t first,
+                              bool reversed) {
+    starg_status status = STARG_OK;
+    for (size_t f = 0; f < count; f++)
+        for (size_t k = 0; k < 3; k++)
+            STARG_PUSH(g->context, STAGE, &g->faces, faces[3 * f + (reversed ? 2 - k : k)] + first);
+done:
+    return status;
+}
+
+static int volume_sign(const verify_surface *surface) {
+    exact_sum sum;
+    exact_sum_clear(&sum);
+    for (size_t f = 0; f < surface->face_count; f++) {
+        const double *t[3];
+        verify_corners(surface, f, t);
+        exact_sum_add_determinant(&sum, t[0], t[1], t[2]);
+    }
+    return exact_sum_sign(&sum);
+}
+
+static starg_status add_model(gathering *g, const starg_mesh *mesh, const starg_guards *guards) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    uint32_t first;
+    bool keeps = guards->space.orientation == STARG_ORIENTATION_KEEP;
+    STARG_TRY(keeps ? verify_surface_as_given(g->context, mesh, &surface)
+                    : verify_surface_create(g->context, mesh, &surface));
+    bool inward = keeps && volume_sign(surface) < 0;
+    STARG_TRY(add_vertices(g, mesh, &first));
+    status =
+        add_faces(g, surface->faces, surface->face_count, first, inward != guards->space.outside);
+done:
+    verify_surface_free(surface);
+    return status;
+}
+
+/* Of closed obstacles, or of open ones. */
+static starg_status add_obstacle(gathering *g, const starg_mesh *mesh, bool open) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    uint32_t first;
+    status = verify_surface_create(g->context, mesh, &surface);
+    bool is_open = status == STARG_ERROR_MESH;
+    if (is_open)
+        status = verify_surface_welded(g->context, mesh, &surface);
+    STARG_TRY(status);
+    if (is_open != open)
+        goto done;
+    STARG_TRY(add_vertices(g, mesh, &first));
+    if (open)
+        STARG_TRY(add_faces(g, surface->faces, surface->face_count, first, false));
+    STARG_TRY(add_faces(g, surface->faces, surface->face_count, first, true));
+done:
+    verify_surface_free(surface);
+    return status;
+}
+
+static starg_status check_obstacles(starg_context *context, const starg_mesh *const *obstacles,
+                                    size_t count, const starg_guards *guards) {
+    if (count != guards->obstacle_count)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the result is of %zu obstacles, and %zu are given",
+                          guards->obstacle_count, count);
+    for (size_t i = 0; i < count; i++) {
+        const starg_guard_obstacle *o = &guards->obstacles[i];
+        size_t vertices = starg_mesh_vertex_count(obstacles[i]);
+        size_t faces = starg_mesh_face_count(obstacles[i]);
+        if (o->vertex_count != vertices || o->face_count != faces)
+            return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                              "obstacle %zu has %zu vertices and %zu faces; the result is of one "
+                              "with %zu and %zu",
+                              i, vertices, faces, o->vertex_count, o->face_count);
+    }
+    return STARG_OK;
+}
+
+/* How much each face counts; obstacles not at all. */
+static starg_status weigh(starg_context *context, const starg_mesh *mesh,
+                          const starg_guards *guards, verify_surface *surface) {
+    starg_status status = STARG_OK;
+    size_t faces = starg_mesh_face_count(mesh);
+    STARG_NEW_ZERO(context, STAGE, surface->importance, surface->face_count);
+    for (size_t f = 0; f < faces && guards->targets == NULL; f++)
+        surface->importance[f] = 1;
+    for (size_t i = 0; guards->targets != NULL && i < guards->target_count; i++)
+        if (guards->targets[i] < faces)
+            surface->importance[guards->targets[i]] = guards->importance[i];
+done:
+    return status;
+}
+
+starg_status verify_space_create(starg_context *context, const starg_mesh *mesh,
+                                 const starg_mesh *const *obstacles, size_t obstacle_count,
+                                 const starg_guards *guards, verify_surface **out) {
+    starg_status status = STARG_OK;
+    gathering g = {.context = context};
+    verify_surface *surface = NULL;
+    *out = NULL;
+    STARG_TRY(check_obstacles(context, obstacles, obstacle_count, guards));
+    STARG_TRY(add_model(&g, mesh, guards));
+    for (int open = 0; open < 2; open++)
+        for (size_t i = 0; i < obstacle_count; i++)
+            STARG_TRY(add_obstacle(&g, obstacles[i], open == 1));
+    uint32_t *faces = g.faces.data;
+    g.faces.data = NULL;
+    STARG_TRY(verify_surface_wrap(context, g.vertices.data, g.vertices.count / 3, faces,
+                                  g.faces.count / 3, &surface));
+    surface->own_vertices = g.vertices.data;
+    g.vertices.data = NULL;
+    surface->model_vertices = starg_mesh_vertex_count(mesh);
+    surface->model_faces = starg_mesh_face_count(mesh);
+    surface->ambient = guards->space.outside ? 1 : 0;
+    STARG_TRY(weigh(context, mesh, guards, surface));
+    *out = surface;
+    surface = NULL;
+done:
+    STARG_ARRAY_FREE(context, &g.vertices);
+    STARG_ARRAY_FREE(context, &g.faces);
+    verify_surface_free(surface);
+    return status;
+}

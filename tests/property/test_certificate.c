@@ -1,0 +1,631 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Certificates of bounds for guards anywhere: those of searches are found right, and say the same
+ * at any number of threads; damaged and forged ones are refused, or say something that is true. */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/rng.h"
+#include "guard/bound.h"
+#include "models.h"
+#include "verify/claims.h"
+#include "verify/everywhere.h"
+
+enum { DAMAGED = 10000 };
+
+/* A model, what was proven about it, and what the verifier knows of it. */
+typedef struct subject {
+    starg_context *context;
+    starg_solid *solid;
+    const starg_mesh *mesh;
+    starg_guards *guards;
+    char *text;
+    size_t size;
+    verify_facts known;
+} subject;
+
+static starg_guard_options proving(uint64_t work) {
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.candidate_count = 60;
+    options.refine_lines = 20000;
+    options.prove = true;
+    options.prove_work = work;
+    return options;
+}
+
+/* What the guards see, by the verifier's word. */
+static void find_known(subject *s) {
+    verify_surface *surface = NULL;
+    verify_sight *sight = NULL;
+    const uint8_t *vertices, *faces;
+    test_ok(s->context, verify_surface_create(s->context, s->mesh, &surface));
+    s->known = (verify_facts){.surface = surface, .guards = s->guards};
+    test_ok(s->context, verify_tree_create(surface, &s->known.tree));
+    test_ok(s->context, verify_sight_create(surface, &sight));
+    s->known.face = calloc(surface->face_count, 1);
+    s->known.vertex = calloc(surface->vertex_count, 1);
+    assert_true(s->known.face != NULL && s->known.vertex != NULL);
+    for (size_t g = 0; g < s->guards->count; g++) {
+        const verify_view view = verify_view_of(s->guards, NULL);
+        test_ok(s->context,
+                verify_look(sight, s->guards->positions + 3 * g, &view, &vertices, &faces));
+        for (size_t f = 0; f < surface->face_count; f++)
+            s->known.face[f] |= faces[f];
+        for (size_t v = 0; v < surface->vertex_count; v++)
+            s->known.vertex[v] |= vertices[v];
+    }
+    verify_sight_free(sight);
+}
+
+static subject prove(starg_context *context, starg_solid *solid,
+                     const starg_guard_options *options) {
+    subject s = {.context = context, .solid = solid, .mesh = starg_solid_mesh(solid)};
+    test_ok(context, starg_guard_certified(context, solid, options, &s.guards, &s.text, &s.size));
+    find_known(&s);
+    return s;
+}
+
+static subject prove_sample(const char *name, size_t vertices, uint64_t work) {
+    starg_context *context = test_context(2);
+    const starg_guard_options options = proving(work);
+    return prove(context, test_sample(context, name, vertices), &options);
+}
+
+static void subject_clear(subject *s) {
+    free(s->known.face);
+    free(s->known.vertex);
+    verify_tree_free(s->known.tree);
+    verify_surface_free((verify_surface *)(uintptr_t)s->known.surface);
+    starg_text_free(s->context, s->text);
+    starg_guards_free(s->context, s->guards);
+}
+
+static void subject_free(subject *s) {
+    subject_clear(s);
+    starg_solid_free(s->solid);
+    test_context_free(s->context);
+}
+
+/* ---- right ones ---- */
+
+static bool says(const starg_verdict *verdict, bool holds, const char *words) {
+    for (size_t i = 0; i < verdict->count; i++)
+        if (verdict->claims[i].holds == holds && strstr(verdict->claims[i].text, words) != NULL)
+            return true;
+    return false;
+}
+
+static void check_right(const subject *s) {
+    starg_certificate *read = NULL;
+    starg_verdict *verdict = NULL;
+    test_ok(s->context, starg_certificate_read_memory(s->context, s->text, s->size, "c", &read));
+    assert_int_equal(read->bound, s->guards->lower_bound_everywhere);
+    test_ok(s->context, starg_verify_certified(s->context, s->mesh, s->guards, read, &verdict));
+    for (size_t i = 0; i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            print_message("%s\n", verdict->claims[i].text);
+    assert_true(verdict->passed);
+    assert_true(says(verdict, true, "wherever they stand"));
+    for (size_t i = 0; i < verdict->not_checked_count; i++)
+        assert_null(strstr(verdict->not_checked[i].text, "wherever"));
+    starg_verdict_free(s->context, verdict);
+    starg_certificate_free(read);
+}
+
+static void test_samples(void **state) {
+    (void)state;
+    static const char *const names[] = {"l-room", "gallery", "horse", "human"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        subject s = prove_sample(names[i], 500, 200000);
+        check_right(&s);
+        print_message("%s: %zu guards, bound %zu, %zu bytes\n", names[i], s.guards->count,
+                      s.guards->lower_bound_everywhere, s.size);
+        subject_free(&s);
+    }
+}
+
+/* A heap of cells: many reflex edges, and bounds that need branching. */
+static shape random_cells(uint64_t item) {
+    starg_rng rng = starg_rng_make(9, 2, item);
+    char cells[5 * 5 * 2];
+    int at[3] = {0, 0, 0};
+    const int size[3] = {5, 5, 2};
+    memset(cells, ' ', sizeof cells);
+    for (int step = 0; step < 30; step++) {
+        size_t k = (size_t)starg_rng_below(&rng, 3);
+        cells[at[0] + 5 * (at[1] + 5 * at[2])] = '#';
+        at[k] = (int)starg_rng_below(&rng, 2) ? at[k] + 1 : at[k] - 1;
+        at[k] = at[k] < 0 ? 0 : at[k] >= size[k] ? size[k] - 1 : at[k];
+    }
+    return shape_cells(cells, 5, 5, 2);
+}
+
+static void test_random_solids(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    size_t branched = 0, above = 0, rounds = test_rounds(8, 300);
+    for (uint64_t item = 0; item < rounds; item++) {
+        shape made = item % 4 == 0 ? shape_blob(2, item) : random_cells(item);
+        starg_mesh *mesh = test_mesh_of(context, &made);
+        starg_solid *solid = NULL;
+        if (starg_solid_create(context, mesh, &solid) == STARG_OK) {
+            const starg_guard_options options = proving(200000);
+            subject s = prove(context, solid, &options);
+            check_right(&s);
+            branched += strstr(s.text, "\nwitness ") != NULL || strstr(s.text, "\n=") != NULL;
+            above += s.guards->lower_bound_everywhere > 1;
+            subject_clear(&s);
+        }
+        starg_solid_free(solid);
+        starg_mesh_free(mesh);
+        shape_free(&made);
+    }
+    print_message("%zu bounds above 1, %zu of them by rows\n", above, branched);
+    assert_true(above > 0);
+    test_context_free(context);
+}
+
+/* Vertices, a range, whole faces, and a distance from the walls. */
+static void test_questions(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    shape made = shape_columns();
+    starg_solid *solid = test_solid_of(context, &made);
+    for (int question = 0; question < 4; question++) {
+        starg_guard_options options = proving(200000);
+        if (question == 0)
+            options.visibility.target = STARG_TARGET_VERTICES;
+        else if (question == 1)
+            options.visibility.range = 3;
+        else if (question == 2)
+            options.visibility.face_rule = STARG_FACES_WHOLE;
+        else
+            options.clearance = 0.2;
+        subject s = prove(context, solid, &options);
+        assert_true(s.guards->lower_bound_everywhere > 1);
+        check_right(&s);
+        subject_clear(&s);
+    }
+    starg_solid_free(solid);
+    shape_free(&made);
+    test_context_free(context);
+}
+
+/* One guard is enough, or nothing can be seen. */
+static void test_trivial(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape made = shape_cube(2);
+    starg_solid *solid = test_solid_of(context, &made);
+    for (int nothing = 0; nothing < 2; nothing++) {
+        starg_guard_options options = proving(1000);
+        options.visibility.range = nothing ? 1e-3 : INFINITY;
+        subject s = prove(context, solid, &options);
+        assert_int_equal(s.guards->lower_bound_everywhere, !nothing);
+        check_right(&s);
+        subject_clear(&s);
+    }
+    starg_solid_free(solid);
+    shape_free(&made);
+    test_context_free(context);
+}
+
+static void test_same_bytes(void **state) {
+    (void)state;
+    subject first = prove_sample("gallery", 500, 200000);
+    for (int threads = 1; threads <= 5; threads += 4) {
+        starg_context *context = test_context(threads);
+        const starg_guard_options options = proving(200000);
+        subject again = prove(context, test_sample(context, "gallery", 500), &options);
+        assert_string_equal(first.text, again.text);
+        subject_free(&again);
+    }
+    subject_free(&first);
+}
+
+static void test_needs_prove(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "l-room", 500);
+    starg_guard_options options = proving(1000);
+    starg_guards *guards;
+    char *text;
+    size_t size;
+    options.prove = false;
+    assert_int_equal(starg_guard_certified(context, solid, &options, &guards, &text, &size),
+                     STARG_ERROR_ARGUMENT);
+    assert_true(guards == NULL && text == NULL);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* ---- damaged ones ---- */
+
+typedef struct number {
+    size_t at, length;
+} number;
+
+/* All runs of digits of the text but those of the first line, which is the format's name. */
+static number *find_numbers(const char *text, size_t *count) {
+    number *list = NULL;
+    *count = 0;
+    for (size_t i = (size_t)(strchr(text, '\n') - text); text[i] != '\0'; i++) {
+        number one = {i, 0};
+        while (isdigit((unsigned char)text[i + one.length]))
+            one.length++;
+        if (one.length == 0)
+            continue;
+        list = realloc(list, (*count + 1) * sizeof *list);
+        assert_non_null(list);
+        list[(*count)++] = one;
+        i += one.length;
+        if (text[i] == '\0')
+            break;
+    }
+    return list;
+}
+
+/* Another number: near, of the size of those about, or anything. */
+static unsigned long long other_number(unsigned long long value, unsigned long long elsewhere,
+                                       starg_rng *rng) {
+    switch (starg_rng_below(rng, 6)) {
+    case 0:
+        return value + 1;
+    case 1:
+        return value > 0 ? value - 1 : 1;
+    case 2:
+        return starg_rng_below(rng, 2 * value + 2);
+    case 3:
+        return elsewhere;
+    case 4:
+        return value * 10 + starg_rng_below(rng, 10);
+    default:
+        return starg_rng_below(rng, UINT64_C(1) << starg_rng_below(rng, 50));
+    }
+}
+
+static char *damage(const char *text, const number *numbers, size_t count, starg_rng *rng) {
+    const number *one = &numbers[starg_rng_below(rng, count)];
+    const number *other = &numbers[starg_rng_below(rng, count)];
+    unsigned long long value = strtoull(text + one->at, NULL, 10);
+    size_t length = strlen(text) + 32;
+    char *out = malloc(length);
+    assert_non_null(out);
+    unsigned long long changed = other_number(value, strtoull(text + other->at, NULL, 10), rng);
+    snprintf(out, length, "%.*s%llu%s", (int)one->at, text, changed == value ? value + 7 : changed,
+             text + one->at + one->length);
+    return out;
+}
+
+/* What a certificate says about a model, and whether all of it is accepted. */
+static bool is_accepted(const subject *s, const char *text, size_t *bound, size_t *unread) {
+    starg_certificate *read = NULL;
+    starg_verdict *verdict = NULL;
+    starg_status status =
+        starg_certificate_read_memory(s->context, text, strlen(text), "damaged", &read);
+    if (status != STARG_OK) {
+        assert_int_equal(status, STARG_ERROR_FORMAT);
+        assert_non_null(strstr(starg_context_error(s->context)->message, "line"));
+        ++*unread;
+        return false;
+    }
+    s->guards->lower_bound_everywhere = *bound = read->bound;
+    test_ok(s->context, verify_verdict_create(s->context, &verdict));
+    test_ok(s->context, verify_claim_everywhere(verdict, &s->known, read));
+    bool passed = verdict->passed;
+    starg_verdict_free(s->context, verdict);
+    starg_certificate_free(read);
+    return passed;
+}
+
+/* No bound is accepted that is above the proven one: that takes a better proof, not a damage. */
+static void check_damaged(subject *s, size_t rounds) {
+    size_t count, accepted = 0, unread = 0, proven = s->guards->lower_bound_everywhere;
+    number *numbers = find_numbers(s->text, &count);
+    for (size_t i = 0; i < rounds; i++) {
+        starg_rng rng = starg_rng_make(21, 3, i);
+        char *text = damage(s->text, numbers, count, &rng);
+        size_t bound = 0;
+        if (is_accepted(s, text, &bound, &unread)) {
+            if (bound > proven)
+                fail_msg("round %zu: a bound of %zu is accepted, and %zu was proven", i, bound,
+                         proven);
+            accepted++;
+        }
+        free(text);
+    }
+    print_message("bound %zu, %zu numbers: of %zu damages %zu are unreadable, %zu refused, %zu "
+                  "harmless\n",
+                  proven, count, rounds, unread, rounds - unread - accepted, accepted);
+    assert_true(accepted < rounds / 2);
+    free(numbers);
+}
+
+/* Proves something about a small shape, which is taken over, and damages that. */
+static void damage_shape(shape made, size_t rounds) {
+    starg_context *context = test_context(2);
+    starg_mesh *mesh = test_mesh_of(context, &made);
+    const starg_guard_options options = proving(200000);
+    starg_solid *solid = NULL;
+    shape_free(&made);
+    if (starg_solid_create(context, mesh, &solid) != STARG_OK) {
+        starg_mesh_free(mesh);
+        test_context_free(context);
+        return;
+    }
+    subject s = prove(context, solid, &options);
+    if (s.guards->lower_bound_everywhere > 1)
+        check_damaged(&s, rounds);
+    starg_mesh_free(mesh);
+    subject_free(&s);
+}
+
+static void test_damaged(void **state) {
+    (void)state;
+    subject gallery = prove_sample("gallery", 500, 200000);
+    check_damaged(&gallery, test_rounds(DAMAGED / 10, DAMAGED));
+    subject_free(&gallery);
+    damage_shape(shape_columns(), test_rounds(4 * DAMAGED / 10, DAMAGED));
+    for (uint64_t item = 1; item < 8; item++)
+        damage_shape(random_cells(item), test_rounds(2 * DAMAGED / 10, DAMAGED));
+}
+
+/* ---- what follows from what leaves may see ---- */
+
+static void put_set(FILE *stream, const char *before, uint64_t set, const char *behind) {
+    for (int j = 0; j < 64; j++)
+        if (set >> j & 1)
+            fprintf(stream, "%s%d%s", before, j, behind);
+}
+
+/* A certificate of random rows, which has no model: each is what one leaf may see. */
+static char *certificate_of_rows(const witness_row *const *rows, size_t count, size_t witnesses,
+                                 size_t bound, const branch_record *record) {
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    uint64_t all = (UINT64_C(1) << witnesses) - 1;
+    assert_non_null(stream);
+    fprintf(stream,
+            "starguard-certificate 1\nvertices 99\nfaces 99\nchecksum 0123456789abcdef\n"
+            "target faces\nrange none\nbound %zu\nroot 0:0 0:0 0:0 1:0 1:0 1:0\n",
+            bound);
+    fprintf(stream, "witnesses %zu\n", witnesses);
+    put_set(stream, "", all, "\n");
+    fprintf(stream, "rows %zu\n", count);
+    for (size_t i = 0; i < count; i++) {
+        uint64_t lowest = rows[i]->bits[0] & -rows[i]->bits[0];
+        put_set(stream, "", lowest, "");
+        put_set(stream, " ", rows[i]->bits[0] & ~lowest, "");
+        fprintf(stream, "\n");
+    }
+    fprintf(stream, "cells %zu\n", 2 * count - 1);
+    for (size_t i = 0; i < count; i++) {
+        fprintf(stream, i + 1 < count ? "x\n=%zu" : "=%zu", i);
+        put_set(stream, " ", all & ~rows[i]->bits[0], "n");
+        fprintf(stream, "\n");
+    }
+    fprintf(stream, "nodes %zu\n", record->nodes.count);
+    for (size_t i = 0; i < record->nodes.count; i++) {
+        const branch_node *node = &record->nodes.data[i];
+        const uint64_t *numbers = record->numbers.data + node->first;
+        bool prices = node->witness == UINT32_MAX;
+        fprintf(stream, prices ? "prices" : "witness %u", node->witness);
+        for (size_t k = 0; k < node->count; k++)
+            fprintf(stream, "%c%llu", prices && k % 2 != 0 ? ':' : ' ',
+                    (unsigned long long)numbers[k]);
+        fprintf(stream, "\n");
+    }
+    fclose(stream);
+    return text;
+}
+
+/* The fewest sets that hold all, by trying. */
+static size_t fewest(const uint64_t *sets, size_t count, uint64_t left, size_t most) {
+    size_t best = SIZE_MAX;
+    if (left == 0)
+        return 0;
+    for (size_t i = 0; i < count && most > 0; i++)
+        if (sets[i] & left & -left) {
+            size_t rest = fewest(sets, count, left & ~sets[i], most - 1);
+            best = rest < best ? rest + 1 : best;
+        }
+    return best;
+}
+
+/* What the leaves may see; cells follow the x that cuts them, one half a leaf. */
+static size_t leaf_sets(const starg_certificate *read, uint64_t *sets) {
+    size_t count = 0;
+    uint64_t above = 0; /* hidden from the cells around */
+    for (size_t i = 0; i < read->cell_count; i++) {
+        uint64_t hidden = 0;
+        for (size_t k = 0; k < read->cells[i].count; k++)
+            hidden |= UINT64_C(1) << read->reasons.data[read->cells[i].first + k].witness;
+        if (read->cells[i].kind < EVERYWHERE_LEAF)
+            above |= hidden;
+        else if (read->cells[i].kind == EVERYWHERE_LEAF)
+            sets[count++] = ((UINT64_C(1) << read->witness_count) - 1) & ~(above | hidden);
+    }
+    return count;
+}
+
+/* Is what follows true? Returns whether it does. */
+static bool check_follows(starg_context *context, const char *text) {
+    starg_certificate *read = NULL;
+    everywhere_words why;
+    bool follows = false;
+    if (starg_certificate_read_memory(context, text, strlen(text), "rows", &read) != STARG_OK)
+        return false;
+    test_ok(context, verify_check_bound(read, &follows, &why));
+    if (follows && read->bound > 1 && read->witness_count < 64) {
+        uint64_t sets[256];
+        assert_true(read->cell_count < 256);
+        size_t count = leaf_sets(read, sets);
+        uint64_t all = (UINT64_C(1) << read->witness_count) - 1;
+        size_t needed = fewest(sets, count, all, read->bound);
+        if (needed < read->bound)
+            fail_msg("%zu sets hold all, and a bound of %zu follows from\n%s", needed, read->bound,
+                     text);
+    }
+    starg_certificate_free(read);
+    return follows;
+}
+
+static void test_rows(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t proofs = 0, branched = 0, accepted = 0, damages = 0;
+    for (uint64_t item = 0; item < test_rounds(300, 20000); item++) {
+        starg_rng rng = starg_rng_make(31, 4, item);
+        witness_row rows[24], wanted = {{0}};
+        const witness_row *list[24];
+        uint64_t sets[24], work = 0;
+        size_t count = 12 + starg_rng_below(&rng, 13), witnesses = 8 + starg_rng_below(&rng, 13);
+        double share = 0.2 + 0.2 * starg_rng_unit(&rng);
+        wanted.bits[0] = (UINT64_C(1) << witnesses) - 1;
+        for (size_t i = 0; i < count; i++) {
+            rows[i] = (witness_row){{0}};
+            starg_bit_set(rows[i].bits, starg_rng_below(&rng, witnesses));
+            for (size_t j = 0; j < witnesses; j++)
+                if (starg_rng_unit(&rng) < share)
+                    starg_bit_set(rows[i].bits, j);
+            list[i] = &rows[i];
+            sets[i] = rows[i].bits[0];
+        }
+        size_t needed = fewest(sets, count, wanted.bits[0], count);
+        size_t bound = needed > count ? 3 : needed;
+        branch_record record = {0};
+        bool proven = false;
+        if (bound > 1)
+            test_ok(context, bound_by_branching(context, list, count, &wanted, bound - 1, 100000,
+                                                &proven, &record, &work));
+        if (proven) {
+            char *text = certificate_of_rows(list, count, witnesses, bound, &record);
+            assert_true(check_follows(context, text));
+            proofs++;
+            branched += record.nodes.count > 1;
+            size_t places;
+            number *numbers = find_numbers(text, &places);
+            for (int k = 0; k < 30; k++) {
+                char *other = damage(text, numbers, places, &rng);
+                accepted += check_follows(context, other);
+                damages++;
+                free(other);
+            }
+            free(numbers);
+            free(text);
+        }
+        branch_record_free(context, &record);
+    }
+    print_message("%zu proofs, %zu with branches; %zu of %zu damaged ones are harmless\n", proofs,
+                  branched, accepted, damages);
+    assert_true(branched > 10 && accepted < damages);
+    test_context_free(context);
+}
+
+/* ---- forged ones ---- */
+
+/* The text with the first occurrence of some words replaced. */
+static char *replaced(const char *text, const char *old, const char *new) {
+    const char *at = strstr(text, old);
+    size_t length = strlen(text) + strlen(new) + 1;
+    char *out = malloc(length);
+    assert_true(at != NULL && out != NULL);
+    snprintf(out, length, "%.*s%s%s", (int)(at - text), text, new, at + strlen(old));
+    return out;
+}
+
+/* The claim of the verdict that names the fault. */
+static void check_refused(const subject *s, char *text, const char *why) {
+    starg_certificate *read = NULL;
+    starg_verdict *verdict = NULL;
+    test_ok(s->context, starg_certificate_read_memory(s->context, text, strlen(text), "c", &read));
+    test_ok(s->context, starg_verify_certified(s->context, s->mesh, s->guards, read, &verdict));
+    assert_false(verdict->passed);
+    if (!says(verdict, false, why))
+        fail_msg("no claim says \"%s\"", why);
+    starg_verdict_free(s->context, verdict);
+    starg_certificate_free(read);
+    free(text);
+}
+
+static void check_unread(const subject *s, char *text, const char *why) {
+    starg_certificate *read = NULL;
+    assert_int_equal(starg_certificate_read_memory(s->context, text, strlen(text), "name", &read),
+                     STARG_ERROR_FORMAT);
+    assert_null(read);
+    const starg_error *error = starg_context_error(s->context);
+    assert_int_equal(error->element, STARG_ELEMENT_LINE);
+    if (strstr(error->message, why) == NULL || strstr(error->message, "name") == NULL)
+        fail_msg("\"%s\" does not say \"%s\"", error->message, why);
+    free(text);
+}
+
+/* The price of the first witness, ten times. */
+static char *with_higher_price(const char *text) {
+    char *out = replaced(text, "\nprices ", "\nprices ");
+    size_t end = (size_t)(strchr(strchr(strstr(out, "\nprices "), ':'), ' ') - out);
+    char *longer = malloc(strlen(out) + 2);
+    assert_non_null(longer);
+    snprintf(longer, strlen(out) + 2, "%.*s0%s", (int)end, out, out + end);
+    free(out);
+    return longer;
+}
+
+/* The first line behind the number of cells, or of nodes, that begins so becomes another one. */
+static char *with_line(const char *text, const char *behind, char begin, const char *line) {
+    const char *at = strstr(text, behind) + 1;
+    do
+        at = strchr(at, '\n') + 1;
+    while (*at != begin);
+    size_t length = strlen(text) + strlen(line) + 1;
+    char *out = malloc(length);
+    assert_non_null(out);
+    snprintf(out, length, "%.*s%s%s", (int)(at - text), text, line, strchr(at, '\n') + 1);
+    return out;
+}
+
+static void test_forged(void **state) {
+    (void)state;
+    subject s = prove_sample("horse", 500, 200000);
+    subject other = prove_sample("gallery", 500, 200000);
+    char line[64], wanted[64];
+    size_t bound = s.guards->lower_bound_everywhere;
+    assert_true(bound > 1);
+    check_right(&s);
+    check_refused(&s, replaced(other.text, "range", "range"), "another model");
+    snprintf(line, sizeof line, "\nbound %zu\n", bound);
+    snprintf(wanted, sizeof wanted, "\nbound %zu\n", bound + 1);
+    check_refused(&s, replaced(s.text, line, wanted), "does not follow");
+    check_refused(&s, replaced(s.text, "range none", "range 3:0"), "range is another");
+    check_refused(&s, with_line(s.text, "\nnodes ", 'p', "prices 0:1\n"), "worth too much");
+    check_refused(&s, with_higher_price(s.text), "worth too much");
+    check_refused(&s, with_line(s.text, "\ncells ", '.', ". 0n 1n 2n 3n 4n 5n 6n 7n 8n 9n\n"),
+                  "reasons of the certificate are right");
+    check_refused(&s, with_line(s.text, "\ncells ", '.', "o\n"), "is outside of the model");
+    check_refused(&s, with_line(s.text, "\ncells ", '.', ".\n"), "worth too much");
+    check_unread(&s, with_line(s.text, "\ncells ", '.', ""), "expected");
+    check_unread(&s, with_line(s.text, "\ncells ", '.', "x\n"), "halves of cells are missing");
+    check_unread(&s, replaced(s.text, "target faces", "target edges"), "line 5: \"faces\"");
+
+    s.guards->lower_bound_everywhere = s.guards->lower_bound = s.guards->count = bound;
+    s.guards->optimal = s.guards->optimal_everywhere = true;
+    snprintf(wanted, sizeof wanted, "\nbound %zu\n", bound - 1);
+    check_refused(&s, replaced(s.text, line, wanted), "says no more than");
+    subject_free(&s);
+    subject_free(&other);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_samples),    cmocka_unit_test(test_random_solids),
+        cmocka_unit_test(test_questions),  cmocka_unit_test(test_trivial),
+        cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_needs_prove),
+        cmocka_unit_test(test_damaged),    cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_forged),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
