@@ -48,6 +48,10 @@ typedef struct starg_decomposition {
     starg_tetra_report tetra; /* how the model was filled; given tetrahedra, and pieces made from the
                                  surface alone, preserve the surface. If read from files: only
                                  whether it was preserved, and distances */
+    /* Faces of the model that are in the boundary as they are or subdivided, where the surface is not
+     * kept because it intersects itself: the others are cut at the intersections or lie inside. 0:
+     * not counted. */
+    size_t faces_kept;
     starg_tetmesh *mesh;
     size_t tetrahedra; /* of the mesh */
     int32_t *labels;   /* one per tetrahedron: its piece */
