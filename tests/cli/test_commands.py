@@ -348,6 +348,40 @@ class Guard(support.Case):
             self.assertIn("everything is to be seen once", err)
         self.assertNotIn("no.json", self.names())
 
+    def test_certificate(self):
+        maze = self.sample("gallery")
+        prove = ["guard", maze, "--count", "60", "--prove", "--prove-work", "100000"]
+        self.run_text(*prove, "-o", "plain.json")
+        self.run_text(*prove, "-o", "g.json", "--certificate", "why.txt")
+        self.assertEqual(self.read("plain.json"), self.read("g.json"))
+        self.assertTrue(self.read("why.txt").startswith("starguard-certificate 1\n"))
+        out = self.run_text("verify", maze, "g.json")[0]
+        self.assertRegex(out, r"not checked: that at least \d+ guards? (is|are) needed, wherever they stand")
+        told = self.run_json("verify", maze, "g.json", "why.txt")["results"]
+        self.assertEqual([(r["file"], r["certificate"], r["passed"]) for r in told],
+                         [("g.json", "why.txt", True)])
+        self.assertTrue(any("wherever they stand" in c["claim"] for c in told[0]["claims"]))
+        self.assertFalse(any("wherever" in text for text in told[0]["not_checked"]))
+        room = self.room
+        self.run_text("guard", room, "-o", "r.json", "--prove")
+        out = self.run_text("verify", room, "r.json", "why.txt", status=4)[0]
+        self.assertIn("it is of another model", out)
+        raised = json.loads(self.read("g.json"))
+        bound = raised["lower_bound_everywhere"] = raised["lower_bound_everywhere"] + 1
+        raised["lower_bound"] = max(bound, raised["lower_bound"])
+        self.write("raised.json", json.dumps(raised))
+        out = self.run_text("verify", maze, "raised.json", "why.txt", status=4)[0]
+        self.assertRegex(out, r"FAILED.*the certificate says no more than")
+        self.write("short.txt", self.read("why.txt")[:-20])
+        err = self.run_text("verify", maze, "g.json", "short.txt", status=2)[1]
+        self.assertRegex(err, r"'short.txt', line \d+: ")
+        for operands in [["why.txt"], ["why.txt", "g.json"], ["g.json", "why.txt", "why.txt"]]:
+            err = self.run_text("verify", maze, *operands, status=1)[1]
+            self.assertIn("behind its GUARDS.json", err)
+        err = self.run_text("guard", maze, "-o", "no.json", "--certificate", "no.txt", status=1)[1]
+        self.assertIn("add --prove", err)
+        self.assertFalse({"no.json", "no.txt"} & set(self.names()))
+
     def test_candidates_from_files(self):
         self.run_text("guard", self.room, "-o", "g.json")
         guards = json.loads(self.read("g.json"))["guards"]
