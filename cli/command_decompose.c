@@ -364,16 +364,18 @@ const cli_command cli_command_decompose = {
     .usage = "MODEL -o PIECES.vtk [options]",
     .summary = "cut a solid into few star-shaped pieces",
     .description =
-        "Tetrahedralizes the solid and partitions the tetrahedra into star-shaped pieces: each "
-        "piece has a guard that sees all of it. With --mode strict, exact arithmetic proves that "
+        "Partitions the solid into star-shaped pieces: each has a guard that sees all of it, and "
+        "is "
+        "made of tetrahedra about the guard. With --mode strict, exact arithmetic proves that "
         "each guard is strictly on the inner side of all faces of its piece. MODEL is a surface or "
         "a tetrahedral mesh, recognized by content.\n"
-        "If the program tetgen is installed, the surface is preserved face by face. Surfaces with "
-        "self-intersections or holes are filled by isosurface stuffing instead, with a warning and "
-        "the distance between both surfaces.\n"
+        "The surface is preserved: its vertices stay where they are, and its faces are subdivided "
+        "in their planes where pieces meet. Surfaces with self-intersections or holes are filled "
+        "by isosurface stuffing instead, with a warning and the distance between both surfaces.\n"
         "By default the search stops after a fixed amount of work (about 15 seconds), so that the "
         "same input gives the same bytes. --effort sets the number of trials instead; with "
-        "--time-limit the search continues until that time and returns the best result.",
+        "--time-limit the search continues until that time and returns the best result; however "
+        "short the time is, there is one.",
     .examples = "# pieces with their proofs and a picture\n"
                 "starguard decompose model.off -o pieces.vtk --report pieces.json \\\n"
                 "    --picture pieces.png\n"

@@ -45,8 +45,13 @@ typedef struct starg_decomposition {
     starg_decompose_mode mode;
     /* Size of the model: a surface (no tetrahedra) or a tetrahedral mesh (no faces). */
     size_t model_vertices, model_faces, model_tetrahedra;
-    starg_tetra_report tetra; /* how the model was filled; given tetrahedra preserve the surface. If
-                                 read from files: only whether it was preserved, and distances */
+    starg_tetra_report tetra; /* how the model was filled; given tetrahedra, and pieces made from the
+                                 surface alone, preserve the surface. If read from files: only
+                                 whether it was preserved, and distances */
+    /* Faces of the model that are in the boundary as they are or subdivided, where the surface is not
+     * kept because it intersects itself: the others are cut at the intersections or lie inside. 0:
+     * not counted. */
+    size_t faces_kept;
     starg_tetmesh *mesh;
     size_t tetrahedra; /* of the mesh */
     int32_t *labels;   /* one per tetrahedron: its piece */
@@ -59,22 +64,22 @@ typedef struct starg_decomposition {
                                 piece (counted once per piece) */
     double
         flattest; /* smallest ratio of height to longest edge of a tetrahedron (regular: 0.816) */
-    double flattest_given; /* the same for the initial tetrahedra */
+    double flattest_given; /* the same for the initial tetrahedra; -1: there were none */
     bool time_limited;     /* the time limit stopped the search: another run may differ */
 } starg_decomposition;
 
-/* Default density of tetrahedra: low for STRICT, which remeshes the result, and that of [YL11] for
- * PAPER. */
+/* Default density of initial tetrahedra: that of [YL11] for PAPER, and low for STRICT, which needs
+ * them only where the surface is not embedded. */
 #define STARG_DECOMPOSE_DENSITY (-1.0)
 
 typedef struct starg_decompose_options {
     starg_decompose_mode mode;
-    starg_tetra_options tetra; /* how to tetrahedralize */
+    starg_tetra_options tetra; /* how to tetrahedralize, where that is needed */
     /* STRICT: stop the search at this number of pieces. PAPER: at most this number, at the cost of
      * visibility (but one for each component). 0: as few as possible. */
     size_t max_pieces;
     const double *guards; /* guard_count x 3, or NULL. PAPER: seeds of the pieces; NULL: those of
-                             starg_guard. STRICT: tried as guards first */
+                             starg_guard. STRICT: tried as guards, too */
     size_t guard_count;
     /* STRICT: number of trials of the search. 0: a fixed amount of work, the same on every machine
      * and for any number of threads; unlimited if the context has a time limit */
@@ -83,15 +88,18 @@ typedef struct starg_decompose_options {
     bool fill;
 } starg_decompose_options;
 
-/* STRICT, default tetrahedra, as few pieces as possible. */
+/* STRICT, as few pieces as possible. */
 STARG_API void starg_decompose_options_default(starg_decompose_options *options);
 
 /* Names, ranges and descriptions of the options. */
 STARG_API const starg_fields *starg_decompose_options_fields(void);
 
-/* Cuts a solid after tetrahedralizing it. At the context's time limit the search returns its best
- * result. `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization failed), MEMORY,
- * CANCELLED, TIME (no valid result yet). */
+/* Cuts a solid. STRICT cuts an embedded surface as it is: the boundary of the pieces is the surface,
+ * possibly subdivided, whose new vertices are rounded. At the context's time limit the search
+ * returns its best result; without any, the first one is finished in a hurry. PAPER, and any solid
+ * whose surface touches or intersects itself or has degenerate faces, is tetrahedralized first.
+ * `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization failed), MEMORY, CANCELLED,
+ * TIME (not yet tetrahedralized). */
 STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out);

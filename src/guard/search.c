@@ -37,7 +37,7 @@
 
 static const char STAGE[] = "search";
 
-enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 20, MANY_NODES = 300 };
+enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 10, MANY_NODES = 300 };
 
 static const double ROUNDING = 1e-6;
 

@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Star decomposition: the options, the tetrahedra, and the mode that labels them. */
+/* Star decomposition: the options, the mode, and tetrahedra where they are needed. */
 #include <math.h>
 
+#include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
+#include "star/touching.h"
+#include "star/united.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
 
@@ -31,7 +34,9 @@ static const starg_field OPTIONS[] = {
      .high = 1e6,
      .standard = STARG_DECOMPOSE_DENSITY,
      .value = "T",
-     .help = "Initial tetrahedra per surface vertex; 0: as few as possible.",
+     .help =
+         "Initial tetrahedra per surface vertex; 0: as few as possible. strict needs none unless "
+         "the surface intersects itself.",
      .default_text = "0 for strict, 17.5 (as published) for paper"},
     {.key = "max_pieces",
      .option = "max-pieces",
@@ -70,7 +75,7 @@ void starg_decompose_options_default(starg_decompose_options *options) {
     starg_fields_default(&OPTIONS_TABLE, options);
 }
 
-/* Strict pieces are made of their surfaces: the tetrahedra to start from may be few. */
+/* Strict pieces are made of their surfaces: where tetrahedra are needed, they may be few. */
 static starg_tetra_options tetra_options(const starg_decompose_options *o) {
     starg_tetra_options tetra = o->tetra, usual;
     starg_tetra_options_default(&usual);
@@ -99,12 +104,10 @@ static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
                              const starg_decompose_options *options, starg_decomposition **out) {
     bool paper = options->mode == STARG_DECOMPOSE_PAPER;
     starg_status status = paper ? paper_decompose(context, mesh, options, out)
-                                : strict_decompose(context, mesh, options, out);
-    if (status != STARG_OK)
-        return status;
-    (*out)->flattest = tetmesh_flattest((*out)->mesh);
-    (*out)->flattest_given = tetmesh_flattest(mesh);
-    return STARG_OK;
+                                : strict_decompose_tetmesh(context, mesh, options, out);
+    if (status == STARG_OK)
+        (*out)->flattest_given = tetmesh_flattest(mesh);
+    return status;
 }
 
 starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
@@ -120,6 +123,7 @@ starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh
     STARG_TRY(run_mode(context, mesh, options, out));
     (*out)->model_vertices = mesh->vertex_count;
     (*out)->model_tetrahedra = mesh->count;
+    (*out)->flattest = tetmesh_flattest((*out)->mesh);
 done:
     return status;
 }
@@ -157,35 +161,91 @@ static starg_status decompose_filled(starg_context *context, const starg_solid *
                                      const starg_decompose_options *options,
                                      starg_decomposition **out) {
     starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    starg_decompose_options_default(&defaults);
     starg_tetra_report report;
     starg_tetmesh *mesh = NULL;
-    if (options == NULL)
-        options = &defaults;
-    *out = NULL;
-    STARG_TRY(check_options(context, options));
     STARG_TRY(fill(context, solid, surface, options, &report, &mesh));
     if (solid == NULL && !options->fill)
         STARG_TRY(check_filling(context, surface, &report));
     STARG_TRY(run_mode(context, mesh, options, out));
-    const starg_mesh *model = solid != NULL ? solid->mesh : surface;
-    (*out)->model_vertices = model->vertex_count;
-    (*out)->model_faces = model->face_count;
-    (*out)->model_tetrahedra = 0;
     (*out)->tetra = report;
 done:
     starg_tetmesh_free(mesh);
     return status;
 }
 
+/* Nothing but the surface is needed where that bounds the solid as it is; else *out stays NULL. */
+static starg_status decompose_surface(starg_context *context, const starg_solid *solid,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    uint32_t *faces = NULL;
+    STARG_TRY(touching_weld(context, solid, &faces));
+    if (faces == NULL)
+        goto done;
+    const kernel_faces surface = {solid->mesh->vertices, faces, solid->mesh->face_count};
+    STARG_TRY(strict_decompose_surface(context, &surface, options, out));
+    if (*out != NULL)
+        (*out)->flattest_given = -1;
+done:
+    starg_release(context, faces);
+    return status;
+}
+
+/* A surface that intersects itself is cut where it does; *out stays NULL where that cannot be. */
+static starg_status decompose_union(starg_context *context, const starg_solid *solid,
+                                    const starg_decompose_options *options,
+                                    starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_solid *united = NULL;
+    double rounding;
+    STARG_TRY(united_make(context, solid, &united, &rounding));
+    if (united == NULL)
+        goto done;
+    STARG_TRY(decompose_surface(context, united, options, out));
+    if (*out != NULL)
+        STARG_TRY(united_report(context, solid, united, rounding, *out));
+done:
+    starg_solid_free(united);
+    return status;
+}
+
+static starg_status decompose_model(starg_context *context, const starg_solid *solid,
+                                    const starg_mesh *surface,
+                                    const starg_decompose_options *options,
+                                    starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    starg_decompose_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
+        STARG_TRY(decompose_surface(context, solid, options, out));
+    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && *out == NULL)
+        STARG_TRY(decompose_union(context, solid, options, out));
+    if (*out == NULL)
+        STARG_TRY(decompose_filled(context, solid, surface, options, out));
+    const starg_mesh *model = solid != NULL ? solid->mesh : surface;
+    (*out)->model_vertices = model->vertex_count;
+    (*out)->model_faces = model->face_count;
+    (*out)->model_tetrahedra = 0;
+    (*out)->flattest = tetmesh_flattest((*out)->mesh);
+done:
+    if (status != STARG_OK) {
+        starg_decomposition_free(context, *out);
+        *out = NULL;
+    }
+    return status;
+}
+
 starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                              const starg_decompose_options *options, starg_decomposition **out) {
-    return decompose_filled(context, solid, NULL, options, out);
+    return decompose_model(context, solid, NULL, options, out);
 }
 
 starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out) {
-    return decompose_filled(context, NULL, surface, options, out);
+    return decompose_model(context, NULL, surface, options, out);
 }

@@ -90,8 +90,9 @@ static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
                                starg_tetmesh **out) {
     const char *reason = unfit_for_tetgen(solid);
     if (reason != NULL)
-        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "%s, which TetGen does not support",
-                          reason);
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "%s%s", reason,
+                          o->generator == STARG_TETRA_TETGEN ? ", which TetGen does not support"
+                                                             : "");
     return by_tetgen(context, solid, o, report, out);
 }
 

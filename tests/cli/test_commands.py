@@ -307,7 +307,7 @@ class Guard(support.Case):
     def test_anywhere(self):
         maze = self.sample("gallery")
         plain = self.run_json("guard", maze, "-o", "g.json", "--count", "60")
-        self.assertNotIn("lower_bound_everywhere", plain)
+        self.assertGreater(plain.get("lower_bound_everywhere", 2), 1)
         report = self.run_json("guard", maze, "-o", "p.json", "--count", "60", "--prove",
                                "--prove-work", "200000")
         self.assertLessEqual(len(report["guards"]), len(plain["guards"]))
@@ -321,10 +321,31 @@ class Guard(support.Case):
         self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed), "
                                "wherever they stand$")
         self.assertRegex(text, r"(?m)^lower bound +\d+ of these candidates \(")
-        for options in [["--max-guards", "2"], ["--coverage", "0.9"], ["--redundancy", "2"],
-                        ["--cone", "90"], ["--candidates", "g.json"]]:
-            err = self.run_text("guard", maze, "-o", "no.json", "--prove", *options, status=1)[1]
-            self.assertIn("anywhere", err)
+
+    def test_anywhere_of_other_questions(self):
+        maze = self.sample("gallery")
+        self.run_text("guard", maze, "-o", "g.json", "--count", "60", "--no-refine")
+        for options in [["--coverage", "0.9"], ["--redundancy", "2"], ["--cone", "120"],
+                        ["--candidates", "g.json"], ["--max-guards", "2"]]:
+            out = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
+                                "--prove-work", "100000", "--refine-lines", "100000", *options)[0]
+            self.run_text("verify", maze, "p.json")
+            report = json.loads(self.read("p.json"))
+            if options[0] == "--max-guards":
+                self.assertRegex(out, r"(?m)^guards +2 of at most 2$")
+                self.assertRegex(out, r"(?m)^area +\S+ % seen, at most \S+ % possible with 2 guards, "
+                                      "wherever they stand$")
+                self.assertNotIn("fewe", out)
+                self.assertNotIn("lower", out)
+                self.assertLessEqual(report["coverage"]["area"],
+                                     report["coverage"]["area_bound_everywhere"])
+            else:
+                self.assertGreaterEqual(report["lower_bound_everywhere"], 1)
+                self.assertRegex(out, r"(?m)^guards .* wherever they stand$")
+        for options in [["--coverage", "0.9"], ["--redundancy", "2"], ["--max-guards", "2"]]:
+            err = self.run_text("guard", maze, "-o", "no.json", "--prove", "--certificate", "c",
+                                *options, status=1)[1]
+            self.assertIn("everything is to be seen once", err)
         self.assertNotIn("no.json", self.names())
 
     def test_certificate(self):

@@ -99,14 +99,36 @@ class Decompose(support.Case):
             self.assertRegex(err, "encloses no volume|nothing is inside")
 
     def test_thin(self):
-        """A plate far thinner than the finest lattice is refused at once, by what is wrong with it."""
+        """A plate far thinner than the finest lattice is cut as it is; where tetrahedra must fill it, it is
+        refused at once, by what is wrong with it."""
         self.write("plate.off", "OFF\n8 12 0\n" + "".join(
             f"{x} {y} {z}\n" for z in ("0", "1e-8") for y in (0, 8) for x in (0, 8)) +
             "3 0 2 1\n3 1 2 3\n3 4 5 6\n3 5 7 6\n3 0 1 4\n3 1 5 4\n"
             "3 2 6 3\n3 3 6 7\n3 0 4 2\n3 2 4 6\n3 1 3 5\n3 3 7 5\n")
-        _, err = self.run_text("decompose", "plate.off", "-o", "p.vtk", status=3)
+        _, err = self.run_text("decompose", "plate.off", "-o", "p.vtk", "--mode", "paper", status=3,
+                               environment={"PATH": "/nowhere"})
         self.assertIn("too thin", err)
         self.assertNotIn("p.vtk", self.names())
+        self.run_text("decompose", "plate.off", "-o", "p.vtk", "--report", "p.json")
+        self.assertEqual(len(self.agree("p.vtk", "p.json")["pieces"]), 1)
+
+    def test_needs_no_program(self):
+        """The surface is kept, and nothing is said of programs that could be there."""
+        model = self.sample("gallery")
+        out, err = self.run_text("decompose", model, "-o", "p.vtk", "--report", "p.json",
+                                 "--effort", "1", environment={"PATH": "/nowhere"})
+        self.assertEqual(self.agree("p.vtk", "p.json")["surface"], "kept")
+        self.assertNotIn("tetgen", (out + err).lower())
+        self.run_text("verify", model, "p.vtk", "p.json")
+
+    def test_no_time(self):
+        """However short the time, there are pieces, all star-shaped."""
+        model = self.sample("gallery")
+        report = self.run_json("decompose", model, "-o", "p.vtk", "--report", "p.json",
+                               "--time-limit", "1")
+        self.assertEqual(report["surface"], "kept")
+        self.assertEqual(report["strictly_star"], len(report["pieces"]))
+        self.run_text("verify", model, "p.vtk", "p.json")
 
     def test_strict(self):
         room = self.sample("l-room")
@@ -173,7 +195,7 @@ class Decompose(support.Case):
         self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
 
     def test_self_intersecting(self):
-        """Two tetrahedra that run through one another: closed, but not for tetgen."""
+        """Two tetrahedra that run through one another: closed, but not embedded."""
         lines = TETRAHEDRON.splitlines()
         moved = [" ".join(f"{float(x) + .1:g}" for x in line.split()) for line in lines[2:6]]
         faces = lines[6:] + ["3 " + " ".join(str(int(i) + 4) for i in line.split()[1:])
@@ -194,7 +216,7 @@ class Decompose(support.Case):
         self.write("open.off", OPEN)
         for model, reason in [("closed.off", "signal"), ("open.off", "open")]:
             with self.subTest(model=model):
-                words = ["decompose", model, "-o", "p.vtk", "--effort", "1", "--fill"]
+                words = ["decompose", model, "-o", "p.vtk", "--mode", "paper", "--fill"]
                 out, err = self.run_text(*words, "--quiet", environment=path)
                 self.assertEqual(out, "")
                 self.assertEqual(err.count("warning:"), 1, err)

@@ -80,7 +80,7 @@ class Full(Writing):
 
     def test_no_room_for_temporary_files(self):
         """TetGen's files cannot be written: stuffing takes over."""
-        self.run_text("decompose", "room.off", "-o", "p.vtk", "--report", "p.json", "--effort", "10",
+        self.run_text("decompose", "room.off", "-o", "p.vtk", "--report", "p.json", "--mode", "paper",
                       environment={"TMPDIR": "/nowhere"})
         self.run_text("verify", "room.off", "p.vtk", "p.json")
 

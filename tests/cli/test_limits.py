@@ -181,7 +181,7 @@ class TimeLimits(support.Case):
         """TetGen may take longer than its usual 30 s where the run may, and no longer than half of that."""
         tool = self.write("tetgen", f"#!/bin/sh\nsleep 33\nexec {shutil.which('tetgen')} \"$@\"\n")
         os.chmod(self.path(tool), stat.S_IRWXU)
-        words = ["decompose", self.sample(), "-o", "p.vtk", "--effort", "1"]
+        words = ["decompose", self.sample(), "-o", "p.vtk", "--mode", "paper"]
         path = {"PATH": f"{self.folder}:{os.environ['PATH']}"}
         report = self.run_json(*words, "--time-limit", "200", environment=path)
         self.assertEqual((report["surface"], report["log"]), ("kept", []))

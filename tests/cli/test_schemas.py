@@ -109,7 +109,8 @@ class Schemas(support.Case):
 
     OPTIONAL = {"levels", "direction", "area_bound", "coarsest", "step", "significance", "refine",
                 "peak_resident_bytes", "report", "map", "letter", "separate", "cells", "witnesses",
-                "work", "lower_bound_everywhere", "optimal_everywhere"}
+                "work", "lower_bound_everywhere", "optimal_everywhere",
+                "area_bound_everywhere"}
 
     def required(self, name, path):
         if path[-1] in self.OPTIONAL:

@@ -8,11 +8,13 @@
 #include <string.h>
 
 #include "exact_oracle.h"
+#include "models.h"
 #include "partition_oracle.h"
 #include "star/strict/partition/apply.h"
 #include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/partition/slice.h"
 #include "star/strict/search/improve.h"
+#include "starguard/sample.h"
 #include "tetrahedra.h"
 
 enum { CUTS_MOST = 8 };
@@ -84,6 +86,33 @@ static void test_create(void **state) {
         free(labels);
         free(guards);
         starg_tetmesh_free(mesh);
+    }
+    test_context_free(context);
+}
+
+/* A surface is one piece with its faces as facets, in planes of their own. */
+static void test_create_from_surface(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < starg_sample_count(); i++) {
+        starg_solid *solid = test_sample(context, starg_sample_at(i)->name, 500);
+        const starg_mesh *mesh = starg_solid_mesh(solid);
+        const kernel_faces surface = {starg_mesh_vertices(mesh), starg_mesh_faces(mesh),
+                                      starg_mesh_face_count(mesh)};
+        partition p;
+        test_ok(context, partition_create_from_surface(context, &surface, &p));
+        partition_oracle_check(&p);
+        assert_int_equal(p.pieces.count, 1);
+        assert_int_equal(p.facets.count, surface.count);
+        assert_int_equal(p.first_planes, surface.count);
+        assert_int_equal(p.first_points, starg_mesh_vertex_count(mesh));
+        assert_memory_equal(p.points.data, surface.vertices, 24 * p.first_points);
+        for (size_t f = 0; f < surface.count; f++)
+            assert_memory_equal(p.facets.data[f].corners, surface.faces + 3 * f, 12);
+        double scale = ldexp(1, 3 * p.exponent);
+        assert_true(fabs(volume_of_all(&p) * scale - starg_mesh_volume(mesh)) < 1e-12 * scale);
+        partition_free(&p);
+        starg_solid_free(solid);
     }
     test_context_free(context);
 }
@@ -182,9 +211,9 @@ static void check_slice(const partition *before, const partition *p, uint32_t lo
             continue;
         for (int k = 0; k < 3; k++) {
             double height = height_of(p, plane, f->corners[k]);
-            assert_true(owner == low ? height < 1e-13 : height > -1e-13);
+            assert_true(owner == low ? height < SLICE_ON : height > -SLICE_ON);
             if (between)
-                assert_true(fabs(height) < 1e-13);
+                assert_true(fabs(height) < SLICE_ON);
         }
         if (between)
             assert_memory_equal(&p->planes.data[f->plane], plane, sizeof *plane);
@@ -316,9 +345,11 @@ static void test_slices_through_edges(void **state) {
     test_context_free(context);
 }
 
-/* No plane that nearly goes through a vertex, and none that passes the piece by. */
-static void test_refused_planes(void **state) {
+/* Planes that nearly go through a vertex, or do, and those that pass the piece by, which are
+ * refused. */
+static void test_planes_at_vertices(void **state) {
     (void)state;
+    static const double near[] = {0, 2e-12, -2e-12, 9e-10, -9e-10, 1e-8};
     starg_context *context = test_context(1);
     partition p = random_hull(context, 4, 20), next;
     starg_rng rng = starg_rng_make(1, 74, 0);
@@ -326,32 +357,28 @@ static void test_refused_planes(void **state) {
     for (uint32_t v = 0; v < p.points.count / 3; v++) {
         partition_plane plane = random_plane_across(&p, 0, &rng);
         plane.offset = 0;
-        double at = height_of(&p, &plane, v), lowest = INFINITY, highest = -INFINITY, gap = 1;
+        double at = height_of(&p, &plane, v), lowest = INFINITY, highest = -INFINITY;
         for (uint32_t w = 0; w < p.points.count / 3; w++) {
             double height = height_of(&p, &plane, w);
             lowest = fmin(lowest, height);
             highest = fmax(highest, height);
-            gap = w == v ? gap : fmin(gap, fabs(height - at));
-        }
-        static const double near[] = {2e-12, -2e-12, 9e-10, -9e-10};
-        for (size_t i = 0; i < sizeof near / sizeof *near; i++) {
-            plane.offset = at + near[i];
-            assert_false(slice(&p, 0, &plane, &next));
         }
         plane.offset = lowest - 0.01;
         assert_false(slice(&p, 0, &plane, &next));
         plane.offset = highest + 0.01;
         assert_false(slice(&p, 0, &plane, &next));
-        plane.offset = at + 1e-8;
-        if (gap < 1e-6 || at == highest)
-            continue;
-        assert_true(slice(&p, 0, &plane, &next));
-        partition_oracle_check(&next);
-        check_slice(&p, &next, 0, &plane);
-        partition_free(&next);
-        cut++;
+        for (size_t i = 0; i < sizeof near / sizeof *near; i++) {
+            plane.offset = at + near[i];
+            if (plane.offset <= lowest || plane.offset >= highest)
+                continue;
+            assert_true(slice(&p, 0, &plane, &next));
+            partition_oracle_check(&next);
+            check_slice(&p, &next, 0, &plane);
+            partition_free(&next);
+            cut++;
+        }
     }
-    assert_true(cut > 5);
+    assert_true(cut > 30);
     partition_free(&p);
     test_context_free(context);
 }
@@ -380,8 +407,8 @@ static starg_tetmesh *touching_cubes(starg_context *context) {
     return mesh;
 }
 
-/* Cutting one piece splits facets of the other where they share an edge; where a piece touches
- * itself in an edge it is not cut. */
+/* Cutting one piece splits facets of the other where they share an edge; a piece that touches
+ * itself in an edge is cut there. */
 static void test_edge_contact(void **state) {
     (void)state;
     static const double guards[] = {0.5, 0.5, 0.5, 1.5, 1.5, 0.5};
@@ -414,7 +441,10 @@ static void test_edge_contact(void **state) {
         }
         if (heights[0] * heights[1] >= 0)
             continue;
-        assert_false(slice(&p, 0, &other, &next));
+        assert_true(slice(&p, 0, &other, &next));
+        partition_oracle_check(&next);
+        check_slice(&p, &next, 0, &other);
+        partition_free(&next);
         across++;
     }
     assert_true(across > 10);
@@ -894,12 +924,13 @@ static void test_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_create),
+        cmocka_unit_test(test_create_from_surface),
         cmocka_unit_test(test_gather),
         cmocka_unit_test(test_certify),
         cmocka_unit_test(test_slices_of_samples),
         cmocka_unit_test(test_slices_of_hulls),
         cmocka_unit_test(test_slices_through_edges),
-        cmocka_unit_test(test_refused_planes),
+        cmocka_unit_test(test_planes_at_vertices),
         cmocka_unit_test(test_edge_contact),
         cmocka_unit_test(test_join),
         cmocka_unit_test(test_merge_undoes_cuts),

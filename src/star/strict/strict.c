@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Strict star decomposition: few pieces, each proven to be star-shaped.
  *
- * Stages: two starts, each with its neighbours joined where that can be done, and the better one is
- * taken: regions of tetrahedra grown about guards, one after another (region_growing.c), which
- * always succeeds, and only the surfaces of the regions go on (partition.c); and the whole surface
- * cut by planes until every part is star-shaped (bsp_start.c), as a rule with fewer pieces by far.
- * Then unions of neighbours are cut again into fewer pieces, every step with an exact certificate
- * (improve.c), until nothing is found any more; then the same from the other start and from more
- * BSP starts, and the best result is kept. At the end each piece is made of tetrahedra about its
- * guard (cone.c).
+ * Stages: the surface is one piece (partition.c), which is cut by planes until every part is
+ * star-shaped (bsp_start.c); neighbours are joined where that can be done; then unions of
+ * neighbours are cut again into fewer pieces, every step with an exact certificate (improve.c),
+ * until nothing is found any more; then the same from more starts, with other random numbers, and
+ * the best result is kept. At the end each piece is made of tetrahedra about its guard (cone.c).
  *
- * Starts are compared in docs/decomposition.md. */
+ * The first start runs to its end whatever the time limit says, in a hurry once that has passed:
+ * so there is a result. Where it fails, which takes roundings that spoil every cut of some piece,
+ * others are tried; then given tetrahedra are grown into regions instead (region_growing.c), which
+ * always succeeds. */
 #include "star/strict/strict.h"
 
 #include "star/decomposition.h"
@@ -21,10 +21,8 @@
 
 enum {
     SEARCHES = 6,
-    IDLE_MOST = 2, /* searches in a row that bring nothing: then no more */
-    EVALUATIONS_LEAST = 100,
-    EVALUATIONS_EACH = 20, /* for each grown region; BSP starts that are done take 1 to 17 */
-    EVALUATIONS_MOST = 1500
+    IDLE_MOST = 2,        /* searches in a row that bring nothing: then no more */
+    EVALUATIONS_TIMES = 4 /* of the first start, that another one may take      */
 };
 
 /* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
@@ -61,6 +59,12 @@ done:
 
 /* ---- starts ---- */
 
+/* One of the two is NULL. */
+typedef struct model {
+    const kernel_faces *surface;
+    const starg_tetmesh *mesh;
+} model;
+
 static starg_status start_by_region_growing(const starg_tetmesh *mesh,
                                             const starg_decompose_options *options, partition *p) {
     starg_status status = STARG_OK;
@@ -74,26 +78,30 @@ done:
     return status;
 }
 
-/* How many evaluations a BSP start is worth, where region growing has made so many pieces. */
-static size_t evaluation_budget(size_t pieces) {
-    size_t budget = EVALUATIONS_LEAST + EVALUATIONS_EACH * pieces;
-    return budget < EVALUATIONS_MOST ? budget : EVALUATIONS_MOST;
-}
-
-/* All in one piece, then cut. */
-static starg_status start_by_bsp(const starg_tetmesh *mesh, uint64_t stream, size_t budget,
-                                 partition *p, bool *done) {
+static starg_status make_one_piece(const model *m, partition *p) {
     starg_status status = STARG_OK;
     static const double nowhere[3] = {0, 0, 0};
     uint32_t *labels = NULL;
-    *done = false;
-    STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(mesh));
-    STARG_TRY(partition_create(p->context, mesh, labels, nowhere, 1, p));
-    STARG_TRY(bsp_start(p, stream, budget, done));
-    if (*done)
-        STARG_TRY(improve_join(p));
+    if (m->surface != NULL)
+        return partition_create_from_surface(p->context, m->surface, p);
+    STARG_NEW_ZERO(p->context, PARTITION_STAGE, labels, starg_tetmesh_count(m->mesh));
+    STARG_TRY(partition_create(p->context, m->mesh, labels, nowhere, 1, p));
 done:
     starg_release(p->context, labels);
+    return status;
+}
+
+/* All in one piece, then cut. */
+static starg_status start_by_bsp(const model *m, const bsp_options *options, partition *p,
+                                 bsp_report *report) {
+    starg_status status = STARG_OK;
+    STARG_TRY(make_one_piece(m, p));
+    STARG_TRY(bsp_start(p, options, report));
+    if (report->done)
+        STARG_TRY(improve_join(p));
+    else
+        partition_free(p);
+done:
     return status;
 }
 
@@ -105,36 +113,43 @@ static void keep_better(partition *p, partition *other) {
     *other = before;
 }
 
-/* Both starts, the better one first; `other` is without pieces where one will do. Guards that were
- * given are what region growing begins with. */
-static starg_status begin(const starg_tetmesh *mesh, const starg_decompose_options *options,
-                          partition *p, partition *other, size_t *budget) {
-    starg_status status = STARG_OK;
-    bool done;
-    STARG_TRY(start_by_region_growing(mesh, options, p));
-    *budget = evaluation_budget(p->pieces.count);
-    if (options->guard_count > 0 || p->pieces.count < 2 || starg_time_is_over(p->context))
-        goto done;
-    STARG_TRY(start_by_bsp(mesh, 0, *budget, other, &done));
-    if (done)
-        keep_better(p, other);
-    else
-        partition_free(other);
-done:
-    return status;
-}
-
 /* ---- searches ---- */
 
 typedef struct searches {
-    const starg_tetmesh *mesh;
+    model of;
+    const starg_decompose_options *options;
     uint64_t trials_left, work_left;
     size_t enough;
-    size_t budget;  /* of a BSP start */
+    size_t budget;  /* of another start */
     uint64_t count; /* searches so far */
     int idle;       /* of them, since the last that was better */
     bool time_limited;
 } searches;
+
+static bsp_options start_options(const searches *s) {
+    return (bsp_options){.stream = s->count,
+                         .budget = s->budget,
+                         .guards = s->options->guards,
+                         .guard_count = s->options->guard_count};
+}
+
+/* The first start; the partition has no pieces when there is none. */
+static starg_status begin(searches *s, partition *p) {
+    starg_status status = STARG_OK;
+    bsp_report report = {.done = false};
+    bsp_options options = start_options(s);
+    options.to_the_end = true;
+    for (; !report.done && options.stream < SEARCHES; options.stream++)
+        STARG_TRY(start_by_bsp(&s->of, &options, p, &report));
+    s->budget = EVALUATIONS_TIMES * report.evaluations;
+    if (report.done)
+        goto done;
+    s->count = SEARCHES;
+    if (s->of.mesh != NULL)
+        STARG_TRY(start_by_region_growing(s->of.mesh, s->options, p));
+done:
+    return status;
+}
 
 static starg_status run_search(searches *s, partition *p) {
     improve_report report;
@@ -156,43 +171,58 @@ static bool may_search_again(const searches *s, const partition *p) {
            !s->time_limited && p->pieces.count > (s->enough > 2 ? s->enough : 2);
 }
 
-/* From the other start, or one more BSP start; the better result stays. */
-static starg_status search_again(searches *s, partition *p, partition *other) {
+/* From another start; the better result stays. */
+static starg_status search_again(searches *s, partition *p) {
     starg_status status = STARG_OK;
-    bool done = other->pieces.count > 0;
-    if (!done)
-        STARG_TRY(start_by_bsp(s->mesh, s->count, s->budget, other, &done));
-    if (done) {
-        STARG_TRY(run_search(s, other));
-        s->idle = other->pieces.count < p->pieces.count ? 0 : s->idle + 1;
-        keep_better(p, other);
+    partition other = {.context = p->context};
+    bsp_report report;
+    const bsp_options options = start_options(s);
+    STARG_TRY(start_by_bsp(&s->of, &options, &other, &report));
+    if (report.done) {
+        STARG_TRY(run_search(s, &other));
+        s->idle = other.pieces.count < p->pieces.count ? 0 : s->idle + 1;
+        keep_better(p, &other);
     } else {
         s->count = SEARCHES;
         s->time_limited = starg_time_is_over(p->context);
     }
 done:
-    partition_free(other);
+    partition_free(&other);
     return status;
 }
 
-starg_status strict_decompose(starg_context *context, const starg_tetmesh *mesh,
+static starg_status decompose(starg_context *context, model of,
                               const starg_decompose_options *options, starg_decomposition **out) {
     starg_status status = STARG_OK;
-    partition p = {.context = context}, other = {.context = context};
-    searches s = {.mesh = mesh,
+    partition p = {.context = context};
+    searches s = {.of = of,
+                  .options = options,
                   .trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
                   .work_left =
                       options->effort > 0 || context->deadline.at > 0 ? UINT64_MAX : WORK_MOST,
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
-    STARG_TRY(begin(mesh, options, &p, &other, &s.budget));
+    STARG_TRY(begin(&s, &p));
+    if (p.pieces.count == 0)
+        goto done;
     STARG_TRY(run_search(&s, &p));
-    while (options->guard_count == 0 && may_search_again(&s, &p))
-        STARG_TRY(search_again(&s, &p, &other));
+    while (may_search_again(&s, &p))
+        STARG_TRY(search_again(&s, &p));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
 done:
     partition_free(&p);
-    partition_free(&other);
     return status;
+}
+
+starg_status strict_decompose_surface(starg_context *context, const kernel_faces *surface,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out) {
+    return decompose(context, (model){.surface = surface}, options, out);
+}
+
+starg_status strict_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
+                                      const starg_decompose_options *options,
+                                      starg_decomposition **out) {
+    return decompose(context, (model){.mesh = mesh}, options, out);
 }

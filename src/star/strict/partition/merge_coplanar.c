@@ -8,9 +8,10 @@
  * group are its edges that no other facet of it has the other way round. A vertex that cuts have
  * made is needed unless all borders through it run between the same two neighbours, straight on (it
  * was put on an edge that has become a seam of planes), or no border passes. Each group's border,
- * without the vertices that are not needed, is filled anew (star/strict/partition/cap.c). A group
- * whose border touches itself, or that cannot be filled, stays as it is and needs all of its
- * vertices. At last the certificate.
+ * without the vertices that are not needed, is filled anew (star/strict/partition/cap.c), with the
+ * edges and vertices inside of it in which another group's border touches it (seams): they are
+ * needed, and stay. A group whose border touches itself, or that cannot be filled, stays as it is
+ * and needs all of its vertices. At last the certificate.
  *
  * Invariants: a vertex is left out of all facets or of none, so that every surface stays closed.
  *
@@ -32,6 +33,7 @@ typedef struct border {
 typedef struct group {
     uint32_t first, count; /* facets */
     uint32_t border_first, border_count;
+    uint32_t seam_first, seam_count;
     bool kept; /* stays as it is */
 } group;
 
@@ -39,10 +41,13 @@ typedef struct tidier {
     partition *p; /* the copy: its facets are sorted by group */
     STARG_ARRAY(group) groups;
     STARG_ARRAY(border) borders; /* by group, then by where they start */
+    border *by_edge;             /* the same by edge */
+    STARG_ARRAY(border) seams;   /* by group */
     uint32_t (*around)[2];       /* per vertex: its neighbours along borders, or NONE */
     bool *needed;                /* per vertex */
     STARG_ARRAY(facet) facets;   /* made anew */
-    cap_indices corners, starts, triangles;
+    cap_edges edges;             /* of the filling under way */
+    cap_indices loose, triangles;
     bool *visited; /* per border edge */
 } tidier;
 
@@ -135,6 +140,48 @@ done:
     return status;
 }
 
+/* ---- seams ---- */
+
+static const border *find_edge(const tidier *t, const border *edge) {
+    return bsearch(edge, t->by_edge, t->borders.count, sizeof *t->by_edge, by_edge);
+}
+
+/* Is an edge of a group's facet inside of the group, and on the border of another one? */
+static bool is_seam(const tidier *t, const border *edge) {
+    const border *at = find_edge(t, edge), *end = t->by_edge + t->borders.count;
+    if (at == NULL)
+        return false;
+    while (at > t->by_edge && by_edge(at - 1, edge) == 0)
+        at--;
+    for (; at < end && by_edge(at, edge) == 0; at++)
+        if (at->group == edge->group)
+            return false;
+    return true;
+}
+
+static starg_status find_seams(tidier *t) {
+    starg_status status = STARG_OK;
+    size_t count = t->borders.count;
+    STARG_NEW(t->p->context, PARTITION_STAGE, t->by_edge, count);
+    for (size_t i = 0; i < count; i++)
+        t->by_edge[i] = t->borders.data[i];
+    if (count > 1)
+        qsort(t->by_edge, count, sizeof *t->by_edge, by_edge);
+    for (uint32_t i = 0; i < t->groups.count; i++) {
+        group *g = &t->groups.data[i];
+        g->seam_first = (uint32_t)t->seams.count;
+        for (uint32_t k = 0; g->count > 1 && k < 3 * g->count; k++) {
+            const uint32_t *c = t->p->facets.data[g->first + k / 3].corners;
+            const border edge = {c[k % 3], c[(k + 1) % 3], i};
+            if (edge.from < edge.to && is_seam(t, &edge))
+                STARG_PUSH(t->p->context, PARTITION_STAGE, &t->seams, edge);
+        }
+        g->seam_count = (uint32_t)t->seams.count - g->seam_first;
+    }
+done:
+    return status;
+}
+
 /* ---- vertices that are needed ---- */
 
 static void meet(tidier *t, uint32_t vertex, uint32_t neighbour) {
@@ -162,6 +209,8 @@ static void find_needed(tidier *t) {
         meet(t, t->borders.data[i].from, t->borders.data[i].to);
         meet(t, t->borders.data[i].to, t->borders.data[i].from);
     }
+    for (size_t i = 0; i < t->seams.count; i++)
+        t->needed[t->seams.data[i].from] = t->needed[t->seams.data[i].to] = true;
     for (size_t i = 0; i < t->groups.count; i++)
         if (t->groups.data[i].kept)
             need_all(t, &t->groups.data[i]);
@@ -182,19 +231,43 @@ static uint32_t edge_from(const tidier *t, const group *g, uint32_t vertex) {
     return low;
 }
 
+/* One loop of a group's border, without the vertices that are not needed. */
+static starg_status trace_loop(tidier *t, const group *g, uint32_t start) {
+    starg_status status = STARG_OK;
+    uint32_t first = NONE, last = NONE;
+    for (uint32_t at = start; !t->visited[at]; at = edge_from(t, g, t->borders.data[at].to)) {
+        uint32_t vertex = t->borders.data[at].from;
+        t->visited[at] = true;
+        if (!t->needed[vertex])
+            continue;
+        const constrained_edge edge = {last, vertex, 1};
+        if (last == NONE)
+            first = vertex;
+        else
+            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, edge);
+        last = vertex;
+    }
+    const constrained_edge closing = {last, first, 1};
+    if (last != NONE)
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, closing);
+done:
+    return status;
+}
+
 static starg_status trace(tidier *t, const group *g) {
     starg_status status = STARG_OK;
-    t->corners.count = t->starts.count = t->triangles.count = 0;
-    STARG_PUSH(t->p->context, PARTITION_STAGE, &t->starts, 0);
-    for (uint32_t i = g->border_first; i < g->border_first + g->border_count; i++) {
-        if (t->visited[i])
-            continue;
-        for (uint32_t at = i; !t->visited[at]; at = edge_from(t, g, t->borders.data[at].to)) {
-            t->visited[at] = true;
-            if (t->needed[t->borders.data[at].from])
-                STARG_PUSH(t->p->context, PARTITION_STAGE, &t->corners, t->borders.data[at].from);
-        }
-        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->starts, (uint32_t)t->corners.count);
+    t->edges.count = t->loose.count = t->triangles.count = 0;
+    for (uint32_t i = g->border_first; i < g->border_first + g->border_count; i++)
+        if (!t->visited[i])
+            STARG_TRY(trace_loop(t, g, i));
+    for (uint32_t i = g->seam_first; i < g->seam_first + g->seam_count; i++) {
+        const constrained_edge edge = {t->seams.data[i].from, t->seams.data[i].to, 0};
+        STARG_PUSH(t->p->context, PARTITION_STAGE, &t->edges, edge);
+    }
+    for (uint32_t i = 0; i < 3 * g->count; i++) {
+        uint32_t vertex = t->p->facets.data[g->first + i / 3].corners[i % 3];
+        if (t->needed[vertex])
+            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->loose, vertex);
     }
 done:
     return status;
@@ -224,7 +297,7 @@ static starg_status fill(tidier *t, group *g) {
         return copy_facets(t, g);
     STARG_TRY(trace(t, g));
     STARG_TRY(cap_fill(t->p->context, t->p->points.data, t->p->planes.data[fresh.plane].normal,
-                       t->corners.data, t->starts.data, t->starts.count - 1, &t->triangles, &done));
+                       &t->edges, &t->loose, &t->triangles, &done));
     g->kept = !done;
     for (size_t i = 0; done && i + 2 < t->triangles.count; i += 3) {
         memcpy(fresh.corners, t->triangles.data + i, sizeof fresh.corners);
@@ -337,6 +410,7 @@ static starg_status make_anew(tidier *t, bool *done) {
     STARG_TRY(find_groups(t));
     for (uint32_t i = 0; i < t->groups.count; i++)
         STARG_TRY(find_border(t, i));
+    STARG_TRY(find_seams(t));
     find_needed(t);
     STARG_NEW(t->p->context, PARTITION_STAGE, t->visited, t->borders.count);
     for (int round = 0; round < ROUNDS && again; round++)
@@ -353,8 +427,10 @@ static void tidier_free(tidier *t) {
     STARG_ARRAY_FREE(context, &t->groups);
     STARG_ARRAY_FREE(context, &t->borders);
     STARG_ARRAY_FREE(context, &t->facets);
-    STARG_ARRAY_FREE(context, &t->corners);
-    STARG_ARRAY_FREE(context, &t->starts);
+    STARG_ARRAY_FREE(context, &t->seams);
+    STARG_ARRAY_FREE(context, &t->edges);
+    STARG_ARRAY_FREE(context, &t->loose);
+    starg_release(context, t->by_edge);
     STARG_ARRAY_FREE(context, &t->triangles);
     starg_release(context, t->around);
     starg_release(context, t->needed);

@@ -21,6 +21,8 @@
 
 #include "geometry/vec3.h"
 
+static const uint32_t NONE = UINT32_MAX;
+
 void partition_to_unit(const partition *p, const double point[3], double out[3]) {
     vec3_subtract(point, p->origin, out);
     for (int k = 0; k < 3; k++)
@@ -45,19 +47,17 @@ done:
     return status;
 }
 
-/* ---- from tetrahedra ---- */
-
-static void find_frame(const starg_tetmesh *mesh, partition *p) {
-    double lower[3], upper[3], extent = 0;
-    vec3_copy(tetmesh_corner(mesh, 0, 0), lower);
-    vec3_copy(lower, upper);
-    for (size_t i = 0; i < 4 * mesh->count; i++) {
-        const double *q = tetmesh_corner(mesh, i / 4, (int)(i % 4));
+/* Of the points that `count` corners name. */
+static void find_frame(const double *vertices, const uint32_t *corners, size_t count,
+                       partition *p) {
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double extent = 0;
+    for (size_t i = 0; i < count; i++)
         for (int k = 0; k < 3; k++) {
-            lower[k] = fmin(lower[k], q[k]);
-            upper[k] = fmax(upper[k], q[k]);
+            double at = vertices[3 * (size_t)corners[i] + (size_t)k];
+            lower[k] = fmin(lower[k], at);
+            upper[k] = fmax(upper[k], at);
         }
-    }
     for (int k = 0; k < 3; k++) {
         p->origin[k] = 0.5 * lower[k] + 0.5 * upper[k];
         extent = fmax(extent, upper[k] - lower[k]);
@@ -65,24 +65,13 @@ static void find_frame(const starg_tetmesh *mesh, partition *p) {
     frexp(extent, &p->exponent);
 }
 
-static bool is_border(const starg_tetmesh *mesh, const uint32_t *labels, size_t slot) {
-    uint32_t beyond = mesh->neighbours[slot];
-    if (beyond == STARG_TETMESH_NONE)
-        return true;
-    return labels[slot / 4] < labels[beyond];
-}
-
-/* Numbers the vertices of all facets in the order of the mesh. */
-static starg_status add_points(partition *p, const starg_tetmesh *mesh, const uint32_t *labels,
+/* Points for the vertices whose number is not NONE, which gets that of the point. */
+static starg_status add_points(partition *p, const double *vertices, size_t count,
                                uint32_t *numbers) {
     starg_status status = STARG_OK;
-    memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
-    for (size_t slot = 0; slot < 4 * mesh->count; slot++)
-        for (int k = 0; is_border(mesh, labels, slot) && k < 3; k++)
-            numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)TETMESH_FACE[slot % 4][k]]] = 0;
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        if (numbers[v] == 0)
-            STARG_TRY(partition_add_point(p, mesh->vertices + 3 * v, &numbers[v]));
+    for (size_t v = 0; v < count; v++)
+        if (numbers[v] != NONE)
+            STARG_TRY(partition_add_point(p, vertices + 3 * v, &numbers[v]));
     p->first_points = p->points.count / 3;
 done:
     return status;
@@ -98,23 +87,79 @@ void partition_plane_of(const partition *p, const uint32_t corners[3], partition
     plane->offset = vec3_dot(plane->normal, a);
 }
 
-static starg_status add_facet(partition *p, const starg_tetmesh *mesh, const uint32_t *labels,
-                              const uint32_t *numbers, size_t slot) {
+/* A facet in a plane of its own. */
+static starg_status add_facet(partition *p, const uint32_t corners[3], uint32_t inner,
+                              uint32_t outer) {
     starg_status status = STARG_OK;
-    uint32_t beyond = mesh->neighbours[slot];
-    facet f = {.side = {labels[slot / 4],
-                        beyond == STARG_TETMESH_NONE ? PARTITION_OUTSIDE : labels[beyond]},
+    facet f = {.corners = {corners[0], corners[1], corners[2]},
+               .side = {inner, outer},
                .plane = (uint32_t)p->planes.count};
-    for (int k = 0; k < 3; k++) {
-        int corner = TETMESH_FACE[slot % 4][k];
-        f.corners[k] = numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)corner]];
-    }
     partition_plane plane;
     partition_plane_of(p, f.corners, &plane);
     STARG_PUSH(p->context, PARTITION_STAGE, &p->planes, plane);
     STARG_PUSH(p->context, PARTITION_STAGE, &p->facets, f);
 done:
     return status;
+}
+
+/* ---- from a surface ---- */
+
+starg_status partition_create_from_surface(starg_context *context, const kernel_faces *surface,
+                                           partition *out) {
+    starg_status status = STARG_OK;
+    const uint32_t *faces = surface->faces;
+    size_t vertex_count = 0, face_count = surface->count;
+    const piece whole = {.stamp = 1};
+    uint32_t *numbers = NULL;
+    *out = (partition){.context = context, .stamps = 1};
+    for (size_t i = 0; i < 3 * face_count; i++)
+        vertex_count = faces[i] >= vertex_count ? faces[i] + (size_t)1 : vertex_count;
+    find_frame(surface->vertices, faces, 3 * face_count, out);
+    STARG_NEW(context, PARTITION_STAGE, numbers, vertex_count);
+    memset(numbers, 0xff, vertex_count * sizeof *numbers);
+    for (size_t i = 0; i < 3 * face_count; i++)
+        numbers[faces[i]] = 0;
+    STARG_TRY(add_points(out, surface->vertices, vertex_count, numbers));
+    STARG_PUSH(context, PARTITION_STAGE, &out->pieces, whole);
+    for (size_t f = 0; f < face_count; f++) {
+        const uint32_t *own = faces + 3 * f;
+        const uint32_t corners[3] = {numbers[own[0]], numbers[own[1]], numbers[own[2]]};
+        STARG_TRY(add_facet(out, corners, 0, PARTITION_OUTSIDE));
+    }
+    out->first_planes = out->planes.count;
+    STARG_TRY(partition_build_index(out));
+done:
+    starg_release(context, numbers);
+    if (status != STARG_OK)
+        partition_free(out);
+    return status;
+}
+
+/* ---- from tetrahedra ---- */
+
+static bool is_border(const starg_tetmesh *mesh, const uint32_t *labels, size_t slot) {
+    uint32_t beyond = mesh->neighbours[slot];
+    if (beyond == STARG_TETMESH_NONE)
+        return true;
+    return labels[slot / 4] < labels[beyond];
+}
+
+static void mark_vertices(const starg_tetmesh *mesh, const uint32_t *labels, uint32_t *numbers) {
+    memset(numbers, 0xff, mesh->vertex_count * sizeof *numbers);
+    for (size_t slot = 0; slot < 4 * mesh->count; slot++)
+        for (int k = 0; is_border(mesh, labels, slot) && k < 3; k++)
+            numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)TETMESH_FACE[slot % 4][k]]] = 0;
+}
+
+static starg_status add_border(partition *p, const starg_tetmesh *mesh, const uint32_t *labels,
+                               const uint32_t *numbers, size_t slot) {
+    uint32_t beyond = mesh->neighbours[slot], corners[3];
+    for (int k = 0; k < 3; k++) {
+        int corner = TETMESH_FACE[slot % 4][k];
+        corners[k] = numbers[mesh->tetrahedra[4 * (slot / 4) + (size_t)corner]];
+    }
+    return add_facet(p, corners, labels[slot / 4],
+                     beyond == STARG_TETMESH_NONE ? PARTITION_OUTSIDE : labels[beyond]);
 }
 
 static void add_volume(partition *p, const starg_tetmesh *mesh, size_t tetrahedron,
@@ -135,9 +180,10 @@ starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
     starg_status status = STARG_OK;
     uint32_t *numbers = NULL;
     *out = (partition){.context = context};
-    find_frame(mesh, out);
+    find_frame(mesh->vertices, mesh->tetrahedra, 4 * mesh->count, out);
     STARG_NEW(context, PARTITION_STAGE, numbers, mesh->vertex_count);
-    STARG_TRY(add_points(out, mesh, labels, numbers));
+    mark_vertices(mesh, labels, numbers);
+    STARG_TRY(add_points(out, mesh->vertices, mesh->vertex_count, numbers));
     for (size_t i = 0; i < count; i++) {
         piece fresh = {.stamp = ++out->stamps};
         vec3_copy(guards + 3 * i, fresh.guard);
@@ -145,7 +191,7 @@ starg_status partition_create(starg_context *context, const starg_tetmesh *mesh,
     }
     for (size_t slot = 0; slot < 4 * mesh->count; slot++)
         if (is_border(mesh, labels, slot))
-            STARG_TRY(add_facet(out, mesh, labels, numbers, slot));
+            STARG_TRY(add_border(out, mesh, labels, numbers, slot));
     out->first_planes = out->planes.count;
     for (size_t t = 0; t < mesh->count; t++)
         add_volume(out, mesh, t, labels[t]);

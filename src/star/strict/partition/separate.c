@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How the surface of a piece hangs together; connected parts made pieces of their own.
+/* Connected parts of a piece made pieces of their own.
  *
  * Stages: facets with an edge in common are in one part (edges sorted, union-find); parts numbered
  * in the order of the facets; their volumes: a negative one is the surface of a cavity; facets
@@ -136,18 +136,5 @@ done:
     starg_release(p->context, s.leader);
     starg_release(p->context, s.part);
     STARG_ARRAY_FREE(p->context, &s.volumes);
-    return status;
-}
-
-starg_status partition_touches_itself(const partition *p, uint32_t number, bool *touches) {
-    starg_status status = STARG_OK;
-    facet_edges edges = {0};
-    *touches = false;
-    STARG_TRY(list_edges(p, number, &edges));
-    for (size_t i = 0; i < edges.count && !*touches; i += 2)
-        *touches = i + 1 == edges.count || edges.data[i].ends != edges.data[i + 1].ends ||
-                   (i + 2 < edges.count && edges.data[i].ends == edges.data[i + 2].ends);
-done:
-    STARG_ARRAY_FREE(p->context, &edges);
     return status;
 }

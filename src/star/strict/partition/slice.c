@@ -1,24 +1,31 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Cutting a piece of a partition by a plane.
  *
- * Stages: on which side of the plane each vertex of the piece lies, or whether it is on it, as
- * those of an edge that the plane was laid through; a new vertex on every edge of the piece that
- * the plane crosses; all facets at those edges are split, so that the partition stays conforming;
- * facets of the piece above the plane change hands; the segments in which the plane meets the
- * piece's facets, and edges on the plane between a facet below and one above, are joined to loops,
- * and the loops filled (star/strict/partition/cap.c).
+ * Stages: on which side of the plane each vertex of the piece lies, or whether it is on it; a new
+ * vertex on every edge of the piece that the plane crosses; all facets at those edges are split, so
+ * that the partition stays conforming; facets of the piece above the plane change hands, those that
+ * lie in it by what they bound; the edges and vertices in the plane of all other facets of the
+ * piece are a planar straight-line graph, and the edges of the lower part that no other facet of it
+ * has the other way round bound its cap (star/strict/partition/cap.c).
+ *
+ * So there are no cases: the plane may go through vertices, along edges and through facets, loops
+ * may meet, and the surface may touch itself in edges and vertices, or the plane.
  *
  * Invariants: a split edge is split in all its facets; every new vertex is where the two ends of
- * its edge say, whichever facet asks; every surface stays closed.
+ * its edge say, whichever facet asks; every surface stays closed. New vertices are rounded: they
+ * lie off their edges, and off the plane, by as much as the numbers allow, which is what may make
+ * edges of the graph cross; then there is no cut.
  *
  * Cost: linear in the facets of the partition, and that of the cap. */
 #include "star/strict/partition/slice.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/rng.h"
+#include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "star/strict/partition/cap.h"
 
@@ -36,26 +43,32 @@ void partition_join(partition *p, const uint32_t *pieces, size_t count) {
     p->facets.count = kept;
 }
 
-/* An edge that the plane crosses, or a vertex that lies on it. */
+/* An edge that the plane crosses. */
 typedef struct crossing {
-    uint32_t ends[2]; /* ascending; of a vertex twice the same */
+    uint32_t ends[2]; /* ascending */
     uint32_t vertex;  /* on the plane */
-    uint32_t facets;  /* of the piece that have the edge; of a vertex: segments that end there */
-    uint32_t next;    /* the loop goes on at this crossing */
 } crossing;
+
+/* An edge in the plane, of a facet of the piece. */
+typedef struct seam {
+    uint32_t low, high; /* ends, ascending */
+    int32_t turns;      /* of the cap, from low to high */
+    bool needed;        /* the facet is not in the plane itself */
+} seam;
 
 typedef struct slicer {
     partition *p;
     uint32_t low, high;
     partition_plane plane;
+    double on;      /* so near to the plane is on it */
     double *height; /* per vertex: above the plane; 0: on it, or not a vertex of the piece */
     size_t old_vertices;
     STARG_ARRAY(crossing) crossings;
-    STARG_ARRAY(uint64_t) on_plane_edges; /* edges on the plane of facets above it, ascending */
-    bool broken;                          /* a loop goes on in two ways */
-    uint32_t *table;                      /* 1 + crossing by edge; open addressing */
+    uint32_t *table; /* 1 + crossing by edge; open addressing */
     size_t table_size;
-    cap_indices corners, starts, triangles;
+    STARG_ARRAY(seam) seams;
+    cap_edges edges;
+    cap_indices loose, triangles;
 } slicer;
 
 /* ---- heights ---- */
@@ -67,33 +80,34 @@ static int side_of_piece(const slicer *s, const facet *f) {
     return -1;
 }
 
+/* New vertices are off the planes that they are meant to be on by a rounding of coordinates. */
+static double find_tolerance(const partition *p) {
+    double largest = 0;
+    for (int k = 0; k < 3; k++)
+        largest = fmax(largest, fabs(p->origin[k]));
+    return fmax(SLICE_ON, 32 * DBL_EPSILON * (ldexp(largest, -p->exponent) + 0.5));
+}
+
+static void find_height(slicer *s, uint32_t vertex) {
+    double height = vec3_dot(s->plane.normal, partition_unit(s->p, vertex)) - s->plane.offset;
+    s->height[vertex] = fabs(height) < s->on ? 0 : height;
+}
+
 static double height_of(const slicer *s, uint32_t vertex) {
-    return vec3_dot(s->plane.normal, partition_unit(s->p, vertex)) - s->plane.offset;
+    return vertex < s->old_vertices ? s->height[vertex] : 0;
 }
 
-/* Returns false when it is neither on the plane nor well away from it. */
-static bool find_height(slicer *s, uint32_t vertex) {
-    double height = height_of(s, vertex);
-    s->height[vertex] = fabs(height) < SLICE_ON ? 0 : height;
-    return s->height[vertex] == 0 || fabs(height) >= SLICE_CLEARANCE;
+/* 1 when a facet that the plane does not cross is above it, -1 below, 0 in it. */
+static int side_of_plane(const slicer *s, const facet *f) {
+    for (int k = 0; k < 3; k++) {
+        double height = height_of(s, f->corners[k]);
+        if (height != 0)
+            return height > 0 ? 1 : -1;
+    }
+    return 0;
 }
 
-static int corners_above(const slicer *s, const facet *f) {
-    int above = 0;
-    for (int k = 0; k < 3; k++)
-        above += s->height[f->corners[k]] > 0;
-    return above;
-}
-
-static int corners_below(const slicer *s, const facet *f) {
-    int below = 0;
-    for (int k = 0; k < 3; k++)
-        below += s->height[f->corners[k]] < 0;
-    return below;
-}
-
-/* False when a vertex is too near to the plane, a facet lies in it, or all are on one side. `nodes`
- * is at least as many as crossings will be. */
+/* False when all of the piece is on one side. `nodes` is as many as crossings are at most. */
 static bool find_heights(slicer *s, size_t *nodes) {
     bool above = false, below = false;
     *nodes = 0;
@@ -101,15 +115,15 @@ static bool find_heights(slicer *s, size_t *nodes) {
         const facet *f = &s->p->facets.data[i];
         if (side_of_piece(s, f) < 0)
             continue;
-        for (int k = 0; k < 3; k++)
-            if (s->height[f->corners[k]] == 0 && !find_height(s, f->corners[k]))
-                return false;
-        int high = corners_above(s, f), low = corners_below(s, f);
-        if (high + low == 0)
-            return false;
-        above = above || high > 0;
-        below = below || low > 0;
-        *nodes += (high > 0 && low > 0) || high + low < 3 ? 2 : 0;
+        bool high = false, low = false;
+        for (int k = 0; k < 3; k++) {
+            find_height(s, f->corners[k]);
+            high = high || s->height[f->corners[k]] > 0;
+            low = low || s->height[f->corners[k]] < 0;
+        }
+        above = above || high;
+        below = below || low;
+        *nodes += high && low ? 2 : 0;
     }
     return above && below;
 }
@@ -139,25 +153,12 @@ static bool is_crossed(const slicer *s, uint32_t a, uint32_t b) {
 
 static starg_status add_crossing(slicer *s, uint32_t a, uint32_t b, size_t slot) {
     starg_status status = STARG_OK;
-    crossing fresh = {.ends = {a, b}, .next = UINT32_MAX};
+    crossing fresh = {.ends = {a, b}};
     double t = s->height[a] / (s->height[a] - s->height[b]), point[3];
     const double *from = partition_point(s->p, a), *to = partition_point(s->p, b);
     for (int k = 0; k < 3; k++)
         point[k] = from[k] + t * (to[k] - from[k]);
     STARG_TRY(partition_add_point(s->p, point, &fresh.vertex));
-    STARG_PUSH(s->p->context, PARTITION_STAGE, &s->crossings, fresh);
-    s->table[slot] = (uint32_t)s->crossings.count;
-done:
-    return status;
-}
-
-/* A vertex on the plane. */
-static starg_status add_touch(slicer *s, uint32_t vertex) {
-    starg_status status = STARG_OK;
-    const crossing fresh = {.ends = {vertex, vertex}, .vertex = vertex, .next = UINT32_MAX};
-    size_t slot = slot_of(s, vertex, vertex);
-    if (s->table[slot] != 0)
-        goto done;
     STARG_PUSH(s->p->context, PARTITION_STAGE, &s->crossings, fresh);
     s->table[slot] = (uint32_t)s->crossings.count;
 done:
@@ -171,15 +172,12 @@ static starg_status find_crossings(slicer *s) {
         if (side_of_piece(s, &f) < 0)
             continue;
         for (int k = 0; k < 3; k++) {
-            if (s->height[f.corners[k]] == 0)
-                STARG_TRY(add_touch(s, f.corners[k]));
             uint32_t a = f.corners[k], b = f.corners[(k + 1) % 3];
             if (!is_crossed(s, a, b))
                 continue;
             size_t slot = a < b ? slot_of(s, a, b) : slot_of(s, b, a);
             if (s->table[slot] == 0)
                 STARG_TRY(add_crossing(s, a < b ? a : b, a < b ? b : a, slot));
-            s->crossings.data[s->table[slot] - 1].facets++;
         }
     }
 done:
@@ -220,27 +218,6 @@ done:
     return status;
 }
 
-/* A segment of the cap: the boundary of the part of a facet below the plane runs from one crossing
- * to the other, in the order of the facet's corners; the cap's runs against it. */
-static void link_crossings(slicer *s, const facet *f, crossing *from, crossing *to) {
-    bool outward = side_of_piece(s, f) == FACET_INNER;
-    crossing *begin = outward ? to : from, *end = outward ? from : to;
-    s->broken = s->broken || begin->next != UINT32_MAX;
-    begin->next = (uint32_t)(end - s->crossings.data);
-    begin->facets += begin->ends[0] == begin->ends[1];
-    end->facets += end->ends[0] == end->ends[1];
-}
-
-/* The plane crosses edge k of the facet, and its opposite corner may lie on the plane. */
-static void link_corner(slicer *s, const facet *f, int k, crossing *m) {
-    uint32_t corner = f->corners[(k + 2) % 3];
-    crossing *n = find_crossing(s, corner, corner);
-    if (side_of_piece(s, f) < 0 || n == NULL)
-        return;
-    bool low = s->height[f->corners[k]] < 0;
-    link_crossings(s, f, low ? m : n, low ? n : m);
-}
-
 static starg_status split_facet(slicer *s, size_t i, bool *split) {
     starg_status status = STARG_OK;
     const facet f = s->p->facets.data[i];
@@ -256,17 +233,12 @@ static starg_status split_facet(slicer *s, size_t i, bool *split) {
     *split = count > 0;
     if (count == 1) {
         uint32_t m = on[edge]->vertex, c = f.corners[(edge + 2) % 3];
-        link_corner(s, &f, edge, on[edge]);
         STARG_TRY(add_facet(s, &f, f.corners[edge], m, c));
         STARG_TRY(add_facet(s, &f, m, f.corners[(edge + 1) % 3], c));
     } else if (count == 2) {
         while (on[apex] == NULL || on[(apex + 2) % 3] == NULL)
             apex++;
-        crossing *m = on[apex], *n = on[(apex + 2) % 3];
-        bool low = s->height[f.corners[apex]] < 0;
-        if (side_of_piece(s, &f) >= 0)
-            link_crossings(s, &f, low ? m : n, low ? n : m);
-        STARG_TRY(split_in_three(s, &f, apex, m->vertex, n->vertex));
+        STARG_TRY(split_in_three(s, &f, apex, on[apex]->vertex, on[(apex + 2) % 3]->vertex));
     }
 done:
     return status;
@@ -290,96 +262,80 @@ done:
     return status;
 }
 
-/* ---- edges on the plane ---- */
+/* ---- the graph in the plane ---- */
 
-static int compare_edges(const void *a, const void *b) {
-    uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
+/* Does a facet in the plane have the piece below it? As seen along the axis of the cap. */
+static bool is_lid(const slicer *s, const facet *f, int side) {
+    int u, v;
+    uint32_t c[3];
+    cap_choose_view(s->plane.normal, &u, &v);
+    facet_outward(f, side, c);
+    return orient2d(partition_point(s->p, c[0]), partition_point(s->p, c[1]),
+                    partition_point(s->p, c[2]), u, v) >= 0;
 }
 
-/* The edge of a facet that lies on the plane, or -1. */
-static int edge_on_plane(const slicer *s, const facet *f) {
-    for (int k = 0; k < 3; k++)
-        if (s->height[f->corners[k]] == 0 && s->height[f->corners[(k + 1) % 3]] == 0)
-            return k;
-    return -1;
-}
-
-static uint64_t edge_key(const facet *f, int k) {
-    uint64_t a = f->corners[k], b = f->corners[(k + 1) % 3];
-    return a < b ? a << 32 | b : b << 32 | a;
-}
-
-static starg_status find_on_plane_edges(slicer *s) {
+/* What of a facet of the piece is in the plane. */
+static starg_status add_seams(slicer *s, const facet *f, int side, bool is_low, bool is_flat) {
     starg_status status = STARG_OK;
-    for (size_t i = 0; i < s->p->facets.count; i++) {
-        const facet *f = &s->p->facets.data[i];
-        int k = side_of_piece(s, f) < 0 ? -1 : edge_on_plane(s, f);
-        if (k >= 0 && corners_above(s, f) > 0)
-            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->on_plane_edges, edge_key(f, k));
-    }
-    if (s->on_plane_edges.count > 1)
-        qsort(s->on_plane_edges.data, s->on_plane_edges.count, sizeof *s->on_plane_edges.data,
-              compare_edges);
-done:
-    return status;
-}
-
-/* Edges where a facet below the plane meets one above are segments of the cap. Where both are on
- * one side the surface touches the plane: perhaps inside of the cap, which would pinch it. */
-static starg_status link_on_plane_edges(slicer *s) {
-    starg_status status = STARG_OK;
-    size_t linked = 0;
-    STARG_TRY(find_on_plane_edges(s));
-    for (size_t i = 0; i < s->p->facets.count; i++) {
-        const facet *f = &s->p->facets.data[i];
-        int k = side_of_piece(s, f) < 0 ? -1 : edge_on_plane(s, f);
-        if (k < 0 || corners_below(s, f) == 0)
+    uint32_t c[3];
+    facet_outward(f, side, c);
+    for (int k = 0; k < 3; k++) {
+        uint32_t a = c[k], b = c[(k + 1) % 3];
+        if (height_of(s, a) != 0)
             continue;
-        uint64_t key = edge_key(f, k);
-        s->broken = s->broken || s->on_plane_edges.count == 0 ||
-                    bsearch(&key, s->on_plane_edges.data, s->on_plane_edges.count, sizeof key,
-                            compare_edges) == NULL;
-        uint32_t a = f->corners[k], b = f->corners[(k + 1) % 3];
-        link_crossings(s, f, find_crossing(s, a, a), find_crossing(s, b, b));
-        linked++;
+        if (!is_flat && a < s->old_vertices)
+            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->loose, a);
+        if (height_of(s, b) != 0)
+            continue;
+        /* the cap runs against the facets of the lower part */
+        const seam fresh = {.low = a < b ? a : b,
+                            .high = a < b ? b : a,
+                            .turns = is_low ? (a < b ? -1 : 1) : 0,
+                            .needed = !is_flat};
+        STARG_PUSH(s->p->context, PARTITION_STAGE, &s->seams, fresh);
     }
-    s->broken = s->broken || linked != s->on_plane_edges.count;
 done:
     return status;
 }
 
-static void hand_over(slicer *s) {
+/* Facets above change hands. */
+static starg_status hand_over(slicer *s) {
+    starg_status status = STARG_OK;
     for (size_t i = 0; i < s->p->facets.count; i++) {
         facet *f = &s->p->facets.data[i];
         int side = side_of_piece(s, f);
-        bool above = false;
-        for (int k = 0; side >= 0 && k < 3; k++)
-            above = above || (f->corners[k] < s->old_vertices && s->height[f->corners[k]] > 0);
-        if (above)
+        if (side < 0)
+            continue;
+        int above = side_of_plane(s, f);
+        bool is_low = above < 0 || (above == 0 && is_lid(s, f, side));
+        STARG_TRY(add_seams(s, f, side, is_low, above == 0));
+        if (!is_low)
             f->side[side] = s->high;
     }
+done:
+    return status;
 }
 
-/* ---- cap ---- */
+static int compare_seams(const void *x, const void *y) {
+    const seam *a = x, *b = y;
+    return partition_compare_edges(a->low, a->high, b->low, b->high);
+}
 
-/* False where the surface is no manifold: an edge has not two facets of the piece; or where it
- * touches the plane, or loops meet. */
-static starg_status trace_loops(slicer *s, bool *done) {
+/* All seams of an edge together. Inside of what lies in the plane there is nothing to fill. */
+static starg_status join_seams(slicer *s) {
     starg_status status = STARG_OK;
-    *done = !s->broken;
-    for (size_t i = 0; i < s->crossings.count && *done; i++)
-        *done = s->crossings.data[i].facets == 2 && s->crossings.data[i].next != UINT32_MAX;
-    STARG_PUSH(s->p->context, PARTITION_STAGE, &s->starts, 0);
-    for (size_t i = 0; i < s->crossings.count && *done; i++) {
-        if (s->crossings.data[i].facets == 0)
-            continue;
-        for (size_t at = i; s->crossings.data[at].facets != 0;) {
-            s->crossings.data[at].facets = 0; /* visited */
-            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->corners, s->crossings.data[at].vertex);
-            at = s->crossings.data[at].next;
+    size_t count = s->seams.count;
+    if (count > 1)
+        qsort(s->seams.data, count, sizeof *s->seams.data, compare_seams);
+    for (size_t i = 0; i < count;) {
+        seam all = s->seams.data[i];
+        for (i++; i < count && compare_seams(&all, &s->seams.data[i]) == 0; i++) {
+            all.turns += s->seams.data[i].turns;
+            all.needed = all.needed || s->seams.data[i].needed;
         }
-        STARG_PUSH(s->p->context, PARTITION_STAGE, &s->starts, (uint32_t)s->corners.count);
+        const constrained_edge edge = {all.low, all.high, all.turns};
+        if (all.turns != 0 || all.needed)
+            STARG_PUSH(s->p->context, PARTITION_STAGE, &s->edges, edge);
     }
 done:
     return status;
@@ -388,11 +344,9 @@ done:
 static starg_status add_cap(slicer *s, bool *done) {
     starg_status status = STARG_OK;
     facet f = {.side = {s->low, s->high}, .plane = (uint32_t)s->p->planes.count};
-    STARG_TRY(trace_loops(s, done));
-    if (!*done)
-        goto done;
-    STARG_TRY(cap_fill(s->p->context, s->p->points.data, s->plane.normal, s->corners.data,
-                       s->starts.data, s->starts.count - 1, &s->triangles, done));
+    STARG_TRY(join_seams(s));
+    STARG_TRY(cap_fill(s->p->context, s->p->points.data, s->plane.normal, &s->edges, &s->loose,
+                       &s->triangles, done));
     STARG_PUSH(s->p->context, PARTITION_STAGE, &s->p->planes, s->plane);
     for (size_t i = 0; i + 2 < s->triangles.count; i += 3)
         STARG_TRY(add_facet(s, &f, s->triangles.data[i], s->triangles.data[i + 1],
@@ -408,6 +362,7 @@ starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
                 .low = low,
                 .high = high,
                 .plane = *plane,
+                .on = find_tolerance(p),
                 .old_vertices = p->points.count / 3,
                 .table_size = 64};
     size_t nodes;
@@ -419,17 +374,16 @@ starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
         s.table_size *= 2;
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, s.table, s.table_size);
     STARG_TRY(find_crossings(&s));
-    STARG_TRY(link_on_plane_edges(&s));
     STARG_TRY(split_facets(&s));
-    hand_over(&s);
+    STARG_TRY(hand_over(&s));
     STARG_TRY(add_cap(&s, done));
 done:
     starg_release(p->context, s.height);
     starg_release(p->context, s.table);
     STARG_ARRAY_FREE(p->context, &s.crossings);
-    STARG_ARRAY_FREE(p->context, &s.on_plane_edges);
-    STARG_ARRAY_FREE(p->context, &s.corners);
-    STARG_ARRAY_FREE(p->context, &s.starts);
+    STARG_ARRAY_FREE(p->context, &s.seams);
+    STARG_ARRAY_FREE(p->context, &s.edges);
+    STARG_ARRAY_FREE(p->context, &s.loose);
     STARG_ARRAY_FREE(p->context, &s.triangles);
     return status;
 }

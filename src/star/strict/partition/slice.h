@@ -11,15 +11,14 @@ void partition_join(partition *p, const uint32_t *pieces, size_t count);
 
 /* Gives what piece `low` has above the plane to piece `high`, which has nothing yet; facets along
  * the plane come between them, and facets that the plane cuts are split, also where they meet the
- * piece in an edge only. *done is false, and the partition is of no more use, when a vertex of the
- * piece is too near to the plane, or when its surface is no manifold there, or nothing is cut.
- * Proves nothing about either part. Errors: MEMORY. */
+ * piece in an edge only. *done is false, and the partition is of no more use, when all of the piece
+ * is on one side, or rounding has spoilt the section. Proves nothing about either part. Errors:
+ * MEMORY. */
 starg_status partition_slice(partition *p, uint32_t low, uint32_t high,
                              const partition_plane *plane, bool *done);
 
-/* How near to a plane of a slice no vertex may be, in unit coordinates, but for those so near that
- * they count as on it: so a plane can be laid through an edge. */
-#define SLICE_CLEARANCE 1e-9
-#define SLICE_ON        1e-12
+/* Vertices so near to the plane of a slice count as on it, in unit coordinates (far from the origin
+ * it is as much as coordinates are rounded). */
+#define SLICE_ON 1e-12
 
 #endif

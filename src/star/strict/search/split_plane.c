@@ -32,6 +32,7 @@ enum {
     TURNS = 24,
     EDGES = 64,
     EDGE_TURNS = 8,
+    HURRY = 8,
     SAMPLE = 12000 /* triangles */
 };
 
@@ -81,6 +82,11 @@ static void plane_search_free(plane_search *d) {
 
 static const double *corner(const plane_search *d, const region_triangle *t, int k) {
     return d->r->vertices.data + 3 * (size_t)t->corners[k];
+}
+
+/* So many tries, by the effort. */
+static int tries(const plane_search *d, int usual) {
+    return d->options->effort > 0 ? usual * d->options->effort : usual / HURRY;
 }
 
 static void random_direction(starg_rng *rng, double out[3]) {
@@ -203,7 +209,9 @@ static starg_status add_reach_needed(plane_search *d, bool nearby) {
 
 static starg_status add_places(plane_search *d) {
     starg_status status = STARG_OK;
-    int count = GUARDS * d->options->effort, needed = NEEDED * d->options->effort;
+    int count = tries(d, GUARDS), needed = tries(d, NEEDED);
+    for (size_t i = 0; i < d->options->place_count; i++)
+        STARG_TRY(add_place(d, d->options->places + 3 * i));
     for (int i = 0; i < count; i++) {
         if (i % 4 == 0)
             STARG_TRY(add_reach_along(d));
@@ -320,7 +328,7 @@ static void propose(const plane_search *d, int sort, double out[3]) {
 }
 
 static void try_directions(plane_search *d) {
-    for (int i = 0; i < DIRECTIONS * d->options->effort; i++) {
+    for (int i = 0; i < tries(d, DIRECTIONS); i++) {
         double normal[3];
         propose(d, i % 3, normal);
         try_direction(d, normal);
@@ -413,7 +421,7 @@ static void try_edge(plane_search *d, const double a[3], const double b[3]) {
 }
 
 static void try_edges(plane_search *d) {
-    for (int i = 0; i < EDGES * d->options->effort; i++) {
+    for (int i = 0; i < tries(d, EDGES); i++) {
         const place *p = i % 2 == 0 ? random_place(d) : &d->places.data[d->best_place];
         if (p->count == 0)
             continue;

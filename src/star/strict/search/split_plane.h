@@ -15,8 +15,10 @@ typedef enum split_plane_demand {
 
 typedef struct split_plane_options {
     double margin; /* that guards keep to all planes, in unit coordinates */
-    int effort;    /* 1 or more: so many times the usual tries            */
+    int effort;    /* so many times the usual tries; 0: few of them       */
     split_plane_demand demand;
+    const double *places; /* more places to choose guards from */
+    size_t place_count;
 } split_plane_options;
 
 /* Looks for a plane such that one guard below it and one above it miss less of the region than any

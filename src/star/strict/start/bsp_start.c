@@ -10,8 +10,18 @@
  *
  * A piece that resists (no plane gains, or the cut fails, or leaves a small component that nothing
  * sees) is tried again with more effort and with less room for its guard, and is then halved: a
- * plane that is right where the trouble is may cost more elsewhere in a large piece. Where one
- * resists to the last, there is no start by planes.
+ * plane that is right where the trouble is may cost more elsewhere in a large piece. What resists
+ * that too is cut by planes of its reflex edges (star/strict/search/reflex_plane.c).
+ *
+ * Why it ends: a plane through a reflex edge that lies between the planes of its two faces leaves
+ * no reflex edge there, and makes none anywhere else, for a plane adds no angle above pi to either
+ * side. So the reflex edges of each part are fewer than those of the whole, counted as the lines
+ * that they are on, and a part without any is convex, which is star-shaped [Chazelle 1984].
+ * Rounding is what this leaves out: new vertices are off their edges by some 1e-16 of the model's
+ * size, so that faces bend by as much. It does no harm where the pieces are thicker than that by
+ * far, and where they are not it shows in the exact certificate, or in a section whose edges
+ * cross: the piece is opened again, or cut elsewhere, and so many times at most. After that the
+ * start has failed; nothing that is not certified leaves it.
  *
  * Invariants: what a cut does to other pieces is nothing but split facets; every guard is certified
  * on the finished partition, and where that fails the piece is opened again. The result does not
@@ -27,9 +37,11 @@
 #include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/partition/separate.h"
 #include "star/strict/partition/slice.h"
+#include "star/strict/search/reflex_plane.h"
 #include "star/strict/search/split_plane.h"
 
-enum { ATTEMPTS_MOST = 12, FAIR_FROM = 1, HALVE_FROM = 4, EFFORT_MOST = 3 };
+enum { FAIR_FROM = 1, HALVE_FROM = 4, REFLEX_FROM = 8, ATTEMPTS_MOST = 60, EFFORT_MOST = 3 };
+enum { PROOFS_MOST = 40 }; /* rounds of them */
 
 /* Numbers of stages are below. */
 static const uint64_t STREAMS = 1000;
@@ -42,18 +54,21 @@ static const double TURN = 1e-5, TURN_MOST = 0.1; /* radians, about */
 typedef struct job {
     uint32_t number;
     int attempts;
-    double radius, guard[3]; /* of the ball in its kernel; unit coordinates */
+    double above;    /* so large the ball must be: a smaller one has failed */
+    double radius;   /* of the ball in its kernel, in unit coordinates */
+    double guard[3]; /* the middle of it, in those of the solid */
     partition_plane plane;
     bool found;
 } job;
 
 typedef struct bsp_builder {
     partition *p;
-    region_scratch scratch; /* of the calling thread */
+    const bsp_options *options;
+    STARG_ARRAY(double) hints; /* guards to choose from, in unit coordinates */
+    region_scratch scratch;    /* of the calling thread */
     STARG_ARRAY(job) jobs;
     STARG_ARRAY(job) next;
-    uint64_t stream;
-    size_t budget;     /* jobs, after which it is given up */
+    bool hurry;
     size_t done;       /* jobs so far */
     size_t merge_from; /* facets from which on it is time to merge */
     double volume;     /* of the solid, in unit coordinates */
@@ -70,25 +85,74 @@ static double margin_of(const job *j) {
     return fmax(MARGIN * ease_of(j), MARGIN_LEAST);
 }
 
+/* In pieces that resist, what exact proof there is will do. */
+static bool is_star(const job *j) {
+    return j->radius >= (j->attempts < HALVE_FROM ? margin_of(j) : 0) && j->radius > j->above;
+}
+
 /* ---- looking at open pieces ---- */
+
+static starg_status find_plane(const bsp_builder *b, job *j, const region *r, starg_rng *rng,
+                               region_scratch *scratch) {
+    int effort = j->attempts < EFFORT_MOST ? j->attempts + 1 : EFFORT_MOST;
+    const split_plane_options options = {.margin = margin_of(j),
+                                         .effort = b->hurry ? 0 : effort,
+                                         .demand = j->attempts < FAIR_FROM    ? SPLIT_PLANE_GAIN
+                                                   : j->attempts < HALVE_FROM ? SPLIT_PLANE_FAIR
+                                                                              : SPLIT_PLANE_HALVE,
+                                         .places = b->hints.data,
+                                         .place_count = b->hints.count / 3};
+    if (j->attempts >= REFLEX_FROM)
+        return reflex_plane_find(r, rng, scratch, &j->plane, &j->found);
+    return split_plane_find(r, &options, rng, scratch, &j->plane, &j->found);
+}
+
+/* A guard for a piece too thin for rounded programs, by exact proof. */
+static starg_status find_kernel(const partition *p, job *j) {
+    starg_status status = STARG_OK;
+    partition_triangles triangles = {0};
+    kernel_faces surface = {.vertices = p->points.data};
+    starg_kernel_result result;
+    STARG_TRY(partition_gather(p, j->number, &triangles));
+    surface.faces = triangles.data;
+    surface.count = triangles.count / 3;
+    STARG_TRY(kernel_find(p->context, &surface, &result));
+    if (result.verdict == STARG_KERNEL_INTERIOR) {
+        vec3_copy(result.guard, j->guard);
+        j->radius = ldexp(fabs(result.radius), -p->exponent);
+    }
+done:
+    STARG_ARRAY_FREE(p->context, &triangles);
+    return status;
+}
+
+static starg_status find_guard(const partition *p, const region *r, job *j,
+                               region_scratch *scratch) {
+    starg_status status = STARG_OK;
+    double center[3];
+    STARG_TRY(region_find_center(r, NULL, 0, scratch, center, &j->radius));
+    if (j->radius > 0)
+        partition_from_unit(p, center, j->guard);
+    if (j->attempts >= HALVE_FROM && j->radius < margin_of(j)) {
+        j->radius = -1;
+        STARG_TRY(find_kernel(p, j));
+    }
+done:
+    return status;
+}
 
 static starg_status look_at(starg_context *context, void *shared, void *scratch, size_t item) {
     starg_status status = STARG_OK;
     bsp_builder *b = shared;
     job *j = &b->jobs.data[item];
     region r = {.vertices = {0}};
-    starg_rng rng = starg_rng_make(context->seed, 78 + STREAMS * b->stream, b->done + item);
-    const split_plane_options options = {.margin = margin_of(j),
-                                         .effort = j->attempts < EFFORT_MOST ? j->attempts + 1
-                                                                             : EFFORT_MOST,
-                                         .demand = j->attempts < FAIR_FROM    ? SPLIT_PLANE_GAIN
-                                                   : j->attempts < HALVE_FROM ? SPLIT_PLANE_FAIR
-                                                                              : SPLIT_PLANE_HALVE};
+    starg_rng rng =
+        starg_rng_make(context->seed, 78 + STREAMS * b->options->stream, b->done + item);
     j->found = false;
     STARG_TRY(region_gather(b->p, &j->number, 1, scratch, &r));
-    STARG_TRY(region_find_center(&r, NULL, 0, scratch, j->guard, &j->radius));
-    if (j->radius < options.margin)
-        STARG_TRY(split_plane_find(&r, &options, &rng, scratch, &j->plane, &j->found));
+    STARG_TRY(find_guard(b->p, &r, j, scratch));
+    if (!is_star(j))
+        STARG_TRY(find_plane(b, j, &r, &rng, scratch));
 done:
     region_free(context, &r);
     return status;
@@ -103,7 +167,7 @@ static starg_status is_small_component(bsp_builder *b, partition *p, uint32_t nu
     region r = {.vertices = {0}};
     double center[3], radius;
     *small = false;
-    if (p->pieces.data[number].volume >= SMALL_COMPONENT * ease_of(j))
+    if (j->attempts >= REFLEX_FROM || p->pieces.data[number].volume >= SMALL_COMPONENT * ease_of(j))
         goto done;
     STARG_TRY(region_gather(p, &number, 1, &b->scratch, &r));
     STARG_TRY(region_find_center(&r, NULL, 0, &b->scratch, center, &radius));
@@ -193,7 +257,7 @@ done:
 
 static void settle(bsp_builder *b, const job *j) {
     piece *it = &b->p->pieces.data[j->number];
-    partition_from_unit(b->p, j->guard, it->guard);
+    vec3_copy(j->guard, it->guard);
     it->radius = j->radius;
     b->finished += it->volume;
     starg_progress_step(b->p->context, (size_t)(1e6 * fmin(1, b->finished / b->volume)), 1000000);
@@ -219,6 +283,7 @@ static starg_status run_round(bsp_builder *b) {
                                       .make_scratch = region_make_scratch,
                                       .free_scratch = region_free_scratch,
                                       .silent = true};
+    b->hurry = starg_time_is_over(b->p->context);
     STARG_TRY(starg_parallel_for(b->p->context, &loop));
     b->done += b->jobs.count;
     b->next.count = 0;
@@ -227,7 +292,7 @@ static starg_status run_round(bsp_builder *b) {
         STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
         if (b->hopeless)
             continue;
-        if (j->radius >= margin_of(j))
+        if (is_star(j))
             settle(b, j);
         else
             STARG_TRY(carry_out(b, j));
@@ -248,14 +313,23 @@ static void swap_lists(bsp_builder *b) {
 }
 
 static bool may_go_on(const bsp_builder *b) {
-    return b->jobs.count > 0 && !b->hopeless && b->done < b->budget &&
-           !starg_time_is_over(b->p->context);
+    return b->jobs.count > 0 && !b->hopeless &&
+           (b->options->to_the_end ||
+            (b->done < b->options->budget && !starg_time_is_over(b->p->context)));
 }
 
 /* ---- proofs ---- */
 
+/* Once more, but from where it has been the ball must have grown to be tried again. */
+static starg_status reopen(bsp_builder *b, uint32_t number, int round) {
+    starg_status status = open_piece(b, number, round);
+    if (status == STARG_OK)
+        b->next.data[b->next.count - 1].above = 2 * b->p->pieces.data[number].radius;
+    return status;
+}
+
 /* Pieces whose guard does not see them: neighbours' cuts have split their facets since. */
-static starg_status certify(bsp_builder *b) {
+static starg_status certify(bsp_builder *b, int round) {
     starg_status status = STARG_OK;
     partition_triangles triangles = {0};
     partition *p = b->p;
@@ -267,8 +341,9 @@ static starg_status certify(bsp_builder *b) {
         p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
         p->pieces.data[i].stamp = ++p->stamps;
         if (!partition_certify(p, triangles.data, count, p->pieces.data[i].guard))
-            STARG_TRY(open_piece(b, i, (int)(b->done % 3)));
+            STARG_TRY(reopen(b, i, round));
     }
+    b->hopeless = round == PROOFS_MOST && b->next.count > 0;
 done:
     STARG_ARRAY_FREE(p->context, &triangles);
     return status;
@@ -279,8 +354,6 @@ static starg_status open_all(bsp_builder *b) {
     uint32_t given = (uint32_t)b->p->pieces.count;
     for (uint32_t i = 0; i < given; i++)
         STARG_TRY(partition_separate(b->p, i));
-    for (uint32_t i = 0; i < b->p->pieces.count && !b->hopeless; i++)
-        STARG_TRY(partition_touches_itself(b->p, i, &b->hopeless));
     for (uint32_t i = 0; i < b->p->pieces.count; i++) {
         b->volume += b->p->pieces.data[i].volume;
         STARG_TRY(open_piece(b, i, 0));
@@ -289,28 +362,42 @@ done:
     return status;
 }
 
-starg_status bsp_start(partition *p, uint64_t stream, size_t budget, bool *done) {
+static starg_status take_hints(bsp_builder *b) {
     starg_status status = STARG_OK;
-    bsp_builder b = {
-        .p = p, .stream = stream, .budget = budget, .scratch = {.context = p->context}};
-    *done = false;
+    for (size_t i = 0; i < b->options->guard_count; i++) {
+        double unit[3];
+        partition_to_unit(b->p, b->options->guards + 3 * i, unit);
+        for (int k = 0; k < 3; k++)
+            STARG_PUSH(b->p->context, PARTITION_STAGE, &b->hints, unit[k]);
+    }
+done:
+    return status;
+}
+
+starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *report) {
+    starg_status status = STARG_OK;
+    bsp_builder b = {.p = p, .options = options, .scratch = {.context = p->context}};
+    *report = (bsp_report){.done = false};
     starg_progress_begin(p->context, "planes");
+    STARG_TRY(take_hints(&b));
     STARG_TRY(open_all(&b));
     b.merge_from = p->facets.count + p->facets.count / 8;
-    while (b.next.count > 0) {
+    for (int round = 1; b.next.count > 0 && !b.hopeless; round++) {
         swap_lists(&b);
         while (may_go_on(&b)) {
             STARG_TRY(run_round(&b));
             swap_lists(&b);
         }
+        report->evaluations = b.done;
         if (b.jobs.count > 0)
             goto done;
-        STARG_TRY(certify(&b));
+        STARG_TRY(certify(&b, round));
     }
-    *done = true;
+    report->done = !b.hopeless;
 done:
     starg_progress_end(p->context);
     region_scratch_free(&b.scratch);
+    STARG_ARRAY_FREE(p->context, &b.hints);
     STARG_ARRAY_FREE(p->context, &b.jobs);
     STARG_ARRAY_FREE(p->context, &b.next);
     return status;

@@ -5,11 +5,21 @@
 
 #include "star/strict/partition/partition.h"
 
+typedef struct bsp_options {
+    uint64_t stream;      /* of random numbers: another one gives another result */
+    size_t budget;        /* evaluations of open pieces, after which it is given up */
+    bool to_the_end;      /* neither budget nor time end it; once the time is over, it hurries */
+    const double *guards; /* guard_count x 3, or NULL: places to choose guards from */
+    size_t guard_count;
+} bsp_options;
+
+typedef struct bsp_report {
+    bool done;          /* else the partition is of no use */
+    size_t evaluations; /* of open pieces: some two or three for each piece if none resists */
+} bsp_report;
+
 /* Cuts the pieces of a partition, whose guards need not see anything, until each has a certified
- * guard. *done is false, and the partition of no use, when some piece resists (as one whose surface
- * touches itself along an edge does) until open pieces have been looked at `budget` times, some two
- * or three times for each piece if none resists; or when the time is over. Another stream of random
- * numbers gives another result. Errors: MEMORY, CANCELLED. */
-starg_status bsp_start(partition *p, uint64_t stream, size_t budget, bool *done);
+ * guard. Errors: MEMORY, CANCELLED. */
+starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *report);
 
 #endif

@@ -1,0 +1,512 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Constrained triangulation of a planar straight-line graph.
+ *
+ * Problem: triangles between given vertices, such that given edges are among theirs.
+ *
+ * Stages: vertices sorted by place and added one by one, each with the edges of the hull that it
+ * sees; edges flipped until all are locally Delaunay [Lawson 1977]; for every edge of the graph
+ * that is still missing, the edges that it crosses are flipped until none does [Sloan 1993]; then
+ * Delaunay again, the edges of the graph excepted.
+ *
+ * Invariants: every triangle turns counter-clockwise, exactly, at all times: a flip is made only
+ * where both of its triangles do. Whether an edge is Delaunay is rounded, for it is a matter of
+ * quality alone; so the number of flips is bounded.
+ *
+ * Cost: n log n for sorting; flips are about n sqrt(n) as a rule. */
+#include "geometry/constrained.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "geometry/predicates.h"
+
+static const char STAGE[] = "triangulate";
+static const uint32_t NONE = CONSTRAINED_NONE;
+
+enum { FLIPS_EACH = 400 }; /* for each triangle, at most */
+
+typedef struct site {
+    double at[2];
+    uint32_t vertex;
+} site;
+
+/* Corners are numbers of sites until the end. */
+typedef struct triangulator {
+    starg_context *context;
+    const double *points;
+    int u, v;
+    STARG_ARRAY(site) sites; /* by place */
+    uint32_t *by_vertex;     /* sites by their vertex */
+    uint32_t *next, *before; /* of a site on the hull, counter-clockwise */
+    uint32_t *outer;         /* of such a site: 4 * triangle + edge of the hull's edge from it */
+    uint32_t *triangle_of;   /* per site: a triangle with it */
+    STARG_ARRAY(uint32_t) stack;
+    STARG_ARRAY(uint32_t) crossed; /* ends of edges, two by two */
+    constrained_triangles *triangles;
+    uint64_t flips_left;
+} triangulator;
+
+static const double *place(const triangulator *t, uint32_t s) {
+    return t->points + 3 * (size_t)t->sites.data[s].vertex;
+}
+
+static int turn(const triangulator *t, uint32_t a, uint32_t b, uint32_t c) {
+    return orient2d(place(t, a), place(t, b), place(t, c), t->u, t->v);
+}
+
+/* ---- sites ---- */
+
+static int compare_numbers(uint32_t a, uint32_t b) {
+    return (a > b) - (a < b);
+}
+
+static int by_place(const void *x, const void *y) {
+    const site *a = x, *b = y;
+    for (int k = 0; k < 2; k++)
+        if (a->at[k] != b->at[k])
+            return a->at[k] < b->at[k] ? -1 : 1;
+    return compare_numbers(a->vertex, b->vertex);
+}
+
+static starg_status add_site(triangulator *t, uint32_t vertex) {
+    starg_status status = STARG_OK;
+    const double *q = t->points + 3 * (size_t)vertex;
+    const site fresh = {{q[t->u], q[t->v]}, vertex};
+    STARG_PUSH(t->context, STAGE, &t->sites, fresh);
+done:
+    return status;
+}
+
+/* Vertices with the number of their site, ascending. */
+static int by_first(const void *x, const void *y) {
+    const uint32_t *a = x, *b = y;
+    return compare_numbers(a[0], b[0]);
+}
+
+static starg_status find_sites(triangulator *t, const constrained_edge *edges, size_t edge_count,
+                               const uint32_t *loose, size_t loose_count, bool *done) {
+    starg_status status = STARG_OK;
+    size_t kept = 0;
+    for (size_t i = 0; i < edge_count; i++) {
+        STARG_TRY(add_site(t, edges[i].from));
+        STARG_TRY(add_site(t, edges[i].to));
+    }
+    for (size_t i = 0; i < loose_count; i++)
+        STARG_TRY(add_site(t, loose[i]));
+    if (t->sites.count > 1)
+        qsort(t->sites.data, t->sites.count, sizeof *t->sites.data, by_place);
+    for (size_t i = 0; i < t->sites.count; i++) {
+        const site *s = &t->sites.data[i], *last = kept > 0 ? &t->sites.data[kept - 1] : NULL;
+        if (last != NULL && last->vertex == s->vertex)
+            continue;
+        if (last != NULL && last->at[0] == s->at[0] && last->at[1] == s->at[1])
+            *done = false;
+        t->sites.data[kept++] = *s;
+    }
+    t->sites.count = kept;
+    STARG_NEW(t->context, STAGE, t->by_vertex, 2 * kept);
+    for (size_t i = 0; i < kept; i++) {
+        t->by_vertex[2 * i] = t->sites.data[i].vertex;
+        t->by_vertex[2 * i + 1] = (uint32_t)i;
+    }
+    if (kept > 1)
+        qsort(t->by_vertex, kept, 2 * sizeof *t->by_vertex, by_first);
+done:
+    return status;
+}
+
+static uint32_t site_of(const triangulator *t, uint32_t vertex) {
+    const uint32_t key[2] = {vertex, 0};
+    const uint32_t *found =
+        bsearch(key, t->by_vertex, t->sites.count, 2 * sizeof *t->by_vertex, by_first);
+    return found[1];
+}
+
+/* ---- triangles ---- */
+
+static constrained_triangle *at(const triangulator *t, uint32_t number) {
+    return &t->triangles->data[number];
+}
+
+/* The edge of a triangle that begins at a site. */
+static int edge_from(const constrained_triangle *it, uint32_t s) {
+    return it->corners[0] == s ? 0 : it->corners[1] == s ? 1 : 2;
+}
+
+/* Makes two triangles neighbours across an edge; b may be none. */
+static void join(const triangulator *t, uint32_t a, int edge, uint32_t b, int other) {
+    at(t, a)->beyond[edge] = b;
+    if (b != NONE)
+        at(t, b)->beyond[other] = a;
+}
+
+static starg_status add_triangle(triangulator *t, uint32_t a, uint32_t b, uint32_t c) {
+    starg_status status = STARG_OK;
+    const constrained_triangle fresh = {.corners = {a, b, c}, .beyond = {NONE, NONE, NONE}};
+    uint32_t number = (uint32_t)t->triangles->count;
+    STARG_PUSH(t->context, STAGE, t->triangles, fresh);
+    for (int k = 0; k < 3; k++)
+        t->triangle_of[fresh.corners[k]] = number;
+done:
+    return status;
+}
+
+/* ---- the hull ---- */
+
+static void link_hull(triangulator *t, uint32_t a, uint32_t b, uint32_t triangle, int edge) {
+    t->next[a] = b;
+    t->before[b] = a;
+    t->outer[a] = 4 * triangle + (uint32_t)edge;
+}
+
+/* The first sites lie on one line: a fan of them about the first one that does not. */
+static starg_status start_hull(triangulator *t, uint32_t apex) {
+    starg_status status = STARG_OK;
+    bool left = turn(t, 0, 1, apex) > 0;
+    for (uint32_t i = 0; i + 1 < apex; i++) {
+        STARG_TRY(add_triangle(t, left ? i : i + 1, left ? i + 1 : i, apex));
+        /* edges: along the line, then to the apex and from it */
+        if (i > 0)
+            join(t, i, left ? 2 : 1, i - 1, left ? 1 : 2);
+        if (left)
+            link_hull(t, i, i + 1, i, 0);
+        else
+            link_hull(t, i + 1, i, i, 0);
+    }
+    uint32_t last = apex - 2;
+    link_hull(t, left ? apex - 1 : apex, left ? apex : apex - 1, last, left ? 1 : 2);
+    link_hull(t, left ? apex : 0, left ? 0 : apex, 0, left ? 2 : 1);
+done:
+    return status;
+}
+
+/* Triangles between a new site and the edges of the hull that it sees, which are next to the last
+ * one before it. */
+static starg_status extend_hull(triangulator *t, uint32_t fresh) {
+    starg_status status = STARG_OK;
+    uint32_t from = fresh - 1, to = fresh - 1, first = (uint32_t)t->triangles->count;
+    while (turn(t, t->before[from], from, fresh) < 0)
+        from = t->before[from];
+    while (turn(t, to, t->next[to], fresh) < 0)
+        to = t->next[to];
+    for (uint32_t s = from; s != to; s = t->next[s]) {
+        uint32_t number = (uint32_t)t->triangles->count;
+        STARG_TRY(add_triangle(t, t->next[s], s, fresh));
+        join(t, number, 0, t->outer[s] / 4, (int)(t->outer[s] % 4));
+        if (number > first)
+            join(t, number, 1, number - 1, 2);
+    }
+    link_hull(t, from, fresh, first, 1);
+    link_hull(t, fresh, to, (uint32_t)t->triangles->count - 1, 2);
+done:
+    return status;
+}
+
+static starg_status triangulate_sites(triangulator *t) {
+    starg_status status = STARG_OK;
+    uint32_t count = (uint32_t)t->sites.count, apex = 2;
+    STARG_NEW(t->context, STAGE, t->next, count);
+    STARG_NEW(t->context, STAGE, t->before, count);
+    STARG_NEW(t->context, STAGE, t->outer, count);
+    STARG_NEW(t->context, STAGE, t->triangle_of, count);
+    while (apex < count && turn(t, 0, 1, apex) == 0)
+        apex++;
+    if (apex >= count)
+        goto done;
+    STARG_TRY(start_hull(t, apex));
+    for (uint32_t s = apex + 1; s < count; s++)
+        STARG_TRY(extend_hull(t, s));
+    t->flips_left = (uint64_t)FLIPS_EACH * t->triangles->count;
+done:
+    return status;
+}
+
+/* ---- flips ---- */
+
+typedef struct side {
+    uint32_t beyond;
+    int32_t turns;
+    bool fixed;
+} side;
+
+static side side_of(const constrained_triangle *it, int edge) {
+    return (side){it->beyond[edge], it->turns[edge], it->fixed[edge]};
+}
+
+static void put_side(const triangulator *t, uint32_t number, int edge, side s) {
+    constrained_triangle *it = at(t, number);
+    it->beyond[edge] = s.beyond;
+    it->turns[edge] = s.turns;
+    it->fixed[edge] = s.fixed;
+    if (s.beyond == NONE)
+        return;
+    constrained_triangle *other = at(t, s.beyond);
+    other->beyond[edge_from(other, it->corners[(edge + 1) % 3])] = number;
+}
+
+/* The corner of the triangle beyond an edge that is not on it. */
+static uint32_t opposite(const triangulator *t, const constrained_triangle *it, int edge) {
+    const constrained_triangle *other = at(t, it->beyond[edge]);
+    return other->corners[(edge_from(other, it->corners[(edge + 1) % 3]) + 2) % 3];
+}
+
+/* Flips an edge ab between c and d to cd, if both triangles then turn the right way. */
+static bool flip(triangulator *t, uint32_t number, int edge) {
+    constrained_triangle *s = at(t, number);
+    uint32_t other = s->beyond[edge];
+    uint32_t a = s->corners[edge], b = s->corners[(edge + 1) % 3], c = s->corners[(edge + 2) % 3];
+    uint32_t d = opposite(t, s, edge);
+    if (turn(t, a, d, c) <= 0 || turn(t, d, b, c) <= 0)
+        return false;
+    constrained_triangle *o = at(t, other);
+    int back = edge_from(o, b);
+    side bc = side_of(s, (edge + 1) % 3), ca = side_of(s, (edge + 2) % 3);
+    side ad = side_of(o, (back + 1) % 3), db = side_of(o, (back + 2) % 3);
+    *s = (constrained_triangle){.corners = {a, d, c}, .beyond = {NONE, other, NONE}};
+    *o = (constrained_triangle){.corners = {d, b, c}, .beyond = {NONE, NONE, number}};
+    put_side(t, number, 0, ad);
+    put_side(t, number, 2, ca);
+    put_side(t, other, 0, db);
+    put_side(t, other, 1, bc);
+    t->triangle_of[a] = t->triangle_of[d] = t->triangle_of[c] = number;
+    t->triangle_of[b] = other;
+    return true;
+}
+
+/* Is the sum of the angles at c and d above pi, so that the edge ab between them is not Delaunay?
+ * Rounded. */
+static bool is_obtuse(const triangulator *t, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    const double *p = t->sites.data[a].at, *q = t->sites.data[b].at;
+    const double *r = t->sites.data[c].at, *s = t->sites.data[d].at;
+    double ca[2] = {p[0] - r[0], p[1] - r[1]}, cb[2] = {q[0] - r[0], q[1] - r[1]};
+    double da[2] = {p[0] - s[0], p[1] - s[1]}, db[2] = {q[0] - s[0], q[1] - s[1]};
+    double sine_c = ca[0] * cb[1] - ca[1] * cb[0], cosine_c = ca[0] * cb[0] + ca[1] * cb[1];
+    double sine_d = db[0] * da[1] - db[1] * da[0], cosine_d = da[0] * db[0] + da[1] * db[1];
+    double sum = sine_c * cosine_d + cosine_c * sine_d;
+    double most = fmax(fabs(sine_c), fabs(cosine_c)) * fmax(fabs(sine_d), fabs(cosine_d));
+    return sum < -1e-10 * most;
+}
+
+static starg_status push_edges(triangulator *t, uint32_t number) {
+    starg_status status = STARG_OK;
+    for (uint32_t k = 0; k < 3; k++)
+        STARG_PUSH(t->context, STAGE, &t->stack, 4 * number + k);
+done:
+    return status;
+}
+
+static starg_status make_delaunay(triangulator *t) {
+    starg_status status = STARG_OK;
+    t->stack.count = 0;
+    for (uint32_t i = 0; i < t->triangles->count; i++)
+        STARG_TRY(push_edges(t, i));
+    while (t->stack.count > 0 && t->flips_left > 0) {
+        uint32_t entry = t->stack.data[--t->stack.count], number = entry / 4;
+        int edge = (int)(entry % 4);
+        const constrained_triangle *it = at(t, number);
+        uint32_t other = it->beyond[edge];
+        if (other == NONE || it->fixed[edge] ||
+            !is_obtuse(t, it->corners[edge], it->corners[(edge + 1) % 3],
+                       it->corners[(edge + 2) % 3], opposite(t, it, edge)) ||
+            !flip(t, number, edge))
+            continue;
+        t->flips_left--;
+        STARG_TRY(push_edges(t, number));
+        STARG_TRY(push_edges(t, other));
+    }
+done:
+    return status;
+}
+
+/* ---- edges of the graph ---- */
+
+/* The next triangle counter-clockwise about a site, or NONE. */
+static uint32_t next_about(const triangulator *t, uint32_t number, uint32_t s) {
+    const constrained_triangle *it = at(t, number);
+    return it->beyond[(edge_from(it, s) + 2) % 3];
+}
+
+/* The first triangle about a site, clockwise, or any if they go all around. */
+static uint32_t first_about(const triangulator *t, uint32_t s) {
+    uint32_t start = t->triangle_of[s], number = start;
+    for (;;) {
+        const constrained_triangle *it = at(t, number);
+        uint32_t former = it->beyond[edge_from(it, s)];
+        if (former == NONE || former == start)
+            return number;
+        number = former;
+    }
+}
+
+/* The triangle with an edge from a to b, or NONE. */
+static uint32_t find_edge(const triangulator *t, uint32_t a, uint32_t b) {
+    uint32_t first = first_about(t, a);
+    for (uint32_t number = first; number != NONE;) {
+        const constrained_triangle *it = at(t, number);
+        if (it->corners[(edge_from(it, a) + 1) % 3] == b)
+            return number;
+        number = next_about(t, number, a);
+        if (number == first)
+            break;
+    }
+    return NONE;
+}
+
+/* The triangle at a that the way to b enters by, or NONE: some vertex lies on the way. */
+static uint32_t find_way(const triangulator *t, uint32_t a, uint32_t b) {
+    uint32_t first = first_about(t, a);
+    for (uint32_t number = first; number != NONE;) {
+        const constrained_triangle *it = at(t, number);
+        int k = edge_from(it, a);
+        if (turn(t, a, it->corners[(k + 1) % 3], b) > 0 &&
+            turn(t, a, it->corners[(k + 2) % 3], b) < 0)
+            return number;
+        number = next_about(t, number, a);
+        if (number == first)
+            break;
+    }
+    return NONE;
+}
+
+/* The edges between a and b. *clear is false when one of them is of the graph, or a vertex lies on
+ * the way. */
+static starg_status list_crossed(triangulator *t, uint32_t a, uint32_t b, bool *clear) {
+    starg_status status = STARG_OK;
+    uint32_t number = find_way(t, a, b);
+    t->crossed.count = 0;
+    *clear = number != NONE;
+    if (!*clear)
+        goto done;
+    int edge = (edge_from(at(t, number), a) + 1) % 3;
+    for (;;) {
+        const constrained_triangle *it = at(t, number);
+        uint32_t right = it->corners[edge], left = it->corners[(edge + 1) % 3];
+        *clear = !it->fixed[edge] && it->beyond[edge] != NONE;
+        if (!*clear)
+            break;
+        STARG_PUSH(t->context, STAGE, &t->crossed, right);
+        STARG_PUSH(t->context, STAGE, &t->crossed, left);
+        uint32_t far = opposite(t, it, edge);
+        number = it->beyond[edge];
+        int sign = far == b ? 0 : turn(t, a, b, far);
+        if (sign == 0) {
+            *clear = far == b;
+            break;
+        }
+        /* on through the edge at whose ends the way has one on either side */
+        edge = edge_from(at(t, number), sign > 0 ? right : far);
+    }
+done:
+    return status;
+}
+
+static bool is_between(const triangulator *t, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+    return c != a && c != b && d != a && d != b && turn(t, a, b, c) * turn(t, a, b, d) < 0;
+}
+
+/* Flips what is crossed until nothing is. Some edge can always be flipped; those that cannot wait
+ * for others. */
+static starg_status clear_way(triangulator *t, uint32_t a, uint32_t b, bool *done) {
+    starg_status status = STARG_OK;
+    STARG_TRY(list_crossed(t, a, b, done));
+    size_t waiting = 0;
+    for (size_t i = 0; *done && i < t->crossed.count; i += 2) {
+        uint32_t c = t->crossed.data[i], d = t->crossed.data[i + 1];
+        uint32_t number = find_edge(t, c, d);
+        int edge = number == NONE ? 0 : edge_from(at(t, number), c);
+        *done = number != NONE && waiting <= t->crossed.count - i;
+        if (!*done)
+            break;
+        uint32_t apex = at(t, number)->corners[(edge + 2) % 3];
+        uint32_t far = opposite(t, at(t, number), edge);
+        if (flip(t, number, edge)) {
+            waiting = 0;
+            if (!is_between(t, a, b, apex, far))
+                continue;
+            c = apex;
+            d = far;
+        } else {
+            waiting += 2;
+        }
+        STARG_PUSH(t->context, STAGE, &t->crossed, c);
+        STARG_PUSH(t->context, STAGE, &t->crossed, d);
+    }
+done:
+    return status;
+}
+
+static void fix(const triangulator *t, uint32_t a, uint32_t b, int32_t turns) {
+    uint32_t number = find_edge(t, a, b);
+    if (number == NONE)
+        return;
+    constrained_triangle *it = at(t, number);
+    int edge = edge_from(it, a);
+    it->fixed[edge] = true;
+    it->turns[edge] = turns;
+}
+
+static starg_status add_edge(triangulator *t, const constrained_edge *edge, bool *done) {
+    starg_status status = STARG_OK;
+    uint32_t a = site_of(t, edge->from), b = site_of(t, edge->to);
+    *done = a != b;
+    if (*done && find_edge(t, a, b) == NONE && find_edge(t, b, a) == NONE)
+        STARG_TRY(clear_way(t, a, b, done));
+    if (!*done)
+        goto done;
+    fix(t, a, b, edge->turns);
+    fix(t, b, a, -edge->turns);
+done:
+    return status;
+}
+
+/* All vertices on one line: edges may then be there, but nothing inside of them. */
+static bool is_flat_graph(const constrained_edge *edges, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (edges[i].turns != 0)
+            return false;
+    return true;
+}
+
+static starg_status add_edges(triangulator *t, const constrained_edge *edges, size_t count,
+                              bool *done) {
+    starg_status status = STARG_OK;
+    STARG_TRY(make_delaunay(t));
+    for (size_t i = 0; *done && i < count; i++)
+        STARG_TRY(add_edge(t, &edges[i], done));
+    if (*done)
+        STARG_TRY(make_delaunay(t));
+done:
+    return status;
+}
+
+starg_status constrained_triangulate(starg_context *context, const double *points, int u, int v,
+                                     const constrained_edge *edges, size_t edge_count,
+                                     const uint32_t *loose, size_t loose_count,
+                                     constrained_triangles *out, bool *done) {
+    starg_status status = STARG_OK;
+    triangulator t = {.context = context, .points = points, .u = u, .v = v, .triangles = out};
+    out->count = 0;
+    *done = true;
+    STARG_TRY(find_sites(&t, edges, edge_count, loose, loose_count, done));
+    if (!*done)
+        goto done;
+    STARG_TRY(triangulate_sites(&t));
+    if (out->count > 0)
+        STARG_TRY(add_edges(&t, edges, edge_count, done));
+    else
+        *done = is_flat_graph(edges, edge_count);
+    for (size_t i = 0; i < 3 * out->count; i++) {
+        uint32_t *corner = &out->data[i / 3].corners[i % 3];
+        *corner = t.sites.data[*corner].vertex;
+    }
+done:
+    STARG_ARRAY_FREE(context, &t.sites);
+    STARG_ARRAY_FREE(context, &t.stack);
+    STARG_ARRAY_FREE(context, &t.crossed);
+    starg_release(context, t.by_vertex);
+    starg_release(context, t.next);
+    starg_release(context, t.before);
+    starg_release(context, t.outer);
+    starg_release(context, t.triangle_of);
+    return status;
+}
