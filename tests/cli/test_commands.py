@@ -354,7 +354,7 @@ class Guard(support.Case):
         self.run_text(*prove, "-o", "plain.json")
         self.run_text(*prove, "-o", "g.json", "--certificate", "why.txt")
         self.assertEqual(self.read("plain.json"), self.read("g.json"))
-        self.assertTrue(self.read("why.txt").startswith("starguard-certificate 1\n"))
+        self.assertTrue(self.read("why.txt").startswith(b"starguard-certificate 1\n"))
         out = self.run_text("verify", maze, "g.json")[0]
         self.assertRegex(out, r"not checked: that at least \d+ guards? (is|are) needed, wherever they stand")
         told = self.run_json("verify", maze, "g.json", "why.txt")["results"]
@@ -372,7 +372,7 @@ class Guard(support.Case):
         self.write("raised.json", json.dumps(raised))
         out = self.run_text("verify", maze, "raised.json", "why.txt", status=4)[0]
         self.assertRegex(out, r"FAILED.*the certificate says no more than")
-        self.write("short.txt", self.read("why.txt")[:-20])
+        self.write("short.txt", self.read("why.txt")[:-20].decode())
         err = self.run_text("verify", maze, "g.json", "short.txt", status=2)[1]
         self.assertRegex(err, r"'short.txt', line \d+: ")
         for operands in [["why.txt"], ["why.txt", "g.json"], ["g.json", "why.txt", "why.txt"]]:
