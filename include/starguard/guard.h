@@ -29,7 +29,7 @@ typedef enum starg_guard_method {
 #define STARG_DEFAULT_NODES SIZE_MAX
 
 /* For refine_lines: what suits the model, which is 400,000, 70 for each face, 40,000 for each guard
- * of the candidates, and 3 for each of both. */
+ * of the candidates, and 5 for each of both. */
 #define STARG_DEFAULT_LINES UINT64_MAX
 
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000

@@ -186,6 +186,11 @@ static starg_status guards(starg_context *context) {
            o.point_count = in.guards->count, o.visibility.face_rule = STARG_FACES_WHOLE));
     GUARD(starg_guard, "cone, at most 2",
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
+    GUARD(starg_guard, "anywhere, at most 2", (o = proving(), o.max_guards = 2));
+    GUARD(starg_guard, "anywhere, twice", (o = proving(), o.redundancy = 2));
+    GUARD(starg_guard, "anywhere, given points",
+          (o = proving(), o.candidates = STARG_CANDIDATES_GIVEN, o.points = in.guards->positions,
+           o.point_count = in.guards->count));
     GUARD(starg_guard, "anywhere", (o.prove = true, o.prove_work = 3000, o.visibility.range = 2));
     FAILING_BY(starg_guard_certified, "", certified(context));
     FAILING_MAKES(starg_certificate_read_memory, "", starg_certificate, starg_certificate_free(out),
