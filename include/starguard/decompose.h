@@ -96,8 +96,9 @@ STARG_API const starg_fields *starg_decompose_options_fields(void);
 
 /* Cuts a solid. STRICT cuts an embedded surface as it is: the boundary of the pieces is the surface,
  * possibly subdivided, whose new vertices are rounded. At the context's time limit the search
- * returns its best result; without any, the first one is finished in a hurry. PAPER, and any solid
- * whose surface touches or intersects itself or has degenerate faces, is tetrahedralized first.
+ * returns its best result; without any, the first one is finished in a hurry. A surface that
+ * intersects itself is first replaced by the boundary of what it encloses (starg_repair_options.unite).
+ * PAPER, and a surface of which that cannot be made, is tetrahedralized first.
  * `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization failed), MEMORY, CANCELLED,
  * TIME (not yet tetrahedralized). */
 STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,

@@ -43,7 +43,7 @@ typedef struct starg_space_options {
     double from[3];
 } starg_space_options;
 
-/* NESTED, inside, distances 0 to INFINITY, no box. */
+/* All zero: NESTED, inside, anywhere. */
 STARG_API void starg_space_options_default(starg_space_options *options);
 
 /* Creates a scene from copies of a model and of obstacles, which may be none. A closed obstacle is

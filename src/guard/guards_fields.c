@@ -3,8 +3,6 @@
  * ranges and descriptions. Rows are in the order of the file. */
 #include "guard/guards_fields.h"
 
-#include <math.h>
-
 #include "starguard/guard.h"
 #include "visibility/fields.h"
 
@@ -430,8 +428,7 @@ static const starg_field SCENE[] = {
      USUALLY_NOT,
      RESULT(space.standoff_most),
      .high = 1e100,
-     .standard = INFINITY,
-     .help = "Largest distance of guards from the model."},
+     .help = "Largest distance of guards from the model; 0: no limit."},
     {.key = "within",
      .kind = STARG_FIELD_NUMBERS,
      USUALLY_NOT,

@@ -26,7 +26,7 @@
 static const char STAGE[] = "scene";
 
 void starg_space_options_default(starg_space_options *options) {
-    *options = (starg_space_options){.standoff_most = INFINITY};
+    *options = (starg_space_options){0};
 }
 
 static bool is_bounded(const starg_space_options *o) {
@@ -43,7 +43,8 @@ static starg_status check_options(starg_context *context, const starg_space_opti
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "unknown orientation %d",
                           (int)o->orientation);
     if (!(o->standoff_least >= 0 && o->standoff_least < 1e100 &&
-          o->standoff_most >= o->standoff_least))
+          (o->standoff_most == 0 ||
+           (o->standoff_most >= o->standoff_least && o->standoff_most < 1e100))))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "guards cannot stand at distances from %g to %g; the least must be zero "
                           "or more and the largest no smaller",
@@ -382,10 +383,10 @@ bool starg_space_admits(const starg_solid *scene, const double p[3]) {
             return false;
     if (scene->reached != NULL && !flood_reaches(scene->reached, p))
         return false;
-    if (o->standoff_least > 0 || o->standoff_most < 1e100) {
+    if (o->standoff_least > 0 || o->standoff_most > 0) {
         double distance =
             bvh_distance(scene->model_tree != NULL ? scene->model_tree : scene->tree, p);
-        if (distance < o->standoff_least || distance > o->standoff_most)
+        if (distance < o->standoff_least || (o->standoff_most > 0 && distance > o->standoff_most))
             return false;
     }
     return starg_solid_contains(scene, p);
@@ -398,7 +399,7 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
         return;
     bool open = solid->ambient > 0;
     double grow = 0; /* of a soup without distances: its own box */
-    if (open && o->standoff_most < 1e100)
+    if (open && o->standoff_most > 0)
         grow = o->standoff_most;
     else if (o->outside)
         grow = 4 * solid->check->diagonal;

@@ -17,7 +17,8 @@
 
 static const char STAGE[] = "pieces";
 
-static const double STEP = 1e-3; /* of the diagonal */
+static const double STEP = 1e-3;     /* of the diagonal */
+static const double DOUBT = 0x1p-44; /* likewise: what distances may be off that are computed */
 
 /* ---- what is kept ---- */
 
@@ -100,8 +101,12 @@ starg_status united_report(starg_context *context, const starg_solid *solid,
     if (lost.face_count > 0)
         STARG_TRY(tetra_measure_one_way(context, &lost, united->tree, step, &farthest));
     out->faces_kept = solid->mesh->face_count - lost.face_count;
-    out->tetra = (starg_tetra_report){.to_surface = rounding, .distance = rounding};
-    out->tetra.from_surface = out->tetra.distance_back = lost.face_count > 0 ? farthest + step : 0;
+    rounding += DOUBT * solid->check->diagonal;
+    farthest = fmax(rounding, lost.face_count > 0 ? farthest + step : 0);
+    out->tetra = (starg_tetra_report){.to_surface = rounding,
+                                      .from_surface = farthest,
+                                      .distance = rounding,
+                                      .distance_back = farthest};
 done:
     starg_release(context, lost.faces);
     return status;

@@ -95,7 +95,7 @@ static void make(scene *s, uint64_t seed) {
     starg_space_options_default(&options);
     options.outside = s->outside;
     options.soup = s->soup;
-    options.standoff_most = s->outside ? 3 : INFINITY;
+    options.standoff_most = s->outside ? 3 : 0;
     test_ok(s->context,
             starg_space_create(s->context, s->mesh, (const starg_mesh *const *)s->others, s->count,
                                &options, &s->solid));
