@@ -133,6 +133,36 @@ static void test_samples(void **state) {
     }
 }
 
+/* Real models, by the defaults; the longer ones in check-long. */
+static void test_shared(void **state) {
+    (void)state;
+    static const char *const names[] = {"table2/kitten_400", "solids/hand_1197",
+                                        "solids/knight_502", "solids/hand_8k",
+                                        "retrieval_shrec07/airplane_062"};
+    const char *data = test_shared_data();
+    if (data == NULL)
+        skip();
+    for (size_t i = 0; i < test_rounds(3, 5); i++) {
+        char path[4400];
+        starg_context *context = test_context(2);
+        starg_mesh *mesh = NULL;
+        starg_solid *solid = NULL;
+        starg_guard_options options;
+        snprintf(path, sizeof path, "%s/%s.off", data, names[i]);
+        starg_guard_options_default(&options);
+        options.prove = true;
+        test_ok(context, starg_mesh_read(context, path, &mesh));
+        test_ok(context, starg_solid_create(context, mesh, &solid));
+        subject s = prove(context, solid, &options);
+        check_right(&s);
+        print_message("%s: %zu guards, bound %zu, %zu bytes%s\n", names[i], s.guards->count,
+                      s.guards->lower_bound_everywhere, s.size,
+                      strstr(s.text, "\n=") != NULL ? ", with rows" : "");
+        starg_mesh_free(mesh);
+        subject_free(&s);
+    }
+}
+
 /* A heap of cells: many reflex edges, and bounds that need branching. */
 static shape random_cells(uint64_t item) {
     starg_rng rng = starg_rng_make(9, 2, item);
@@ -700,6 +730,9 @@ static void test_forged(void **state) {
     check_unread(&s, with_line(s.text, "\ncells ", '.', "x\n"), "halves of cells are missing");
     check_unread(&s, replaced(s.text, "target faces", "target edges"), "line 5: \"faces\"");
 
+    s.guards->options.coverage = 0.9;
+    check_refused(&s, replaced(s.text, "range", "range"), "see a part");
+    s.guards->options.coverage = 1;
     s.guards->lower_bound_everywhere = s.guards->lower_bound = s.guards->count = bound;
     s.guards->optimal = s.guards->optimal_everywhere = true;
     snprintf(wanted, sizeof wanted, "\nbound %zu\n", bound - 1);
@@ -710,12 +743,12 @@ static void test_forged(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples),      cmocka_unit_test(test_random_solids),
-        cmocka_unit_test(test_questions),    cmocka_unit_test(test_trivial),
-        cmocka_unit_test(test_same_bytes),   cmocka_unit_test(test_needs_prove),
-        cmocka_unit_test(test_damaged),      cmocka_unit_test(test_rows),
-        cmocka_unit_test(test_false_proofs), cmocka_unit_test(test_too_close),
-        cmocka_unit_test(test_forged),
+        cmocka_unit_test(test_samples),       cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_random_solids), cmocka_unit_test(test_questions),
+        cmocka_unit_test(test_trivial),       cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_needs_prove),   cmocka_unit_test(test_damaged),
+        cmocka_unit_test(test_rows),          cmocka_unit_test(test_false_proofs),
+        cmocka_unit_test(test_too_close),     cmocka_unit_test(test_forged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
