@@ -111,6 +111,9 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
     else
         cli_say(session, "surface       within %.3g of the model's, which is within %.3g of it\n",
                 d->tetra.distance, d->tetra.distance_back);
+    if (d->faces_kept > 0)
+        cli_say(session, "faces kept    %zu of %zu; the others intersect, or lie inside\n",
+                d->faces_kept, d->model_faces);
     if (d->time_limited)
         cli_say(session, "time limit    reached; this is the best result found\n");
 }
@@ -370,8 +373,9 @@ const cli_command cli_command_decompose = {
         "each guard is strictly on the inner side of all faces of its piece. MODEL is a surface or "
         "a tetrahedral mesh, recognized by content.\n"
         "The surface is preserved: its vertices stay where they are, and its faces are subdivided "
-        "in their planes where pieces meet. Surfaces with self-intersections or holes are filled "
-        "by isosurface stuffing instead, with a warning and the distance between both surfaces.\n"
+        "in their planes where pieces meet. Where it intersects itself, it is cut there, and the "
+        "boundary of what it encloses is preserved. Surfaces with holes are filled by isosurface "
+        "stuffing instead, with a warning and the distance between both surfaces.\n"
         "By default the search stops after a fixed amount of work (about 15 seconds), so that the "
         "same input gives the same bytes. --effort sets the number of trials instead; with "
         "--time-limit the search continues until that time and returns the best result; however "

@@ -27,15 +27,16 @@ typedef struct values {
     const char *output, *marks, *picture, *certificate, *candidates;
     starg_guard_options wanted;
     cli_scene scene;
-    double *points; /* --candidates FILE */
+    double *points, *directions; /* --candidates FILE */
 } values;
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("GUARDS.json", "Guards (docs/formats.md); '-' writes to standard output."),
     CLI_INPUT_OPTION("candidates", candidates, "skeleton|medial|interior|FILE",
                      "Candidate positions: on the curve skeleton (default), on the medial axis, on "
-                     "an interior lattice, or from a file: text with three numbers per line, a "
-                     "skeleton of 'starguard skeleton', or another GUARDS.json."),
+                     "an interior lattice, or from a file: text with three numbers per line, or "
+                     "six with the direction in which a camera looks (--cone), a skeleton of "
+                     "'starguard skeleton', or another GUARDS.json."),
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
         "Picture of the translucent model with its guards; uncovered faces are dark red."),
@@ -54,7 +55,8 @@ static const cli_option options[] = {
 /* A known source, or a file with points, which is read here. A bare word that names no file is a
  * slip of the command line. */
 static starg_status take_candidates(cli_session *session, const char *word,
-                                    starg_guard_options *wanted, double **points) {
+                                    starg_guard_options *wanted, double **points,
+                                    double **directions) {
     cli_suggestion near;
     cli_suggest_begin(&near, word);
     for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) {
@@ -75,8 +77,13 @@ static starg_status take_candidates(cli_session *session, const char *word,
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "the model and the candidates cannot both come from standard input");
     wanted->candidates = STARG_CANDIDATES_GIVEN;
-    starg_status status = starg_points_read(session->context, word, points, &wanted->point_count);
+    starg_status status =
+        starg_poses_read(session->context, word, points, directions, &wanted->point_count);
     wanted->points = *points;
+    wanted->directions = *directions;
+    if (*directions != NULL && wanted->visibility.cone >= 360)
+        cli_log(session, STARG_LOG_NOTICE,
+                "the candidates have directions, which matter with --cone DEG only");
     return status;
 }
 
@@ -226,7 +233,7 @@ static starg_status prepare(cli_session *session, void *data) {
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     CLI_TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
-        CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points));
+        CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points, &v->directions));
 done:
     return status;
 }
@@ -257,6 +264,7 @@ done:
 static void release(cli_session *session, void *data) {
     const values *v = data;
     starg_points_free(session->context, v->points);
+    starg_points_free(session->context, v->directions);
 }
 
 const cli_command cli_command_guard = {

@@ -34,6 +34,8 @@ static void tell(cli_session *session, const starg_repair_report *r) {
         {"components_dropped", "components dropped", r->components_dropped},
         {"intersections_before", "intersections before", r->intersections_before},
         {"intersections_after", "intersections after", r->intersections_after},
+        {"faces_cut", "faces cut", r->faces_cut},
+        {"union_rounds", "rounds of the union", r->union_rounds},
     };
     json_t *report = json_object();
     for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
@@ -42,6 +44,9 @@ static void tell(cli_session *session, const starg_repair_report *r) {
     }
     cli_put(session, report, "largest_move", cli_json_real(r->largest_move));
     cli_say(session, "%-22s %.6g\n", "largest move", r->largest_move);
+    cli_put(session, report, "rounding", cli_json_real(r->rounding));
+    if (r->union_rounds > 0)
+        cli_say(session, "%-22s %.3g\n", "rounding", r->rounding);
     if (session->report != NULL)
         cli_put(session, session->report, "repair", report);
     else

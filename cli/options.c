@@ -83,8 +83,15 @@ static bool add_place(parser *p, const match *m, const char *word, starg_places 
     size_t width = m->option->length;
     double place[6];
     if (!cli_number_list(word, place, (int)width))
-        return fail_parse(p, "%s takes %s (%zu numbers, no spaces), not '%.100s'", m->shown,
-                          m->option->value, width, word);
+        return fail_parse(p, "%s takes a %s as %s (%s numbers, no spaces), not '%.100s'", m->shown,
+                          width == 3   ? "point"
+                          : width == 6 ? "box"
+                                       : "pair",
+                          m->option->value,
+                          width == 3   ? "three"
+                          : width == 6 ? "six"
+                                       : "two",
+                          word);
     double *grown = realloc(points->values, (points->count + 1) * width * sizeof *place);
     if (grown == NULL)
         return fail_parse(p, "%s: out of memory", m->shown);

@@ -15,6 +15,9 @@ starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene) {
     if ((scene->see != NULL) + (scene->ignore != NULL) + (scene->weights != NULL) > 1)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--see, --ignore and --weights exclude each other; weights say it all");
+    if (scene->cell > 0 && scene->from.count == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--cell is the size of cubes for --from X,Y,Z; add that point");
     if (scene->outside && scene->standoff.count == 0 && scene->within.count == 0 &&
         session->command == &cli_command_guard)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
@@ -27,13 +30,26 @@ done:
 static bool is_plain(const cli_scene *s) {
     return s->obstacles.count == 0 && s->orientation == STARG_ORIENTATION_NESTED && !s->outside &&
            s->standoff.count == 0 && s->within.count == 0 && s->see == NULL && s->ignore == NULL &&
-           s->weights == NULL;
+           s->weights == NULL && !s->soup && s->from.count == 0;
 }
 
-static void take_options(const cli_scene *s, starg_space_options *out) {
+static double diagonal(const starg_mesh *mesh) {
+    double lower[3], upper[3];
+    starg_mesh_bounds(mesh, lower, upper);
+    return hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+}
+
+static void take_options(const cli_scene *s, const starg_mesh *model, starg_space_options *out) {
     starg_space_options_default(out);
     out->orientation = s->orientation;
     out->outside = s->outside;
+    out->soup = s->soup;
+    if (s->from.count > 0) {
+        const double *last = s->from.values + 3 * (s->from.count - 1);
+        out->cell = s->cell > 0 ? s->cell : 0.01 * diagonal(model);
+        for (int k = 0; k < 3; k++)
+            out->from[k] = last[k];
+    }
     if (s->standoff.count > 0) {
         const double *last = s->standoff.values + 2 * (s->standoff.count - 1);
         out->standoff_least = last[0];
@@ -84,7 +100,7 @@ starg_status cli_scene_make(cli_session *session, const cli_scene *s) {
     starg_space_options options;
     starg_mesh **obstacles = NULL;
     double *weights = NULL;
-    take_options(s, &options);
+    take_options(s, session->mesh, &options);
     if (is_plain(s)) {
         status = starg_solid_create(session->context, session->mesh, &session->solid);
         goto done;

@@ -10,7 +10,9 @@
 typedef struct cli_scene {
     starg_texts obstacles;
     starg_orientation orientation;
-    bool outside;
+    bool outside, soup;
+    double cell;
+    starg_places from;
     starg_places standoff, within;
     const char *see, *ignore, *weights;
 } cli_scene;
@@ -28,6 +30,9 @@ extern const char *const cli_orientation_words[];
          .words = cli_orientation_words},                                                          \
         {CLI_OPTION("outside", STARG_FIELD_FLAG, scene.outside, NULL,                              \
                     "See the model from outside.")},                                               \
+        {CLI_OPTION("soup", STARG_FIELD_FLAG, scene.soup, NULL,                                    \
+                    "The model is any triangles, closed or not: each blocks the view, and is "     \
+                    "seen from its front, where its corners turn counter-clockwise.")},            \
         CLI_INPUT_OPTION("see", scene.see, "FILE",                                                 \
                          "Only these faces need to be seen: face numbers, from 0, in a text "      \
                          "file."),                                                                 \
@@ -42,11 +47,16 @@ extern const char *const cli_orientation_words[];
     {CLI_OPTION("standoff", STARG_FIELD_PLACES, scene.standoff, "MIN,MAX",                         \
                 "Guards keep these distances from the model."),                                    \
      .length = 2},                                                                                 \
-    {                                                                                              \
-        CLI_OPTION("within", STARG_FIELD_PLACES, scene.within, "X0,Y0,Z0,X1,Y1,Z1",                \
-                   "Guards stand in this box."),                                                   \
-            .length = 6                                                                            \
-    }
+        {CLI_OPTION("within", STARG_FIELD_PLACES, scene.within, "X0,Y0,Z0,X1,Y1,Z1",               \
+                    "Guards stand in this box."),                                                  \
+         .length = 6},                                                                             \
+        {CLI_OPTION(                                                                               \
+             "from", STARG_FIELD_PLACES, scene.from, "X,Y,Z",                                      \
+             "Guards stand where one gets from this point through cubes that no face meets; "      \
+             "their size is that of --cell."),                                                     \
+         .length = 3},                                                                             \
+        CLI_POSITIVE_OPTION("cell", scene.cell, "D", 1e100, 0, "a hundredth of the diagonal",      \
+                            "--from: size of the cubes.")
 
 /* Names the files that it reads. */
 starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene);

@@ -50,6 +50,8 @@ typedef struct starg_guard_options {
     size_t candidate_count; /* approximate number, at least 1; more are added for faces that none of
                                them sees */
     const double *points;   /* STARG_CANDIDATES_GIVEN: point_count x 3                     */
+    const double *directions; /* of these, with a cone: point_count x 3; NULL: they may look
+                                 anywhere */
     size_t point_count;
     starg_visibility_options visibility;
     double coverage;     /* fraction in (0, 1] of the coverable area to cover (of the coverable
@@ -210,9 +212,17 @@ STARG_API starg_status starg_guards_read(starg_context *context, const char *pat
 STARG_API starg_status starg_guards_read_memory(starg_context *context, const void *bytes,
                                                 size_t size, const char *name, starg_guards **out);
 
-/* Reads candidate points: text with three numbers per line (optionally after "v"; # begins a
- * comment), the nodes of a skeleton (OBJ, CG, VTK), or the positions in a GUARDS.json, recognized
- * by content. Free with starg_points_free. */
+/* Reads candidate poses: text with three numbers per line, or six with a viewing direction
+ * (optionally after "v"; # begins a comment), the nodes of a skeleton (OBJ, CG, VTK), or the guards
+ * of a GUARDS.json, recognized by content. `directions` is NULL if there are none. Free both with
+ * starg_points_free. */
+STARG_API starg_status starg_poses_read(starg_context *context, const char *path, double **points,
+                                        double **directions, size_t *count);
+STARG_API starg_status starg_poses_read_memory(starg_context *context, const void *bytes,
+                                               size_t size, const char *name, double **points,
+                                               double **directions, size_t *count);
+
+/* The same without directions. */
 STARG_API starg_status starg_points_read(starg_context *context, const char *path, double **points,
                                          size_t *count);
 STARG_API starg_status starg_points_read_memory(starg_context *context, const void *bytes,

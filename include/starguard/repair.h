@@ -3,6 +3,7 @@
 #ifndef STARGUARD_REPAIR_H
 #define STARGUARD_REPAIR_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "check.h"
@@ -18,9 +19,10 @@ typedef struct starg_repair_options {
     double merge_distance; /* merge vertices within this fraction of the diagonal */
     size_t max_hole_edges; /* do not fill larger holes; 0: no limit */
     size_t max_rounds;     /* attempts to resolve self-intersections                         */
+    bool unite;            /* return the boundary of all that is enclosed, free of intersections */
 } starg_repair_options;
 
-/* 0 (only equal positions), no limit, 10 rounds. */
+/* 0 (only equal positions), no limit, 10 rounds, no union. */
 STARG_API void starg_repair_options_default(starg_repair_options *options);
 
 /* Names, ranges and descriptions of the options. */
@@ -33,11 +35,19 @@ typedef struct starg_repair_report {
     size_t components_dropped; /* components without volume */
     size_t intersections_before, intersections_after;
     double largest_move; /* of a kept vertex, in model units */
+    /* `unite` only: input faces of which only parts are left; how often faces were cut; how far a
+     * new vertex lies at most from the exact intersection, in model units. */
+    size_t faces_cut, union_rounds;
+    double rounding;
 } starg_repair_report;
 
-/* Repairs a mesh; a valid mesh is returned unchanged. Overlapping components are kept. `options`
- * may be NULL. *report is zero on failure. Errors: ARGUMENT (merge_distance not in [0, 1]), MESH if
- * the result is not a usable solid (the message lists the remaining defects), MEMORY, CANCELLED. */
+/* Repairs a mesh; a valid mesh is returned unchanged. Overlapping components are kept, unless
+ * `unite` is set: then faces that meet are cut along what they share, and what bounds the region of
+ * winding number 1 or more is returned. Faces that meet no others stay, all vertices keep their
+ * coordinates, and no two faces of the result intersect. `options` may be NULL. *report is zero on
+ * failure. Errors: ARGUMENT (merge_distance not in [0, 1]), MESH if the result is not a usable
+ * solid (the message lists the remaining defects), MEMORY, CANCELLED; RANGE if intersecting faces
+ * span too many powers of two. */
 STARG_API starg_status starg_mesh_repair(starg_context *context, const starg_mesh *mesh,
                                          const starg_repair_options *options, starg_mesh **out,
                                          starg_repair_report *report);

@@ -30,21 +30,27 @@ typedef enum starg_orientation {
 
 typedef struct starg_space_options {
     starg_orientation orientation; /* of the model's shells */
-    bool outside;                  /* guards stand outside of the model and see it from there */
-    double standoff_least;         /* distance of guards from the model */
-    double standoff_most;          /* may be INFINITY */
-    double within[6];              /* guards stand in this box: lower corner, upper corner; all 0:
-                                      anywhere */
+    bool soup; /* the model is any triangles, closed or not: each blocks the view from both sides,
+                  and is seen from its front, where its corners turn counter-clockwise; space is
+                  free but for the triangles themselves */
+    bool outside;          /* guards stand outside of the model and see it from there */
+    double standoff_least; /* distance of guards from the model */
+    double standoff_most;  /* may be INFINITY */
+    double within[6];      /* guards stand in this box: lower corner, upper corner; all 0:
+                              anywhere */
+    double cell; /* above 0: guards stand where one gets from `from` through cubes of that size
+                    that no face meets */
+    double from[3];
 } starg_space_options;
 
-/* NESTED, inside, distances 0 to INFINITY, no box. */
+/* All zero: NESTED, inside, anywhere. */
 STARG_API void starg_space_options_default(starg_space_options *options);
 
 /* Creates a scene from copies of a model and of obstacles, which may be none. A closed obstacle is
  * solid: its inside is not free. An open one blocks the view from both sides. Faces of obstacles
  * are not to be seen. Errors: those of starg_solid_create for the model; ARGUMENT (numbers out of
- * range; an obstacle that lies beyond the bounding box of the model, by its index: not with
- * `outside`). */
+ * range; more than 2^30 cubes; `from` in a cube that a face meets; an obstacle that lies beyond the
+ * bounding box of the model, by its index: not with `outside`). */
 STARG_API starg_status starg_space_create(starg_context *context, const starg_mesh *model,
                                           const starg_mesh *const *obstacles, size_t obstacle_count,
                                           const starg_space_options *options, starg_solid **out);

@@ -373,4 +373,9 @@ class RepairReport:
     components_dropped: int
     intersections_before: int
     intersections_after: int
+    #: With ``union``: faces of which only parts are left, and how often faces were cut.
+    faces_cut: int
+    union_rounds: int
     largest_move: float
+    #: With ``union``: largest distance of a new vertex from the exact intersection.
+    rounding: float

@@ -36,4 +36,9 @@ void exact_add(exact *out, const exact *a, const exact *b);
 void exact_subtract(exact *out, const exact *a, const exact *b);
 void exact_multiply(exact *out, const exact *a, const exact *b);
 
+/* out = a b - c d */
+void exact_minor(exact *out, const exact *a, const exact *b, const exact *c, const exact *d);
+/* out = the determinant of three rows, by its third column as the filters do. */
+void exact_determinant(exact *out, const exact a[3], const exact b[3], const exact c[3]);
+
 #endif

@@ -26,28 +26,6 @@ static int sign_of_wide(starg_int128 x) {
     return (x > 0) - (x < 0);
 }
 
-/* out = a b - c d */
-static void exact_minor(exact *out, const exact *a, const exact *b, const exact *c,
-                        const exact *d) {
-    exact ab, cd;
-    exact_multiply(&ab, a, b);
-    exact_multiply(&cd, c, d);
-    exact_subtract(out, &ab, &cd);
-}
-
-/* out = the determinant of three rows, by its third column as the filters do. */
-static void exact_determinant(exact *out, const exact a[3], const exact b[3], const exact c[3]) {
-    exact minor, term[3], sum;
-    exact_minor(&minor, &b[0], &c[1], &c[0], &b[1]);
-    exact_multiply(&term[0], &a[2], &minor);
-    exact_minor(&minor, &c[0], &a[1], &a[0], &c[1]);
-    exact_multiply(&term[1], &b[2], &minor);
-    exact_minor(&minor, &a[0], &b[1], &b[0], &a[1]);
-    exact_multiply(&term[2], &c[2], &minor);
-    exact_add(&sum, &term[0], &term[1]);
-    exact_add(out, &sum, &term[2]);
-}
-
 /* out = p - q, all in units of 2^scale */
 static void exact_difference(exact out[3], const double p[3], const double q[3], int scale) {
     for (int k = 0; k < 3; k++) {

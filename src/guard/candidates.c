@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "guard/proxy.h"
+#include "mesh/flood.h"
 #include "skeleton/medial.h"
 #include "starguard/skeleton.h"
 
@@ -125,6 +126,8 @@ static double free_volume(const starg_solid *solid) {
     bvh_box reach;
     if (!solid->scene)
         return solid->check->volume;
+    if (solid->reached != NULL)
+        return flood_volume(solid->reached);
     solid_reach(solid, &reach);
     double volume = 1;
     for (int k = 0; k < 3; k++)

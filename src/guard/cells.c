@@ -163,7 +163,7 @@ static double middle(const bvh_box *box, int k) {
  * thousandth of the clearance is more than that, unless coordinates are huge beside it. */
 bool search_scene_bars(const search_scene *scene, const bvh_box *box) {
     double centre[3], reach = 0.5 * vec3_distance(box->lower, box->upper), largest = 0;
-    if (!scene->bars || !(scene->clearance > 0) || !(reach < scene->clearance))
+    if (!(scene->clearance > 0) || !(reach < scene->clearance))
         return false;
     for (int k = 0; k < 3; k++) {
         centre[k] = middle(box, k);

@@ -14,7 +14,6 @@ typedef struct search_scene {
     const starg_solid *solid;
     const starg_visibility_options *view;
     double clearance;
-    bool bars;                /* boxes that are too close to the boundary are found out */
     visibility_scene *points; /* what a point sees                                           */
     box_scene *boxes;         /* what a box may see                                          */
     uint32_t *places;         /* by column: where `points` has it: rank of the face, or slot */

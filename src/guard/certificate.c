@@ -21,7 +21,6 @@
 #include "core/checksum.h"
 #include "core/file.h"
 #include "core/parallel.h"
-#include "starguard/guard.h"
 
 static const char STAGE[] = "certificate";
 
@@ -70,6 +69,7 @@ typedef struct kept_cell {
     uint32_t row;    /* a leaf: that it lies in, if there are rows             */
     bool leaf;
     bool outside;        /* no point of it is in the free space                    */
+    bool barred;         /* all points of it are too close to the boundary         */
     size_t first, count; /* of the reasons                                         */
 } kept_cell;
 
@@ -84,6 +84,7 @@ typedef struct making {
     const search_scene *scene; /* first: as cells_worker_make wants it */
     const search_cells *cells;
     const bound_proof *proof;
+    const starg_guard_options *options;
     witness_row wanted;              /* witnesses that the proof speaks of */
     uint32_t number[MOST_WITNESSES]; /* of each of them in the text        */
     uint64_t most;                   /* that a leaf may be worth           */
@@ -104,7 +105,7 @@ static void begin(making *m) {
         all += m->proof->price[j];
     }
     if (!rows)
-        m->most = (all - 1) / (m->proof->bound - 1);
+        m->most = (all * m->options->redundancy - 1) / (m->proof->bound - 1);
 }
 
 static bool is_cheap(const making *m, const witness_row *open) {
@@ -192,6 +193,9 @@ static starg_status find_reasons(starg_context *context, void *shared, void *scr
                                    .range = scene->view->range,
                                    .among = among.bits};
     (void)context;
+    kept->barred = search_scene_bars(scene, &question.box);
+    if (kept->barred)
+        return STARG_OK;
     box_look(scratch, &question, open.bits, found);
     for (size_t w = 0; w < WITNESS_WORDS; w++)
         STARG_FOR_BITS (bit, among.bits[w]) {
@@ -237,9 +241,10 @@ static void put_double(FILE *stream, double x) {
     fprintf(stream, " %lld:%d", whole, whole == 0 ? 0 : exponent);
 }
 
-static void put_head(FILE *stream, const starg_solid *solid, const starg_visibility_options *view,
+static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
                      const bvh_box *root, size_t bound) {
     const starg_mesh *mesh = solid->mesh;
+    const starg_visibility_options *view = &options->visibility;
     uint64_t sum = STARG_CHECKSUM_BEGIN;
     for (size_t f = 0; f < mesh->face_count; f++)
         sum = starg_checksum_face(sum, mesh->vertices, mesh->faces + 3 * f);
@@ -251,7 +256,9 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_visibil
         fprintf(stream, " none");
     else
         put_double(stream, view->range);
-    fprintf(stream, "\nbound %zu\nroot", bound);
+    fprintf(stream, "\nclearance");
+    put_double(stream, options->clearance);
+    fprintf(stream, "\nredundancy %u\nbound %zu\nroot", options->redundancy, bound);
     for (int k = 0; k < 3; k++)
         put_double(stream, root->lower[k]);
     for (int k = 0; k < 3; k++)
@@ -294,13 +301,13 @@ static void put_cells(FILE *stream, const making *m) {
         const kept_cell *kept = &m->kept.data[i];
         if (!kept->leaf)
             fprintf(stream, "%c", "xyz"[cell_cut_axis(&m->cells->data[kept->number].box)]);
-        else if (kept->outside)
-            fprintf(stream, "o");
+        else if (kept->barred || kept->outside)
+            fprintf(stream, kept->barred ? "c" : "o");
         else if (kept->row != UINT32_MAX)
             fprintf(stream, "=%u", kept->row);
         else
             fprintf(stream, ".");
-        for (size_t r = 0; r < kept->count && !kept->outside; r++)
+        for (size_t r = 0; r < kept->count && !kept->barred && !kept->outside; r++)
             put_reason(stream, m, &m->reasons[kept->first + r]);
         fprintf(stream, "\n");
     }
@@ -357,7 +364,7 @@ done:
 
 static void put_search(FILE *stream, const void *what) {
     const making *m = what;
-    put_head(stream, m->scene->solid, m->scene->view, &m->cells->data[0].box, m->proof->bound);
+    put_head(stream, m->scene->solid, m->options, &m->cells->data[0].box, m->proof->bound);
     put_witnesses(stream, m);
     put_rows(stream, m);
     put_cells(stream, m);
@@ -368,9 +375,9 @@ static void put_search(FILE *stream, const void *what) {
 }
 
 starg_status certificate_of_search(const search_scene *scene, const search_cells *cells,
-                                   guard_certificate *why) {
+                                   const starg_guard_options *options, guard_certificate *why) {
     starg_status status = STARG_OK;
-    making m = {.scene = scene, .cells = cells, .proof = &why->proof};
+    making m = {.scene = scene, .cells = cells, .proof = &why->proof, .options = options};
     begin(&m);
     STARG_TRY(choose_cells(&m));
     STARG_TRY(find_all_reasons(&m));
@@ -385,13 +392,13 @@ done:
 
 typedef struct single {
     const starg_solid *solid;
-    const starg_visibility_options *view;
+    const starg_guard_options *options;
     uint32_t witness;
 } single;
 
 static void put_single(FILE *stream, const void *what) {
     const single *s = what;
-    put_head(stream, s->solid, s->view, &s->solid->tree->nodes[0].box, s->witness != UINT32_MAX);
+    put_head(stream, s->solid, s->options, &s->solid->tree->nodes[0].box, s->witness != UINT32_MAX);
     if (s->witness == UINT32_MAX)
         fprintf(stream, "witnesses 0\nrows 0\ncells 1\n.\nnodes 0\n");
     else
@@ -399,9 +406,9 @@ static void put_single(FILE *stream, const void *what) {
 }
 
 starg_status certificate_of_one(starg_context *context, const starg_solid *solid,
-                                const starg_visibility_options *view, uint32_t witness,
+                                const starg_guard_options *options, uint32_t witness,
                                 guard_certificate *why) {
-    const single s = {solid, view, witness};
+    const single s = {solid, options, witness};
     return write_text(context, put_single, &s, why);
 }
 

@@ -5,6 +5,7 @@
 
 #include "guard/bound.h"
 #include "guard/cells.h"
+#include "starguard/guard.h"
 
 /* What proves the bound: prices, or rows that cannot do with fewer, by branching. */
 typedef struct bound_proof {
@@ -33,12 +34,12 @@ starg_status certificate_note_rows(starg_context *context, guard_certificate *wh
 /* Writes the text from what was noted and the tree of cells, whose reasons are found again. Errors:
  * MEMORY, CANCELLED. */
 starg_status certificate_of_search(const search_scene *scene, const search_cells *cells,
-                                   guard_certificate *why);
+                                   const starg_guard_options *options, guard_certificate *why);
 
 /* The text for a bound of 1, where `witness` is to be seen, or of 0 where nothing is (UINT32_MAX).
  * Errors: MEMORY. */
 starg_status certificate_of_one(starg_context *context, const starg_solid *solid,
-                                const starg_visibility_options *view, uint32_t witness,
+                                const starg_guard_options *options, uint32_t witness,
                                 guard_certificate *why);
 
 #endif

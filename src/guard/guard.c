@@ -52,6 +52,7 @@ done:
 static starg_status take_given(const guard_problem *problem, candidate_points *points) {
     starg_status status = STARG_OK;
     const starg_guard_options *options = problem->options;
+    bool looks = options->visibility.cone < 360;
     size_t dropped = 0;
     for (size_t i = 0; i < options->point_count; i++) {
         const double *p = options->points + 3 * i;
@@ -61,8 +62,9 @@ static starg_status take_given(const guard_problem *problem, candidate_points *p
                                  STARG_ELEMENT_CANDIDATE, &index, 1,
                                  "candidate %zu has a coordinate that is not finite", i);
         bool usable = candidates_allowed(problem->solid, p, options->clearance);
+        const double *d = looks && options->directions != NULL ? options->directions + 3 * i : NULL;
         if (usable)
-            STARG_TRY(candidates_push(problem->context, points, p, NULL));
+            STARG_TRY(candidates_push(problem->context, points, p, d));
         dropped += !usable;
     }
     if (dropped > 0)
@@ -325,8 +327,27 @@ static starg_status certify_one(const guard_problem *problem, const guard_outcom
          j++)
         if (starg_bits_test(pool->rows, outcome->selection.chosen.data[0], j))
             witness = j;
-    return certificate_of_one(problem->context, problem->solid, &problem->options->visibility,
-                              witness, problem->certificate);
+    return certificate_of_one(problem->context, problem->solid, problem->options, witness,
+                              problem->certificate);
+}
+
+/* Under the rule of unions a crate in a room is a part of the room: so one may well be meant to be
+ * an obstacle. */
+static void warn_of_shells(const guard_problem *problem, const starg_guards *guards) {
+    bool on_surface;
+    size_t count = 0, first = 0;
+    if (problem->solid->check->components < 2 || problem->solid->scene)
+        return;
+    for (size_t g = guards->count; g-- > 0;)
+        if (bvh_winding(problem->solid->tree, guards->positions + 3 * g, &on_surface) > 1) {
+            count++;
+            first = g;
+        }
+    if (count > 0)
+        starg_log(problem->context, STARG_LOG_WARNING,
+                  "%zu %s within more than one shell of the model (first: guard %zu); if one of "
+                  "them is an obstacle, give it as one, or keep the orientation of the faces",
+                  count, count == 1 ? "guard stands" : "guards stand", first);
 }
 
 static starg_status guard_solid(starg_context *context, const starg_solid *solid,
@@ -346,6 +367,7 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     STARG_TRY(find_guards(&problem, &outcome));
     STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
+    warn_of_shells(&problem, *out);
 done:
     outcome_free(context, &outcome);
     column_weights_free(context, &problem.weights);
@@ -364,10 +386,10 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
     *out = NULL;
     *text = NULL;
     *size = 0;
-    if (options != NULL && (wants_part(options) || options->redundancy > 1))
+    if (options != NULL && wants_part(options))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a certificate is only written where everything is to be seen once; ask "
-                          "for a coverage of 1 without a limit of guards, and a redundancy of 1");
+                          "a certificate is only written where everything is to be seen; ask for a "
+                          "coverage of 1 without a limit of guards");
     if (solid->scene)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a certificate is only written for a plain solid: without obstacles, "

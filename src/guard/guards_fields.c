@@ -3,8 +3,6 @@
  * ranges and descriptions. Rows are in the order of the file. */
 #include "guard/guards_fields.h"
 
-#include <math.h>
-
 #include "starguard/guard.h"
 #include "visibility/fields.h"
 
@@ -245,7 +243,7 @@ static const starg_field GUARDS[] = {
      .kind = STARG_FIELD_POINT,
      RESULT(directions),
      .applies = has_directions,
-     .help = "With a cone: viewing direction, a unit vector."},
+     .help = "With a cone: viewing direction, a unit vector unless it was given."},
 };
 static const starg_fields GUARDS_TABLE = {.columns = true, .name = "guards", FIELD_ROWS(GUARDS)};
 
@@ -414,6 +412,11 @@ static const starg_field SCENE[] = {
      USUALLY_NOT,
      RESULT(space.outside),
      .help = "Guards stand outside of the model."},
+    {.key = "soup",
+     .kind = STARG_FIELD_FLAG,
+     USUALLY_NOT,
+     RESULT(space.soup),
+     .help = "The model is any triangles, closed or not."},
     {.key = "standoff_least",
      .kind = STARG_FIELD_REAL,
      USUALLY_NOT,
@@ -425,8 +428,7 @@ static const starg_field SCENE[] = {
      USUALLY_NOT,
      RESULT(space.standoff_most),
      .high = 1e100,
-     .standard = INFINITY,
-     .help = "Largest distance of guards from the model."},
+     .help = "Largest distance of guards from the model; 0: no limit."},
     {.key = "within",
      .kind = STARG_FIELD_NUMBERS,
      USUALLY_NOT,
@@ -435,6 +437,21 @@ static const starg_field SCENE[] = {
      .low = -1e100,
      .high = 1e100,
      .help = "Guards stand in this box: lower corner, upper corner."},
+    {.key = "cell",
+     .kind = STARG_FIELD_REAL,
+     USUALLY_NOT,
+     RESULT(space.cell),
+     .high = 1e100,
+     .help = "Guards stand where one gets from a point through cubes of that size that no face "
+             "meets."},
+    {.key = "from",
+     .kind = STARG_FIELD_NUMBERS,
+     USUALLY_NOT,
+     RESULT(space.from),
+     .length = 3,
+     .low = -1e100,
+     .high = 1e100,
+     .help = "That point."},
     {.key = "obstacles",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_OPTIONAL,

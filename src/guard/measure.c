@@ -186,7 +186,7 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->vertex_count = starg_space_model_vertices(problem->solid);
     result->face_count = starg_space_model_faces(problem->solid);
     result->options = *problem->options;
-    result->options.points = NULL;
+    result->options.points = result->options.directions = NULL;
     result->options.visibility.directions = NULL;
     result->candidate_count = pool_count(&outcome->pool);
     result->lines_tested = outcome->search.improve_work;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Candidate points from a file: text of three numbers a line, with an optional leading "v" and
+/* Candidate points from a file: text of three numbers a line, or six with the direction in which a
+ * camera there looks, with an optional leading "v" and
  * lines of edges as in OBJ, and comments by #; the nodes of a skeleton (CG, VTK); or the positions
  * in a GUARDS.json. */
 #include <math.h>
@@ -17,7 +18,8 @@ static starg_status take_positions(const starg_source *source, candidate_points 
     starg_status status = starg_guards_read_memory(source->context, source->bytes, source->size,
                                                    source->name, &guards);
     for (size_t i = 0; status == STARG_OK && i < guards->count; i++)
-        status = candidates_push(source->context, points, guards->positions + 3 * i, NULL);
+        status = candidates_push(source->context, points, guards->positions + 3 * i,
+                                 guards->directions != NULL ? guards->directions + 3 * i : NULL);
     starg_guards_free(source->context, guards);
     return status;
 }
@@ -32,14 +34,28 @@ static starg_status take_nodes(const starg_source *source, candidate_points *poi
     return status;
 }
 
-static starg_status reject_count(const starg_scan *scan, size_t line, size_t count) {
-    if (count == 6)
+/* Has a line as many numbers as those before it? */
+static starg_status check_count(const starg_scan *scan, size_t line, size_t count,
+                                const candidate_points *points) {
+    size_t before = candidates_count(points);
+    if (count != 3 && count != 6)
         return starg_source_fail(scan->source, starg_at_line(line),
-                                 "six numbers, a position and a direction: directions of "
-                                 "candidates are not supported; write three numbers per line");
+                                 "a point has three coordinates, or six numbers with a direction, "
+                                 "not %zu; write as many on each line",
+                                 count);
+    if (before > 0 && (count == 6) != (points->directions.count > 0))
+        return starg_source_fail(scan->source, starg_at_line(line),
+                                 "%zu numbers, and %d on the lines before; give all points a "
+                                 "direction, or none",
+                                 count, points->directions.count > 0 ? 6 : 3);
+    return STARG_OK;
+}
+
+static starg_status check_direction(const starg_scan *scan, size_t line, const double d[3]) {
+    if (d[0] != 0 || d[1] != 0 || d[2] != 0)
+        return STARG_OK;
     return starg_source_fail(scan->source, starg_at_line(line),
-                             "a point has three coordinates, not %zu; write three numbers per line",
-                             count);
+                             "the direction is (0, 0, 0), which is none");
 }
 
 static bool is_passed_over(starg_word word) {
@@ -51,7 +67,7 @@ static bool is_passed_over(starg_word word) {
 static starg_status scan_line(starg_scan *scan, candidate_points *points) {
     starg_status status = STARG_OK;
     starg_word word;
-    double p[3], x;
+    double p[6], x;
     size_t count = 0, line = scan->line;
     bool more = starg_scan_word_here(scan, &word);
     if (!more || is_passed_over(word))
@@ -64,13 +80,14 @@ static starg_status scan_line(starg_scan *scan, candidate_points *points) {
             return starg_source_fail(scan->source, starg_at_line(line),
                                      "coordinate %c is %g; it must be finite and below 1e100",
                                      "xyz"[count % 3], x);
-        if (count < 3)
+        if (count < 6)
             p[count] = x;
         count++;
     }
-    if (count != 3)
-        return reject_count(scan, line, count);
-    STARG_TRY(candidates_push(scan->source->context, points, p, NULL));
+    STARG_TRY(check_count(scan, line, count, points));
+    if (count == 6)
+        STARG_TRY(check_direction(scan, line, p + 3));
+    STARG_TRY(candidates_push(scan->source->context, points, p, count == 6 ? p + 3 : NULL));
 done:
     return status;
 }
@@ -109,12 +126,13 @@ static bool is_skeleton(const starg_source *source) {
     return false;
 }
 
-starg_status starg_points_read_memory(starg_context *context, const void *bytes, size_t size,
-                                      const char *name, double **points, size_t *count) {
+starg_status starg_poses_read_memory(starg_context *context, const void *bytes, size_t size,
+                                     const char *name, double **points, double **directions,
+                                     size_t *count) {
     starg_status status = STARG_OK;
     starg_source source = {context, name, bytes, size};
     candidate_points found = {0};
-    *points = NULL;
+    *points = *directions = NULL;
     *count = 0;
     if (is_json(&source))
         STARG_TRY(take_positions(&source, &found));
@@ -128,22 +146,40 @@ starg_status starg_points_read_memory(starg_context *context, const void *bytes,
         goto done;
     }
     *points = found.data.data;
+    *directions = found.directions.data;
     *count = found.data.count / 3;
-    found.data.data = NULL;
+    found.data.data = found.directions.data = NULL;
 done:
     candidates_free(context, &found);
     return status;
 }
 
-starg_status starg_points_read(starg_context *context, const char *path, double **points,
-                               size_t *count) {
+starg_status starg_poses_read(starg_context *context, const char *path, double **points,
+                              double **directions, size_t *count) {
     char *bytes = NULL;
     size_t size;
-    *points = NULL;
+    *points = *directions = NULL;
     *count = 0;
     starg_status status = starg_file_read(context, STAGE, path, &bytes, &size);
     if (status == STARG_OK)
-        status = starg_points_read_memory(context, bytes, size, path, points, count);
+        status = starg_poses_read_memory(context, bytes, size, path, points, directions, count);
     starg_release(context, bytes);
+    return status;
+}
+
+starg_status starg_points_read_memory(starg_context *context, const void *bytes, size_t size,
+                                      const char *name, double **points, size_t *count) {
+    double *directions;
+    starg_status status =
+        starg_poses_read_memory(context, bytes, size, name, points, &directions, count);
+    starg_release(context, directions);
+    return status;
+}
+
+starg_status starg_points_read(starg_context *context, const char *path, double **points,
+                               size_t *count) {
+    double *directions;
+    starg_status status = starg_poses_read(context, path, points, &directions, count);
+    starg_release(context, directions);
     return status;
 }

@@ -37,7 +37,7 @@
 
 static const char STAGE[] = "search";
 
-enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 20, MANY_NODES = 300 };
+enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 10, MANY_NODES = 300 };
 
 static const double ROUNDING = 1e-6;
 
@@ -351,7 +351,6 @@ static starg_status begin(search *s, const guard_detail *detail, const guard_sel
     s->first_count = pool_count(s->pool);
     STARG_TRY(search_scene_open(p->context, p->solid, &p->options->visibility,
                                 p->options->clearance, &s->scene));
-    s->scene.bars = p->certificate == NULL;
     STARG_TRY(find_need(s, selection));
     STARG_TRY(search_count_views(s));
     STARG_TRY(begin_points(s));
@@ -477,7 +476,8 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
     STARG_TRY(run(&s, improves));
     selection->time_limited = selection->time_limited || starg_time_is_over(problem->context);
     if (problem->certificate != NULL && problem->certificate->proof.bound > 1)
-        STARG_TRY(certificate_of_search(&s.scene, &s.cells, problem->certificate));
+        STARG_TRY(
+            certificate_of_search(&s.scene, &s.cells, problem->options, problem->certificate));
     if (keeps) {
         pool_truncate(pool, s.first_count);
         selection->lower_bound =

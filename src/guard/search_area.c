@@ -243,7 +243,6 @@ starg_status search_area(const guard_problem *problem, const guard_pool *pool,
     starg_progress_begin(problem->context, STAGE);
     STARG_TRY(search_scene_open(problem->context, problem->solid, &problem->options->visibility,
                                 problem->options->clearance, &scene));
-    scene.bars = true;
     a.seen = seen_weight(&a, selection);
     STARG_TRY(begin(&a));
     STARG_TRY(run(&a, selection));

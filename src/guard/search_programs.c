@@ -71,7 +71,7 @@ starg_status search_ask_points(search *s, bool *changed) {
     list_useful(s, &list);
     STARG_TRY(make_program(s, &list, &rows));
     STARG_TRY(solve(s, rows, &cover));
-    s->scene.work += list.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
+    s->scene.work += list.count * s->scene.witnesses.count * (1 + cover->nodes / 10);
     s->asked_at = s->cells.count;
     s->asked_of = s->scene.witnesses.count;
     size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;

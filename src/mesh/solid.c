@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "mesh/examine.h"
+#include "mesh/flood.h"
 
 /* Findings that no solid may have, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {
@@ -201,6 +202,8 @@ void starg_solid_free(starg_solid *solid) {
     starg_check_free(context, solid->check);
     bvh_free(solid->tree);
     starg_release(context, solid->obstacle_sizes);
+    starg_release(context, solid->other_side);
+    flood_free(solid->reached);
     starg_release(context, solid->importance);
     starg_release(context, solid->targets[0]);
     starg_release(context, solid->targets[1]);

@@ -23,10 +23,11 @@ struct starg_solid {
     size_t model_vertices, model_faces; /* those of obstacles follow */
     size_t obstacle_count;
     size_t *obstacle_sizes; /* vertices and faces of each, as given */
-    size_t sheet_faces;   /* the last so many: triangles of open obstacles, each twice, front and
-                             back one after the other */
-    double *importance;   /* by face; NULL: 1 each */
-    uint64_t *targets[2]; /* bits of the faces, and of the vertices, to be seen; NULL: all */
+    uint32_t *other_side;   /* by face: of a triangle that stands twice, front and back, the other
+                               one, else TOPOLOGY_NONE; NULL: there are none */
+    struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
+    double *importance;          /* by face; NULL: 1 each */
+    uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */
     starg_space_options space;
     starg_mesh *model; /* what distances are from, and its tree; NULL: `mesh` */
     bvh *model_tree;
@@ -46,8 +47,8 @@ void solid_reach(const starg_solid *solid, bvh_box *out);
 /* A box that holds them and the mesh. */
 void solid_extent(const starg_solid *solid, bvh_box *out);
 
-/* The halfedge on the other side of one, by the topology of the mesh: that of the triangle's other
- * copy for open obstacles, where more than two faces may meet. */
+/* The halfedge on the other side of one, by the topology of the mesh; where more than two faces may
+ * meet, that of the triangle's other side. */
 uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t halfedge);
 
 /* Logs what is wrong with the surface of a solid. It names faces of the mesh that was given: for

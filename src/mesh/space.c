@@ -7,8 +7,8 @@
  *   - Its outside: ambient 1 and all faces reversed.
  *   - A closed obstacle: its faces, reversed, follow those of the model; the winding number within
  *     it is one less.
- *   - An open obstacle: each of its triangles stands twice, front and back. A triangle with its
- *     back is a closed surface about nothing: it blocks the view and is wound around nowhere.
+ *   - An open obstacle, or a soup: each of its triangles stands twice, front and back. A triangle
+ * with its back is a closed surface about nothing: it blocks the view and is wound around nowhere.
  * So the exact engines see a closed mesh in any case. What they win by an embedded boundary, of
  * which no face has free space on its outer side, they may win where the whole mesh is such a one;
  * that is found out by examining it once more.
@@ -20,12 +20,13 @@
 #include "core/bits.h"
 #include "core/memory.h"
 #include "mesh/examine.h"
+#include "mesh/flood.h"
 #include "mesh/solid.h"
 
 static const char STAGE[] = "scene";
 
 void starg_space_options_default(starg_space_options *options) {
-    *options = (starg_space_options){.standoff_most = INFINITY};
+    *options = (starg_space_options){0};
 }
 
 static bool is_bounded(const starg_space_options *o) {
@@ -42,11 +43,19 @@ static starg_status check_options(starg_context *context, const starg_space_opti
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "unknown orientation %d",
                           (int)o->orientation);
     if (!(o->standoff_least >= 0 && o->standoff_least < 1e100 &&
-          o->standoff_most >= o->standoff_least))
+          (o->standoff_most == 0 ||
+           (o->standoff_most >= o->standoff_least && o->standoff_most < 1e100))))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "guards cannot stand at distances from %g to %g; the least must be zero "
                           "or more and the largest no smaller",
                           o->standoff_least, o->standoff_most);
+    if (!(o->cell >= 0 && o->cell < 1e100))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "cubes of the size %g; it must be zero or more", o->cell);
+    if (o->soup && (o->outside || o->orientation != STARG_ORIENTATION_NESTED))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a soup has neither an outside nor an orientation; say where guards may "
+                          "stand by a box, by distances or by a point");
     for (int k = 0; is_bounded(o) && k < 3; k++)
         if (!(fabs(o->within[k]) < 1e100 && fabs(o->within[k + 3]) < 1e100 &&
               o->within[k] < o->within[k + 3]))
@@ -63,12 +72,13 @@ typedef struct parts {
     starg_context *context;
     STARG_ARRAY(double) vertices;
     STARG_ARRAY(uint32_t) faces;
-    size_t sheet_faces;
+    STARG_ARRAY(uint32_t) sheets; /* fronts of which the backs follow at the end */
 } parts;
 
 static void parts_free(parts *p) {
     STARG_ARRAY_FREE(p->context, &p->vertices);
     STARG_ARRAY_FREE(p->context, &p->faces);
+    STARG_ARRAY_FREE(p->context, &p->sheets);
 }
 
 static starg_status push_face(parts *p, const uint32_t *corners, uint32_t offset, bool reversed) {
@@ -101,12 +111,8 @@ done:
     return status;
 }
 
-static bool repeats_a_corner(const uint32_t *c) {
-    return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
-}
-
 /* Corners at one position become one vertex: at its own corners a triangle blocks nothing. */
-static starg_status push_sheet(parts *p, const starg_mesh *mesh) {
+static starg_status push_sheet(parts *p, const starg_mesh *mesh, bool reversed) {
     starg_status status = STARG_OK;
     uint32_t *first = NULL, offset;
     size_t count;
@@ -115,14 +121,31 @@ static starg_status push_sheet(parts *p, const starg_mesh *mesh) {
     for (size_t f = 0; f < mesh->face_count; f++) {
         const uint32_t *given = mesh->faces + 3 * f;
         const uint32_t corners[3] = {first[given[0]], first[given[1]], first[given[2]]};
-        if (repeats_a_corner(corners))
-            continue;
-        STARG_TRY(push_face(p, corners, offset, false));
-        STARG_TRY(push_face(p, corners, offset, true));
-        p->sheet_faces += 2;
+        STARG_PUSH(p->context, STAGE, &p->sheets, (uint32_t)(p->faces.count / 3));
+        STARG_TRY(push_face(p, corners, offset, reversed));
     }
 done:
     starg_release(p->context, first);
+    return status;
+}
+
+/* The backs of all sheets, and who is whose other side. */
+static starg_status push_backs(parts *p, uint32_t **other_side) {
+    starg_status status = STARG_OK;
+    size_t count = p->faces.count / 3 + p->sheets.count;
+    *other_side = NULL;
+    if (p->sheets.count == 0)
+        return STARG_OK;
+    STARG_NEW(p->context, STAGE, *other_side, count);
+    memset(*other_side, 0xff, count * sizeof **other_side);
+    for (size_t i = 0; i < p->sheets.count; i++) {
+        uint32_t front = p->sheets.data[i], back = (uint32_t)(p->faces.count / 3), corners[3];
+        memcpy(corners, p->faces.data + 3 * (size_t)front, sizeof corners);
+        STARG_TRY(push_face(p, corners, 0, true));
+        (*other_side)[front] = back;
+        (*other_side)[back] = front;
+    }
+done:
     return status;
 }
 
@@ -133,6 +156,8 @@ static starg_status push_model(parts *p, const starg_mesh *model, const starg_sp
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     bool keeps = o->orientation == STARG_ORIENTATION_KEEP;
+    if (o->soup) /* guards see the inner side of a face: of a soup that is its front */
+        return push_sheet(p, model, true);
     starg_time_rule former = starg_time_begin(p->context, STARG_TIME_FAILS);
     STARG_TRY(keeps ? solid_make_as_given(p->context, model, &solid)
                     : solid_make(p->context, model, &solid));
@@ -162,9 +187,8 @@ static starg_status push_obstacle(parts *p, const starg_mesh *obstacle, bool she
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
     status = solid_make(p->context, obstacle, &solid);
-    if (status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE) {
-        return sheets ? push_sheet(p, obstacle) : STARG_OK;
-    }
+    if (status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE)
+        return sheets ? push_sheet(p, obstacle, false) : STARG_OK;
     STARG_TRY(status);
     if (!sheets)
         status = push_closed(p, solid->mesh, true);
@@ -174,9 +198,9 @@ done:
 }
 
 static starg_status push_obstacles(parts *p, const starg_mesh *model,
-                                   const starg_mesh *const *obstacles, size_t count, bool outside) {
+                                   const starg_mesh *const *obstacles, size_t count, bool bounded) {
     starg_status status = STARG_OK;
-    for (size_t i = 0; i < count && !outside; i++)
+    for (size_t i = 0; i < count && bounded; i++)
         if (is_apart(model, obstacles[i]))
             return starg_fail(p->context, STARG_ERROR_ARGUMENT, STAGE,
                               "obstacle %zu lies beyond the bounding box of the model; check that "
@@ -206,7 +230,7 @@ static starg_status examine(starg_context *context, starg_solid *scene) {
     starg_status status = STARG_OK;
     mesh_examination all = {0};
     const starg_mesh *mesh = scene->mesh;
-    if (scene->sheet_faces > 0) {
+    if (scene->other_side != NULL) {
         double lower[3], upper[3];
         STARG_NEW_ZERO(context, STAGE, scene->check, 1);
         starg_mesh_bounds(mesh, lower, upper);
@@ -313,23 +337,25 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     const starg_space_options *o = options != NULL ? options : &defaults;
     STARG_TRY(check_options(context, o));
     STARG_TRY(push_model(&p, model, o));
-    STARG_TRY(push_obstacles(&p, model, obstacles, obstacle_count, o->outside));
+    STARG_TRY(push_obstacles(&p, model, obstacles, obstacle_count, !o->outside && !o->soup));
     STARG_NEW_ZERO(context, STAGE, scene, 1);
     scene->context = context;
     scene->scene = true;
-    scene->ambient = o->outside ? 1 : 0;
+    scene->ambient = o->outside || o->soup ? 1 : 0;
     scene->space = *o;
     scene->model_vertices = model->vertex_count;
     scene->model_faces = model->face_count;
-    scene->sheet_faces = p.sheet_faces;
+    STARG_TRY(push_backs(&p, &scene->other_side));
     STARG_TRY(starg_mesh_create(context, p.vertices.data, p.vertices.count / 3, p.faces.data,
                                 p.faces.count / 3, &scene->mesh));
     STARG_TRY(examine(context, scene));
     STARG_TRY(note_sizes(scene, obstacles, obstacle_count));
-    if (obstacle_count > 0) {
+    if (obstacle_count > 0)
         STARG_TRY(keep_model(context, model, scene));
+    if (scene->mesh->face_count > scene->model_faces)
         STARG_TRY(starg_space_weigh(scene, NULL));
-    }
+    if (o->cell > 0)
+        STARG_TRY(flood_create(context, scene, o->from, o->cell, &scene->reached));
     *out = scene;
     scene = NULL;
 done:
@@ -355,10 +381,12 @@ bool starg_space_admits(const starg_solid *scene, const double p[3]) {
     for (int k = 0; is_bounded(o) && k < 3; k++)
         if (p[k] < o->within[k] || p[k] > o->within[k + 3])
             return false;
-    if (o->standoff_least > 0 || o->standoff_most < 1e100) {
+    if (scene->reached != NULL && !flood_reaches(scene->reached, p))
+        return false;
+    if (o->standoff_least > 0 || o->standoff_most > 0) {
         double distance =
             bvh_distance(scene->model_tree != NULL ? scene->model_tree : scene->tree, p);
-        if (distance < o->standoff_least || distance > o->standoff_most)
+        if (distance < o->standoff_least || (o->standoff_most > 0 && distance > o->standoff_most))
             return false;
     }
     return starg_solid_contains(scene, p);
@@ -369,15 +397,18 @@ void solid_reach(const starg_solid *solid, bvh_box *out) {
     *out = solid->model_tree != NULL ? solid->model_tree->nodes[0].box : solid->tree->nodes[0].box;
     if (!solid->scene)
         return;
-    double grow = !o->outside                ? 0
-                  : o->standoff_most < 1e100 ? o->standoff_most
-                                             : 4 * solid->check->diagonal;
+    bool open = solid->ambient > 0;
+    double grow = 0; /* of a soup without distances: its own box */
+    if (open && o->standoff_most > 0)
+        grow = o->standoff_most;
+    else if (o->outside)
+        grow = 4 * solid->check->diagonal;
     for (int k = 0; k < 3; k++) {
         out->lower[k] -= grow;
         out->upper[k] += grow;
         if (is_bounded(o)) {
-            out->lower[k] = o->outside ? o->within[k] : fmax(out->lower[k], o->within[k]);
-            out->upper[k] = o->outside ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
+            out->lower[k] = open ? o->within[k] : fmax(out->lower[k], o->within[k]);
+            out->upper[k] = open ? o->within[k + 3] : fmin(out->upper[k], o->within[k + 3]);
         }
     }
 }
@@ -392,12 +423,9 @@ void solid_extent(const starg_solid *solid, bvh_box *out) {
 }
 
 uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t halfedge) {
-    uint32_t first = (uint32_t)(3 * (solid->mesh->face_count - solid->sheet_faces));
-    if (halfedge < first)
-        return twins[halfedge];
+    uint32_t other = solid->other_side != NULL ? solid->other_side[halfedge / 3] : TOPOLOGY_NONE;
     /* (a, b, c) and (a, c, b): edges 0, 1 and 2 of the one are 2, 1 and 0 of the other */
-    uint32_t face = (halfedge - first) / 3, edge = (halfedge - first) % 3;
-    return first + 3 * (face ^ 1) + 2 - edge;
+    return other == TOPOLOGY_NONE ? twins[halfedge] : 3 * other + 2 - halfedge % 3;
 }
 
 void solid_mask_row(const starg_solid *solid, bool vertices, uint64_t *row) {

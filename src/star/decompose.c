@@ -10,6 +10,7 @@
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
 #include "star/touching.h"
+#include "star/united.h"
 #include "tetra/fields.h"
 #include "tetra/tetmesh.h"
 
@@ -190,6 +191,24 @@ done:
     return status;
 }
 
+/* A surface that intersects itself is cut where it does; *out stays NULL where that cannot be. */
+static starg_status decompose_union(starg_context *context, const starg_solid *solid,
+                                    const starg_decompose_options *options,
+                                    starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_solid *united = NULL;
+    double rounding;
+    STARG_TRY(united_make(context, solid, &united, &rounding));
+    if (united == NULL)
+        goto done;
+    STARG_TRY(decompose_surface(context, united, options, out));
+    if (*out != NULL)
+        STARG_TRY(united_report(context, solid, united, rounding, *out));
+done:
+    starg_solid_free(united);
+    return status;
+}
+
 static starg_status decompose_model(starg_context *context, const starg_solid *solid,
                                     const starg_mesh *surface,
                                     const starg_decompose_options *options,
@@ -203,6 +222,8 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     STARG_TRY(check_options(context, options));
     if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
         STARG_TRY(decompose_surface(context, solid, options, out));
+    if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && *out == NULL)
+        STARG_TRY(decompose_union(context, solid, options, out));
     if (*out == NULL)
         STARG_TRY(decompose_filled(context, solid, surface, options, out));
     const starg_mesh *model = solid != NULL ? solid->mesh : surface;
@@ -211,6 +232,10 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     (*out)->model_tetrahedra = 0;
     (*out)->flattest = tetmesh_flattest((*out)->mesh);
 done:
+    if (status != STARG_OK) {
+        starg_decomposition_free(context, *out);
+        *out = NULL;
+    }
     return status;
 }
 

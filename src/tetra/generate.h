@@ -28,6 +28,10 @@ starg_status tetra_by_tetgen(starg_context *context, const starg_solid *solid, d
 starg_status tetra_by_stuffing(starg_context *context, const tetra_shape *shape, double *spacing,
                                starg_tetmesh **out);
 
+/* Greatest distance of a surface from another one, likewise. Errors: MEMORY, CANCELLED. */
+starg_status tetra_measure_one_way(starg_context *context, const starg_mesh *from, const bvh *to,
+                                   double step, double *out);
+
 /* Greatest distances between the boundary of a mesh and the surface of a shape, both ways, at
  * points at most `step` apart. Errors: MEMORY, CANCELLED. */
 starg_status tetra_measure(starg_context *context, const tetra_shape *shape,

@@ -67,8 +67,8 @@ static starg_status survey_face(starg_context *context, void *shared, void *scra
     return STARG_OK;
 }
 
-static starg_status survey_mesh(starg_context *context, const starg_mesh *from, const bvh *to,
-                                double step, double *out) {
+starg_status tetra_measure_one_way(starg_context *context, const starg_mesh *from, const bvh *to,
+                                   double step, double *out) {
     survey s = {.from = from, .to = to, .step = step};
     starg_parallel_loop loop = {
         .stage = STAGE, .count = from->face_count, .shared = &s, .item = survey_face};
@@ -86,8 +86,8 @@ starg_status tetra_measure(starg_context *context, const tetra_shape *shape,
     STARG_TRY(starg_tetmesh_surface(context, mesh, &boundary, NULL));
     STARG_TRY(
         bvh_create(context, boundary->vertices, boundary->faces, boundary->face_count, &tree));
-    STARG_TRY(survey_mesh(context, boundary, shape->tree, step, to_surface));
-    STARG_TRY(survey_mesh(context, shape->mesh, tree, step, from_surface));
+    STARG_TRY(tetra_measure_one_way(context, boundary, shape->tree, step, to_surface));
+    STARG_TRY(tetra_measure_one_way(context, shape->mesh, tree, step, from_surface));
 done:
     bvh_free(tree);
     starg_mesh_free(boundary);

@@ -6,6 +6,7 @@
  * Cells are checked in parallel, each on its own. Cost: see verify/hidden.c for each reason. */
 #include "verify/everywhere.h"
 
+#include <math.h>
 #include <stdio.h>
 
 #include "core/checksum.h"
@@ -18,6 +19,7 @@ static const char STAGE[] = "verify";
 
 typedef struct checking {
     const starg_certificate *certificate;
+    const verify_facts *known;
     verify_scene scene;
     size_t *wrong; /* by cell: the first reason that does not hold, SIZE_MAX: the cell itself; or
                       the number of all reasons */
@@ -37,6 +39,22 @@ static void free_watch(starg_context *context, void *scratch) {
     verify_watch_free(scratch);
 }
 
+/* Is all of the box closer to the surface than guards may stand? The distance of its middle and
+ * half of its diagonal are rounded, by much less than the share of the clearance that is left out.
+ */
+static bool is_barred(const checking *own, const verify_box *box) {
+    double middle[3], squared = 0, largest = 0, clearance = own->certificate->clearance;
+    for (int k = 0; k < 3; k++) {
+        double half = (0.5 * box->upper[k] - 0.5 * box->lower[k]) / clearance;
+        middle[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
+        squared += half * half;
+        largest = fmax(largest, fmax(fabs(box->lower[k]), fabs(box->upper[k])));
+    }
+    return clearance > 0 && largest < 1e10 * clearance && squared < 1 &&
+           verify_tree_distance(own->known->tree, middle, own->known->scale) <
+               clearance * (0.9995 - sqrt(squared));
+}
+
 static starg_status check_cell(starg_context *context, void *shared, void *scratch, size_t item) {
     const checking *own = shared;
     const starg_certificate *c = own->certificate;
@@ -44,7 +62,8 @@ static starg_status check_cell(starg_context *context, void *shared, void *scrat
     (void)context;
     own->wrong[item] = c->reasons.count;
     verify_watch_box(scratch, &cell->box);
-    if (cell->kind == EVERYWHERE_OUTSIDE && !verify_box_outside(scratch))
+    if ((cell->kind == EVERYWHERE_OUTSIDE && !verify_box_outside(scratch)) ||
+        (cell->kind == EVERYWHERE_BARRED && !is_barred(own, &cell->box)))
         own->wrong[item] = SIZE_MAX;
     for (size_t k = cell->first; k < cell->first + cell->count; k++)
         if (!verify_box_hides(scratch, c->target, c->witnesses[c->reasons.data[k].witness],
@@ -52,7 +71,7 @@ static starg_status check_cell(starg_context *context, void *shared, void *scrat
             own->wrong[item] = k;
             break;
         }
-    return STARG_OK;
+    return verify_watch_failed(scratch) ? STARG_ERROR_MEMORY : STARG_OK;
 }
 
 /* Reasons that hold only if the surface is embedded. */
@@ -67,7 +86,7 @@ starg_status verify_check_cells(const starg_certificate *certificate, const veri
                                 size_t *cell, size_t *reason) {
     starg_status status = STARG_OK;
     starg_context *context = known->surface->context;
-    checking own = {.certificate = certificate};
+    checking own = {.certificate = certificate, .known = known};
     *cell = certificate->cell_count;
     STARG_TRY(
         verify_scene_create(known->surface, known->tree, needs_embedding(certificate), &own.scene));
@@ -100,18 +119,32 @@ static bool is_of_this(const starg_certificate *c, const verify_facts *known,
     for (size_t f = 0; f < surface->face_count; f++)
         sum = starg_checksum_face(sum, surface->vertices, surface->faces + 3 * f);
     *difference = NULL;
-    if (c->vertex_count != surface->vertex_count || c->face_count != surface->face_count ||
-        c->checksum != sum)
+    if (surface->ambient != 0 || surface->importance != NULL ||
+        surface->model_faces != surface->face_count ||
+        known->guards->space.orientation != STARG_ORIENTATION_NESTED)
+        *difference = ": such are of plain solids alone";
+    else if (c->vertex_count != surface->vertex_count || c->face_count != surface->face_count ||
+             c->checksum != sum)
         *difference = ": it is of another model";
     else if (c->target != view->target)
         *difference = ": its targets are others";
     else if (c->range != view->range)
         *difference = ": its range is another one";
+    else if (c->clearance != known->guards->options.clearance)
+        *difference = ": its clearance is another one";
+    else if (c->redundancy != known->guards->options.redundancy)
+        *difference = ": its redundancy is another one";
     return *difference == NULL;
 }
 
-static bool is_seen(const verify_facts *known, uint32_t witness) {
-    return verify_targets_vertices(known) ? known->vertex[witness] : known->face[witness];
+/* By as many guards as each face is to be seen by; one is needed as soon as there is anything to
+ * see. */
+static bool is_seen(const verify_facts *known, const starg_certificate *c, uint32_t witness) {
+    const starg_bits *rows = verify_rows(known);
+    size_t seen = 0;
+    for (size_t g = 0; g < rows->rows; g++)
+        seen += starg_bits_test(rows, g, witness);
+    return seen >= (c->bound > 1 ? c->redundancy : 1);
 }
 
 static void claim_witnesses(starg_verdict *verdict, const verify_facts *known,
@@ -119,7 +152,7 @@ static void claim_witnesses(starg_verdict *verdict, const verify_facts *known,
     const char *name = c->target == STARG_TARGET_VERTICES ? "vertices" : "faces";
     size_t unseen = 0, first = 0;
     for (size_t i = c->witness_count; i-- > 0;)
-        if (!is_seen(known, c->witnesses[i])) {
+        if (!is_seen(known, c, c->witnesses[i])) {
             unseen++;
             first = c->witnesses[i];
         }
@@ -176,8 +209,8 @@ static starg_status claim_cells(starg_verdict *verdict, const verify_facts *know
     }
     if (reason == SIZE_MAX)
         verify_claim(verdict, false,
-                     "the cell on line %zu of the certificate is outside of the "
-                     "model: it is not, or that is not certain",
+                     "no guard may stand in the cell on line %zu of the certificate: one may, or "
+                     "that is not certain",
                      c->cell_line + cell);
     else {
         const verify_reason *r = &c->reasons.data[reason];

@@ -18,9 +18,11 @@ enum { EVERYWHERE_DEPTH = 1024 };
 /* Prices are at most this, so that their sums fit. */
 #define EVERYWHERE_PRICE (UINT64_C(1) << 48)
 
-typedef enum everywhere_kind { /* cut across an axis (its number), or not */
-                               EVERYWHERE_LEAF = 3,
-                               EVERYWHERE_OUTSIDE
+/* A number below: the axis across which the cell is cut. */
+typedef enum everywhere_kind {
+    EVERYWHERE_LEAF = 3,
+    EVERYWHERE_OUTSIDE,
+    EVERYWHERE_BARRED /* closer to the surface than guards may stand */
 } everywhere_kind;
 
 typedef struct everywhere_cell {
@@ -41,8 +43,8 @@ struct starg_certificate {
     size_t vertex_count, face_count;
     uint64_t checksum;
     starg_target target;
-    double range;
-    size_t bound;
+    double range, clearance;
+    size_t redundancy, bound;
     uint32_t *witnesses;
     size_t witness_count, words; /* words of a row of bits over the witnesses */
     uint64_t *rows;

@@ -3,7 +3,8 @@
  * sets of witnesses; docs/verification.md has the proof.
  *
  * A leaf may see all witnesses but those for which it, or a cell around it, gives a reason. Without
- * rows, prices prove the bound: those of a leaf's witnesses sum to less than a share of all. With
+ * rows, prices prove the bound: those of a leaf's witnesses sum to less than a share of all, each
+ * as often as it is to be seen. With
  * rows, each leaf is within one, and the nodes prove that so many rows do not hold all witnesses.
  *
  * Cost: the witnesses of all leaves; for each node those of all rows. */
@@ -66,7 +67,7 @@ static starg_status visit_leaves(proving *p, visit_leaf *visit, bool *all) {
             top++;
             continue;
         }
-        if (cell->kind == EVERYWHERE_OUTSIDE)
+        if (cell->kind > EVERYWHERE_LEAF)
             memset(row, 0, words * sizeof *row);
         *all = visit(p, i, row);
         top -= top > 0;
@@ -81,7 +82,7 @@ done:
 static bool is_in_row(proving *p, size_t cell, const uint64_t *open) {
     const starg_certificate *own = p->own;
     uint32_t row = own->cells[cell].row;
-    if (own->cells[cell].kind == EVERYWHERE_OUTSIDE)
+    if (own->cells[cell].kind > EVERYWHERE_LEAF)
         return true;
     bool within =
         row != UINT32_MAX && is_within(open, own->rows + (size_t)row * own->words, own->words);
@@ -109,9 +110,9 @@ static bool set_prices(proving *p, const everywhere_node *node, const uint64_t *
     return true;
 }
 
-/* Is the sum larger than `most` times `largest`? */
-static bool exceeds(uint64_t sum, size_t most, uint64_t largest) {
-    return sum > (starg_uint128)most * largest;
+/* Is the sum, so many times, larger than `most` times `largest`? */
+static bool exceeds(uint64_t sum, size_t times, size_t most, uint64_t largest) {
+    return (starg_uint128)sum * times > (starg_uint128)most * largest;
 }
 
 typedef struct leaf_prices {
@@ -122,7 +123,8 @@ typedef struct leaf_prices {
 
 static bool is_cheap(proving *p, size_t cell, const uint64_t *open) {
     const leaf_prices *own = (const leaf_prices *)p;
-    bool cheap = exceeds(own->all, own->most, sum_of(open, p->own->words, p->price));
+    bool cheap =
+        exceeds(own->all, p->own->redundancy, own->most, sum_of(open, p->own->words, p->price));
     if (!cheap)
         say(p, "a leaf may see witnesses that are worth too much: the one on line",
             p->own->cell_line + cell);
@@ -161,7 +163,7 @@ static bool prices_prove(proving *p, const everywhere_node *node, const uint64_t
         return false;
     for (size_t i = 0; i < own->row_count; i++) {
         uint64_t worth = p->gone[i] ? 0 : sum_of(own->rows + i * own->words, own->words, p->price);
-        if (!exceeds(sum, most, worth)) {
+        if (!exceeds(sum, 1, most, worth)) {
             say(p, "the prices do not prove what they should: node", p->next);
             return false;
         }
@@ -252,6 +254,11 @@ static starg_status prove_by_rows(proving *p, size_t most, bool *follows) {
     starg_status status = STARG_OK;
     const starg_certificate *own = p->own;
     uint64_t all[EVERYWHERE_WORDS] = {0};
+    *follows = own->redundancy == 1;
+    if (!*follows) {
+        say(p, "rows prove nothing with a redundancy of", own->redundancy);
+        return STARG_OK;
+    }
     for (size_t j = 0; j < own->witness_count; j++)
         starg_bit_set(all, j);
     STARG_TRY(visit_leaves(p, is_in_row, follows));

@@ -145,6 +145,10 @@ static starg_status read_question(reader *r) {
     else
         STARG_TRY(take_double(r, &own->range));
     STARG_TRY(end_line(r));
+    STARG_TRY(take_text(r, "clearance "));
+    STARG_TRY(take_double(r, &own->clearance));
+    STARG_TRY(end_line(r));
+    STARG_TRY(read_size(r, "redundancy ", &own->redundancy));
     STARG_TRY(read_size(r, "bound ", &own->bound));
 done:
     return status;
@@ -264,13 +268,15 @@ static starg_status read_kind(reader *r, everywhere_cell *cell) {
         cell->kind = 2;
     else if (take(r, 'o'))
         cell->kind = EVERYWHERE_OUTSIDE;
+    else if (take(r, 'c'))
+        cell->kind = EVERYWHERE_BARRED;
     else if (take(r, '=')) {
         if (r->own->row_count == 0)
             return reject(r, "there are no rows");
         STARG_TRY(take_number(r, r->own->row_count - 1, &row));
         cell->row = (uint32_t)row;
     } else if (!take(r, '.'))
-        return reject(r, "a cell is expected here: x, y, z, a dot, = or o");
+        return reject(r, "a cell is expected here: x, y, z, a dot, =, c or o");
 done:
     return status;
 }
@@ -279,7 +285,7 @@ static starg_status read_cell(reader *r, everywhere_cell *cell) {
     starg_status status = STARG_OK;
     STARG_TRY(read_kind(r, cell));
     cell->first = r->own->reasons.count;
-    while (cell->kind != EVERYWHERE_OUTSIDE && take(r, ' '))
+    while (cell->kind <= EVERYWHERE_LEAF && take(r, ' '))
         STARG_TRY(read_reason(r));
     cell->count = r->own->reasons.count - cell->first;
     STARG_TRY(end_line(r));

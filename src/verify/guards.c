@@ -23,7 +23,7 @@ static const char STAGE[] = "verify";
 static const double TOLERANCE = 1e-9; /* relative; for lengths, areas and fractions */
 
 bool verify_space_is_narrow(const starg_space_options *o) {
-    bool narrow = o->standoff_least > 0 || o->standoff_most < 1e100;
+    bool narrow = o->cell > 0 || o->standoff_least > 0 || o->standoff_most > 0;
     for (int k = 0; k < 6; k++)
         narrow = narrow || o->within[k] != 0;
     return narrow;
@@ -268,7 +268,7 @@ static bool stands_within(const verify_facts *known, size_t g) {
     const double *p = known->guards->positions + 3 * g;
     double distance = known->standoff[g];
     bool in = distance >= o->standoff_least * (1 - TOLERANCE) &&
-              distance <= o->standoff_most * (1 + TOLERANCE);
+              (o->standoff_most == 0 || distance <= o->standoff_most * (1 + TOLERANCE));
     bool boxed = false;
     for (int k = 0; k < 6; k++)
         boxed = boxed || o->within[k] != 0;
@@ -659,7 +659,7 @@ done:
 
 static bool is_plain(const starg_guards *guards) {
     return guards->obstacle_count == 0 && guards->target_count == 0 && !guards->space.outside &&
-           guards->space.orientation == STARG_ORIENTATION_NESTED;
+           !guards->space.soup && guards->space.orientation == STARG_ORIENTATION_NESTED;
 }
 
 starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,

@@ -40,8 +40,8 @@ struct verify_watch {
     verify_box box;            /* what is looked at: no point of the solid is lost */
     bool empty;                /* nothing of it is within the bounds of the surface */
     STARG_ARRAY(uint32_t) met; /* faces that meet the box; valid if `met_known` */
-    bool met_known, met_failed;
-    uint32_t *visit; /* by face: number of the last flood that came here */
+    bool met_known, failed;    /* memory was out: nothing is proven then */
+    uint32_t *visit;           /* by face: number of the last flood that came here */
     uint32_t flood;
     uint32_t *stack; /* faces */
 };
@@ -122,7 +122,7 @@ static bool add_met(void *data, uint32_t face) {
         uint32_t *grown = starg_reallocate(w->scene->surface->context, w->met.data, w->met.count,
                                            capacity, sizeof *grown);
         if (grown == NULL) {
-            w->met_failed = true; /* nothing is proven then */
+            w->failed = true;
             return false;
         }
         w->met.data = grown;
@@ -136,11 +136,10 @@ static bool add_met(void *data, uint32_t face) {
 static bool know_met(verify_watch *w) {
     if (!w->met_known) {
         w->met.count = 0;
-        w->met_failed = false;
         verify_tree_visit(w->scene->tree, w->box.lower, w->box.upper, add_met, w);
         w->met_known = true;
     }
-    return !w->met_failed;
+    return !w->failed;
 }
 
 static void centre_of(const verify_box *box, double p[3]) {
@@ -544,6 +543,10 @@ bool verify_box_outside(verify_watch *w) {
 }
 
 /* ---- memory ---- */
+
+bool verify_watch_failed(const verify_watch *w) {
+    return w->failed;
+}
 
 /* Outside of the bounds of the surface nothing is in the solid. */
 void verify_watch_box(verify_watch *w, const verify_box *box) {

@@ -44,6 +44,9 @@ void verify_watch_free(verify_watch *watch);
 /* Begins with another box. */
 void verify_watch_box(verify_watch *watch, const verify_box *box);
 
+/* Has memory been out? Then nothing was found to be outside or hidden that needed it. */
+bool verify_watch_failed(const verify_watch *watch);
+
 /* Is no point of the box in the solid? */
 bool verify_box_outside(verify_watch *watch);
 

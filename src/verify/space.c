@@ -38,6 +38,21 @@ done:
     return status;
 }
 
+/* One side of each face of a mesh of any kind. */
+typedef enum sheet_side { FRONT, BACK } sheet_side;
+
+static starg_status add_sheet(gathering *g, const starg_mesh *mesh, sheet_side side) {
+    starg_status status = STARG_OK;
+    verify_surface *surface = NULL;
+    uint32_t first;
+    STARG_TRY(verify_surface_welded(g->context, mesh, &surface));
+    STARG_TRY(add_vertices(g, mesh, &first));
+    status = add_faces(g, surface->faces, surface->face_count, first, side == BACK);
+done:
+    verify_surface_free(surface);
+    return status;
+}
+
 static int volume_sign(const verify_surface *surface) {
     exact_sum sum;
     exact_sum_clear(&sum);
@@ -54,6 +69,8 @@ static starg_status add_model(gathering *g, const starg_mesh *mesh, const starg_
     verify_surface *surface = NULL;
     uint32_t first;
     bool keeps = guards->space.orientation == STARG_ORIENTATION_KEEP;
+    if (guards->space.soup)
+        return add_sheet(g, mesh, BACK); /* what faces out of the free space */
     STARG_TRY(keeps ? verify_surface_as_given(g->context, mesh, &surface)
                     : verify_surface_create(g->context, mesh, &surface));
     bool inward = keeps && volume_sign(surface) < 0;
@@ -65,24 +82,40 @@ done:
     return status;
 }
 
-/* Of closed obstacles, or of open ones. */
-static starg_status add_obstacle(gathering *g, const starg_mesh *mesh, bool open) {
-    starg_status status = STARG_OK;
+/* Is it closed? Then its faces are added, reversed. */
+static starg_status add_closed(gathering *g, const starg_mesh *mesh, bool *closed) {
     verify_surface *surface = NULL;
     uint32_t first;
-    status = verify_surface_create(g->context, mesh, &surface);
-    bool is_open = status == STARG_ERROR_MESH;
-    if (is_open)
-        status = verify_surface_welded(g->context, mesh, &surface);
+    starg_status status = verify_surface_create(g->context, mesh, &surface);
+    *closed = status != STARG_ERROR_MESH;
+    if (!*closed)
+        return STARG_OK;
     STARG_TRY(status);
-    if (is_open != open)
-        goto done;
     STARG_TRY(add_vertices(g, mesh, &first));
-    if (open)
-        STARG_TRY(add_faces(g, surface->faces, surface->face_count, first, false));
     STARG_TRY(add_faces(g, surface->faces, surface->face_count, first, true));
 done:
     verify_surface_free(surface);
+    return status;
+}
+
+/* Those that are closed, then the fronts of the others, then the backs of these and of a soup. */
+static starg_status add_obstacles(gathering *g, const starg_mesh *model, bool soup,
+                                  const starg_mesh *const *obstacles, size_t count) {
+    starg_status status = STARG_OK;
+    bool *closed = NULL;
+    STARG_NEW_ZERO(g->context, STAGE, closed, count);
+    for (size_t i = 0; i < count; i++)
+        STARG_TRY(add_closed(g, obstacles[i], &closed[i]));
+    for (size_t i = 0; i < count; i++)
+        if (!closed[i])
+            STARG_TRY(add_sheet(g, obstacles[i], FRONT));
+    if (soup)
+        STARG_TRY(add_sheet(g, model, FRONT));
+    for (size_t i = 0; i < count; i++)
+        if (!closed[i])
+            STARG_TRY(add_sheet(g, obstacles[i], BACK));
+done:
+    starg_release(g->context, closed);
     return status;
 }
 
@@ -129,9 +162,7 @@ starg_status verify_space_create(starg_context *context, const starg_mesh *mesh,
     *out = NULL;
     STARG_TRY(check_obstacles(context, obstacles, obstacle_count, guards));
     STARG_TRY(add_model(&g, mesh, guards));
-    for (int open = 0; open < 2; open++)
-        for (size_t i = 0; i < obstacle_count; i++)
-            STARG_TRY(add_obstacle(&g, obstacles[i], open == 1));
+    STARG_TRY(add_obstacles(&g, mesh, guards->space.soup, obstacles, obstacle_count));
     uint32_t *faces = g.faces.data;
     g.faces.data = NULL;
     STARG_TRY(verify_surface_wrap(context, g.vertices.data, g.vertices.count / 3, faces,
@@ -140,7 +171,7 @@ starg_status verify_space_create(starg_context *context, const starg_mesh *mesh,
     g.vertices.data = NULL;
     surface->model_vertices = starg_mesh_vertex_count(mesh);
     surface->model_faces = starg_mesh_face_count(mesh);
-    surface->ambient = guards->space.outside ? 1 : 0;
+    surface->ambient = guards->space.outside || guards->space.soup ? 1 : 0;
     STARG_TRY(weigh(context, mesh, guards, surface));
     *out = surface;
     surface = NULL;

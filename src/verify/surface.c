@@ -395,16 +395,9 @@ starg_status verify_surface_welded(starg_context *context, const starg_mesh *mes
                                    verify_surface **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
-    size_t kept = 0;
     *out = NULL;
     STARG_TRY(copy_faces(context, mesh, &surface));
     STARG_TRY(weld(surface));
-    for (size_t f = 0; f < surface->face_count; f++) {
-        const uint32_t *c = surface->faces + 3 * f;
-        if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
-            memmove(surface->faces + 3 * kept++, c, 3 * sizeof *c);
-    }
-    surface->face_count = kept;
     *out = surface;
     surface = NULL;
 done:

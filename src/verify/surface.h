@@ -36,8 +36,8 @@ starg_status verify_surface_create(starg_context *context, const starg_mesh *mes
 /* The same without turning shells. */
 starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
                                      verify_surface **out);
-/* The faces of any mesh, with vertices at one position made one; nothing is checked or turned.
- * Faces that repeat a corner then are left out. */
+/* The faces of any mesh, with vertices at one position made one; nothing is checked or
+ * turned. */
 starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
 /* The same for triangles of any kind, which are taken as they are: nothing is checked or turned.

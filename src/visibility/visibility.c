@@ -148,7 +148,7 @@ static starg_status check_cone(starg_context *context, size_t count,
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "the cone is %g degrees; whole faces need one of at most 180, or of 360",
                           options->cone);
-    if (d == NULL)
+    if (d == NULL && count > 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a cone needs a direction for each point");
     for (size_t i = 0; i < count; i++, d += 3) {

@@ -307,7 +307,7 @@ class Guard(support.Case):
     def test_anywhere(self):
         maze = self.sample("gallery")
         plain = self.run_json("guard", maze, "-o", "g.json", "--count", "60")
-        self.assertNotIn("lower_bound_everywhere", plain)
+        self.assertGreater(plain.get("lower_bound_everywhere", 2), 1)
         report = self.run_json("guard", maze, "-o", "p.json", "--count", "60", "--prove",
                                "--prove-work", "200000")
         self.assertLessEqual(len(report["guards"]), len(plain["guards"]))
@@ -321,11 +321,66 @@ class Guard(support.Case):
         self.assertRegex(text, r"(?m)^guards +\d+(, the fewest possible|; at least \d+ (is|are) needed), "
                                "wherever they stand$")
         self.assertRegex(text, r"(?m)^lower bound +\d+ of these candidates \(")
-        for options in [["--max-guards", "2"], ["--coverage", "0.9"], ["--redundancy", "2"],
-                        ["--cone", "90"], ["--candidates", "g.json"]]:
-            err = self.run_text("guard", maze, "-o", "no.json", "--prove", *options, status=1)[1]
-            self.assertIn("anywhere", err)
+
+    def test_anywhere_of_other_questions(self):
+        maze = self.sample("gallery")
+        self.run_text("guard", maze, "-o", "g.json", "--count", "60", "--no-refine")
+        for options in [["--coverage", "0.9"], ["--redundancy", "2"], ["--cone", "120"],
+                        ["--candidates", "g.json"], ["--max-guards", "2"]]:
+            out = self.run_text("guard", maze, "-o", "p.json", "--count", "60", "--prove",
+                                "--prove-work", "100000", "--refine-lines", "100000", *options)[0]
+            self.run_text("verify", maze, "p.json")
+            report = json.loads(self.read("p.json"))
+            if options[0] == "--max-guards":
+                self.assertRegex(out, r"(?m)^guards +2 of at most 2$")
+                self.assertRegex(out, r"(?m)^area +\S+ % seen, at most \S+ % possible with 2 guards, "
+                                      "wherever they stand$")
+                self.assertNotIn("fewe", out)
+                self.assertNotIn("lower", out)
+                self.assertLessEqual(report["coverage"]["area"],
+                                     report["coverage"]["area_bound_everywhere"])
+            else:
+                self.assertGreaterEqual(report["lower_bound_everywhere"], 1)
+                self.assertRegex(out, r"(?m)^guards .* wherever they stand$")
+        for options in [["--coverage", "0.9"], ["--redundancy", "2"], ["--max-guards", "2"]]:
+            err = self.run_text("guard", maze, "-o", "no.json", "--prove", "--certificate", "c",
+                                *options, status=1)[1]
+            self.assertIn("everything is to be seen once", err)
         self.assertNotIn("no.json", self.names())
+
+    def test_certificate(self):
+        maze = self.sample("gallery")
+        prove = ["guard", maze, "--count", "60", "--prove", "--prove-work", "100000"]
+        self.run_text(*prove, "-o", "plain.json")
+        self.run_text(*prove, "-o", "g.json", "--certificate", "why.txt")
+        self.assertEqual(self.read("plain.json"), self.read("g.json"))
+        self.assertTrue(self.read("why.txt").startswith(b"starguard-certificate 1\n"))
+        out = self.run_text("verify", maze, "g.json")[0]
+        self.assertRegex(out, r"not checked: that at least \d+ guards? (is|are) needed, wherever they stand")
+        told = self.run_json("verify", maze, "g.json", "why.txt")["results"]
+        self.assertEqual([(r["file"], r["certificate"], r["passed"]) for r in told],
+                         [("g.json", "why.txt", True)])
+        self.assertTrue(any("wherever they stand" in c["claim"] for c in told[0]["claims"]))
+        self.assertFalse(any("wherever" in text for text in told[0]["not_checked"]))
+        room = self.room
+        self.run_text("guard", room, "-o", "r.json", "--prove")
+        out = self.run_text("verify", room, "r.json", "why.txt", status=4)[0]
+        self.assertIn("it is of another model", out)
+        raised = json.loads(self.read("g.json"))
+        bound = raised["lower_bound_everywhere"] = raised["lower_bound_everywhere"] + 1
+        raised["lower_bound"] = max(bound, raised["lower_bound"])
+        self.write("raised.json", json.dumps(raised))
+        out = self.run_text("verify", maze, "raised.json", "why.txt", status=4)[0]
+        self.assertRegex(out, r"FAILED.*the certificate says no more than")
+        self.write("short.txt", self.read("why.txt")[:-20].decode())
+        err = self.run_text("verify", maze, "g.json", "short.txt", status=2)[1]
+        self.assertRegex(err, r"'short.txt', line \d+: ")
+        for operands in [["why.txt"], ["why.txt", "g.json"], ["g.json", "why.txt", "why.txt"]]:
+            err = self.run_text("verify", maze, *operands, status=1)[1]
+            self.assertIn("behind its GUARDS.json", err)
+        err = self.run_text("guard", maze, "-o", "no.json", "--certificate", "no.txt", status=1)[1]
+        self.assertIn("add --prove", err)
+        self.assertFalse({"no.json", "no.txt"} & set(self.names()))
 
     def test_candidates_from_files(self):
         self.run_text("guard", self.room, "-o", "g.json")

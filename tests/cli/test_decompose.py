@@ -204,8 +204,16 @@ class Decompose(support.Case):
         for mode in "strict", "paper":
             report = self.run_json("decompose", "two.off", "-o", "p.vtk", "--report", "p.json",
                                    "--mode", mode, "--density", "40", "--effort", "100")
-            self.assertEqual(self.agree("p.vtk", "p.json")["surface"], "approximated")
-            self.assertTrue(any("stuffing" in line["message"] for line in report["log"]))
+            result = self.agree("p.vtk", "p.json")
+            self.assertEqual(result["surface"], "approximated")
+            strict = mode == "strict"
+            self.assertNotEqual(any("stuffing" in line["message"] for line in report["log"]), strict)
+            self.assertEqual("faces_kept" in result, strict)
+            if strict:  # one face of each is clear of the other
+                self.assertEqual(result["faces_kept"], 2)
+                self.assertLess(result["distance"], 1e-12)
+                self.assertGreater(result["distance_back"], .01)
+            self.run_text("verify", "two.off", "p.vtk", "p.json")
 
     def test_quiet_warns_of_another_surface(self):
         """Pieces that are not of the given surface are told of whatever the options are."""

@@ -107,9 +107,11 @@ class Schemas(support.Case):
                 del at(wrong, path[:-1])[path[-1]]
                 self.assertFalse(validator.is_valid(wrong), f"{name}: {path} may be missing")
 
-    OPTIONAL = {"levels", "direction", "area_bound", "coarsest", "step", "significance", "refine",
+    OPTIONAL = {"levels", "flattest_given", "direction", "area_bound", "coarsest", "step",
+                "significance", "refine",
                 "peak_resident_bytes", "report", "map", "letter", "separate", "cells", "witnesses",
-                "work", "lower_bound_everywhere", "optimal_everywhere"}
+                "work", "lower_bound_everywhere", "optimal_everywhere",
+                "area_bound_everywhere"}
 
     def required(self, name, path):
         if path[-1] in self.OPTIONAL:

@@ -5,6 +5,7 @@
 #include "support.h"
 #include "verify/claims.h"
 #include "verify/everywhere.h"
+#include "verify/measure.h"
 
 static shape make_u(void) {
     return shape_cells("#.#"
@@ -23,7 +24,8 @@ static void check(starg_context *context, starg_certificate *own) {
     everywhere_words why;
     fuzz_require_ok(context, verify_surface_create(context, mesh, &surface), "a U is a surface");
     fuzz_require_ok(context, verify_tree_create(surface, &tree), "and has a tree");
-    const verify_facts known = {.surface = surface, .guards = &guards, .tree = tree};
+    const verify_facts known = {
+        .surface = surface, .guards = &guards, .tree = tree, .scale = verify_scale(surface)};
     if (own->vertex_count == surface->vertex_count && own->face_count == surface->face_count) {
         fuzz_require_ok(context, verify_check_cells(own, &known, &cell, &reason),
                         "cells can be checked");
@@ -31,9 +33,9 @@ static void check(starg_context *context, starg_certificate *own) {
         bool all = own->cells[0].box.lower[0] <= 0 && own->cells[0].box.lower[1] <= 0 &&
                    own->cells[0].box.lower[2] <= 0 && own->cells[0].box.upper[0] >= 3 &&
                    own->cells[0].box.upper[1] >= 2 && own->cells[0].box.upper[2] >= 1;
-        fuzz_require(
-            !(all && cell == own->cell_count && follows && own->bound > 2 && own->range >= 4),
-            "two guards see all of a U");
+        fuzz_require(!(all && cell == own->cell_count && follows && own->bound > 2 &&
+                       own->range >= 4 && own->clearance == 0 && own->redundancy == 1),
+                     "two guards see all of a U");
     }
     verify_tree_free(tree);
     verify_surface_free(surface);

@@ -11,7 +11,7 @@
 static failing_inputs in;
 static starg_bits *cover_rows;
 static input_bytes guards_text, skeleton_text, why_text;
-static starg_guards *proven; /* of a range, so that there are several */
+static starg_guards *proven;
 static starg_certificate *why;
 
 /* ---- covers and visibility ---- */
@@ -148,11 +148,21 @@ static starg_guard_options few(void) {
 #define GUARD(NAME, VARIANT, SETTINGS)                                                             \
     FAILING_MAKES(NAME, VARIANT, starg_guards, starg_guards_free(context, out), in.solid,          \
                   (SETTINGS, &o))
-static starg_status certified(starg_context *context, const starg_guard_options *options) {
+/* Of a range, so that several are needed. */
+static starg_guard_options proving(void) {
+    starg_guard_options options = few();
+    options.prove = true;
+    options.prove_work = 3000;
+    options.visibility.range = 2;
+    return options;
+}
+
+static starg_status certified(starg_context *context) {
+    const starg_guard_options options = proving();
     starg_guards *out = NULL;
     char *text = NULL;
     size_t size = 0;
-    starg_status status = starg_guard_certified(context, in.solid, options, &out, &text, &size);
+    starg_status status = starg_guard_certified(context, in.solid, &options, &out, &text, &size);
     assert_true((status == STARG_OK) == (text != NULL) && (text != NULL) == (size > 0));
     failing_result(status, out);
     starg_text_free(context, text);
@@ -177,7 +187,7 @@ static starg_status guards(starg_context *context) {
     GUARD(starg_guard, "cone, at most 2",
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
     GUARD(starg_guard, "anywhere", (o.prove = true, o.prove_work = 3000, o.visibility.range = 2));
-    FAILING_BY(starg_guard_certified, "", certified(context, &o));
+    FAILING_BY(starg_guard_certified, "", certified(context));
     FAILING_MAKES(starg_certificate_read_memory, "", starg_certificate, starg_certificate_free(out),
                   why_text.data, why_text.size, "c");
     FAILING_MAKES(starg_verify_certified, "", starg_verdict, starg_verdict_free(context, out),
@@ -223,10 +233,7 @@ static int set_up(void **state) {
     cover_rows = make_triples(in.context);
     guards_text = failing_input_bytes("guards.json");
     skeleton_text = failing_input_bytes("skeleton.vtk");
-    starg_guard_options options = few();
-    options.prove = true;
-    options.prove_work = 3000;
-    options.visibility.range = 2;
+    const starg_guard_options options = proving();
     test_ok(in.context, starg_guard_certified(in.context, in.solid, &options, &proven,
                                               &why_text.data, &why_text.size));
     test_ok(in.context,

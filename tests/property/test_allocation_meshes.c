@@ -83,10 +83,13 @@ static starg_status meshes(starg_context *context) {
 
 /* ---- what is made of meshes ---- */
 
-static starg_status repair(starg_context *context, const starg_mesh *mesh) {
+static starg_status repair(starg_context *context, const starg_mesh *mesh, bool unite) {
     starg_repair_report report;
+    starg_repair_options options;
     starg_mesh *repaired = NULL;
-    starg_status status = starg_mesh_repair(context, mesh, NULL, &repaired, &report);
+    starg_repair_options_default(&options);
+    options.unite = unite;
+    starg_status status = starg_mesh_repair(context, mesh, &options, &repaired, &report);
     failing_result(status, repaired);
     starg_mesh_free(repaired);
     return status;
@@ -104,9 +107,10 @@ static starg_status made_of_meshes(starg_context *context) {
     assert_true(starg_mesh_vertex_count(in.blob) <= 64);
     CHECK(starg_mesh_check, "", in.room);
     CHECK(starg_mesh_check, "self-intersecting", in.crossed);
-    FAILING_BY(starg_mesh_repair, "nothing to do", repair(context, in.cube));
-    FAILING_BY(starg_mesh_repair, "open", repair(context, in.open));
-    FAILING_BY(starg_mesh_repair, "self-intersecting", repair(context, in.crossed));
+    FAILING_BY(starg_mesh_repair, "nothing to do", repair(context, in.cube, false));
+    FAILING_BY(starg_mesh_repair, "open", repair(context, in.open, false));
+    FAILING_BY(starg_mesh_repair, "self-intersecting", repair(context, in.crossed, false));
+    FAILING_BY(starg_mesh_repair, "union", repair(context, in.crossed, true));
     MESH(starg_mesh_simplify, "", in.blob, 6, NULL, map);
     FAILING_MAKES(starg_mesh_levels, "", starg_levels, starg_levels_free(context, out), in.blob, 5,
                   4, NULL);

@@ -79,6 +79,19 @@ static starg_status surfaces(starg_context *context) {
     FAILING_MAKES(NAME, VARIANT, starg_decomposition, starg_decomposition_free(context, out),      \
                   __VA_ARGS__)
 
+static starg_status decompose_crossed(starg_context *context,
+                                      const starg_decompose_options *options) {
+    starg_solid *solid = NULL;
+    starg_decomposition *out = NULL;
+    starg_status status = starg_solid_create(context, in.crossed, &solid);
+    if (status == STARG_OK)
+        status = starg_decompose(context, solid, options, &out);
+    failing_result(status, out);
+    starg_decomposition_free(context, out);
+    starg_solid_free(solid);
+    return status;
+}
+
 static starg_status decompositions(starg_context *context) {
     starg_decompose_options strict, paper;
     starg_decompose_options_default(&strict);
@@ -94,6 +107,7 @@ static starg_status decompositions(starg_context *context) {
     const starg_file_bytes pieces = {pieces_text.data, pieces_text.size, "pieces"},
                            report = {report_text.data, report_text.size, "report"};
     DECOMPOSE(starg_decompose, "strict", in.solid, &strict);
+    FAILING_BY(starg_decompose, "strict, self-intersecting", decompose_crossed(context, &strict));
     DECOMPOSE(starg_decompose, "paper", in.solid, &paper);
     DECOMPOSE(starg_decompose, "paper, given guards", in.solid, &given);
     DECOMPOSE(starg_decompose_tetmesh, "strict", in.tetmesh, &strict);

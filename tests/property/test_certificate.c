@@ -12,6 +12,7 @@
 #include "models.h"
 #include "verify/claims.h"
 #include "verify/everywhere.h"
+#include "verify/measure.h"
 
 enum { DAMAGED = 10000 };
 
@@ -40,22 +41,25 @@ static starg_guard_options proving(uint64_t work) {
 static void find_known(subject *s) {
     verify_surface *surface = NULL;
     verify_sight *sight = NULL;
-    const uint8_t *vertices, *faces;
+    const uint8_t *seen[2];
     test_ok(s->context, verify_surface_create(s->context, s->mesh, &surface));
     s->known = (verify_facts){.surface = surface, .guards = s->guards};
+    s->known.scale = verify_scale(surface);
     test_ok(s->context, verify_tree_create(surface, &s->known.tree));
     test_ok(s->context, verify_sight_create(surface, &sight));
-    s->known.face = calloc(surface->face_count, 1);
-    s->known.vertex = calloc(surface->vertex_count, 1);
-    assert_true(s->known.face != NULL && s->known.vertex != NULL);
+    starg_bits **rows[2] = {&s->known.vertices, &s->known.faces};
+    for (int k = 0; k < 2; k++)
+        test_ok(s->context,
+                starg_bits_create(s->context, s->guards->count,
+                                  k == 0 ? surface->vertex_count : surface->face_count, rows[k]));
     for (size_t g = 0; g < s->guards->count; g++) {
         const verify_view view = verify_view_of(s->guards, NULL);
         test_ok(s->context,
-                verify_look(sight, s->guards->positions + 3 * g, &view, &vertices, &faces));
-        for (size_t f = 0; f < surface->face_count; f++)
-            s->known.face[f] |= faces[f];
-        for (size_t v = 0; v < surface->vertex_count; v++)
-            s->known.vertex[v] |= vertices[v];
+                verify_look(sight, s->guards->positions + 3 * g, &view, &seen[0], &seen[1]));
+        for (int k = 0; k < 2; k++)
+            for (size_t j = 0; j < (*rows[k])->columns; j++)
+                if (seen[k][j])
+                    starg_bits_set(*rows[k], g, j);
     }
     verify_sight_free(sight);
 }
@@ -75,8 +79,8 @@ static subject prove_sample(const char *name, size_t vertices, uint64_t work) {
 }
 
 static void subject_clear(subject *s) {
-    free(s->known.face);
-    free(s->known.vertex);
+    starg_bits_free(s->known.vertices);
+    starg_bits_free(s->known.faces);
     verify_tree_free(s->known.tree);
     verify_surface_free((verify_surface *)(uintptr_t)s->known.surface);
     starg_text_free(s->context, s->text);
@@ -168,13 +172,13 @@ static void test_random_solids(void **state) {
     test_context_free(context);
 }
 
-/* Vertices, a range, whole faces, and a distance from the walls. */
+/* Vertices, a range, whole faces, a distance from the walls, two guards a face, and cones. */
 static void test_questions(void **state) {
     (void)state;
     starg_context *context = test_context(2);
     shape made = shape_columns();
     starg_solid *solid = test_solid_of(context, &made);
-    for (int question = 0; question < 4; question++) {
+    for (int question = 0; question < 6; question++) {
         starg_guard_options options = proving(200000);
         if (question == 0)
             options.visibility.target = STARG_TARGET_VERTICES;
@@ -182,8 +186,12 @@ static void test_questions(void **state) {
             options.visibility.range = 3;
         else if (question == 2)
             options.visibility.face_rule = STARG_FACES_WHOLE;
-        else
+        else if (question == 3)
             options.clearance = 0.2;
+        else if (question == 4)
+            options.redundancy = 2;
+        else
+            options.visibility.cone = 150;
         subject s = prove(context, solid, &options);
         assert_true(s.guards->lower_bound_everywhere > 1);
         check_right(&s);
@@ -391,7 +399,8 @@ static char *certificate_of_rows(const witness_row *const *rows, size_t count, s
     assert_non_null(stream);
     fprintf(stream,
             "starguard-certificate 1\nvertices 99\nfaces 99\nchecksum 0123456789abcdef\n"
-            "target faces\nrange none\nbound %zu\nroot 0:0 0:0 0:0 1:0 1:0 1:0\n",
+            "target faces\nrange none\nclearance 0:0\nredundancy 1\nbound %zu\nroot 0:0 0:0 0:0 "
+            "1:0 1:0 1:0\n",
             bound);
     fprintf(stream, "witnesses %zu\n", witnesses);
     put_set(stream, "", all, "\n");
@@ -526,6 +535,79 @@ static void test_rows(void **state) {
     test_context_free(context);
 }
 
+/* Proofs by rows of one or two witnesses: right ones, and others that nearly are. */
+static void test_false_proofs(void **state) {
+    (void)state;
+    static const char APART[] = "rows 2\n0\n1\ncells 3\nx\n=0 1n\n=1 0n\n";
+    static const char BOTH[] = "rows 2\n0\n0 1\ncells 3\nx\n=0 1n\n=1\n";
+    static const char FIRST[] = "rows 2\n0\n0\ncells 3\nx\n=0 1n\n=1 1n\n";
+    static const struct {
+        int bound;
+        const char *rows, *nodes;
+        bool follows;
+    } proofs[] = {
+        {2, APART, "nodes 1\nprices 0:1 1:1\n", true},
+        {3, APART, "nodes 1\nprices 0:1 1:1\n", false},
+        {2, APART, "nodes 1\nwitness 0 0\n", true},
+        {2, BOTH, "nodes 1\nwitness 0 0\n", false},
+        {2, BOTH, "nodes 1\nwitness 0 1\n", false},
+        {2, APART, "nodes 1\nwitness 0\n", false},
+        {2, APART, "nodes 2\nwitness 0 0\nprices\n", false},
+        {2, APART, "nodes 1\nprices 0:1 0:1 1:1\n", false},
+        {2, APART, "nodes 1\nprices\n", false},
+        {2, APART, "nodes 0\n", false},
+        {3, APART, "nodes 2\nwitness 0 0\nwitness 1 1\n", false},
+        {3, FIRST, "nodes 2\nwitness 0 0\nwitness 1\n", true},
+        {3, FIRST, "nodes 3\nwitness 0 0 0\nwitness 1\nwitness 1\n", false},
+    };
+    starg_context *context = test_context(1);
+    for (size_t i = 0; i < sizeof proofs / sizeof *proofs; i++) {
+        char text[1000];
+        starg_certificate *read = NULL;
+        everywhere_words why = {""};
+        bool follows;
+        snprintf(text, sizeof text,
+                 "starguard-certificate 1\nvertices 9\nfaces 9\nchecksum 0123456789abcdef\n"
+                 "target faces\nrange none\nclearance 0:0\nredundancy 1\nbound %d\n"
+                 "root 0:0 0:0 0:0 1:0 1:0 1:0\nwitnesses 2\n0\n1\n%s%s",
+                 proofs[i].bound, proofs[i].rows, proofs[i].nodes);
+        test_ok(context, starg_certificate_read_memory(context, text, strlen(text), "c", &read));
+        test_ok(context, verify_check_bound(read, &follows, &why));
+        if (follows != proofs[i].follows)
+            fail_msg("proof %zu: it %s %s", i, follows ? "follows" : "does not follow:", why.text);
+        starg_certificate_free(read);
+    }
+    test_context_free(context);
+}
+
+/* A cube of side 2: a corner of side a quarter is within half of the walls, half of the cube is
+ * not. */
+static void test_too_close(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    shape made = shape_cube(2);
+    starg_guard_options options = proving(1000);
+    options.clearance = 0.5;
+    subject s = prove(context, test_solid_of(context, &made), &options);
+    for (int wrong = 0; wrong < 4; wrong++) {
+        char text[1000];
+        starg_certificate *read = NULL;
+        size_t cell, reason;
+        snprintf(text, sizeof text,
+                 "starguard-certificate 1\nvertices 9\nfaces 9\nchecksum 0123456789abcdef\n"
+                 "target faces\nrange none\nclearance 1:-%d\nredundancy 1\nbound 0\n"
+                 "root 0:0 0:0 0:0 1:1 1:1 1:1\nwitnesses 0\nrows 0\ncells 19\n"
+                 "x\ny\nz\nx\ny\nz\nx\ny\nz\n%s\n.\n.\n.\n.\n.\n.\n.\n.\n%s\nnodes 0\n",
+                 wrong == 1 ? 2 : 1, wrong == 2 ? "o" : "c", wrong == 3 ? "c" : ".");
+        test_ok(context, starg_certificate_read_memory(context, text, strlen(text), "c", &read));
+        test_ok(context, verify_check_cells(read, &s.known, &cell, &reason));
+        assert_int_equal(cell, wrong == 0 ? 19 : wrong == 3 ? 18 : 9);
+        starg_certificate_free(read);
+    }
+    subject_free(&s);
+    shape_free(&made);
+}
+
 /* ---- forged ones ---- */
 
 /* The text with the first occurrence of some words replaced. */
@@ -605,7 +687,10 @@ static void test_forged(void **state) {
     check_refused(&s, with_higher_price(s.text), "worth too much");
     check_refused(&s, with_line(s.text, "\ncells ", '.', ". 0n 1n 2n 3n 4n 5n 6n 7n 8n 9n\n"),
                   "reasons of the certificate are right");
-    check_refused(&s, with_line(s.text, "\ncells ", '.', "o\n"), "is outside of the model");
+    check_refused(&s, with_line(s.text, "\ncells ", '.', "o\n"), "no guard may stand");
+    check_refused(&s, with_line(s.text, "\ncells ", '.', "c\n"), "no guard may stand");
+    check_refused(&s, replaced(s.text, "clearance 0:0", "clearance 1:0"), "clearance is another");
+    check_refused(&s, replaced(s.text, "redundancy 1", "redundancy 2"), "redundancy is another");
     check_refused(&s, with_line(s.text, "\ncells ", '.', ".\n"), "worth too much");
     check_unread(&s, with_line(s.text, "\ncells ", '.', ""), "expected");
     check_unread(&s, with_line(s.text, "\ncells ", '.', "x\n"), "halves of cells are missing");
@@ -621,10 +706,11 @@ static void test_forged(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples),    cmocka_unit_test(test_random_solids),
-        cmocka_unit_test(test_questions),  cmocka_unit_test(test_trivial),
-        cmocka_unit_test(test_same_bytes), cmocka_unit_test(test_needs_prove),
-        cmocka_unit_test(test_damaged),    cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_samples),      cmocka_unit_test(test_random_solids),
+        cmocka_unit_test(test_questions),    cmocka_unit_test(test_trivial),
+        cmocka_unit_test(test_same_bytes),   cmocka_unit_test(test_needs_prove),
+        cmocka_unit_test(test_damaged),      cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_false_proofs), cmocka_unit_test(test_too_close),
         cmocka_unit_test(test_forged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

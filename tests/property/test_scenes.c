@@ -24,7 +24,7 @@ typedef struct scene {
     bool open[MOST_OBSTACLES];
     starg_mesh *mesh, *others[MOST_OBSTACLES];
     size_t count;
-    bool outside;
+    bool outside, soup;
     double *weights; /* by face; NULL: none given */
     starg_solid *solid;
     double points[3 * POINTS];
@@ -56,9 +56,8 @@ static shape random_crate(starg_rng *rng) {
 }
 
 /* Some triangles with corners on the lattice. */
-static shape random_sheet(starg_rng *rng) {
-    shape s = {.vertex_count = 4 + starg_rng_below(rng, 3),
-               .face_count = 1 + starg_rng_below(rng, 3)};
+static shape random_sheet(starg_rng *rng, size_t faces) {
+    shape s = {.vertex_count = 4 + starg_rng_below(rng, 3 * faces), .face_count = faces};
     s.vertices = malloc(3 * s.vertex_count * sizeof *s.vertices);
     s.faces = malloc(3 * s.face_count * sizeof *s.faces);
     assert_true(s.vertices != NULL && s.faces != NULL);
@@ -79,18 +78,24 @@ static void make(scene *s, uint64_t seed) {
     starg_space_options options;
     memset(s, 0, sizeof *s);
     s->context = test_context(1);
-    s->outside = starg_rng_below(&rng, 3) == 0;
-    s->model = s->outside ? block(2, 1, 2) : block(SIDE, SIDE, SIDE);
+    uint64_t kind = starg_rng_below(&rng, 4);
+    s->outside = kind == 0;
+    s->soup = kind == 1;
+    s->model = s->outside ? block(2, 1, 2)
+               : s->soup  ? random_sheet(&rng, 12)
+                          : block(SIDE, SIDE, SIDE);
     s->mesh = test_mesh_of(s->context, &s->model);
     s->count = starg_rng_below(&rng, MOST_OBSTACLES + 1);
     for (size_t i = 0; i < s->count; i++) {
         s->open[i] = starg_rng_below(&rng, 3) == 0;
-        s->obstacles[i] = s->open[i] ? random_sheet(&rng) : random_crate(&rng);
+        s->obstacles[i] =
+            s->open[i] ? random_sheet(&rng, 1 + starg_rng_below(&rng, 3)) : random_crate(&rng);
         s->others[i] = test_mesh_of(s->context, &s->obstacles[i]);
     }
     starg_space_options_default(&options);
     options.outside = s->outside;
-    options.standoff_most = s->outside ? 3 : INFINITY;
+    options.soup = s->soup;
+    options.standoff_most = s->outside ? 3 : 0;
     test_ok(s->context,
             starg_space_create(s->context, s->mesh, (const starg_mesh *const *)s->others, s->count,
                                &options, &s->solid));
@@ -134,7 +139,7 @@ static bool is_in(const shape *s, const double p[3]) {
 }
 
 static bool is_free(const scene *s, const double p[3]) {
-    if (is_on(&s->model, p) || is_in(&s->model, p) == s->outside)
+    if (is_on(&s->model, p) || (!s->soup && is_in(&s->model, p) == s->outside))
         return false;
     for (size_t i = 0; i < s->count; i++)
         if (is_on(&s->obstacles[i], p) || (!s->open[i] && is_in(&s->obstacles[i], p)))
@@ -176,17 +181,24 @@ static bool sees_vertex(const scene *s, const double p[3], const double q[3]) {
 static bool sees_face(const scene *s, const double p[3], const bool *vertex, size_t f) {
     int side = oracle_orient3d(corner(&s->model, f, 0), corner(&s->model, f, 1),
                                corner(&s->model, f, 2), p);
-    bool seen = side == (s->outside ? -1 : 1) && (s->weights == NULL || s->weights[f] > 0);
+    bool seen =
+        side == (s->outside || s->soup ? -1 : 1) && (s->weights == NULL || s->weights[f] > 0);
     for (size_t k = 0; k < 3 && seen; k++)
         seen = vertex[s->model.faces[3 * f + k]];
     return seen;
 }
 
+/* Of vertices at one position the first stands for all. */
 static bool is_wanted_vertex(const scene *s, uint32_t v) {
+    const double *at = s->model.vertices, *q = at + 3 * (size_t)v;
+    bool wanted = false;
+    for (uint32_t u = 0; u < v; u++)
+        if (memcmp(at + 3 * (size_t)u, q, 3 * sizeof *q) == 0)
+            return false;
     for (size_t k = 0; k < 3 * s->model.face_count; k++)
-        if (s->model.faces[k] == v && (s->weights == NULL || s->weights[k / 3] > 0))
-            return true;
-    return false;
+        wanted = wanted || (memcmp(at + 3 * (size_t)s->model.faces[k], q, 3 * sizeof *q) == 0 &&
+                            (s->weights == NULL || s->weights[k / 3] > 0));
+    return wanted;
 }
 
 /* ---- comparing ---- */
@@ -203,6 +215,9 @@ static void pick_points(scene *s, uint64_t seed) {
                 p[k] = nextafter(p[k], starg_rng_below(&rng, 2) ? INFINITY : -INFINITY);
         }
         bool free_by_definition = is_free(s, p);
+        if (starg_solid_contains(s->solid, p) != free_by_definition)
+            print_error("seed %d: (%.17g, %.17g, %.17g)%s%s\n", (int)seed, p[0], p[1], p[2],
+                        s->outside ? " outside" : "", s->soup ? " soup" : "");
         assert_int_equal(starg_solid_contains(s->solid, p), free_by_definition);
         if (free_by_definition || attempt % 10 == 0)
             memcpy(s->points + 3 * s->point_count++, p, sizeof p);

@@ -9,6 +9,7 @@
 
 #include "core/bits.h"
 #include "core/rng.h"
+#include "geometry/vec3.h"
 #include "guard/cells.h"
 #include "models.h"
 #include "shapes.h"
@@ -306,31 +307,263 @@ static void test_star_shaped(void **state) {
     test_context_free(context);
 }
 
-static void test_refused(void **state) {
-    (void)state;
-    starg_context *context = test_context(1);
-    starg_solid *solid = test_sample(context, "l-room", 500);
-    double place[3] = {1, 1, 1};
-    for (int question = 0; question < 5; question++) {
-        starg_guard_options options = proving(1000);
-        starg_guards *guards = NULL;
-        if (question == 0)
-            options.coverage = 0.9;
-        else if (question == 1)
-            options.max_guards = 2;
-        else if (question == 2)
-            options.redundancy = 2;
-        else if (question == 3)
-            options.visibility.cone = 90;
-        else {
-            options.candidates = STARG_CANDIDATES_GIVEN;
-            options.points = place;
-            options.point_count = 1;
-        }
-        assert_int_equal(starg_guard(context, solid, &options, &guards), STARG_ERROR_ARGUMENT);
-        assert_null(guards);
-        assert_non_null(strstr(starg_context_error(context)->message, "anywhere"));
+/* ---- other kinds of question ---- */
+
+static bool is_within(const starg_bits *rows, size_t a, size_t b) {
+    uint64_t outside = 0;
+    for (size_t w = 0; w < rows->words; w++)
+        outside |= starg_bits_row(rows, a)[w] & ~starg_bits_row(rows, b)[w];
+    return outside == 0;
+}
+
+/* Leaves out rows that are within others: these do whatever they do. */
+static void keep_largest(starg_bits *rows) {
+    size_t kept = 0;
+    for (size_t i = 0; i < rows->rows; i++) {
+        bool needless = false;
+        for (size_t j = 0; j < rows->rows && !needless; j++)
+            needless = (j < kept || j > i) && is_within(rows, i, j) &&
+                       (j < kept || !is_within(rows, j, i));
+        if (!needless)
+            memmove(starg_bits_row_mutable(rows, kept++), starg_bits_row(rows, i),
+                    rows->words * sizeof *rows->data);
     }
+    rows->rows = kept;
+}
+
+/* A dense sample near and far from the guards, and what its points see in all directions; only
+ * points that see something that no other one does. */
+static starg_bits *sample_rows(starg_context *context, const starg_solid *solid,
+                               const starg_guards *guards, uint64_t item) {
+    double *points = calloc(3 * SAMPLE, sizeof *points);
+    starg_visibility_options view = guards->options.visibility;
+    starg_bits *rows = NULL;
+    assert_non_null(points);
+    sample_points(solid, guards, item, points);
+    view.engine = STARG_VISIBILITY_BVH;
+    view.cone = 360;
+    test_ok(context, starg_visibility(context, solid, points, SAMPLE, &view, &rows));
+    free(points);
+    keep_largest(rows);
+    return rows;
+}
+
+/* Do `most` rows, some of them perhaps more than once, hold each column as often as is left? */
+static bool holds_often(const starg_bits *rows, const uint8_t *left, size_t most) {
+    size_t rarest = SIZE_MAX, fewest = SIZE_MAX;
+    for (size_t j = 0; j < rows->columns; j++) {
+        size_t held = 0;
+        if (left[j] == 0)
+            continue;
+        for (size_t i = 0; i < rows->rows && most > 0; i++)
+            held += starg_bits_test(rows, i, j);
+        if (held < fewest) {
+            fewest = held;
+            rarest = j;
+        }
+    }
+    if (rarest == SIZE_MAX)
+        return true;
+    uint8_t *rest = calloc(rows->columns, 1);
+    assert_non_null(rest);
+    bool found = false;
+    for (size_t i = 0; i < rows->rows && most > 0 && !found; i++) {
+        if (!starg_bits_test(rows, i, rarest))
+            continue;
+        for (size_t j = 0; j < rows->columns; j++)
+            rest[j] = (uint8_t)(left[j] - (left[j] > 0 && starg_bits_test(rows, i, j)));
+        found = holds_often(rows, rest, most - 1);
+    }
+    free(rest);
+    return found;
+}
+
+/* The largest share of the area that one or two of the rows hold. */
+static double largest_area(const starg_solid *solid, const starg_bits *rows, size_t count) {
+    const starg_mesh *mesh = starg_solid_mesh(solid);
+    double *areas = calloc(rows->columns, sizeof *areas), total = 0, most = 0;
+    assert_non_null(areas);
+    for (size_t f = 0; f < rows->columns; f++) {
+        const uint32_t *c = starg_mesh_faces(mesh) + 3 * f;
+        const double *v = starg_mesh_vertices(mesh);
+        areas[f] =
+            vec3_triangle_area(v + 3 * (size_t)c[0], v + 3 * (size_t)c[1], v + 3 * (size_t)c[2]);
+        total += areas[f];
+    }
+    assert_in_range(count, 1, 2);
+    for (size_t i = 0; i < rows->rows; i++)
+        for (size_t k = count == 1 ? i : 0; k <= i; k++) {
+            double area = 0;
+            for (size_t w = 0; w < rows->words; w++)
+                STARG_FOR_BITS (bit, starg_bits_row(rows, i)[w] | starg_bits_row(rows, k)[w])
+                    area += areas[64 * w + bit];
+            most = fmax(most, area);
+        }
+    free(areas);
+    return most / total;
+}
+
+static starg_solid *columns_solid(starg_context *context) {
+    shape s = shape_columns();
+    starg_solid *solid = test_solid_of(context, &s);
+    shape_free(&s);
+    return solid;
+}
+
+/* So many guards see no more than the bound says, and no two of a dense sample do. */
+static void test_number_given(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = columns_solid(context);
+    for (size_t most = 1; most <= 2; most++) {
+        starg_guard_options options = proving(3000000);
+        options.max_guards = most;
+        starg_guards *guards = test_guard(context, solid, &options);
+        starg_bits *rows = sample_rows(context, solid, guards, most);
+        assert_int_equal(guards->lower_bound_everywhere, 0);
+        assert_false(guards->optimal_everywhere);
+        assert_true(guards->area_bound_everywhere < 1);
+        assert_true(guards->coverage_area <= guards->area_bound_everywhere * (1 + 1e-9));
+        assert_true(largest_area(solid, rows, most) <= guards->area_bound_everywhere * (1 + 1e-9));
+        starg_bits_free(rows);
+        starg_guards_free(context, guards);
+    }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* Fewer guards than the bound do not see the part that is asked for. */
+static void test_part_of_the_area(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = columns_solid(context);
+    size_t told = 0;
+    for (int part = 6; part <= 9; part++) {
+        starg_guard_options options = proving(2000000);
+        options.coverage = part / 10.0;
+        starg_guards *guards = test_guard(context, solid, &options);
+        starg_bits *rows = sample_rows(context, solid, guards, (uint64_t)part);
+        size_t fewer = guards->lower_bound_everywhere - 1;
+        assert_int_equal(guards->coverable_faces, guards->face_count);
+        assert_in_range(guards->lower_bound_everywhere, 1, guards->count);
+        assert_true(guards->lower_bound >= guards->lower_bound_everywhere);
+        if (fewer > 0)
+            assert_true(largest_area(solid, rows, fewer < 2 ? fewer : 2) < options.coverage);
+        told += fewer;
+        starg_bits_free(rows);
+        starg_guards_free(context, guards);
+    }
+    assert_true(told > 0);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* Fewer guards than the bound do not see everything twice that the guards see twice. */
+static void test_several_guards_a_face(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = columns_solid(context);
+    starg_guard_options options = proving(1500000);
+    options.redundancy = 2;
+    starg_guards *guards = test_guard(context, solid, &options);
+    starg_bits *rows = sample_rows(context, solid, guards, 3);
+    starg_bits *own = NULL;
+    uint8_t *wanted = calloc(rows->columns, 1);
+    assert_non_null(wanted);
+    test_ok(context, starg_visibility(context, solid, guards->positions, guards->count,
+                                      &options.visibility, &own));
+    for (size_t j = 0; j < rows->columns; j++) {
+        for (size_t i = 0; i < guards->count && wanted[j] < 2; i++)
+            wanted[j] = (uint8_t)(wanted[j] + starg_bits_test(own, i, j));
+        assert_int_equal(wanted[j], 2);
+    }
+    assert_in_range(guards->lower_bound_everywhere, 3, guards->count);
+    assert_false(holds_often(rows, wanted, guards->lower_bound_everywhere - 1));
+    free(wanted);
+    starg_bits_free(own);
+    starg_bits_free(rows);
+    starg_guards_free(context, guards);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* The fewest of the given candidates, which are all that guards may be, beside a bound for guards
+ * anywhere; the method does not matter. */
+static void test_given_candidates(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = columns_solid(context);
+    double points[3 * 40];
+    const starg_mesh *mesh = starg_solid_mesh(solid);
+    double lower[3], upper[3];
+    starg_rng rng = starg_rng_make(4, 4, 4);
+    size_t count = 0;
+    starg_mesh_bounds(mesh, lower, upper);
+    while (count < 40) {
+        for (size_t k = 0; k < 3; k++)
+            points[3 * count + k] = lower[k] + starg_rng_unit(&rng) * (upper[k] - lower[k]);
+        count += starg_solid_contains(solid, points + 3 * count);
+    }
+    for (int method = 0; method < 3; method++) {
+        starg_guard_options options = proving(400000);
+        starg_bits *rows = NULL;
+        options.method = (starg_guard_method)method;
+        options.candidates = STARG_CANDIDATES_GIVEN;
+        options.points = points;
+        options.point_count = count;
+        starg_guards *guards = test_guard(context, solid, &options);
+        test_ok(context,
+                starg_visibility(context, solid, points, count, &options.visibility, &rows));
+        uint64_t *all = calloc(rows->words, sizeof *all);
+        assert_non_null(all);
+        for (size_t i = 0; i < count; i++)
+            for (size_t w = 0; w < rows->words; w++)
+                all[w] |= starg_bits_row(rows, i)[w];
+        assert_int_equal(guards->candidate_count, count);
+        assert_true(guards->optimal);
+        assert_true(covers(rows, all, guards->count) && !covers(rows, all, guards->count - 1));
+        for (size_t g = 0; g < guards->count; g++) {
+            bool given = false;
+            for (size_t i = 0; i < count; i++)
+                given = given ||
+                        memcmp(points + 3 * i, guards->positions + 3 * g, 3 * sizeof *points) == 0;
+            assert_true(given);
+        }
+        check_bound(context, solid, guards, (uint64_t)method);
+        free(all);
+        starg_bits_free(rows);
+        starg_guards_free(context, guards);
+    }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* What cameras do not do in all directions, they do not do in one. */
+static void test_cone(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = columns_solid(context);
+    starg_guard_options options = proving(400000);
+    options.candidate_count = 20;
+    options.visibility.cone = 120;
+    starg_guards *guards = test_guard(context, solid, &options);
+    starg_bits *rows = sample_rows(context, solid, guards, 5);
+    starg_bits *seen_rows = NULL;
+    starg_visibility_options view = guards->options.visibility;
+    view.directions = guards->directions;
+    test_ok(context,
+            starg_visibility(context, solid, guards->positions, guards->count, &view, &seen_rows));
+    uint64_t *seen = calloc(rows->words, sizeof *seen);
+    assert_non_null(seen);
+    for (size_t i = 0; i < guards->count; i++)
+        for (size_t w = 0; w < rows->words; w++)
+            seen[w] |= starg_bits_row(seen_rows, i)[w];
+    assert_in_range(guards->lower_bound_everywhere, 2, guards->count);
+    assert_false(covers(rows, seen, guards->lower_bound_everywhere - 1));
+    free(seen);
+    starg_bits_free(rows);
+    starg_bits_free(seen_rows);
+    starg_guards_free(context, guards);
     starg_solid_free(solid);
     test_context_free(context);
 }
@@ -342,7 +575,11 @@ int main(void) {
         cmocka_unit_test(test_cells_hold_their_points),
         cmocka_unit_test(test_same_bytes),
         cmocka_unit_test(test_star_shaped),
-        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_number_given),
+        cmocka_unit_test(test_part_of_the_area),
+        cmocka_unit_test(test_several_guards_a_face),
+        cmocka_unit_test(test_given_candidates),
+        cmocka_unit_test(test_cone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -208,13 +208,19 @@ static void test_skeletons_are_points(void **state) {
     test_context_free(context);
 }
 
-/* A line of too many numbers is told by its number; six are a position and a direction. */
+/* A line of too many numbers is told by its number; six are a position and a direction, and all
+ * lines have as many. */
 static void test_lines_of_points(void **state) {
     static const struct {
         const char *text, *says;
-    } cases[] = {{"1 2 3\n1 2 3 0 0 1\n", "directions"}, {"1 2 3\nv 1 2 3 4\n", "not 4"},
-                 {"1 2 3\n1 2\n3 4 5\n", "not 2"},       {"1 2 3\n1 2 3 4 5 6 7\n", "not 7"},
-                 {"1 2 3\n1 2 hall\n", "hall"},          {"1 2 3\n1 2 3 # 4 5 6\nl 1 2\n", ""}};
+    } cases[] = {{"1 2 3\n1 2 3 0 0 1\n", "6 numbers, and 3"},
+                 {"1 2 3\nv 1 2 3 4\n", "not 4"},
+                 {"1 2 3 1 0 0\n1 2 3\n", "3 numbers, and 6"},
+                 {"1 2 3 1 0 0\n1 2 3 0 0 0\n", "none"},
+                 {"1 2 3\n1 2\n3 4 5\n", "not 2"},
+                 {"1 2 3\n1 2 3 4 5 6 7\n", "not 7"},
+                 {"1 2 3\n1 2 hall\n", "hall"},
+                 {"1 2 3\n1 2 3 # 4 5 6\nl 1 2\n", ""}};
     (void)state;
     starg_context *context = test_context(1);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -3,11 +3,12 @@
  *
  * Stages: weld, drop what is doubled or hangs loose, orient patch by patch, cut apart what is not
  * a manifold, remove faces without area, fill holes, drop what encloses nothing, turn the shells,
- * resolve local intersections. Each stage is a file of its own (mesh/repair/repair.h lists them)
- * and takes what the ones before it leave. A mesh that needs none of them comes back as it is.
+ * resolve local intersections, or, where the union is asked for, cut all of them out. Each stage is
+ * a file of its own (mesh/repair/repair.h lists them) and takes what the ones before it leave. A
+ * mesh that needs none of them comes back as it is.
  *
- * What is never attempted: the union of components that overlap. They stay, are counted in
- * intersections_after, and the winding number makes one solid of them. */
+ * Without a union, components that overlap stay, are counted in intersections_after, and the
+ * winding number makes one solid of them. */
 #include <math.h>
 
 #include "core/fields.h"
@@ -40,6 +41,12 @@ static const starg_field OPTIONS[] = {
      .initial = 10,
      .value = "N",
      .help = "Number of attempts to resolve self-intersections."},
+    {.key = "union",
+     .option = "union",
+     .kind = STARG_FIELD_FLAG,
+     FIELD_MEMBER(starg_repair_options, unite),
+     .help = "Cut faces that intersect and keep the boundary of what the surface encloses (winding "
+             "number 1 or more). Other faces and all vertices stay."},
 };
 static const starg_fields OPTIONS_TABLE = {
     .name = "repair options", .size = sizeof(starg_repair_options), FIELD_ROWS(OPTIONS)};
@@ -57,13 +64,15 @@ static size_t found(const starg_check *check, starg_finding_kind kind) {
     return check->findings[kind].count;
 }
 
-/* Contacts and doubled positions are no faults of a solid: shells may touch. */
+/* Contacts and doubled positions are no faults of a solid: shells may touch. But surfaces may pass
+ * through one another where faces only touch, so a union looks at them. */
 static bool needs_nothing(const starg_check *check, const starg_repair_options *options) {
     return check->usable && options->merge_distance == 0 &&
            found(check, STARG_FINDING_INWARD_COMPONENT) == 0 &&
            found(check, STARG_FINDING_DEGENERATE_FACE) == 0 &&
            found(check, STARG_FINDING_ISOLATED_VERTEX) == 0 &&
-           found(check, STARG_FINDING_SELF_INTERSECTION) == 0;
+           found(check, STARG_FINDING_SELF_INTERSECTION) == 0 &&
+           (!options->unite || found(check, STARG_FINDING_SELF_CONTACT) == 0);
 }
 
 /* The combinatorial part. Equal positions are merged only where the surface is broken or a
@@ -90,10 +99,17 @@ static starg_status close_surface(repair_state *state) {
     STARG_TRY(repair_fill_holes(state));
     STARG_TRY(repair_degenerate(state)); /* loops with corners in a row leave no choice */
     STARG_TRY(repair_drop_flat(state));
-    STARG_TRY(repair_untangle(state));
-    STARG_TRY(repair_drop_flat(state)); /* cutting out may have closed a pocket */
+    if (!state->options.unite) {
+        STARG_TRY(repair_untangle(state));
+        STARG_TRY(repair_drop_flat(state)); /* cutting out may have closed a pocket */
+    }
     STARG_TRY(repair_drop_isolated(state));
     STARG_TRY(repair_turn_shells(state));
+    if (state->options.unite) {
+        STARG_TRY(repair_unite(state));
+        STARG_TRY(repair_split(state));
+        STARG_TRY(repair_drop_isolated(state));
+    }
 done:
     return status;
 }
@@ -146,6 +162,15 @@ static starg_status fail_empty(repair_state *state) {
                       state->input->face_count, state->one_sided_faces, report->components_dropped);
 }
 
+/* Cutting the result apart may put a vertex in the middle of an edge, rounded. */
+static starg_status fail_crossed(starg_context *context, const starg_finding *finding) {
+    return starg_fail_at(context, STARG_ERROR_MESH, REPAIR_STAGE, finding->element, finding->first,
+                         finding->shown,
+                         "%zu pairs of faces of the union intersect after rounding; merge near "
+                         "vertices first",
+                         finding->count);
+}
+
 static starg_status fail_unusable(starg_context *context, const starg_check *check) {
     for (int kind = 0; kind < STARG_FINDING_INWARD_COMPONENT; kind++) {
         const starg_finding *finding = &check->findings[kind];
@@ -175,6 +200,8 @@ static starg_status finish(repair_state *state, starg_mesh **out) {
     state->report.intersections_after = found(check, STARG_FINDING_SELF_INTERSECTION);
     if (!check->usable)
         STARG_TRY(fail_unusable(state->context, check));
+    if (state->options.unite && state->report.intersections_after > 0)
+        STARG_TRY(fail_crossed(state->context, &check->findings[STARG_FINDING_SELF_INTERSECTION]));
     STARG_TRY(describe_vertices(state));
     describe_faces(state);
     *out = mesh;

@@ -40,4 +40,8 @@ starg_status repair_turn_shells(repair_state *state);
 /* Resolves local intersections within a component. Takes a closed, oriented manifold mesh. */
 starg_status repair_untangle(repair_state *state);
 
+/* Makes the surface the boundary of what it encloses. Takes a closed surface whose shells are
+ * turned; leaves edges and vertices for repair_split. */
+starg_status repair_unite(repair_state *state);
+
 #endif

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Space that can be reached from a point, in cubes. */
+#ifndef STARG_MESH_FLOOD_H
+#define STARG_MESH_FLOOD_H
+
+#include "mesh/solid.h"
+
+typedef struct flood_cells flood_cells;
+
+/* The cubes of `size` in the reach of a scene (solid_reach) that are connected to that of `from`
+ * over sides, through cubes that no face meets. Errors: ARGUMENT (`from` is out of reach or in a
+ * cube that a face meets; too many cubes), MEMORY, CANCELLED. */
+starg_status flood_create(starg_context *context, const starg_solid *scene, const double from[3],
+                          double size, flood_cells **out);
+void flood_free(flood_cells *cells);
+
+/* Is p in one of them? */
+bool flood_reaches(const flood_cells *cells, const double p[3]);
+
+/* Their volume. */
+double flood_volume(const flood_cells *cells);
+
+#endif

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A surface that intersects itself is replaced by the boundary of what it encloses (mesh/union),
+ * from which strict pieces are made. The pieces then have that boundary: faces of the
+ * model that meet no others, exactly, parts of the others up to the rounding of new vertices, and
+ * nothing of what lies inside. How far that is from the boundary is measured at points some
+ * thousandth of the diagonal apart. */
+#include "star/united.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "geometry/vec3.h"
+#include "mesh/mesh.h"
+#include "starguard/repair.h"
+#include "tetra/generate.h"
+
+static const char STAGE[] = "pieces";
+
+static const double STEP = 1e-3;     /* of the diagonal */
+static const double DOUBT = 0x1p-44; /* likewise: what distances may be off that are computed */
+
+/* ---- what is kept ---- */
+
+/* A face by its positions, from the least corner on. */
+typedef struct placed_face {
+    double corner[9];
+    uint32_t face;
+} placed_face;
+
+static placed_face place_face(const starg_mesh *mesh, uint32_t face) {
+    placed_face out = {.face = face};
+    const double *p[3];
+    int first = 0;
+    for (int k = 0; k < 3; k++)
+        p[k] = mesh->vertices + 3 * (size_t)mesh->faces[3 * (size_t)face + (size_t)k];
+    for (int k = 1; k < 3; k++)
+        for (int i = 0; i < 3; i++)
+            if (p[k][i] != p[first][i]) {
+                first = p[k][i] < p[first][i] ? k : first;
+                break;
+            }
+    for (int k = 0; k < 3; k++)
+        vec3_copy(p[(first + k) % 3], out.corner + 3 * k);
+    return out;
+}
+
+static int compare_faces(const void *left, const void *right) {
+    const placed_face *a = left, *b = right;
+    for (int i = 0; i < 9; i++)
+        if (a->corner[i] != b->corner[i])
+            return a->corner[i] < b->corner[i] ? -1 : 1;
+    return 0;
+}
+
+/* The faces of the model that the boundary lacks, as a mesh on the model's vertices (borrowed). */
+static starg_status find_lost(starg_context *context, const starg_mesh *model,
+                              const starg_mesh *boundary, starg_mesh *lost) {
+    starg_status status = STARG_OK;
+    placed_face *sorted = NULL;
+    *lost = *model;
+    lost->face_count = 0;
+    lost->faces = NULL;
+    STARG_NEW(context, STAGE, sorted, boundary->face_count);
+    STARG_NEW(context, STAGE, lost->faces, 3 * model->face_count);
+    for (uint32_t f = 0; f < boundary->face_count; f++)
+        sorted[f] = place_face(boundary, f);
+    qsort(sorted, boundary->face_count, sizeof *sorted, compare_faces);
+    for (uint32_t f = 0; f < model->face_count; f++) {
+        placed_face own = place_face(model, f);
+        if (bsearch(&own, sorted, boundary->face_count, sizeof *sorted, compare_faces) == NULL)
+            memcpy(lost->faces + 3 * lost->face_count++, model->faces + 3 * (size_t)f,
+                   3 * sizeof *lost->faces);
+    }
+done:
+    starg_release(context, sorted);
+    return status;
+}
+
+/* How far vertices of the pieces' boundary are from the model: those of the union, and those of
+ * cuts, are rounded; facets between them lie in faces of the model. */
+static starg_status measure_rounding(starg_context *context, const starg_solid *solid,
+                                     const starg_decomposition *pieces, double *farthest) {
+    starg_status status = STARG_OK;
+    starg_mesh *boundary = NULL;
+    STARG_TRY(starg_tetmesh_surface(context, pieces->mesh, &boundary, NULL));
+    for (size_t v = 0; v < boundary->vertex_count; v++)
+        *farthest = fmax(*farthest, bvh_distance(solid->tree, boundary->vertices + 3 * v));
+done:
+    starg_mesh_free(boundary);
+    return status;
+}
+
+starg_status united_report(starg_context *context, const starg_solid *solid,
+                           const starg_solid *united, double rounding, starg_decomposition *out) {
+    starg_status status = STARG_OK;
+    starg_mesh lost = {0};
+    double step = STEP * solid->check->diagonal, farthest = 0;
+    STARG_TRY(measure_rounding(context, solid, out, &rounding));
+    STARG_TRY(find_lost(context, solid->mesh, united->mesh, &lost));
+    if (lost.face_count > 0)
+        STARG_TRY(tetra_measure_one_way(context, &lost, united->tree, step, &farthest));
+    out->faces_kept = solid->mesh->face_count - lost.face_count;
+    rounding += DOUBT * solid->check->diagonal;
+    farthest = fmax(rounding, lost.face_count > 0 ? farthest + step : 0);
+    out->tetra = (starg_tetra_report){.to_surface = rounding,
+                                      .from_surface = farthest,
+                                      .distance = rounding,
+                                      .distance_back = farthest};
+done:
+    starg_release(context, lost.faces);
+    return status;
+}
+
+/* ---- the union ---- */
+
+/* Errors that leave the lattice as a way out. */
+static bool is_refusal(starg_status status) {
+    return status == STARG_ERROR_MESH || status == STARG_ERROR_RANGE ||
+           status == STARG_ERROR_SOLVER;
+}
+
+static starg_status make(starg_context *context, const starg_solid *solid, double *rounding,
+                         starg_solid **out) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    starg_repair_options options;
+    starg_repair_report report;
+    starg_repair_options_default(&options);
+    options.unite = true;
+    STARG_TRY(starg_mesh_repair(context, solid->mesh, &options, &mesh, &report));
+    *rounding = report.rounding + report.largest_move;
+    STARG_TRY(solid_make(context, mesh, out));
+done:
+    starg_mesh_free(mesh);
+    return status;
+}
+
+starg_status united_make(starg_context *context, const starg_solid *solid, starg_solid **out,
+                         double *rounding) {
+    const starg_finding *found = solid->check->findings;
+    *out = NULL;
+    if (found[STARG_FINDING_SELF_INTERSECTION].count == 0 &&
+        found[STARG_FINDING_SELF_CONTACT].count == 0 &&
+        found[STARG_FINDING_DEGENERATE_FACE].count == 0)
+        return STARG_OK;
+    starg_status status = make(context, solid, rounding, out);
+    if (!is_refusal(status))
+        return status;
+    starg_log(context, STARG_LOG_NOTICE, "the surface cannot be cut where it intersects: %s",
+              starg_context_error(context)->message);
+    return STARG_OK;
+}

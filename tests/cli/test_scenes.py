@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes: obstacles, shells as given, outsides, soups, targets; and what is wrong with them."""
+import json
+
+from support import Case, main
+
+
+def box(low, high, n=1, inward=False):
+    """Vertices and faces of a box with n x n squares a side."""
+    vertices, faces = {}, []
+    for axis in range(3):
+        for side in range(2):
+            u, v = (axis + 1) % 3, (axis + 2) % 3
+
+            def corner(a, b):
+                p = [0.0, 0.0, 0.0]
+                p[axis] = (low, high)[side][axis]
+                p[u] = low[u] + (high[u] - low[u]) * a / n
+                p[v] = low[v] + (high[v] - low[v]) * b / n
+                return vertices.setdefault(tuple(p), len(vertices))
+
+            for i in range(n):
+                for j in range(n):
+                    q = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
+                    if (side == 0) != inward:
+                        q.reverse()
+                    faces += [(q[0], q[1], q[2]), (q[0], q[2], q[3])]
+    return list(vertices), faces
+
+
+def off(*parts):
+    vertices, faces = [], []
+    for own_vertices, own_faces in parts:
+        first = len(vertices)
+        vertices += own_vertices
+        faces += [tuple(first + i for i in face) for face in own_faces]
+    lines = ["OFF", f"{len(vertices)} {len(faces)} 0"]
+    lines += [" ".join(map(repr, p)) for p in vertices]
+    lines += ["3 " + " ".join(map(str, face)) for face in faces]
+    return "\n".join(lines) + "\n"
+
+
+ROOM = box((0, 0, 0), (8, 6, 3), 4)
+CRATE = (3, 2, 0), (5, 4, 1.5)  # on the floor
+
+
+class Scenes(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("room.off", off(ROOM))
+        self.write("crate.off", off(box(*CRATE, 2)))
+
+    def guards(self, *words):
+        self.run_text("guard", *words, "-o", "g.json", "--quiet")
+        with open(self.path("g.json"), encoding="utf-8") as file:
+            return json.load(file)
+
+    def in_crate(self, result):
+        return [g["position"] for g in result["guards"]
+                if all(a <= x <= b for a, x, b in zip(CRATE[0], g["position"], CRATE[1]))]
+
+    def verified(self, model):
+        self.run_text("verify", model, "g.json")
+
+    def test_obstacle(self):
+        """No guard stands in a crate that is an obstacle, and the crate hides what is behind it."""
+        result = self.guards("room.off", "--obstacles", "crate.off")
+        self.assertEqual(self.in_crate(result), [])
+        self.assertEqual(result["model"]["faces"], len(ROOM[1]))
+        self.assertEqual(result["scene"]["obstacles"][0]["file"], "crate.off")
+        self.verified("room.off")
+        alone = self.guards("room.off")
+        self.assertNotIn("scene", alone)
+        self.assertLess(len(alone["guards"]), len(result["guards"]))
+
+    def test_orientation(self):
+        """The same crate as a shell of the room that faces the free space."""
+        self.write("both.off", off(ROOM, box(*CRATE, 2, inward=True)))
+        result = self.guards("both.off", "--orientation", "keep")
+        self.assertEqual(self.in_crate(result), [])
+        self.verified("both.off")
+
+    def test_orientation_inside_out(self):
+        """All of it turned: faces whose fronts are towards the free space, as in games."""
+        self.write("both.off", off(box((0, 0, 0), (8, 6, 3), 4, inward=True), box(*CRATE, 2)))
+        self.assertEqual(self.in_crate(self.guards("both.off", "--orientation", "keep")), [])
+        self.verified("both.off")
+
+    def test_warning(self):
+        """Under the rule of unions a guard may stand in a crate; then there is a warning."""
+        self.write("both.off", off(ROOM, box(*CRATE, 2)))
+        self.write("there.txt", "4 3 0.7\n1 1 1\n")
+        _, err = self.run_text("guard", "both.off", "-o", "g.json", "--candidates", "there.txt")
+        self.assertIn("within more than one shell", err)
+        inside = self.in_crate(json.loads(self.read("g.json")))
+        self.assertEqual(len(inside), 1)
+
+    def test_sheet(self):
+        """An open obstacle blocks the view from both sides."""
+        self.write("wall.off", "OFF\n4 2 0\n4 -1 -1\n4 7 -1\n4 7 4\n4 -1 4\n3 0 1 2\n3 0 2 3\n")
+        result = self.guards("room.off", "--obstacles", "wall.off")
+        self.assertEqual(len(result["guards"]), 2)
+        sides = sorted(g["position"][0] < 4 for g in result["guards"])
+        self.assertEqual(sides, [False, True])
+        self.verified("room.off")
+
+    def test_outside(self):
+        result = self.guards("crate.off", "--outside", "--standoff", "0.5,2")
+        for guard in result["guards"]:
+            gap = [max(a - x, 0, x - b) for a, x, b in zip(CRATE[0], guard["position"], CRATE[1])]
+            distance = sum(x * x for x in gap) ** 0.5
+            self.assertTrue(0.5 <= distance * (1 + 1e-9) and distance <= 2 * (1 + 1e-9))
+        self.assertEqual(result["coverage"]["uncovered_faces"], [])
+        self.verified("crate.off")
+
+    def test_outside_with_ground(self):
+        """What stands on the ground is not seen from below it."""
+        self.write("ground.off", off(box((-9, -9, -1), (19, 19, 0))))
+        result = self.guards("crate.off", "--outside", "--standoff", "0.5,2", "--obstacles",
+                             "ground.off")
+        self.assertEqual(len(result["coverage"]["uncovered_faces"]), 8)
+        self.verified("crate.off")
+
+    def test_soup(self):
+        """A room of single faces, one of which is missing, with its fronts inside."""
+        vertices, faces = box((0, 0, 0), (8, 6, 3), 4, inward=True)
+        self.write("soup.off", off((vertices, faces[1:])))
+        self.run_text("guard", "soup.off", "-o", "g.json", status=2)
+        self.guards("soup.off", "--soup", "--within", "0.1,0.1,0.1,7.9,5.9,2.9")
+        self.verified("soup.off")
+        result = self.guards("soup.off", "--soup", "--obstacles", "crate.off", "--from", "1,1,1",
+                             "--cell", "0.25")
+        self.assertEqual(self.in_crate(result), [])
+        self.assertEqual(result["scene"]["from"], [1, 1, 1])
+        self.verified("soup.off")
+
+    def test_targets(self):
+        """What need not be seen costs no guards, and counts for nothing."""
+        self.write("far.txt", "# both ends\n0 1 2 3\n40 41\n")
+        seen = self.guards("room.off", "--obstacles", "crate.off", "--see", "far.txt")
+        self.assertEqual([face for face, weight in seen["scene"]["targets"]], [0, 1, 2, 3, 40, 41])
+        self.assertEqual(seen["coverage"]["faces"], 1)
+        self.verified("room.off")
+        rest = self.guards("room.off", "--ignore", "far.txt")
+        self.assertEqual(len(rest["scene"]["targets"]), len(ROOM[1]) - 6)
+        self.verified("room.off")
+
+    def test_weights(self):
+        """A share of the weighted area is a share of what matters."""
+        self.write("w.txt", "\n".join("9" if f < 32 else "1" for f in range(len(ROOM[1]))))
+        self.guards("room.off", "--weights", "w.txt", "--coverage", "0.5")
+        self.verified("room.off")
+
+    def test_poses(self):
+        """Given cameras look where they were told, and their results are candidates again."""
+        cameras = ["1 1 1.5 1 1 0", "7 5 1.5 -1 -1 0", "7 1 1.5 0 1 0", "1 5 1.5 1 0 0"]
+        self.write("cameras.txt", "\n".join(cameras))
+        result = self.guards("room.off", "--candidates", "cameras.txt", "--cone", "90")
+        for guard in result["guards"]:
+            line = " ".join(f"{x:g}" for x in guard["position"] + guard["direction"])
+            self.assertIn(line, cameras)
+        self.verified("room.off")
+        self.write("again.json", self.read("g.json"))
+        again = self.guards("room.off", "--candidates", "again.json", "--cone", "90")
+        self.assertEqual(again["guards"], result["guards"])
+        self.write("bad.txt", "1 1 1.5 0 0 0\n")
+        _, err = self.run_text("guard", "room.off", "-o", "bad.json", "--candidates", "bad.txt",
+                               status=2)
+        self.assertIn("line 1", err)
+
+    def test_visible(self):
+        """`visible` takes scenes as well; what is behind the crate is hidden by it."""
+        plain = self.run_json("visible", "room.off", "--from", "1,3,0.5")
+        behind = self.run_json("visible", "room.off", "--from", "1,3,0.5", "--obstacles", "crate.off")
+        self.assertLess(behind["points"][0]["count"], plain["points"][0]["count"])
+        self.assertTrue(set(behind["points"][0]["faces"]) <= set(plain["points"][0]["faces"]))
+        outside = self.run_json("visible", "crate.off", "--outside", "--from", "-10,3,0.5")
+        self.assertEqual(outside["points"][0]["count"], 8)
+
+    def test_forged(self):
+        """A guard in the crate, and another crate, do not pass."""
+        result = self.guards("room.off", "--obstacles", "crate.off")
+        result["guards"][0]["position"] = [4, 3, 0.7]
+        self.write("g.json", json.dumps(result))
+        self.run_text("verify", "room.off", "g.json", status=4)
+        self.write("crate.off", off(box(*CRATE, 1)))
+        _, err = self.run_text("verify", "room.off", "g.json", status=1)
+        self.assertIn("obstacle 0", err)
+
+    def test_bad_input(self):
+        self.write("far.off", off(box((20, 0, 0), (21, 1, 1))))
+        self.write("short.txt", "1 2 3\n")
+        self.write("negative.txt", "1 " * (len(ROOM[1]) - 1) + "-1\n")
+        self.write("nothing.txt", "0 " * len(ROOM[1]))
+        self.write("beyond.txt", "0 99999\n")
+        for words, status, says in [
+                (["room.off", "--obstacles", "far.off"], 1, "obstacle 0"),
+                (["crate.off", "--outside"], 1, "--standoff"),
+                (["crate.off", "--outside", "--standoff", "2,1"], 1, "from 2 to 1"),
+                (["crate.off", "--outside", "--standoff", "2"], 1, "MIN,MAX"),
+                (["room.off", "--standoff", "5,6"], 2, "no candidate"),
+                (["room.off", "--cell", "1"], 1, "--from"),
+                (["room.off", "--soup", "--from", "1,1,0", "--cell", "0.1"], 1, "a face meets"),
+                (["room.off", "--soup", "--from", "50,1,1"], 1, "not in the box"),
+                (["room.off", "--soup", "--from", "1,1,1", "--cell", "1e-5"], 1, "2^30"),
+                (["room.off", "--soup", "--outside", "--standoff", "1,2"], 1, "soup"),
+                (["room.off", "--weights", "short.txt"], 2, "3 weights"),
+                (["room.off", "--weights", "negative.txt"], 2, "-1"),
+                (["room.off", "--weights", "nothing.txt"], 1, "nothing is to be seen"),
+                (["room.off", "--see", "beyond.txt"], 2, "99999"),
+                (["room.off", "--see", "short.txt", "--ignore", "short.txt"], 1, "exclude"),
+                (["room.off", "--see", "missing.txt"], 2, "missing.txt"),
+                (["room.off", "--orientation", "keeep"], 1, "did you mean 'keep'"),
+        ]:
+            with self.subTest(words):
+                _, err = self.run_text("guard", *words, "-o", "bad.json", status=status)
+                self.assertIn(says, err)
+                self.assertNotIn("bad.json", self.names())
+
+
+if __name__ == "__main__":
+    main()
