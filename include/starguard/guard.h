@@ -164,7 +164,7 @@ typedef struct starg_guards {
 STARG_API starg_status starg_guard(starg_context *context, const starg_solid *solid,
                                    const starg_guard_options *options, starg_guards **out);
 /* The same with `prove`, and the certificate of lower_bound_everywhere: a text (docs/formats.md) of
- * `size` bytes, followed by a zero byte, that starg_verify_certified checks. Free it with
+ * `size` bytes, followed by a zero byte, that starg_verify_guards_with checks. Free it with
  * starg_text_free. Errors: those of starg_guard, ARGUMENT (without `prove`). */
 STARG_API starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
                                              const starg_guard_options *options, starg_guards **out,
