@@ -45,12 +45,12 @@ typedef struct starg_decomposition {
     starg_decompose_mode mode;
     /* Size of the model: a surface (no tetrahedra) or a tetrahedral mesh (no faces). */
     size_t model_vertices, model_faces, model_tetrahedra;
-    starg_tetra_report tetra; /* how the model was filled; given tetrahedra, and pieces made from the
-                                 surface alone, preserve the surface. If read from files: only
+    starg_tetra_report tetra; /* how the model was filled; given tetrahedra, and pieces made from
+                                 the surface alone, preserve the surface. If read from files: only
                                  whether it was preserved, and distances */
-    /* Faces of the model that are in the boundary as they are or subdivided, where the surface is not
-     * kept because it intersects itself: the others are cut at the intersections or lie inside. 0:
-     * not counted. */
+    /* Faces of the model that are in the boundary as they are or subdivided, where the surface is
+     * not kept because it intersects itself: the others are cut at the intersections or lie inside.
+     * 0: not counted. */
     size_t faces_kept;
     starg_tetmesh *mesh;
     size_t tetrahedra; /* of the mesh */
@@ -94,13 +94,13 @@ STARG_API void starg_decompose_options_default(starg_decompose_options *options)
 /* Names, ranges and descriptions of the options. */
 STARG_API const starg_fields *starg_decompose_options_fields(void);
 
-/* Cuts a solid. STRICT cuts an embedded surface as it is: the boundary of the pieces is the surface,
- * possibly subdivided, whose new vertices are rounded. At the context's time limit the search
- * returns its best result; without any, the first one is finished in a hurry. A surface that
- * intersects itself is first replaced by the boundary of what it encloses (starg_repair_options.unite).
- * PAPER, and a surface of which that cannot be made, is tetrahedralized first.
- * `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization failed), MEMORY, CANCELLED,
- * TIME (not yet tetrahedralized). */
+/* Cuts a solid. STRICT cuts an embedded surface as it is: the boundary of the pieces is the
+ * surface, possibly subdivided, whose new vertices are rounded. At the context's time limit the
+ * search returns its best result; without any, the first one is finished in a hurry. A surface that
+ * intersects itself is first replaced by the boundary of what it encloses
+ * (starg_repair_options.unite). PAPER, and a surface of which that cannot be made, is
+ * tetrahedralized first. `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization
+ * failed), MEMORY, CANCELLED, TIME (not yet tetrahedralized). */
 STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out);

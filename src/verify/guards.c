@@ -669,13 +669,6 @@ starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
     return starg_verify_guards_with(context, mesh, &(starg_guards_evidence){0}, guards, out);
 }
 
-starg_status starg_verify_certified(starg_context *context, const starg_mesh *mesh,
-                                    const starg_guards *guards,
-                                    const starg_certificate *certificate, starg_verdict **out) {
-    const starg_guards_evidence evidence = {.certificate = certificate};
-    return starg_verify_guards_with(context, mesh, &evidence, guards, out);
-}
-
 starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,
                                       const starg_guards_evidence *evidence,
                                       const starg_guards *guards, starg_verdict **out) {

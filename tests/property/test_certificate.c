@@ -107,7 +107,9 @@ static void check_right(const subject *s) {
     starg_verdict *verdict = NULL;
     test_ok(s->context, starg_certificate_read_memory(s->context, s->text, s->size, "c", &read));
     assert_int_equal(read->bound, s->guards->lower_bound_everywhere);
-    test_ok(s->context, starg_verify_certified(s->context, s->mesh, s->guards, read, &verdict));
+    test_ok(s->context, starg_verify_guards_with(s->context, s->mesh,
+                                                 &(starg_guards_evidence){.certificate = read},
+                                                 s->guards, &verdict));
     for (size_t i = 0; i < verdict->count; i++)
         if (!verdict->claims[i].holds)
             print_message("%s\n", verdict->claims[i].text);
@@ -655,7 +657,9 @@ static void check_refused(const subject *s, char *text, const char *why) {
     starg_certificate *read = NULL;
     starg_verdict *verdict = NULL;
     test_ok(s->context, starg_certificate_read_memory(s->context, text, strlen(text), "c", &read));
-    test_ok(s->context, starg_verify_certified(s->context, s->mesh, s->guards, read, &verdict));
+    test_ok(s->context, starg_verify_guards_with(s->context, s->mesh,
+                                                 &(starg_guards_evidence){.certificate = read},
+                                                 s->guards, &verdict));
     assert_false(verdict->passed);
     if (!says(verdict, false, why))
         fail_msg("no claim says \"%s\"", why);

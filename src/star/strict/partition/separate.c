@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Connected parts of a piece made pieces of their own.
  *
- * Stages: facets with an edge in common are in one part (edges sorted, union-find); parts numbered
- * in the order of the facets; their volumes: a negative one is the surface of a cavity; facets
- * change hands. Parts that only touch, at a vertex, are two: nothing inside of both sees all around
- * it, and no plane that leaves the vertex on one side would part them.
+ * Stages: facets with an edge in common are in one part (edges listed by their lower ends,
+ * union-find); parts numbered in the order of the facets; their volumes: a negative one is the
+ * surface of a cavity; facets change hands. Parts that only touch, at a vertex, are two: nothing
+ * inside of both sees all around it, and no plane that leaves the vertex on one side would part
+ * them.
  *
- * Cost: that of sorting the piece's edges. */
+ * Cost: linear in the points of the partition and the facets of the piece. */
 #include "star/strict/partition/separate.h"
 
 #include <stdlib.h>
@@ -15,43 +16,57 @@
 
 /* Of a facet of the piece, which are numbered from 0 in the order of the index. */
 typedef struct facet_edge {
-    uint64_t ends;
-    uint32_t facet;
+    uint32_t high, facet; /* the higher of its ends */
 } facet_edge;
-
-typedef STARG_ARRAY(facet_edge) facet_edges;
 
 typedef struct separator {
     partition *p;
     uint32_t number;
-    size_t count; /* facets */
-    facet_edges edges;
-    uint32_t *leader; /* by facet */
-    uint32_t *part;   /* by leading facet: 1 + part, 0: none yet */
+    size_t count;      /* facets */
+    uint32_t *start;   /* by vertex: where the edges begin whose lower end it is */
+    facet_edge *edges; /* by their lower ends, and then by their higher ones */
+    uint32_t *leader;  /* by facet */
+    uint32_t *part;    /* by leading facet: 1 + part, 0: none yet */
     STARG_ARRAY(double) volumes;
 } separator;
 
 static int compare_edges(const void *a, const void *b) {
     const facet_edge *x = a, *y = b;
-    if (x->ends != y->ends)
-        return x->ends < y->ends ? -1 : 1;
+    if (x->high != y->high)
+        return x->high < y->high ? -1 : 1;
     return (x->facet > y->facet) - (x->facet < y->facet);
 }
 
-/* Sorted, so that those of neighbours come together. */
-static starg_status list_edges(const partition *p, uint32_t number, facet_edges *edges) {
+static const uint32_t *corners_of(const separator *s, size_t number) {
+    const partition *p = s->p;
+    return p->facets.data[p->index.data[p->start.data[s->number] + number] / 2].corners;
+}
+
+static uint32_t low_end(const uint32_t *c, int k) {
+    return c[k] < c[(k + 1) % 3] ? c[k] : c[(k + 1) % 3];
+}
+
+/* Counted by the lower end, which has few as a rule, and sorted among those. */
+static starg_status list_edges(separator *s) {
     starg_status status = STARG_OK;
-    uint32_t first = p->start.data[number];
-    for (uint32_t k = first; k < p->start.data[number + 1]; k++) {
-        const uint32_t *c = p->facets.data[p->index.data[k] / 2].corners;
-        for (int i = 0; i < 3; i++) {
-            uint64_t a = c[i], b = c[(i + 1) % 3];
-            const facet_edge edge = {.ends = a < b ? a << 32 | b : b << 32 | a, .facet = k - first};
-            STARG_PUSH(p->context, PARTITION_STAGE, edges, edge);
-        }
+    size_t vertices = s->p->points.count / 3;
+    STARG_NEW_ZERO(s->p->context, PARTITION_STAGE, s->start, vertices + 2);
+    STARG_NEW(s->p->context, PARTITION_STAGE, s->edges, 3 * s->count);
+    for (size_t i = 0; i < 3 * s->count; i++)
+        s->start[low_end(corners_of(s, i / 3), (int)(i % 3)) + 2]++;
+    for (size_t v = 2; v < vertices + 2; v++)
+        s->start[v] += s->start[v - 1];
+    /* one place further on, so that filling leaves each start where it belongs */
+    for (size_t i = 0; i < 3 * s->count; i++) {
+        const uint32_t *c = corners_of(s, i / 3);
+        int k = (int)(i % 3);
+        uint32_t low = low_end(c, k), high = c[k] == low ? c[(k + 1) % 3] : c[k];
+        s->edges[s->start[low + 1]++] = (facet_edge){high, (uint32_t)(i / 3)};
     }
-    if (edges->count > 0)
-        qsort(edges->data, edges->count, sizeof *edges->data, compare_edges);
+    for (size_t v = 0; v < vertices; v++)
+        if (s->start[v + 1] - s->start[v] > 1)
+            qsort(s->edges + s->start[v], s->start[v + 1] - s->start[v], sizeof *s->edges,
+                  compare_edges);
 done:
     return status;
 }
@@ -63,13 +78,13 @@ static uint32_t find_leader(uint32_t *leader, uint32_t i) {
 }
 
 static void link_neighbours(separator *s) {
-    const facet_edge *edges = s->edges.data;
     for (size_t i = 0; i < s->count; i++)
         s->leader[i] = (uint32_t)i;
-    for (size_t i = 1; i < s->edges.count; i++)
-        if (edges[i].ends == edges[i - 1].ends)
-            s->leader[find_leader(s->leader, edges[i].facet)] =
-                find_leader(s->leader, edges[i - 1].facet);
+    for (size_t v = 0; v < s->p->points.count / 3; v++)
+        for (uint32_t i = s->start[v] + 1; i < s->start[v + 1]; i++)
+            if (s->edges[i].high == s->edges[i - 1].high)
+                s->leader[find_leader(s->leader, s->edges[i].facet)] =
+                    find_leader(s->leader, s->edges[i - 1].facet);
 }
 
 static starg_status number_parts(separator *s) {
@@ -122,7 +137,7 @@ starg_status partition_separate(partition *p, uint32_t number) {
     starg_status status = STARG_OK;
     separator s = {
         .p = p, .number = number, .count = p->start.data[number + 1] - p->start.data[number]};
-    STARG_TRY(list_edges(p, number, &s.edges));
+    STARG_TRY(list_edges(&s));
     STARG_NEW(p->context, PARTITION_STAGE, s.leader, s.count);
     STARG_NEW_ZERO(p->context, PARTITION_STAGE, s.part, s.count);
     link_neighbours(&s);
@@ -132,7 +147,8 @@ starg_status partition_separate(partition *p, uint32_t number) {
     else if (!has_cavity(&s))
         STARG_TRY(hand_out(&s));
 done:
-    STARG_ARRAY_FREE(p->context, &s.edges);
+    starg_release(p->context, s.start);
+    starg_release(p->context, s.edges);
     starg_release(p->context, s.leader);
     starg_release(p->context, s.part);
     STARG_ARRAY_FREE(p->context, &s.volumes);
