@@ -29,7 +29,7 @@ typedef enum starg_guard_method {
 #define STARG_DEFAULT_NODES SIZE_MAX
 
 /* For refine_lines: what suits the model, which is 400,000, 70 for each face, 40,000 for each guard
- * of the candidates, and 3 for each of both. */
+ * of the candidates, and 5 for each of both. */
 #define STARG_DEFAULT_LINES UINT64_MAX
 
 /* Vertices that each finer level adds: 10,000, or STARG_QUARTERS for a model with more than 40,000
@@ -164,7 +164,7 @@ typedef struct starg_guards {
 STARG_API starg_status starg_guard(starg_context *context, const starg_solid *solid,
                                    const starg_guard_options *options, starg_guards **out);
 /* The same with `prove`, and the certificate of lower_bound_everywhere: a text (docs/formats.md) of
- * `size` bytes, followed by a zero byte, that starg_verify_certified checks. Free it with
+ * `size` bytes, followed by a zero byte, that starg_verify_guards_with checks. Free it with
  * starg_text_free. Errors: those of starg_guard, ARGUMENT (without `prove`). */
 STARG_API starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
                                              const starg_guard_options *options, starg_guards **out,

@@ -58,19 +58,13 @@ STARG_API starg_status starg_certificate_read_memory(starg_context *context, con
                                                      starg_certificate **out);
 STARG_API void starg_certificate_free(starg_certificate *certificate);
 
-/* The same as starg_verify_guards, and lower_bound_everywhere against its certificate, which is
- * checked in full with exact signs and whole numbers: no solver's word is taken. Errors: those of
- * starg_verify_guards. */
-STARG_API starg_status starg_verify_certified(starg_context *context, const starg_mesh *mesh,
-                                              const starg_guards *guards,
-                                              const starg_certificate *certificate,
-                                              starg_verdict **out);
-
 /* What a check of guards may use beside the model. */
 typedef struct starg_guards_evidence {
     const starg_mesh *const *obstacles; /* the meshes that the result names, in its order */
     size_t obstacle_count;
-    const starg_certificate *certificate; /* or NULL */
+    const starg_certificate *certificate; /* of lower_bound_everywhere, or NULL: then it is listed
+                                             in `not_checked`. Any text may stand in it: a false one
+                                             fails, and no solver's word is taken */
 } starg_guards_evidence;
 
 /* The same with all of it. Errors: also ARGUMENT (other obstacles than those of the result). */

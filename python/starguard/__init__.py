@@ -32,7 +32,7 @@ from .pictures import (distinct_colors, picture, write_chart, write_matrix_pictu
 from .pieces import Decomposition, decompose
 from .catalogue import SampleInfo, sample, samples
 from .skeletons import Skeleton, skeleton
-from .solid import Solid
+from .solid import Scene, Solid
 from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, is_tetrahedral, tetrahedralize
 from .verification import Certificate, Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
 from .views import page_available, write_page, write_scene
@@ -44,7 +44,7 @@ __all__ = [
     "GuardLevel", "Guards", "Kernel", "Level", "Mesh", "MeshError", "Models", "Morph", "NO_CLASS",
     "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",
     "RangeError", "ReadError", "Reconstruction", "RepairReport", "Retrieval", "SampleInfo",
-    "Signature", "Skeleton", "Solid", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
+    "Scene", "Signature", "Skeleton", "Solid", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
     "TetraReport", "TimeLimitError", "Verdict", "WriteError", "__version__", "animation_from_bytes",
     "as_mesh",
     "candidate_points", "cone_cosine", "cover", "current_version", "decompose", "defaults",

@@ -174,7 +174,8 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
     """Places few guards that together see the whole boundary.
 
     `candidates` selects candidate positions: on the curve "skeleton" (default), on the "medial"
-    axis, on a lattice in the "interior", or points of shape (n, 3). Faces that no candidate sees
+    axis, on a lattice in the "interior", or points of shape (n, 3), or (n, 6) with the direction in
+    which a camera looks. Faces that no candidate sees
     are listed in `uncovered` and are not an error. With `prove=True`, `certificate` is a file to write
     that says why `lower_bound_everywhere` holds; `verify(model, guards, file)` checks it.
 
@@ -189,8 +190,12 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
     if isinstance(candidates, str):
         wanted.pointer.candidates = choose("candidates", candidates, _CANDIDATES)
     elif candidates is not None:
-        places = _arrays.points(candidates, "candidates")
-        points = _arrays.pointer("double[]", places)
+        poses = np.shape(candidates)[-1:] == (6,)
+        given = _arrays.points(candidates, "candidates", 6 if poses else 3)
+        places, looks = np.ascontiguousarray(given[:, :3]), np.ascontiguousarray(given[:, 3:])
+        points, directions = (_arrays.pointer("double[]", part) for part in (places, looks))
+        if poses:
+            wanted.pointer.directions = directions
         wanted.pointer.candidates = lib.STARG_CANDIDATES_GIVEN
         wanted.pointer.points = points
         wanted.pointer.point_count = len(places)
@@ -232,8 +237,8 @@ def candidate_points(model: Any, source: str = "skeleton", count: int = 1000, *,
 
 
 def read_points(path: PathLike) -> Array:
-    """Reads points: text with three numbers per line, the nodes of a skeleton (OBJ, CG, VTK), or the
-    positions of a GUARDS.json.
+    """Reads points, shape (n, 3): text with three numbers per line, the nodes of a skeleton (OBJ, CG,
+    VTK), or the guards of a GUARDS.json. With viewing directions, six numbers per line: (n, 6).
 
     >>> import pathlib, starguard
     >>> _ = pathlib.Path("places.txt").write_text("1.5 1.7 2 # hall\\n4 1.7 2\\n")
@@ -242,7 +247,7 @@ def read_points(path: PathLike) -> Array:
            [4. , 1.7, 2. ]])
     """
     session = Session()
-    return _read_points(session, lib.starg_points_read, _arrays.path(path))
+    return _read_points(session, lib.starg_poses_read, _arrays.path(path))
 
 
 def points_from_bytes(data: bytes, name: str = "memory") -> Array:
@@ -253,14 +258,17 @@ def points_from_bytes(data: bytes, name: str = "memory") -> Array:
     array([[1., 2., 3.]])
     """
     session = Session()
-    return _read_points(session, lib.starg_points_read_memory,
+    return _read_points(session, lib.starg_poses_read_memory,
                         ffi.from_buffer(data) if data else ffi.NULL, len(data), _arrays.path(name))
 
 
 def _read_points(session: Session, function: Any, *arguments: Any) -> Array:
-    out, number = ffi.new("double **"), ffi.new("size_t *")
+    out, looks, number = ffi.new("double **"), ffi.new("double **"), ffi.new("size_t *")
     try:
-        session.call(function, session.context, *arguments, out, number)
+        session.call(function, session.context, *arguments, out, looks, number)
     finally:
-        owner = session.own(out[0], lib.starg_points_free, shared=True) if out[0] else None
-    return _arrays.view(owner, out[0], (number[0], 3), np.float64)
+        owners = [session.own(block[0], lib.starg_points_free, shared=True) if block[0] else None
+                  for block in (out, looks)]
+    points, directions = (_arrays.view(owner, block[0], (number[0] if owner else 0, 3), np.float64)
+                          for owner, block in zip(owners, (out, looks)))
+    return points if len(directions) == 0 else np.hstack((points, directions))

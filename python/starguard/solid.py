@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import weakref
-from typing import Any
+from typing import Any, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
+from ._choice import choose
 from ._library import ffi, lib
 from ._session import Session
 from ._types import Array, Progress
+from .errors import ArgumentError
 from .mesh import Check, Mesh, as_mesh
 
 
@@ -64,6 +66,78 @@ class Solid:
         rows = _arrays.points(points, "points")
         return np.array([lib.starg_solid_distance(self._handle, ffi.from_buffer("double[3]", row))
                          for row in rows], float)
+
+
+_ORIENTATIONS = {"nested": lib.STARG_ORIENTATION_NESTED, "keep": lib.STARG_ORIENTATION_KEEP}
+
+
+class Scene(Solid):
+    """A model with obstacles, its outside, or any triangles; takes a solid's place in `guard`,
+    `visible` and `verify`.
+
+    `obstacles` are models that stand in the way: closed ones are solid. With orientation="keep"
+    the faces of the model count as they are turned. Guards of an `outside` keep the distances of
+    `standoff` (least, most). A `soup` is any triangles, seen from their fronts. `within` is a box
+    (lower and upper corner) for guards; `start` a point, with the size of cubes `cell`, from which
+    they can be reached. `weights` has a number for each face: how often its area counts.
+
+    >>> import starguard
+    >>> part = starguard.Scene(starguard.sample("torus", vertices=500), outside=True, standoff=(1, 4))
+    >>> guards = starguard.guard(part, count=300)
+    >>> starguard.verify(part, guards).passed
+    True
+    """
+
+    def __init__(self, model: Any, *, obstacles: Sequence[Any] = (), orientation: str = "nested",
+                 outside: bool = False, soup: bool = False,
+                 standoff: tuple[float, float] | None = None, within: ArrayLike | None = None,
+                 start: ArrayLike | None = None, cell: float | None = None,
+                 weights: ArrayLike | None = None, threads: int | None = None,
+                 progress: Progress | None = None) -> None:
+        #: What is to be seen, and what stands in the way.
+        self.model: Mesh = as_mesh(model)
+        self.obstacles: list[Mesh] = [as_mesh(obstacle) for obstacle in obstacles]
+        session = Session(threads)
+        options = ffi.new("starg_space_options *")
+        lib.starg_space_options_default(options)
+        options.orientation = choose("orientation", orientation, _ORIENTATIONS)
+        options.outside, options.soup = outside, soup
+        if standoff is not None:
+            options.standoff_least, options.standoff_most = standoff
+        if within is not None:
+            options.within = _arrays.points(within, "within", 6)[0].tolist()
+        if (start is None) != (cell is None):
+            raise ArgumentError("start and cell belong together")
+        if start is not None:
+            options.cell = cell
+            setattr(options, "from", _arrays.points(start, "start")[0].tolist())
+        self._handle = session.make("starg_solid", lib.starg_solid_free, lib.starg_space_create,
+                                    session.context, self.model._handle, self._pointers(),
+                                    len(self.obstacles), options, progress=progress)
+        if weights is not None:
+            self._weigh(session, weights)
+        #: All that blocks the view: the faces of the model first.
+        self.mesh = Mesh._of(lib.starg_solid_mesh(self._handle), self.model.file,
+                             owner=self._handle)
+
+    def _pointers(self) -> Any:
+        return ffi.new("starg_mesh *[]", [o._handle for o in self.obstacles] or [ffi.NULL])
+
+    def _weigh(self, session: Session, weights: ArrayLike) -> None:
+        faces = len(self.model.faces)
+        numbers = np.ascontiguousarray(weights, np.float64)
+        if numbers.shape != (faces,):
+            raise ArgumentError(f"weights must have the shape ({faces},), not {numbers.shape}")
+        session.call(lib.starg_space_weigh, self._handle, _arrays.pointer("double[]", numbers))
+
+    def __repr__(self) -> str:
+        return f"Scene({len(self.model.faces)} faces, {len(self.obstacles)} obstacles)"
+
+    def admits(self, points: ArrayLike) -> Array:
+        """Whether a guard may stand at each point. Shape (n,), bool."""
+        rows = _arrays.points(points, "points")
+        return np.array([lib.starg_space_admits(self._handle, ffi.from_buffer("double[3]", row))
+                         for row in rows], bool)
 
 
 def as_solid(model: Any) -> Solid:

@@ -16,6 +16,7 @@ from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .guards import Guards
 from .pieces import OPTIONS, Decomposition
+from .solid import Scene
 from .tetra import TetMesh, as_shape
 
 
@@ -160,7 +161,8 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     >>> verdict.passed, all(claim.holds for claim in verdict.claims)
     (True, True)
     """
-    shape = as_shape(model)
+    scene = model if isinstance(model, Scene) else None
+    shape = as_shape(model if scene is None else scene.model)
     given = [read_result(r) if isinstance(r, (str, bytes, os.PathLike)) else r for r in results]
     if not given:
         raise ArgumentError("give a result to verify")
@@ -173,8 +175,13 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     for result, behind in zip(given, [*given[1:], None]):
         if isinstance(result, Guards):
             surface = shape.surface()[0] if isinstance(shape, TetMesh) else shape
-            why = behind._handle if isinstance(behind, Certificate) else ffi.NULL
-            _judge(session, lib.starg_verify_certified, surface, result._handle, why,
+            evidence = ffi.new("starg_guards_evidence *")
+            pointers = scene._pointers() if scene is not None else ffi.NULL
+            if scene is not None:
+                evidence.obstacles, evidence.obstacle_count = pointers, len(scene.obstacles)
+            if isinstance(behind, Certificate):
+                evidence.certificate = behind._handle
+            _judge(session, lib.starg_verify_guards_with, surface, evidence, result._handle,
                    claims=claims, rest=rest, progress=progress)
     for mesh, report in _decompositions(given):
         function = (lib.starg_verify_pieces_of_tetmesh if isinstance(shape, TetMesh)

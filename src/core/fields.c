@@ -178,7 +178,8 @@ void starg_fields_default(const starg_fields *fields, void *record) {
             memcpy(member(f, record), &f->standard, sizeof f->standard);
         else if (f->kind <= STARG_FIELD_CHOICE)
             store_count(f, record, f->initial);
-        else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES || f->kind == STARG_FIELD_TEXTS ||
+        else if (f->kind == STARG_FIELD_TEXT || f->kind == STARG_FIELD_PLACES ||
+                 f->kind == STARG_FIELD_TEXTS ||
                  (f->kind == STARG_FIELD_NUMBERS && (f->flags & STARG_FIELD_RARE)))
             memset(member(f, record), 0, f->size);
         else if (f->kind == STARG_FIELD_RECORD)

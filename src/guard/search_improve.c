@@ -16,13 +16,13 @@
 
 #include "guard/search_parts.h"
 
-enum { TRIES = 2, PATIENCE = 4, MOST_HELD = 250, ASKED = 4 };
+enum { TRIES = 2, PATIENCE = 4, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
 
 static const char STAGE[] = "search";
 
 /* Programs grow with the guards, and what each point is held against with the faces. */
 static uint64_t default_work(const search *s) {
-    return 400000 + 70 * s->pool->columns + 40000 * s->count + 3 * s->count * s->pool->columns;
+    return 400000 + 70 * s->pool->columns + 40000 * s->count + 5 * s->count * s->pool->columns;
 }
 
 uint64_t search_improve_work(const search *s) {
@@ -67,12 +67,16 @@ done:
     return status;
 }
 
-/* Asks for fewer guards among the points that are known. *open: there may be some. */
+/* Asks for fewer guards among the points that are known. *open: there may be some. Of many
+ * witnesses nobody is asked: a program over all faces tells more, and takes no longer. */
 static starg_status ask_again(search *s, bool *open) {
     starg_status status = STARG_OK;
     row_list list = {0};
     *open = true;
+    s->known = 0; /* it was that of fewer points */
     STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
+    if (s->scene.witnesses.count > MOST_ASKED_OF)
+        goto done;
     for (int k = 0; k < ASKED && *open; k++) {
         STARG_TRY(search_find_prices(s, &list));
         STARG_TRY(search_bound_points(s));

@@ -123,6 +123,8 @@ static bool is_of_this(const starg_certificate *c, const verify_facts *known,
         surface->model_faces != surface->face_count ||
         known->guards->space.orientation != STARG_ORIENTATION_NESTED)
         *difference = ": such are of plain solids alone";
+    else if (known->guards->options.coverage < 1 || known->guards->options.max_guards > 0)
+        *difference = ": guards that see a part need not see what it speaks of";
     else if (c->vertex_count != surface->vertex_count || c->face_count != surface->face_count ||
              c->checksum != sum)
         *difference = ": it is of another model";

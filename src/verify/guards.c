@@ -573,7 +573,8 @@ static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
 /* Guards that would do are candidates, and refute a bound above their number. Not in files of morph
  * --guards, whose option `count` is that of the guards: there they must do in another shape, too.
  */
-static starg_status claim_bound(starg_verdict *verdict, const verify_facts *known) {
+static starg_status claim_bound(starg_verdict *verdict, const verify_facts *known,
+                                const starg_certificate *certificate) {
     const starg_guards *guards = known->guards;
     size_t needed = guards->count;
     bool pairs = guards->options.candidates == STARG_CANDIDATES_GIVEN &&
@@ -590,7 +591,8 @@ static starg_status claim_bound(starg_verdict *verdict, const verify_facts *know
         verify_claim(verdict, guards->lower_bound <= guards->count,
                      "the lower bound %zu is at most the number of guards %zu", guards->lower_bound,
                      guards->count);
-    if (guards->lower_bound > 0)
+    bool follows = certificate != NULL && guards->lower_bound <= certificate->bound;
+    if (guards->lower_bound > 0 && !follows)
         verify_leave(
             verdict, "that no fewer than %zu%s candidates would do%s", guards->lower_bound,
             guards->optimal ? " (\"optimal\")" : "",
@@ -616,7 +618,7 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
                      "%zu guards are at most %zu", guards->count, guards->options.max_guards);
     verify_leave(verdict, "that there were %zu candidates: they are not in the file",
                  guards->candidate_count);
-    STARG_TRY(claim_bound(verdict, known));
+    STARG_TRY(claim_bound(verdict, known, certificate));
     bool equal = guards->lower_bound == guards->count;
     verify_claim(verdict, guards->optimal == equal,
                  "the result is called %s, with %zu guards and a lower bound of %zu",
@@ -665,13 +667,6 @@ static bool is_plain(const starg_guards *guards) {
 starg_status starg_verify_guards(starg_context *context, const starg_mesh *mesh,
                                  const starg_guards *guards, starg_verdict **out) {
     return starg_verify_guards_with(context, mesh, &(starg_guards_evidence){0}, guards, out);
-}
-
-starg_status starg_verify_certified(starg_context *context, const starg_mesh *mesh,
-                                    const starg_guards *guards,
-                                    const starg_certificate *certificate, starg_verdict **out) {
-    const starg_guards_evidence evidence = {.certificate = certificate};
-    return starg_verify_guards_with(context, mesh, &evidence, guards, out);
 }
 
 starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *mesh,

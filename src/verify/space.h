@@ -3,7 +3,7 @@
 #ifndef STARG_VERIFY_SPACE_H
 #define STARG_VERIFY_SPACE_H
 
-#include "starguard/guard.h"
+#include "starguard/verify.h"
 #include "verify/surface.h"
 
 /* The surface of the model and of the obstacles of a result, which faces out of its free space; of

@@ -27,7 +27,7 @@ struct box_scene {
     box_triangle *triangles; /* by rank                                                      */
     uint32_t *rank_of;       /* by face of the mesh                                          */
     uint32_t *outgoing;      /* by vertex: 3 x rank + corner of one triangle, or BOX_NONE    */
-    bvh_box all; /* of the blockers and of places where guards may be */
+    bvh_box all;             /* of the blockers and of places where guards may be */
     double centre[3], extent;
     bool embedded; /* no two blockers meet but where they share corners */
 };

@@ -118,7 +118,8 @@ done:
 static bool is_sound(const job_head *head, size_t left) {
     return head->points <= left / 24 && head->vertices <= left / 24 && head->faces <= left / 12 &&
            head->engine <= STARG_VISIBILITY_FASTEST && head->target <= STARG_TARGET_VERTICES &&
-           head->face_rule <= STARG_FACES_WHOLE && head->ambient <= 1 && head->cone > 0 && head->range >= 0;
+           head->face_rule <= STARG_FACES_WHOLE && head->ambient <= 1 && head->cone > 0 &&
+           head->range >= 0;
 }
 
 static starg_status begin(starg_context *context, starg_bytes_reader *bytes, void **state) {

@@ -186,12 +186,17 @@ static starg_status guards(starg_context *context) {
            o.point_count = in.guards->count, o.visibility.face_rule = STARG_FACES_WHOLE));
     GUARD(starg_guard, "cone, at most 2",
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
+    GUARD(starg_guard, "anywhere, at most 2", (o = proving(), o.max_guards = 2));
+    GUARD(starg_guard, "anywhere, twice", (o = proving(), o.redundancy = 2));
+    GUARD(starg_guard, "anywhere, given points",
+          (o = proving(), o.candidates = STARG_CANDIDATES_GIVEN, o.points = in.guards->positions,
+           o.point_count = in.guards->count));
     GUARD(starg_guard, "anywhere", (o.prove = true, o.prove_work = 3000, o.visibility.range = 2));
     FAILING_BY(starg_guard_certified, "", certified(context));
     FAILING_MAKES(starg_certificate_read_memory, "", starg_certificate, starg_certificate_free(out),
                   why_text.data, why_text.size, "c");
-    FAILING_MAKES(starg_verify_certified, "", starg_verdict, starg_verdict_free(context, out),
-                  in.room, proven, why);
+    FAILING_MAKES(starg_verify_guards_with, "", starg_verdict, starg_verdict_free(context, out),
+                  in.room, &(starg_guards_evidence){.certificate = why}, proven);
     FAILING(starg_certificate_write, "", why_text.data, why_text.size, failing_output("c.txt"));
     GUARDS(starg_guards_given, "", in.solid, in.guards->positions, in.guards->count);
     FAILING(starg_guards_write, "", in.guards, "room.off", failing_output("g.json"));

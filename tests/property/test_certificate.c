@@ -107,7 +107,9 @@ static void check_right(const subject *s) {
     starg_verdict *verdict = NULL;
     test_ok(s->context, starg_certificate_read_memory(s->context, s->text, s->size, "c", &read));
     assert_int_equal(read->bound, s->guards->lower_bound_everywhere);
-    test_ok(s->context, starg_verify_certified(s->context, s->mesh, s->guards, read, &verdict));
+    test_ok(s->context, starg_verify_guards_with(s->context, s->mesh,
+                                                 &(starg_guards_evidence){.certificate = read},
+                                                 s->guards, &verdict));
     for (size_t i = 0; i < verdict->count; i++)
         if (!verdict->claims[i].holds)
             print_message("%s\n", verdict->claims[i].text);
@@ -127,6 +129,36 @@ static void test_samples(void **state) {
         check_right(&s);
         print_message("%s: %zu guards, bound %zu, %zu bytes\n", names[i], s.guards->count,
                       s.guards->lower_bound_everywhere, s.size);
+        subject_free(&s);
+    }
+}
+
+/* Real models, by the defaults; the longer ones in check-long. */
+static void test_shared(void **state) {
+    (void)state;
+    static const char *const names[] = {"table2/kitten_400", "solids/hand_1197",
+                                        "solids/knight_502", "solids/hand_8k",
+                                        "retrieval_shrec07/airplane_062"};
+    const char *data = test_shared_data();
+    if (data == NULL)
+        skip();
+    for (size_t i = 0; i < test_rounds(3, 5); i++) {
+        char path[4400];
+        starg_context *context = test_context(2);
+        starg_mesh *mesh = NULL;
+        starg_solid *solid = NULL;
+        starg_guard_options options;
+        snprintf(path, sizeof path, "%s/%s.off", data, names[i]);
+        starg_guard_options_default(&options);
+        options.prove = true;
+        test_ok(context, starg_mesh_read(context, path, &mesh));
+        test_ok(context, starg_solid_create(context, mesh, &solid));
+        subject s = prove(context, solid, &options);
+        check_right(&s);
+        print_message("%s: %zu guards, bound %zu, %zu bytes%s\n", names[i], s.guards->count,
+                      s.guards->lower_bound_everywhere, s.size,
+                      strstr(s.text, "\n=") != NULL ? ", with rows" : "");
+        starg_mesh_free(mesh);
         subject_free(&s);
     }
 }
@@ -625,7 +657,9 @@ static void check_refused(const subject *s, char *text, const char *why) {
     starg_certificate *read = NULL;
     starg_verdict *verdict = NULL;
     test_ok(s->context, starg_certificate_read_memory(s->context, text, strlen(text), "c", &read));
-    test_ok(s->context, starg_verify_certified(s->context, s->mesh, s->guards, read, &verdict));
+    test_ok(s->context, starg_verify_guards_with(s->context, s->mesh,
+                                                 &(starg_guards_evidence){.certificate = read},
+                                                 s->guards, &verdict));
     assert_false(verdict->passed);
     if (!says(verdict, false, why))
         fail_msg("no claim says \"%s\"", why);
@@ -696,6 +730,9 @@ static void test_forged(void **state) {
     check_unread(&s, with_line(s.text, "\ncells ", '.', "x\n"), "halves of cells are missing");
     check_unread(&s, replaced(s.text, "target faces", "target edges"), "line 5: \"faces\"");
 
+    s.guards->options.coverage = 0.9;
+    check_refused(&s, replaced(s.text, "range", "range"), "see a part");
+    s.guards->options.coverage = 1;
     s.guards->lower_bound_everywhere = s.guards->lower_bound = s.guards->count = bound;
     s.guards->optimal = s.guards->optimal_everywhere = true;
     snprintf(wanted, sizeof wanted, "\nbound %zu\n", bound - 1);
@@ -706,12 +743,12 @@ static void test_forged(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples),      cmocka_unit_test(test_random_solids),
-        cmocka_unit_test(test_questions),    cmocka_unit_test(test_trivial),
-        cmocka_unit_test(test_same_bytes),   cmocka_unit_test(test_needs_prove),
-        cmocka_unit_test(test_damaged),      cmocka_unit_test(test_rows),
-        cmocka_unit_test(test_false_proofs), cmocka_unit_test(test_too_close),
-        cmocka_unit_test(test_forged),
+        cmocka_unit_test(test_samples),       cmocka_unit_test(test_shared),
+        cmocka_unit_test(test_random_solids), cmocka_unit_test(test_questions),
+        cmocka_unit_test(test_trivial),       cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_needs_prove),   cmocka_unit_test(test_damaged),
+        cmocka_unit_test(test_rows),          cmocka_unit_test(test_false_proofs),
+        cmocka_unit_test(test_too_close),     cmocka_unit_test(test_forged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
