@@ -165,7 +165,8 @@ STARG_API starg_status starg_guard(starg_context *context, const starg_solid *so
                                    const starg_guard_options *options, starg_guards **out);
 /* The same with `prove`, and the certificate of lower_bound_everywhere: a text (docs/formats.md) of
  * `size` bytes, followed by a zero byte, that starg_verify_guards_with checks. Free it with
- * starg_text_free. Errors: those of starg_guard, ARGUMENT (without `prove`). */
+ * starg_text_free. Errors: those of starg_guard, ARGUMENT (without `prove`, where
+ * a part is to be seen, and for scenes). */
 STARG_API starg_status starg_guard_certified(starg_context *context, const starg_solid *solid,
                                              const starg_guard_options *options, starg_guards **out,
                                              char **certificate, size_t *size);

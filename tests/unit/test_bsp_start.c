@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "models.h"
 #include "partition_oracle.h"
 #include "star/strict/partition/separate.h"
 #include "star/strict/partition/slice.h"
@@ -386,6 +387,25 @@ static void test_fins(void **state) {
     test_context_free(context);
 }
 
+/* So many facets that large pieces are looked at by samples of them. */
+static void test_large(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = test_sample(context, "torus", 15000);
+    const starg_mesh *mesh = starg_solid_mesh(solid);
+    const kernel_faces surface = {starg_mesh_vertices(mesh), starg_mesh_faces(mesh),
+                                  starg_mesh_face_count(mesh)};
+    partition p;
+    test_ok(context, partition_create_from_surface(context, &surface, &p));
+    assert_true(surface.count > 25000);
+    assert_true(start(&p, EVALUATIONS, false));
+    assert_in_range(p.pieces.count, 2, 8);
+    check_certified(&p);
+    partition_free(&p);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
 /* With too small a budget, or no time, there is no result, unless it must come to an end. */
 static void test_limits(void **state) {
     (void)state;
@@ -411,7 +431,8 @@ int main(void) {
         cmocka_unit_test(test_parts),         cmocka_unit_test(test_cavity),
         cmocka_unit_test(test_cuts_of_cubes), cmocka_unit_test(test_cubes),
         cmocka_unit_test(test_samples),       cmocka_unit_test(test_random_cells),
-        cmocka_unit_test(test_fins),          cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_fins),          cmocka_unit_test(test_large),
+        cmocka_unit_test(test_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

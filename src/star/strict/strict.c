@@ -9,8 +9,8 @@
  *
  * The first start runs to its end whatever the time limit says, in a hurry once that has passed:
  * so there is a result. Where it fails, which takes roundings that spoil every cut of some piece,
- * others are tried; then given tetrahedra are grown into regions instead (region_growing.c), which
- * always succeeds. */
+ * others are tried. Given tetrahedra are grown into regions first (region_growing.c), which always
+ * succeeds, and the better one of both starts is searched. */
 #include "star/strict/strict.h"
 
 #include "star/decomposition.h"
@@ -21,8 +21,10 @@
 
 enum {
     SEARCHES = 6,
-    IDLE_MOST = 2,        /* searches in a row that bring nothing: then no more */
-    EVALUATIONS_TIMES = 4 /* of the first start, that another one may take      */
+    IDLE_MOST = 2,         /* searches in a row that bring nothing: then no more */
+    EVALUATIONS_TIMES = 4, /* of the first start, that another one may take      */
+    EVALUATIONS_LEAST = 50,
+    EVALUATIONS_EACH = 3 /* for each grown region */
 };
 
 /* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
@@ -133,20 +135,38 @@ static bsp_options start_options(const searches *s) {
                          .guard_count = s->options->guard_count};
 }
 
+/* Where there are tetrahedra, regions of them are a start at once, and in a solid full of holes the
+ * better one; planes are worth no more than a few evaluations for each. */
+static starg_status begin_with_tetrahedra(searches *s, partition *p) {
+    starg_status status = STARG_OK;
+    partition other = {.context = p->context};
+    bsp_report report;
+    STARG_TRY(start_by_region_growing(s->of.mesh, s->options, p));
+    s->budget = EVALUATIONS_LEAST + EVALUATIONS_EACH * p->pieces.count;
+    if (p->pieces.count < 2 || starg_time_is_over(p->context))
+        goto done;
+    const bsp_options options = start_options(s);
+    STARG_TRY(start_by_bsp(&s->of, &options, &other, &report));
+    if (report.done)
+        keep_better(p, &other);
+    else
+        s->count = SEARCHES;
+done:
+    partition_free(&other);
+    return status;
+}
+
 /* The first start; the partition has no pieces when there is none. */
 static starg_status begin(searches *s, partition *p) {
     starg_status status = STARG_OK;
     bsp_report report = {.done = false};
     bsp_options options = start_options(s);
+    if (s->of.mesh != NULL)
+        return begin_with_tetrahedra(s, p);
     options.to_the_end = true;
     for (; !report.done && options.stream < SEARCHES; options.stream++)
         STARG_TRY(start_by_bsp(&s->of, &options, p, &report));
     s->budget = EVALUATIONS_TIMES * report.evaluations;
-    if (report.done)
-        goto done;
-    s->count = SEARCHES;
-    if (s->of.mesh != NULL)
-        STARG_TRY(start_by_region_growing(s->of.mesh, s->options, p));
 done:
     return status;
 }

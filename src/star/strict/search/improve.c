@@ -403,7 +403,8 @@ starg_status improve(partition *p, const improve_options *options, improve_repor
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
-    STARG_TRY(merge_coplanar(p));
+    if (!starg_time_is_over(p->context))
+        STARG_TRY(merge_coplanar(p));
     STARG_TRY(find_contacts(&m));
     m.merge_from = p->facets.count + p->facets.count / 8;
     STARG_TRY(search(&m, options));
