@@ -166,10 +166,63 @@ bool box_patch_hides(box_worker *w, const box_shaft *shaft, box_flood_kind kind,
     return search.found != BOX_NONE;
 }
 
+static bool is_within(const bvh_box *box, const double p[3]) {
+    for (int k = 0; k < 3; k++)
+        if (p[k] < box->lower[k] || p[k] > box->upper[k])
+            return false;
+    return true;
+}
+
+/* Corner i of a box: bit k says on which side along axis k. */
+static void corner_of(const bvh_box *box, int i, double out[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = i >> k & 1 ? box->upper[k] : box->lower[k];
+}
+
+/* Does the boundary of the box meet the triangle? An edge of either meets a side of the other. */
+static bool meets_border(const bvh_box *box, const double *const t[3]) {
+    double corner[8][3];
+    for (int i = 0; i < 8; i++)
+        corner_of(box, i, corner[i]);
+    for (int i = 0; i < 8; i++)
+        for (int k = 0; k < 3; k++)
+            if (segment_meets_triangle(corner[i], corner[i ^ 1 << k], t[0], t[1], t[2]))
+                return true;
+    for (int axis = 0; axis < 3; axis++)
+        for (int side = 0; side < 2; side++) {
+            int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, i = side << axis;
+            for (int e = 0; e < 3; e++)
+                if (segment_meets_triangle(t[e], t[(e + 1) % 3], corner[i], corner[i ^ u],
+                                           corner[i ^ u ^ v]) ||
+                    segment_meets_triangle(t[e], t[(e + 1) % 3], corner[i], corner[i ^ v],
+                                           corner[i ^ u ^ v]))
+                    return true;
+        }
+    return false;
+}
+
+/* Exactly; a flat box may be taken for one that is missed. */
+static bool meets(const box_scene *scene, const box_triangle *t, const bvh_box *box) {
+    const double *corner[3];
+    for (int k = 0; k < 3; k++) {
+        corner[k] = box_corner(scene, t, k);
+        if (is_within(box, corner[k]))
+            return true;
+    }
+    return meets_border(box, corner);
+}
+
+/* One triangle at least has to meet the box, not only perhaps. */
+static bool some_meets(const box_worker *w) {
+    for (size_t i = 0; i < w->crossing_count; i++)
+        if (meets(w->scene, &w->scene->triangles[w->crossing[i]], w->current))
+            return true;
+    return false;
+}
+
 bool box_entry_hides(box_worker *w, const box_shaft *shaft) {
     const box_scene *scene = w->scene;
     uint32_t first = w->flood;
-    bool any = false;
     if (!scene->embedded)
         return false;
     for (size_t i = 0; i < w->crossing_count; i++) {
@@ -181,7 +234,6 @@ bool box_entry_hides(box_worker *w, const box_shaft *shaft) {
             continue;
         if (!box_flood_closes(w, shaft, rank, -1, FLOOD_ENTRY, first))
             return false;
-        any = true;
     }
-    return any;
+    return some_meets(w);
 }
