@@ -41,7 +41,6 @@ typedef struct tidier {
     partition *p; /* the copy: its facets are sorted by group */
     STARG_ARRAY(group) groups;
     STARG_ARRAY(border) borders; /* by group, then by where they start */
-    border *by_edge;             /* the same by edge */
     STARG_ARRAY(border) seams;   /* by group */
     uint32_t (*around)[2];       /* per vertex: its neighbours along borders, or NONE */
     bool *needed;                /* per vertex */
@@ -142,43 +141,64 @@ done:
 
 /* ---- seams ---- */
 
-static const border *find_edge(const tidier *t, const border *edge) {
-    return bsearch(edge, t->by_edge, t->borders.count, sizeof *t->by_edge, by_edge);
+/* An edge of a group of several facets. */
+typedef struct inner_edge {
+    border edge;
+    bool own, other; /* on the group's own border, on another's */
+} inner_edge;
+
+static int by_inner_edge(const void *x, const void *y) {
+    return by_edge(&((const inner_edge *)x)->edge, &((const inner_edge *)y)->edge);
 }
 
-/* Is an edge of a group's facet inside of the group, and on the border of another one? */
-static bool is_seam(const tidier *t, const border *edge) {
-    const border *at = find_edge(t, edge), *end = t->by_edge + t->borders.count;
-    if (at == NULL)
-        return false;
-    while (at > t->by_edge && by_edge(at - 1, edge) == 0)
+static int by_edge_and_group(const void *x, const void *y) {
+    const border *a = x, *b = y;
+    return a->group != b->group ? (a->group < b->group ? -1 : 1) : by_edge(x, y);
+}
+
+/* Tells the edges of other groups, and of its own, what lies on a border. */
+static void meet_border(inner_edge *inner, size_t count, const border *edge) {
+    const inner_edge key = {.edge = *edge};
+    inner_edge *at = bsearch(&key, inner, count, sizeof *inner, by_inner_edge),
+               *end = inner + count;
+    while (at != NULL && at > inner && by_inner_edge(at - 1, &key) == 0)
         at--;
-    for (; at < end && by_edge(at, edge) == 0; at++)
-        if (at->group == edge->group)
-            return false;
-    return true;
+    for (; at != NULL && at < end && by_inner_edge(at, &key) == 0; at++)
+        if (at->edge.group == edge->group)
+            at->own = true;
+        else
+            at->other = true;
 }
 
+/* Edges inside of one group that are on the border of another one. */
 static starg_status find_seams(tidier *t) {
     starg_status status = STARG_OK;
-    size_t count = t->borders.count;
-    STARG_NEW(t->p->context, PARTITION_STAGE, t->by_edge, count);
-    for (size_t i = 0; i < count; i++)
-        t->by_edge[i] = t->borders.data[i];
-    if (count > 1)
-        qsort(t->by_edge, count, sizeof *t->by_edge, by_edge);
+    STARG_ARRAY(inner_edge) inner = {0};
     for (uint32_t i = 0; i < t->groups.count; i++) {
-        group *g = &t->groups.data[i];
-        g->seam_first = (uint32_t)t->seams.count;
+        const group *g = &t->groups.data[i];
         for (uint32_t k = 0; g->count > 1 && k < 3 * g->count; k++) {
             const uint32_t *c = t->p->facets.data[g->first + k / 3].corners;
-            const border edge = {c[k % 3], c[(k + 1) % 3], i};
-            if (edge.from < edge.to && is_seam(t, &edge))
-                STARG_PUSH(t->p->context, PARTITION_STAGE, &t->seams, edge);
+            const inner_edge fresh = {.edge = {c[k % 3], c[(k + 1) % 3], i}};
+            if (fresh.edge.from < fresh.edge.to)
+                STARG_PUSH(t->p->context, PARTITION_STAGE, &inner, fresh);
         }
-        g->seam_count = (uint32_t)t->seams.count - g->seam_first;
+    }
+    if (inner.count > 1)
+        qsort(inner.data, inner.count, sizeof *inner.data, by_inner_edge);
+    for (size_t i = 0; inner.count > 0 && i < t->borders.count; i++)
+        meet_border(inner.data, inner.count, &t->borders.data[i]);
+    for (size_t i = 0; i < inner.count; i++)
+        if (inner.data[i].other && !inner.data[i].own)
+            STARG_PUSH(t->p->context, PARTITION_STAGE, &t->seams, inner.data[i].edge);
+    if (t->seams.count > 1)
+        qsort(t->seams.data, t->seams.count, sizeof *t->seams.data, by_edge_and_group);
+    for (size_t i = 0; i < t->seams.count; i++) {
+        group *g = &t->groups.data[t->seams.data[i].group];
+        g->seam_first = g->seam_count == 0 ? (uint32_t)i : g->seam_first;
+        g->seam_count++;
     }
 done:
+    STARG_ARRAY_FREE(t->p->context, &inner);
     return status;
 }
 
@@ -430,7 +450,6 @@ static void tidier_free(tidier *t) {
     STARG_ARRAY_FREE(context, &t->seams);
     STARG_ARRAY_FREE(context, &t->edges);
     STARG_ARRAY_FREE(context, &t->loose);
-    starg_release(context, t->by_edge);
     STARG_ARRAY_FREE(context, &t->triangles);
     starg_release(context, t->around);
     starg_release(context, t->needed);
