@@ -16,7 +16,7 @@ static const char *const NAMES[] = {"bound",        "candidates", "check",      
                                     "augmentation", "decompose",  "delaunay",    "descriptor",
                                     "growth",       "ilp",        "join",        "kernel",
                                     "levels",       "map",        "medial axis", "medial complex",
-                                    "pieces",       "planes",     "reduce",      "refine",
+                                    "pieces",       "planes",     "reduce",      "search",
                                     "sight",        "simplify",   "spectrum",    "sphere",
                                     "tetrahedra",   "thickness",  "visibility",  "views",
                                     "d2",           "erosion",    "signature"};
@@ -29,7 +29,7 @@ typedef struct recorder {
     double fractions[DEEPEST];
     size_t depth, calls;
     size_t ilp_steps;  /* different fractions of it */
-    bool refined[2];   /* the cover and the search for places have run inside of "refine" */
+    bool refined[2];   /* the cover and the search for places have run inside of "search" */
     const char *wrong; /* what was wrong first, or NULL */
 } recorder;
 
@@ -54,7 +54,7 @@ static void open_stage(recorder *r, const char *stage) {
         complain(r, "too deep", stage, 0);
         return;
     }
-    bool inside = r->depth > 0 && strcmp(r->stages[0], "refine") == 0;
+    bool inside = r->depth > 0 && strcmp(r->stages[0], "search") == 0;
     r->refined[0] |= inside && strcmp(stage, "bound") == 0;
     r->refined[1] |= inside && strcmp(stage, "visibility") == 0;
     r->stages[r->depth] = stage;
