@@ -282,6 +282,9 @@ static void claim_standoff(starg_verdict *verdict, const verify_facts *known) {
     size_t bad = 0, first = 0;
     if (!verify_space_is_narrow(&guards->space))
         return;
+    if (guards->space.cell > 0)
+        verify_leave(verdict, "that guards can be reached from (%.17g, %.17g, %.17g)",
+                     guards->space.from[0], guards->space.from[1], guards->space.from[2]);
     for (size_t g = guards->count; g-- > 0;)
         if (!stands_within(known, g)) {
             bad++;
