@@ -27,7 +27,7 @@ typedef struct values {
     const char *output, *marks, *picture, *certificate, *candidates;
     starg_guard_options wanted;
     cli_scene scene;
-    double *points, *directions; /* --candidates FILE */
+    starg_poses poses; /* --candidates FILE */
 } values;
 
 static const cli_option options[] = {
@@ -35,8 +35,8 @@ static const cli_option options[] = {
     CLI_INPUT_OPTION("candidates", candidates, "skeleton|medial|interior|FILE",
                      "Candidate positions: on the curve skeleton (default), on the medial axis, on "
                      "an interior lattice, or from a file: text with three numbers per line, or "
-                     "six with the direction in which a camera looks (--cone), a skeleton of "
-                     "'starguard skeleton', or another GUARDS.json."),
+                     "six with the direction in which a camera looks (--cone, --fov), or nine with what is up "
+                     "for it, a skeleton of 'starguard skeleton', or another GUARDS.json."),
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
         "Picture of the translucent model with its guards; uncovered faces are dark red."),
@@ -55,8 +55,7 @@ static const cli_option options[] = {
 /* A known source, or a file with points, which is read here. A bare word that names no file is a
  * slip of the command line. */
 static starg_status take_candidates(cli_session *session, const char *word,
-                                    starg_guard_options *wanted, double **points,
-                                    double **directions) {
+                                    starg_guard_options *wanted, starg_poses *poses) {
     cli_suggestion near;
     cli_suggest_begin(&near, word);
     for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) {
@@ -77,13 +76,15 @@ static starg_status take_candidates(cli_session *session, const char *word,
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "the model and the candidates cannot both come from standard input");
     wanted->candidates = STARG_CANDIDATES_GIVEN;
-    starg_status status =
-        starg_poses_read(session->context, word, points, directions, &wanted->point_count);
-    wanted->points = *points;
-    wanted->directions = *directions;
-    if (*directions != NULL && wanted->visibility.cone >= 360)
+    starg_status status = starg_poses_read(session->context, word, poses);
+    wanted->points = poses->points;
+    wanted->directions = poses->directions;
+    wanted->ups = poses->ups;
+    wanted->point_count = poses->count;
+    if (poses->directions != NULL && wanted->visibility.cone >= 360 &&
+        wanted->visibility.fov[0] == 0)
         cli_log(session, STARG_LOG_NOTICE,
-                "the candidates have directions, which matter with --cone DEG only");
+                "the candidates have directions, which matter with --cone DEG or --fov H,V only");
     return status;
 }
 
@@ -174,6 +175,7 @@ static starg_status write_marks(cli_session *session, const starg_solid *solid,
     starg_visibility_options view = g->options.visibility;
     view.target = STARG_TARGET_FACES;
     view.directions = g->directions;
+    view.ups = g->ups;
     uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
     if (colors == NULL)
         return cli_fail_memory(session);
@@ -233,7 +235,7 @@ static starg_status prepare(cli_session *session, void *data) {
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     CLI_TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
-        CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->points, &v->directions));
+        CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->poses));
 done:
     return status;
 }
@@ -262,9 +264,8 @@ done:
 }
 
 static void release(cli_session *session, void *data) {
-    const values *v = data;
-    starg_points_free(session->context, v->points);
-    starg_points_free(session->context, v->directions);
+    values *v = data;
+    starg_poses_free(session->context, &v->poses);
 }
 
 const cli_command cli_command_guard = {

@@ -79,6 +79,27 @@ static bool set_choice(parser *p, const match *m, const char *word) {
     return fail_parse(p, "%s takes %s, not '%.100s'", m->shown, list, word);
 }
 
+/* Numbers with commas between them. */
+static bool set_numbers(parser *p, const match *m, const char *word) {
+    const cli_option *o = m->option;
+    double values[6];
+    bool good = o->length <= 6 && cli_number_list(word, values, (int)o->length);
+    for (size_t i = 0; i < o->length && good; i++) {
+        starg_field one = *o;
+        one.offset += i * sizeof *values;
+        one.size = sizeof *values;
+        good = starg_field_set_real(&one, m->group->values, values[i]);
+    }
+    if (good)
+        return true;
+    if (o->high >= 1e100)
+        return fail_parse(p, "%s takes %s (numbers, no spaces), not '%.100s'", m->shown, o->value,
+                          word);
+    return fail_parse(p, "%s takes %s (numbers %s %g and at most %g, no spaces), not '%.100s'",
+                      m->shown, o->value, (o->flags & STARG_FIELD_ABOVE) ? "above" : "of at least",
+                      o->low, o->high, word);
+}
+
 static bool add_place(parser *p, const match *m, const char *word, starg_places *points) {
     size_t width = m->option->length;
     double place[6];
@@ -129,6 +150,8 @@ static bool set_value(parser *p, const match *m, const char *word) {
         return set_real(p, m, word);
     case STARG_FIELD_CHOICE:
         return set_choice(p, m, word);
+    case STARG_FIELD_NUMBERS:
+        return set_numbers(p, m, word);
     case STARG_FIELD_PLACES:
         return add_place(p, m, word, variable);
     case STARG_FIELD_TEXTS:

@@ -30,7 +30,7 @@ done:
 static bool is_plain(const cli_scene *s) {
     return s->obstacles.count == 0 && s->orientation == STARG_ORIENTATION_NESTED && !s->outside &&
            s->standoff.count == 0 && s->within.count == 0 && s->see == NULL && s->ignore == NULL &&
-           s->weights == NULL && !s->soup && s->from.count == 0;
+           s->weights == NULL && !s->soup && !s->two_sided && s->from.count == 0;
 }
 
 static double diagonal(const starg_mesh *mesh) {
@@ -44,6 +44,7 @@ static void take_options(const cli_scene *s, const starg_mesh *model, starg_spac
     out->orientation = s->orientation;
     out->outside = s->outside;
     out->soup = s->soup;
+    out->two_sided = s->two_sided;
     if (s->from.count > 0) {
         const double *last = s->from.values + 3 * (s->from.count - 1);
         out->cell = s->cell > 0 ? s->cell : 0.01 * diagonal(model);

@@ -10,7 +10,7 @@
 typedef struct cli_scene {
     starg_texts obstacles;
     starg_orientation orientation;
-    bool outside, soup;
+    bool outside, soup, two_sided;
     double cell;
     starg_places from;
     starg_places standoff, within;
@@ -33,6 +33,8 @@ extern const char *const cli_orientation_words[];
         {CLI_OPTION("soup", STARG_FIELD_FLAG, scene.soup, NULL,                                    \
                     "The model is any triangles, closed or not: each blocks the view, and is "     \
                     "seen from its front, where its corners turn counter-clockwise.")},            \
+        {CLI_OPTION("two-sided", STARG_FIELD_FLAG, scene.two_sided, NULL,                          \
+                    "--soup: faces are seen from either side.")},                                  \
         CLI_INPUT_OPTION("see", scene.see, "FILE",                                                 \
                          "Only these faces need to be seen: face numbers, from 0, in a text "      \
                          "file."),                                                                 \

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
+#include "scene.h"
 #include "show.h"
 
 #include <stdlib.h>
@@ -239,13 +240,12 @@ static starg_status check_model(cli_session *session, const cli_show *show) {
 static starg_status see(cli_session *session, cli_show *show) {
     starg_status status = STARG_OK;
     const starg_guards *g = show->page.guards;
-    starg_visibility_options options = g->options.visibility;
-    options.engine = STARG_VISIBILITY_FASTEST;
-    options.target = STARG_TARGET_FACES;
-    options.directions = g->directions;
+    starg_mesh **obstacles = NULL;
     CLI_TRY(check_model(session, show));
-    CLI_TRY(starg_visibility(session->context, show->solid, g->positions, g->count, &options,
-                             &show->seen));
+    CLI_TRY(cli_scene_read_obstacles(session, g, &obstacles));
+    CLI_TRY(starg_guards_scene(session->context, show->model,
+                               (const starg_mesh *const *)obstacles, g, &show->solid));
+    CLI_TRY(starg_guards_see(session->context, show->solid, g, &show->seen));
     show->page.seen = show->seen;
     for (size_t i = 0; i < g->count; i++)
         if (starg_bits_count(show->seen, i) != g->seen_faces[i]) {
@@ -256,6 +256,7 @@ static starg_status see(cli_session *session, cli_show *show) {
             break;
         }
 done:
+    cli_scene_free_obstacles(obstacles, g->obstacle_count);
     return status;
 }
 
@@ -278,10 +279,10 @@ static starg_status measure(cli_session *session, cli_show *show) {
 static starg_status compute(cli_session *session, cli_show *show) {
     starg_status status = STARG_OK;
     bool radii = show->skeleton != NULL && show->skeleton->radii == NULL;
-    if (show->model != NULL && (show->page.guards != NULL || radii))
-        CLI_TRY(starg_solid_create(session->context, show->model, &show->solid));
     if (show->page.guards != NULL)
         CLI_TRY(see(session, show));
+    else if (show->model != NULL && radii)
+        CLI_TRY(starg_solid_create(session->context, show->model, &show->solid));
     if (show->skeleton != NULL)
         CLI_TRY(measure(session, show));
 done:

@@ -6,7 +6,10 @@
 #include "fields.h"
 
 static void put_type(FILE *stub, const starg_field *f) {
-    static const char *const names[] = {"bool", "SupportsIndex", "SupportsFloat", NULL, "PathLike"};
+    static const char *const names[] = {
+        [STARG_FIELD_FLAG] = "bool",          [STARG_FIELD_COUNT] = "SupportsIndex",
+        [STARG_FIELD_REAL] = "SupportsFloat", [STARG_FIELD_TEXT] = "PathLike",
+        [STARG_FIELD_NUMBERS] = "Iterable[SupportsFloat]"};
     if (f->kind != STARG_FIELD_CHOICE) {
         fprintf(stub, "%s | None\n", names[f->kind]);
         return;
@@ -20,7 +23,8 @@ static void put_type(FILE *stub, const starg_field *f) {
 static void put_argument(FILE *stub, const call *c, const starg_field *f) {
     char name[NAME_SIZE];
     keyword_name(f, name);
-    if (f->kind > STARG_FIELD_TEXT || (c->without != NULL && strcmp(name, c->without) == 0))
+    bool taken = f->kind <= STARG_FIELD_TEXT || f->kind == STARG_FIELD_NUMBERS;
+    if (!taken || (c->without != NULL && strcmp(name, c->without) == 0))
         return;
     fprintf(stub, "    %s: ", name);
     put_type(stub, f);
@@ -30,7 +34,7 @@ bool write_keywords(const char *path) {
     FILE *stub = fopen(path, "w");
     if (stub == NULL)
         return false;
-    fputs("from typing import Literal, SupportsFloat, SupportsIndex, TypedDict\n\n"
+    fputs("from typing import Iterable, Literal, SupportsFloat, SupportsIndex, TypedDict\n\n"
           "from ._types import PathLike\n",
           stub);
     for (size_t i = 0; i < call_count; i++) {

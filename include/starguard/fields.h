@@ -17,8 +17,8 @@
 extern "C" {
 #endif
 
-/* The type of a member. Types up to CHOICE occur in options and results, PLACES and TEXTS only in
- * options, the others only in results. */
+/* The type of a member. Types up to CHOICE and NUMBERS occur in options and results, PLACES and
+ * TEXTS only in options, the others only in results. */
 typedef enum starg_field_kind {
     STARG_FIELD_FLAG = 0,    /* bool                                                           */
     STARG_FIELD_COUNT = 1,   /* size_t, uint64_t, uint32_t or int */

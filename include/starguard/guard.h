@@ -50,14 +50,18 @@ typedef struct starg_guard_options {
     size_t candidate_count; /* approximate number, at least 1; more are added for faces that none of
                                them sees */
     const double *points;   /* STARG_CANDIDATES_GIVEN: point_count x 3                     */
-    const double *directions; /* of these, with a cone: point_count x 3; NULL: they may look
-                                 anywhere */
+    const double *directions; /* of these, with a cone or a field of view: point_count x 3; NULL:
+                                 they may look anywhere */
+    const double *ups; /* of these directions: what is up, as in starg_visibility_options */
     size_t point_count;
     starg_visibility_options visibility;
     double coverage;     /* fraction in (0, 1] of the coverable area to cover (of the coverable
                             vertices, if they are the target) */
     size_t max_guards;   /* 0: no limit; else maximize the area with this many guards */
     uint32_t redundancy; /* guards per face, as far as candidates allow */
+    double baseline;     /* above 0: two of these, which are 2 or more, at least so many degrees
+                            apart as seen from the centroid of the face, as far as candidates allow;
+                            only where everything is to be seen */
     double clearance;    /* minimum distance from the boundary */
     size_t max_nodes;    /* branch-and-bound nodes per block, or STARG_DEFAULT_NODES */
 
@@ -121,7 +125,8 @@ typedef struct starg_guards {
 
     size_t count;
     double *positions;  /* count x 3                                                  */
-    double *directions; /* count x 3, viewing directions; NULL without a cone */
+    double *directions; /* count x 3, viewing directions; NULL where guards look all around */
+    double *ups;        /* count x 3, what is up there; NULL without a field of view */
     size_t *seen_faces; /* number of faces visible from each guard */
     int *levels;        /* level of detail at which the guard was chosen; 0: the coarsest */
 
@@ -131,6 +136,7 @@ typedef struct starg_guards {
     double coverage_faces;  /* covered fraction of all faces */
     double coverage_area;   /* covered fraction of the total area */
     size_t coverable_faces; /* number of faces that some candidate sees */
+    size_t baseline_faces;  /* with a baseline: that two guards see from places so far apart */
     size_t uncovered_count;
     uint32_t *uncovered; /* faces that no guard sees, ascending                        */
 
@@ -181,6 +187,17 @@ STARG_API starg_status starg_certificate_write(starg_context *context, const cha
 STARG_API starg_status starg_guards_given(starg_context *context, const starg_solid *solid,
                                           const double *points, size_t count, starg_guards **out);
 
+/* The scene that a result is of, from the model and the obstacles that it names (space.h). Errors:
+ * ARGUMENT (another model), those of starg_space_create. */
+STARG_API starg_status starg_guards_scene(starg_context *context, const starg_mesh *model,
+                                          const starg_mesh *const *obstacles,
+                                          const starg_guards *guards, starg_solid **out);
+
+/* What each guard of a result sees there: a row for each, with a column for each face of the model.
+ * Errors: those of starg_visibility. */
+STARG_API starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
+                                        const starg_guards *guards, starg_bits **out);
+
 STARG_API void starg_guards_free(starg_context *context, starg_guards *guards);
 
 /* Candidate points: count x 3 doubles, each strictly inside and at least `clearance` from the
@@ -213,15 +230,22 @@ STARG_API starg_status starg_guards_read(starg_context *context, const char *pat
 STARG_API starg_status starg_guards_read_memory(starg_context *context, const void *bytes,
                                                 size_t size, const char *name, starg_guards **out);
 
-/* Reads candidate poses: text with three numbers per line, or six with a viewing direction
- * (optionally after "v"; # begins a comment), the nodes of a skeleton (OBJ, CG, VTK), or the guards
- * of a GUARDS.json, recognized by content. `directions` is NULL if there are none. Free both with
- * starg_points_free. */
-STARG_API starg_status starg_poses_read(starg_context *context, const char *path, double **points,
-                                        double **directions, size_t *count);
+/* Places, and where guards there look. */
+typedef struct starg_poses {
+    double *points;     /* count x 3 */
+    double *directions; /* count x 3; NULL: there are none */
+    double *ups;        /* of the directions: what is up, all 0 if it is not said; else NULL */
+    size_t count;
+} starg_poses;
+
+/* Reads candidate poses: text with three numbers per line, six with a viewing direction, or nine
+ * with what is up there (optionally after "v"; # begins a comment), the nodes of a skeleton (OBJ, CG,
+ * VTK), or the guards of a GUARDS.json, recognized by content. Errors: READ, FORMAT (line and
+ * reason), MEMORY. */
+STARG_API starg_status starg_poses_read(starg_context *context, const char *path, starg_poses *out);
 STARG_API starg_status starg_poses_read_memory(starg_context *context, const void *bytes,
-                                               size_t size, const char *name, double **points,
-                                               double **directions, size_t *count);
+                                               size_t size, const char *name, starg_poses *out);
+STARG_API void starg_poses_free(starg_context *context, starg_poses *poses);
 
 /* The same without directions. */
 STARG_API starg_status starg_points_read(starg_context *context, const char *path, double **points,

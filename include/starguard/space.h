@@ -33,6 +33,7 @@ typedef struct starg_space_options {
     bool soup; /* the model is any triangles, closed or not: each blocks the view from both sides,
                   and is seen from its front, where its corners turn counter-clockwise; space is
                   free but for the triangles themselves */
+    bool two_sided;        /* faces of a soup are seen from either side */
     bool outside;          /* guards stand outside of the model and see it from there */
     double standoff_least; /* distance of guards from the model */
     double standoff_most;  /* may be INFINITY */

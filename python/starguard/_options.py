@@ -17,8 +17,10 @@ from .errors import ArgumentError
 
 T = TypeVar("T")
 _TYPES = {lib.STARG_FIELD_FLAG: "bool", lib.STARG_FIELD_COUNT: "int", lib.STARG_FIELD_REAL: "float",
-          lib.STARG_FIELD_CHOICE: "str", lib.STARG_FIELD_TEXT: "PathLike"}
+          lib.STARG_FIELD_CHOICE: "str", lib.STARG_FIELD_TEXT: "PathLike",
+          lib.STARG_FIELD_NUMBERS: "Sequence[float]"}
 _TEXT_SIZE = 512
+_ABOVE = 16  # STARG_FIELD_ABOVE
 
 
 class Field:
@@ -44,9 +46,21 @@ class Field:
         function(self._row, buffer, _TEXT_SIZE)
         return text(buffer)
 
+    def _numbers(self, struct: Any) -> Any:
+        return self._at(struct, "double *")[0:self._row.length]
+
+    def _fits(self, number: float) -> bool:
+        above = number > self._row.low if self._row.flags & _ABOVE else number >= self._row.low
+        return above and number <= self._row.high
+
+    def _expectation(self) -> str:
+        said = self._text(lib.starg_field_expectation)
+        if self.kind == lib.STARG_FIELD_TEXT:
+            return "a file name"
+        return f"{self._row.length} numbers, each {said}" if self.kind == lib.STARG_FIELD_NUMBERS else said
+
     def _wrong(self, value: Any) -> ArgumentError:
-        what = ("a file name" if self.kind == lib.STARG_FIELD_TEXT
-                else self._text(lib.starg_field_expectation))
+        what = self._expectation()
         return ArgumentError(f"the {self.name.replace('_', ' ')} is {value!r}; it must be {what}")
 
     def get(self, struct: Any) -> Any:
@@ -55,6 +69,9 @@ class Field:
             return self._at(struct, "double *")[0]
         if self.kind == lib.STARG_FIELD_TEXT:
             return text(self._at(struct, "char **")[0]) or None
+        if self.kind == lib.STARG_FIELD_NUMBERS:
+            numbers = tuple(self._numbers(struct))
+            return numbers if any(numbers) else None
         value = lib.starg_field_count(self._row, struct)
         if self.kind == lib.STARG_FIELD_FLAG:
             return bool(value)
@@ -74,6 +91,11 @@ class Field:
                 keep = ffi.new("char[]", _arrays.path(value))
                 self._at(struct, "char **")[0] = keep
                 fits = True
+            elif self.kind == lib.STARG_FIELD_NUMBERS:
+                numbers = [float(number) for number in value]
+                fits = len(numbers) == self._row.length and all(map(self._fits, numbers))
+                if fits:
+                    self._numbers(struct)[:] = numbers
             elif self.kind == lib.STARG_FIELD_CHOICE:
                 fits = lib.starg_field_set_count(self._row, struct, self.words.index(value))
             elif self.kind == lib.STARG_FIELD_FLAG:
@@ -92,8 +114,8 @@ class Field:
         values = self._text(lib.starg_field_expectation)
         if self.kind == lib.STARG_FIELD_CHOICE:
             values = ", ".join(f'"{word}"' for word in self.words)
-        elif self.kind == lib.STARG_FIELD_TEXT:
-            values = "a file name"
+        elif self.kind in (lib.STARG_FIELD_TEXT, lib.STARG_FIELD_NUMBERS):
+            values = self._expectation()
         elif self.kind == lib.STARG_FIELD_FLAG:
             values = f"True or False, by default {bool(self._row.initial)}"
         else:

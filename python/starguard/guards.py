@@ -52,8 +52,10 @@ class Guards:
     face_count: int
     #: (k, 3).
     positions: Array
-    #: Viewing directions, (k, 3); None without a cone.
+    #: Viewing directions, (k, 3); None where guards look all around.
     directions: Array | None
+    #: What is up there, (k, 3); None without a field of view.
+    ups: Array | None
     #: Number of faces visible from each guard, (k,).
     seen_faces: Array
     #: Level of detail at which each guard was chosen, (k,); 0: the coarsest.
@@ -65,6 +67,8 @@ class Guards:
     coverage_area: float
     #: Number of faces that some candidate sees.
     coverable_faces: int
+    #: With a baseline: number of faces that two guards see from places so far apart.
+    baseline_faces: int
     #: Faces that no guard sees, ascending.
     uncovered: Array
     #: The same for vertices, only with target "vertices".
@@ -113,6 +117,7 @@ class Guards:
             cls, g, _handle=g, _owner=keeper, file=text(g.file) if g.file else name_of(file), level_list=levels,
             positions=_arrays.view(keeper, g.positions, (count, 3), np.float64),
             directions=_arrays.view(keeper, g.directions, (count, 3), np.float64) if g.directions else None,
+            ups=_arrays.view(keeper, g.ups, (count, 3), np.float64) if g.ups else None,
             seen_faces=_arrays.view(keeper, g.seen_faces, (count,), np.uintp),
             levels=_arrays.view(keeper, g.levels, (count,), np.intc),
             uncovered=_arrays.view(keeper, g.uncovered, (g.uncovered_count,), np.uint32),
@@ -174,8 +179,8 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
     """Places few guards that together see the whole boundary.
 
     `candidates` selects candidate positions: on the curve "skeleton" (default), on the "medial"
-    axis, on a lattice in the "interior", or points of shape (n, 3), or (n, 6) with the direction in
-    which a camera looks. Faces that no candidate sees
+    axis, on a lattice in the "interior", or points of shape (n, 3), (n, 6) with the direction in
+    which a camera looks, or (n, 9) with what is up for it. Faces that no candidate sees
     are listed in `uncovered` and are not an error. With `prove=True`, `certificate` is a file to write
     that says why `lower_bound_everywhere` holds; `verify(model, guards, file)` checks it.
 
@@ -190,12 +195,14 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
     if isinstance(candidates, str):
         wanted.pointer.candidates = choose("candidates", candidates, _CANDIDATES)
     elif candidates is not None:
-        poses = np.shape(candidates)[-1:] == (6,)
-        given = _arrays.points(candidates, "candidates", 6 if poses else 3)
-        places, looks = np.ascontiguousarray(given[:, :3]), np.ascontiguousarray(given[:, 3:])
-        points, directions = (_arrays.pointer("double[]", part) for part in (places, looks))
-        if poses:
+        width = (np.shape(candidates)[-1:] or (3,))[0]
+        given = _arrays.points(candidates, "candidates", width if width in (6, 9) else 3)
+        places, looks, ups = (np.ascontiguousarray(given[:, i:i + 3]) for i in (0, 3, 6))
+        points, directions, above = (_arrays.pointer("double[]", part) for part in (places, looks, ups))
+        if width >= 6:
             wanted.pointer.directions = directions
+        if width == 9:
+            wanted.pointer.ups = above
         wanted.pointer.candidates = lib.STARG_CANDIDATES_GIVEN
         wanted.pointer.points = points
         wanted.pointer.point_count = len(places)
@@ -238,7 +245,8 @@ def candidate_points(model: Any, source: str = "skeleton", count: int = 1000, *,
 
 def read_points(path: PathLike) -> Array:
     """Reads points, shape (n, 3): text with three numbers per line, the nodes of a skeleton (OBJ, CG,
-    VTK), or the guards of a GUARDS.json. With viewing directions, six numbers per line: (n, 6).
+    VTK), or the guards of a GUARDS.json. With viewing directions, six numbers per line: (n, 6); with
+    what is up there, nine: (n, 9).
 
     >>> import pathlib, starguard
     >>> _ = pathlib.Path("places.txt").write_text("1.5 1.7 2 # hall\\n4 1.7 2\\n")
@@ -263,12 +271,11 @@ def points_from_bytes(data: bytes, name: str = "memory") -> Array:
 
 
 def _read_points(session: Session, function: Any, *arguments: Any) -> Array:
-    out, looks, number = ffi.new("double **"), ffi.new("double **"), ffi.new("size_t *")
+    poses = ffi.new("starg_poses *")
     try:
-        session.call(function, session.context, *arguments, out, looks, number)
+        session.call(function, session.context, *arguments, poses)
+        blocks = [_arrays.view(None, block, (poses.count, 3), np.float64)
+                  for block in (poses.points, poses.directions, poses.ups) if block]
+        return np.hstack(blocks[:3 if len(blocks) == 3 and blocks[2].any() else 2])
     finally:
-        owners = [session.own(block[0], lib.starg_points_free, shared=True) if block[0] else None
-                  for block in (out, looks)]
-    points, directions = (_arrays.view(owner, block[0], (number[0] if owner else 0, 3), np.float64)
-                          for owner, block in zip(owners, (out, looks)))
-    return points if len(directions) == 0 else np.hstack((points, directions))
+        lib.starg_poses_free(session.context, poses)

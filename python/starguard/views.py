@@ -26,7 +26,7 @@ _FORMATS = {"auto": lib.STARG_SCENE_AUTO, "glb": lib.STARG_SCENE_GLB, "vtu": lib
 
 def _seen(mesh: Mesh, guards: Guards) -> Bits:
     """What each guard sees with the options of the result."""
-    names = ("faces", "range", "cone")
+    names = ("faces", "range", "near", "incidence", "cone", "fov", "up")
     return visible(mesh, guards.positions, directions=guards.directions,
                    **{name: guards.options[name] for name in names})
 

@@ -105,7 +105,7 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
             progress: Progress | None = None, **options: Unpack[VisibleOptions]) -> Bits:
     """Computes exactly which faces (or, with target="vertices", vertices) each point sees.
 
-    A point that is not inside sees nothing. A `cone` needs `directions`, one per point.
+    A point that is not inside sees nothing. A `cone` or a `fov` needs `directions`, one per point.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -123,8 +123,8 @@ def visible(model: Any, points: ArrayLike, *, directions: ArrayLike | None = Non
             raise ArgumentError(f"there are {len(rows)} points and {len(looks)} directions")
         pointer = _arrays.pointer("double[]", looks)
         wanted.pointer.directions = pointer
-    elif wanted.pointer.cone < 360:
-        raise ArgumentError("a cone needs directions, one per point")
+    elif wanted.pointer.cone < 360 or wanted.pointer.fov[0] > 0:
+        raise ArgumentError("a cone or a field of view needs directions, one per point")
     return Bits(session.make("starg_bits", lib.starg_bits_free, lib.starg_visibility, session.context,
                              solid._handle, _arrays.pointer("double[]", rows), len(rows),
                              wanted.pointer, progress=progress, time_limit=time_limit))

@@ -216,27 +216,19 @@ bool collinear(const double a[3], const double b[3], const double c[3]) {
            orient2d(a, b, c, 2, 0) == 0;
 }
 
-/* Sign of ((q - p) . d)^2 - cosine^2 |q - p|^2 |d|^2, each factor in units of its own: the cosine's
- * unit is made up for by a one. */
-static __attribute__((noinline)) int compare_cone_squares(const double p[3], const double d[3],
-                                                          double cosine, const double q[3]) {
-    const double points[6] = {p[0], p[1], p[2], q[0], q[1], q[2]}, cosines[2] = {cosine, 1};
-    int bits, point_scale = exact_scale(points, 6, &bits), scale = exact_scale(d, 3, &bits);
-    int cosine_scale = exact_scale(cosines, 2, &bits);
-    exact v[3], axis[3], dot = {0}, sum, term, one, c, left, right, length, product;
-    exact_difference(v, q, p, point_scale);
-    for (int k = 0; k < 3; k++) {
-        exact_set(&axis[k], d[k], scale);
-        exact_multiply(&term, &v[k], &axis[k]);
-        exact_add(&sum, &dot, &term);
-        dot = sum;
-    }
-    exact_set(&one, 1, cosine_scale);
-    exact_set(&c, cosine, cosine_scale);
-    exact_multiply(&term, &dot, &one);
+/* Sign of (u . v)^2 - cosine^2 |u|^2 |v|^2, each factor in units of its own: the cosine's unit is
+ * made up for by a one. */
+static __attribute__((noinline)) int compare_squares(const exact *dot, const exact u[3],
+                                                     const exact v[3], double cosine) {
+    const double cosines[2] = {cosine, 1};
+    int bits, scale = exact_scale(cosines, 2, &bits);
+    exact sum, term, one, c, left, right, length, product;
+    exact_set(&one, 1, scale);
+    exact_set(&c, cosine, scale);
+    exact_multiply(&term, dot, &one);
     exact_multiply(&left, &term, &term);
-    exact_square(&length, v);
-    exact_square(&product, axis);
+    exact_square(&length, u);
+    exact_square(&product, v);
     exact_multiply(&term, &length, &product);
     exact_multiply(&product, &c, &c);
     exact_multiply(&right, &term, &product);
@@ -244,25 +236,47 @@ static __attribute__((noinline)) int compare_cone_squares(const double p[3], con
     return sum.sign;
 }
 
-static __attribute__((noinline)) int compare_cone_exact(const double p[3], const double d[3],
-                                                        double cosine, const double q[3]) {
-    const double points[6] = {p[0], p[1], p[2], q[0], q[1], q[2]};
-    int bits, point_scale = exact_scale(points, 6, &bits), scale = exact_scale(d, 3, &bits);
-    exact v[3], x, dot = {0}, sum, term;
-    exact_difference(v, q, p, point_scale);
+static void exact_dot(exact *out, const exact u[3], const exact v[3]) {
+    exact term, sum = {0};
     for (int k = 0; k < 3; k++) {
-        exact_set(&x, d[k], scale);
-        exact_multiply(&term, &v[k], &x);
-        exact_add(&sum, &dot, &term);
-        dot = sum;
+        exact_multiply(&term, &u[k], &v[k]);
+        exact_add(out, &sum, &term);
+        sum = *out;
     }
-    bool apart = v[0].sign != 0 || v[1].sign != 0 || v[2].sign != 0;
-    int limit = apart ? sign_of(cosine) : 0;
+}
+
+static bool exact_is_zero(const exact v[3]) {
+    return v[0].sign == 0 && v[1].sign == 0 && v[2].sign == 0;
+}
+
+/* Sign of u . v - cosine |u| |v|. */
+static int compare_angle(const exact u[3], const exact v[3], double cosine) {
+    exact dot;
+    exact_dot(&dot, u, v);
+    int limit = exact_is_zero(u) || exact_is_zero(v) ? 0 : sign_of(cosine);
     if (dot.sign != limit)
         return dot.sign > limit ? 1 : -1;
-    if (limit == 0)
-        return 0;
-    return limit * compare_cone_squares(p, d, cosine, q);
+    return limit == 0 ? 0 : limit * compare_squares(&dot, u, v, cosine);
+}
+
+static void exact_vector(exact out[3], const double d[3]) {
+    int bits, scale = exact_scale(d, 3, &bits);
+    for (int k = 0; k < 3; k++)
+        exact_set(&out[k], d[k], scale);
+}
+
+static void exact_offset(exact out[3], const double p[3], const double q[3]) {
+    const double points[6] = {p[0], p[1], p[2], q[0], q[1], q[2]};
+    int bits, scale = exact_scale(points, 6, &bits);
+    exact_difference(out, q, p, scale);
+}
+
+static __attribute__((noinline)) int compare_cone_exact(const double p[3], const double d[3],
+                                                        double cosine, const double q[3]) {
+    exact v[3], axis[3];
+    exact_offset(v, p, q);
+    exact_vector(axis, d);
+    return compare_angle(v, axis, cosine);
 }
 
 int compare_cone(const double p[3], const double d[3], double cosine, const double q[3]) {
@@ -273,4 +287,117 @@ int compare_cone(const double p[3], const double d[3], double cosine, const doub
     if (far > 1e-140 && axis > 1e-140 && fabs(difference) > 24 * EPSILON * far * axis)
         return sign_of(difference);
     return compare_cone_exact(p, d, cosine, q);
+}
+
+static __attribute__((noinline)) int compare_plane_exact(const double p[3], const double n[3],
+                                                         const double q[3]) {
+    exact v[3], normal[3], dot;
+    exact_offset(v, p, q);
+    exact_vector(normal, n);
+    exact_dot(&dot, v, normal);
+    return dot.sign;
+}
+
+int compare_plane(const double p[3], const double n[3], const double q[3]) {
+    double x = (q[0] - p[0]) * n[0], y = (q[1] - p[1]) * n[1], z = (q[2] - p[2]) * n[2];
+    double sum = x + y + z, permanent = fabs(x) + fabs(y) + fabs(z);
+    if (permanent > 1e-290 && fabs(sum) > 8 * EPSILON * permanent)
+        return sign_of(sum);
+    return compare_plane_exact(p, n, q);
+}
+
+static double length_of(const double v[3]) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+static double dot_of(const double u[3], const double v[3]) {
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+static void difference_of(double out[3], const double p[3], const double q[3]) {
+    for (int k = 0; k < 3; k++)
+        out[k] = p[k] - q[k];
+}
+
+/* The normal has degree two, so that its square times that of the line has six. */
+static __attribute__((noinline)) int compare_incidence_exact(const double *const t[3],
+                                                             const double p[3], const double q[3],
+                                                             double cosine) {
+    double values[9];
+    gather(values, t, 3);
+    int bits, scale = exact_scale(values, 9, &bits);
+    exact e[2][3], normal[3], line[3];
+    exact_difference(e[0], t[2], t[0], scale);
+    exact_difference(e[1], t[1], t[0], scale);
+    for (int k = 0; k < 3; k++)
+        exact_minor(&normal[k], &e[0][(k + 1) % 3], &e[1][(k + 2) % 3], &e[0][(k + 2) % 3],
+                    &e[1][(k + 1) % 3]);
+    exact_offset(line, q, p);
+    return compare_angle(normal, line, cosine);
+}
+
+/* The filter: differences come with a rounding each; the normal is off by 4 roundings of the
+ * product of the sides' lengths, both products with the line by a few more. */
+int compare_incidence(const double a[3], const double b[3], const double c[3], const double p[3],
+                      const double q[3], double cosine) {
+    if (orient3d(a, b, c, p) <= 0)
+        return -1;
+    double u[3], v[3], line[3];
+    difference_of(u, c, a);
+    difference_of(v, b, a);
+    difference_of(line, p, q);
+    const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                         u[0] * v[1] - u[1] * v[0]};
+    double far = length_of(line), first = length_of(u), second = length_of(v);
+    double excess = dot_of(n, line) - cosine * length_of(n) * far;
+    if (far > 1e-60 && first > 1e-60 && second > 1e-60 &&
+        fabs(excess) > 64 * EPSILON * first * second * far)
+        return sign_of(excess);
+    return compare_incidence_exact((const double *const[]){a, b, c}, p, q, cosine);
+}
+
+/* out = 3 p - a - b - c */
+static void exact_from_centroid(exact out[3], const double *const t[3], const double p[3],
+                                int scale) {
+    exact from[3], sum;
+    exact_difference(out, p, t[0], scale);
+    for (int i = 1; i < 3; i++) {
+        exact_difference(from, p, t[i], scale);
+        for (int k = 0; k < 3; k++) {
+            exact_add(&sum, &out[k], &from[k]);
+            out[k] = sum;
+        }
+    }
+}
+
+static __attribute__((noinline)) int compare_parallax_exact(const double *const t[3],
+                                                            const double p[3], const double q[3],
+                                                            double cosine) {
+    const double *const points[5] = {t[0], t[1], t[2], p, q};
+    double values[15];
+    gather(values, points, 5);
+    int bits, scale = exact_scale(values, 15, &bits);
+    exact u[3], v[3];
+    exact_from_centroid(u, t, p, scale);
+    exact_from_centroid(v, t, q, scale);
+    return compare_angle(u, v, cosine);
+}
+
+/* The filter: a component of 3 p - a - b - c is off by at most 6 roundings of the largest
+ * coordinate times three. */
+int compare_parallax(const double a[3], const double b[3], const double c[3], const double p[3],
+                     const double q[3], double cosine) {
+    double u[3], v[3], size = 0;
+    for (int k = 0; k < 3; k++) {
+        double sum = a[k] + b[k] + c[k];
+        u[k] = 3 * p[k] - sum;
+        v[k] = 3 * q[k] - sum;
+        size = fmax(size, fabs(a[k]) + fabs(b[k]) + fabs(c[k]) + 3 * fabs(p[k]) + 3 * fabs(q[k]));
+    }
+    double first = length_of(u), second = length_of(v);
+    double excess = dot_of(u, v) - cosine * first * second;
+    double doubt = 64 * EPSILON * (size * (first + second) + first * second);
+    if (first > 1e-100 && second > 1e-100 && fabs(excess) > doubt)
+        return sign_of(excess);
+    return compare_parallax_exact((const double *const[]){a, b, c}, p, q, cosine);
 }

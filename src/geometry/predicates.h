@@ -33,6 +33,20 @@ int compare_distance(const double p[3], const double q[3], double radius);
  * opening angle has the given cosine, from -1 to 1; 0 on its side or at p, -1 outside. */
 int compare_cone(const double p[3], const double d[3], double cosine, const double q[3]);
 
+/* Sign of n . (q - p): is q before the plane through p with the normal n? */
+int compare_plane(const double p[3], const double n[3], const double q[3]);
+
+/* 1 when the angle at q between the line to p and the normal of the triangle a b c on p's side is
+ * less than that of a cosine from 0 to 1, 0 when it is the same, -1 when it is more, or p in the
+ * plane or on the outer side (orient3d). q lies in the plane. */
+int compare_incidence(const double a[3], const double b[3], const double c[3], const double p[3],
+                      const double q[3], double cosine);
+
+/* 1 when the angle between p and q, as seen from the centroid of the triangle a b c, is less than
+ * that of a cosine from -1 to 1, 0 when it is the same or either is the centroid, else -1. */
+int compare_parallax(const double a[3], const double b[3], const double c[3], const double p[3],
+                     const double q[3], double cosine);
+
 /* True when a, b, c lie on one line (or coincide). */
 bool collinear(const double a[3], const double b[3], const double c[3]);
 

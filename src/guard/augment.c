@@ -51,6 +51,7 @@ static bool is_good(const augmentation_job *job, const double p[3], const double
     double direction[3];
     look_at(p, centroid, direction);
     options.directions = direction;
+    options.ups = NULL;
     return candidates_allowed(job->all->solid, p, job->all->clearance) &&
            scene_sees_face(job->scene, p, rank, &options);
 }
@@ -110,9 +111,12 @@ static starg_status augment_face(starg_context *context, void *shared, void *scr
     found->count = 0;
     if (!make_frame(job->scene, rank, centroid, normal, side))
         return STARG_OK;
-    for (int d = 0; d < DIRECTIONS; d++) {
+    int sides = scene_back(job->scene, rank) == SCENE_NONE ? 1 : 2;
+    for (int d = 0; d < sides * DIRECTIONS; d++) {
         double direction[3], p[3];
-        lean(normal, (const double(*)[3])side, d, direction);
+        lean(normal, (const double(*)[3])side, d % DIRECTIONS, direction);
+        for (int k = 0; k < 3 && d >= DIRECTIONS; k++)
+            direction[k] = -direction[k]; /* above the back */
         double depth = deepest(job, rank, centroid, direction, best, p);
         if (depth <= best)
             continue;
@@ -148,7 +152,7 @@ starg_status augment_candidates(starg_context *context, const augmentation *all,
     starg_status status = STARG_OK;
     augmentation_job job = {.all = all};
     size_t face_count = all->solid->mesh->face_count;
-    bool cone = all->visibility->cone < 360;
+    bool looks = sensor_is_directed(all->visibility);
     STARG_TRY(scene_create(context, all->solid, &job.scene));
     STARG_NEW(context, STAGE, job.rank_of, face_count);
     STARG_NEW(context, STAGE, job.faces, BATCH);
@@ -162,7 +166,7 @@ starg_status augment_candidates(starg_context *context, const augmentation *all,
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < job.found[i].count; k++)
             STARG_TRY(candidates_push(context, points, job.found[i].p[k],
-                                      cone ? job.found[i].direction[k] : NULL));
+                                      looks ? job.found[i].direction[k] : NULL));
     *pending = count > 0;
 done:
     scene_free(job.scene);

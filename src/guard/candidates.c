@@ -10,20 +10,29 @@
 
 static const char STAGE[] = "candidates";
 
-starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
-                             const double direction[3]) {
+starg_status candidates_push_pose(starg_context *context, candidate_points *points,
+                                  const double p[3], const double direction[3],
+                                  const double up[3]) {
     starg_status status = STARG_OK;
     for (int k = 0; k < 3; k++)
         STARG_PUSH(context, STAGE, &points->data, p[k]);
-    for (int k = 0; k < 3 && direction != NULL; k++)
+    for (int k = 0; k < 3 && direction != NULL; k++) {
         STARG_PUSH(context, STAGE, &points->directions, direction[k]);
+        STARG_PUSH(context, STAGE, &points->ups, up != NULL ? up[k] : 0);
+    }
 done:
     return status;
+}
+
+starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
+                             const double direction[3]) {
+    return candidates_push_pose(context, points, p, direction, NULL);
 }
 
 void candidates_free(starg_context *context, candidate_points *points) {
     STARG_ARRAY_FREE(context, &points->data);
     STARG_ARRAY_FREE(context, &points->directions);
+    STARG_ARRAY_FREE(context, &points->ups);
     *points = (candidate_points){0};
 }
 

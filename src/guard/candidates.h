@@ -4,27 +4,33 @@
 #define STARG_GUARD_CANDIDATES_H
 
 #include "core/memory.h"
+#include "guard/weights.h"
 #include "mesh/solid.h"
 #include "starguard/guard.h"
+#include "visibility/sensor.h"
 
-/* Points of three doubles; data.count is three times their number. Where views are cones each has
- * a direction as well; else `directions` is empty. */
+/* Points of three doubles; data.count is three times their number. Where views are directed each has
+ * a direction as well, and what is up for it (0: what the options say); else both are empty. */
 typedef struct candidate_points {
-    STARG_ARRAY(double) data, directions;
+    STARG_ARRAY(double) data, directions, ups;
 } candidate_points;
 
 static inline size_t candidates_count(const candidate_points *points) {
     return points->data.count / 3;
 }
 
-/* `direction` may be NULL where views are no cones. Errors: MEMORY. */
+/* `direction` is NULL where views are not directed, `up` where the options say it. Errors: MEMORY. */
+starg_status candidates_push_pose(starg_context *context, candidate_points *points,
+                                  const double p[3], const double direction[3],
+                                  const double up[3]);
 starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
                              const double direction[3]);
 void candidates_free(starg_context *context, candidate_points *points);
 
-/* Every point with directions that are spread evenly over the sphere, closer together the narrower
- * the cone (in degrees); of many points some are left out (guard/directions.c). Errors: MEMORY. */
-starg_status candidates_turn(starg_context *context, const candidate_points *points, double cone,
+/* Points, each with a few directions in which the views hold most of what is seen from it; of many
+ * points some are left out (guard/directions.c). Errors: MEMORY, CANCELLED. */
+starg_status candidates_turn(starg_context *context, const starg_solid *solid,
+                             const starg_visibility_options *view, const candidate_points *points,
                              candidate_points *out);
 
 /* May a guard stand at p: strictly inside, with the clearance? */

@@ -83,6 +83,7 @@ bool search_scene_sees(const search_scene *scene, const search_point *point, siz
     uint32_t place = scene->places[scene->witnesses.data[j]];
     bool vertices = view.target == STARG_TARGET_VERTICES;
     view.directions = point->direction;
+    view.ups = point->up;
     bool sees = vertices ? scene_sees_vertex(scene->points, point->place, place, &view)
                          : scene_sees_face(scene->points, point->place, place, &view);
     *work += sees && !vertices ? 3 : 1;
@@ -93,6 +94,7 @@ bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j
     const visibility_scene *points = scene->points;
     uint32_t place = scene->places[scene->witnesses.data[j]];
     return scene->view->target == STARG_TARGET_VERTICES ||
+           scene_back(points, place) != SCENE_NONE ||
            orient3d(scene_corner(points, place, 0), scene_corner(points, place, 1),
                     scene_corner(points, place, 2), p) > 0;
 }
@@ -352,11 +354,11 @@ typedef struct splitting {
     part *parts;
 } splitting;
 
-/* Where views are cones: towards a witness at random, of those that the cell may see. */
+/* Where views are directed: towards a witness at random, of those that the cell may see. */
 static void look_somewhere(const search_scene *scene, search_point *point, const witness_row *among,
                            starg_rng *rng) {
     size_t count = starg_bit_count(among->bits, WITNESS_WORDS), at = 0;
-    if (scene->view->cone >= 360 || count == 0)
+    if (!sensor_is_directed(scene->view) || count == 0)
         return;
     uint64_t chosen = starg_rng_below(rng, count);
     for (size_t w = 0; w < WITNESS_WORDS; w++)

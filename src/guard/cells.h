@@ -29,7 +29,7 @@ void search_scene_close(search_scene *scene);
 
 /* A point where a guard may stand. */
 typedef struct search_point {
-    double place[3], direction[3]; /* the direction where views are cones */
+    double place[3], direction[3], up[3]; /* the last two where views are directed */
     witness_row seen;
     uint32_t candidate; /* of the pool, or UINT32_MAX */
 } search_point;

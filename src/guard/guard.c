@@ -52,7 +52,7 @@ done:
 static starg_status take_given(const guard_problem *problem, candidate_points *points) {
     starg_status status = STARG_OK;
     const starg_guard_options *options = problem->options;
-    bool looks = options->visibility.cone < 360;
+    bool looks = sensor_is_directed(&options->visibility) && options->directions != NULL;
     size_t dropped = 0;
     for (size_t i = 0; i < options->point_count; i++) {
         const double *p = options->points + 3 * i;
@@ -62,9 +62,10 @@ static starg_status take_given(const guard_problem *problem, candidate_points *p
                                  STARG_ELEMENT_CANDIDATE, &index, 1,
                                  "candidate %zu has a coordinate that is not finite", i);
         bool usable = candidates_allowed(problem->solid, p, options->clearance);
-        const double *d = looks && options->directions != NULL ? options->directions + 3 * i : NULL;
+        const double *d = looks ? options->directions + 3 * i : NULL;
+        const double *up = looks && options->ups != NULL ? options->ups + 3 * i : NULL;
         if (usable)
-            STARG_TRY(candidates_push(problem->context, points, p, d));
+            STARG_TRY(candidates_push_pose(problem->context, points, p, d, up));
         dropped += !usable;
     }
     if (dropped > 0)
@@ -242,7 +243,8 @@ done:
 static bool may_be_star(const guard_problem *problem) {
     const starg_guard_options *o = problem->options;
     bool free = (o->prove && !chooses_exactly(o)) || may_refine(o);
-    return free && !problem->solid->scene && o->redundancy == 1 && o->visibility.cone == 360;
+    return free && !problem->solid->scene && o->redundancy == 1 &&
+           !sensor_is_directed(&o->visibility);
 }
 
 /* Does the only candidate see all that anyone could? */
@@ -470,6 +472,7 @@ void starg_guards_free(starg_context *context, starg_guards *guards) {
     starg_release(context, guards->file);
     starg_release(context, guards->positions);
     starg_release(context, guards->directions);
+    starg_release(context, guards->ups);
     starg_release(context, guards->seen_faces);
     starg_release(context, guards->levels);
     starg_release(context, guards->curve_faces);

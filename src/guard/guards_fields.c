@@ -5,6 +5,7 @@
 
 #include "starguard/guard.h"
 #include "visibility/fields.h"
+#include "visibility/sensor.h"
 
 /* ---- options ---- */
 
@@ -68,7 +69,11 @@ static const starg_field OPTIONS[] = {
      .help = "Use at most K guards and maximize the covered area.",
      .default_text = "no limit"},
     VISIBILITY_RANGE_FIELD(starg_guard_options, visibility.range),
+    VISIBILITY_NEAR_FIELD(starg_guard_options, visibility.near),
+    VISIBILITY_INCIDENCE_FIELD(starg_guard_options, visibility.incidence),
     VISIBILITY_CONE_FIELD(starg_guard_options, visibility.cone, "cone"),
+    VISIBILITY_FOV_FIELD(starg_guard_options, visibility.fov, "fov"),
+    VISIBILITY_UP_FIELD(starg_guard_options, visibility.up, "up"),
     {.key = "redundancy",
      .option = "redundancy",
      .kind = STARG_FIELD_COUNT,
@@ -78,6 +83,15 @@ static const starg_field OPTIONS[] = {
      .initial = 1,
      .value = "K",
      .help = "Cover each face by K guards, or by as many candidates as see it."},
+    {.key = "baseline",
+     .option = "baseline",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     OPTION(baseline),
+     .high = 180,
+     .value = "DEGREES",
+     .help = "--redundancy: two of them at least so far apart, as seen from the middle of the "
+             "face, where candidates allow."},
     {.key = "clearance",
      .option = "clearance",
      .kind = STARG_FIELD_REAL,
@@ -183,7 +197,15 @@ static const starg_guards *of(const void *record) {
 }
 
 static bool has_directions(const void *record) {
-    return of(record)->options.visibility.cone < 360;
+    return sensor_is_directed(&of(record)->options.visibility);
+}
+
+static bool has_ups(const void *record) {
+    return of(record)->options.visibility.fov[0] > 0;
+}
+
+static bool has_baseline(const void *record) {
+    return of(record)->options.baseline > 0;
 }
 
 static bool targets_vertices(const void *record) {
@@ -243,7 +265,14 @@ static const starg_field GUARDS[] = {
      .kind = STARG_FIELD_POINT,
      RESULT(directions),
      .applies = has_directions,
-     .help = "With a cone: viewing direction, a unit vector unless it was given."},
+     .help = "With a cone or a field of view: viewing direction, a unit vector unless it was "
+             "given."},
+    {.key = "up",
+     .kind = STARG_FIELD_POINT,
+     RESULT(ups),
+     .applies = has_ups,
+     .help = "With a field of view: what is up in it; its vertical axis is as near to this as the "
+             "direction allows."},
 };
 static const starg_fields GUARDS_TABLE = {.columns = true, .name = "guards", FIELD_ROWS(GUARDS)};
 
@@ -314,6 +343,12 @@ static const starg_field COVERAGE[] = {
      LENGTH(starg_guards, uncovered_count),
      .limit = offsetof(starg_guards, face_count),
      .help = "Faces that no guard sees, ascending."},
+    {.key = "baseline_faces",
+     .kind = STARG_FIELD_COUNT,
+     RESULT(baseline_faces),
+     .most = UINT32_MAX,
+     .applies = has_baseline,
+     .help = "With baseline: number of faces that two guards see from places so far apart."},
     {.key = "curve",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_MATCHING,
@@ -417,6 +452,11 @@ static const starg_field SCENE[] = {
      USUALLY_NOT,
      RESULT(space.soup),
      .help = "The model is any triangles, closed or not."},
+    {.key = "two_sided",
+     .kind = STARG_FIELD_FLAG,
+     USUALLY_NOT,
+     RESULT(space.two_sided),
+     .help = "Its faces are seen from either side."},
     {.key = "standoff_least",
      .kind = STARG_FIELD_REAL,
      USUALLY_NOT,

@@ -8,11 +8,12 @@ static const char STAGE[] = "guard";
 /* By the fastest engine, whichever chose the guards: all give the same bits, and what was found is
  * measured in full after a time limit has struck. */
 static starg_visibility_options view_of(const guard_problem *problem, starg_target target,
-                                        const double *directions) {
+                                        const double *directions, const double *ups) {
     starg_visibility_options view = problem->options->visibility;
     view.engine = STARG_VISIBILITY_FASTEST;
     view.target = target;
     view.directions = directions;
+    view.ups = ups;
     return view;
 }
 
@@ -62,7 +63,7 @@ done:
 static starg_status measure_faces(const guard_problem *problem, starg_guards *result) {
     starg_status status = STARG_OK;
     const starg_visibility_options options =
-        view_of(problem, STARG_TARGET_FACES, result->directions);
+        view_of(problem, STARG_TARGET_FACES, result->directions, result->ups);
     starg_bits *seen = NULL;
     uint64_t *joined = NULL;
     STARG_TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
@@ -104,7 +105,7 @@ static starg_status measure_vertices(const guard_problem *problem, const guard_p
     uint64_t *joined = NULL, *unused = NULL;
     size_t used = 0;
     const starg_visibility_options options =
-        view_of(problem, STARG_TARGET_VERTICES, result->directions);
+        view_of(problem, STARG_TARGET_VERTICES, result->directions, result->ups);
     STARG_TRY(find_unused(problem, &unused, &used));
     STARG_TRY(starg_visibility(problem->context, problem->solid, result->positions, result->count,
                                &options, &seen));
@@ -131,7 +132,7 @@ static starg_status count_coverable_faces(const guard_problem *problem, const gu
         return STARG_OK;
     }
     const starg_visibility_options options =
-        view_of(problem, STARG_TARGET_FACES, pool->points.directions.data);
+        view_of(problem, STARG_TARGET_FACES, pool->points.directions.data, pool->points.ups.data);
     STARG_TRY(starg_visibility(problem->context, problem->solid, pool->points.data.data,
                                pool_count(pool), &options, &rows));
     STARG_TRY(pool_join_rows(problem->context, rows, &joined));
@@ -153,13 +154,22 @@ done:
     return status;
 }
 
+/* What is up for a candidate, once it is written down. */
+static void resolve_up(const starg_visibility_options *view, const double *given, double up[3]) {
+    const double y[3] = {0, 1, 0}, none[3] = {0, 0, 0};
+    vec3_copy(!vec3_equal(given, none) ? given : !vec3_equal(view->up, none) ? view->up : y, up);
+}
+
 static starg_status copy_choice(const guard_problem *problem, const guard_pool *pool,
                                 const guard_selection *selection, starg_guards *result) {
     starg_status status = STARG_OK;
     size_t count = selection->chosen.count;
     STARG_NEW(problem->context, STAGE, result->positions, 3 * count);
-    if (problem->options->visibility.cone < 360)
+    const starg_visibility_options *view = &problem->options->visibility;
+    if (sensor_is_directed(view))
         STARG_NEW(problem->context, STAGE, result->directions, 3 * count);
+    if (view->fov[0] > 0)
+        STARG_NEW(problem->context, STAGE, result->ups, 3 * count);
     STARG_NEW(problem->context, STAGE, result->levels, count);
     STARG_NEW_ZERO(problem->context, STAGE, result->seen_faces, count);
     result->count = count;
@@ -168,6 +178,8 @@ static starg_status copy_choice(const guard_problem *problem, const guard_pool *
         vec3_copy(pool_point(pool, candidate), result->positions + 3 * i);
         if (result->directions != NULL)
             vec3_copy(pool_direction(pool, candidate), result->directions + 3 * i);
+        if (result->ups != NULL)
+            resolve_up(view, pool_up(pool, candidate), result->ups + 3 * i);
         result->levels[i] = selection->levels.data[i];
     }
 done:
@@ -186,8 +198,8 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->vertex_count = starg_space_model_vertices(problem->solid);
     result->face_count = starg_space_model_faces(problem->solid);
     result->options = *problem->options;
-    result->options.points = result->options.directions = NULL;
-    result->options.visibility.directions = NULL;
+    result->options.points = result->options.directions = result->options.ups = NULL;
+    result->options.visibility.directions = result->options.visibility.ups = NULL;
     result->candidate_count = pool_count(&outcome->pool);
     result->lines_tested = outcome->search.improve_work;
     result->time_limited = selection->time_limited;

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Candidate points from a file: text of three numbers a line, or six with the direction in which a
- * camera there looks, with an optional leading "v" and
- * lines of edges as in OBJ, and comments by #; the nodes of a skeleton (CG, VTK); or the positions
- * in a GUARDS.json. */
+/* Candidate points from a file: text of three numbers a line, six with the direction in which a
+ * camera there looks, or nine with what is up for it, with an optional leading "v" and lines of
+ * edges as in OBJ, and comments by #; the nodes of a skeleton (CG, VTK); or the poses in a
+ * GUARDS.json. */
 #include <math.h>
 #include <string.h>
 
 #include "core/file.h"
+#include "geometry/vec3.h"
 #include "guard/candidates.h"
 #include "mesh/formats/scan.h"
 #include "starguard/skeleton.h"
@@ -18,8 +19,10 @@ static starg_status take_positions(const starg_source *source, candidate_points 
     starg_status status = starg_guards_read_memory(source->context, source->bytes, source->size,
                                                    source->name, &guards);
     for (size_t i = 0; status == STARG_OK && i < guards->count; i++)
-        status = candidates_push(source->context, points, guards->positions + 3 * i,
-                                 guards->directions != NULL ? guards->directions + 3 * i : NULL);
+        status =
+            candidates_push_pose(source->context, points, guards->positions + 3 * i,
+                                 guards->directions != NULL ? guards->directions + 3 * i : NULL,
+                                 guards->ups != NULL ? guards->ups + 3 * i : NULL);
     starg_guards_free(source->context, guards);
     return status;
 }
@@ -34,28 +37,44 @@ static starg_status take_nodes(const starg_source *source, candidate_points *poi
     return status;
 }
 
-/* Has a line as many numbers as those before it? */
+/* How many numbers the lines of a file have: 3, 6 or 9. */
+typedef struct pose_scan {
+    candidate_points *points;
+    size_t width; /* of the lines before; 0: there are none */
+} pose_scan;
+
 static starg_status check_count(const starg_scan *scan, size_t line, size_t count,
-                                const candidate_points *points) {
-    size_t before = candidates_count(points);
-    if (count != 3 && count != 6)
+                                const pose_scan *poses) {
+    if (count != 3 && count != 6 && count != 9)
         return starg_source_fail(scan->source, starg_at_line(line),
-                                 "a point has three coordinates, or six numbers with a direction, "
-                                 "not %zu; write as many on each line",
+                                 "a point has three coordinates, six numbers with a direction, or "
+                                 "nine with what is up, not %zu; write as many on each line",
                                  count);
-    if (before > 0 && (count == 6) != (points->directions.count > 0))
+    if (poses->width > 0 && count != poses->width)
         return starg_source_fail(scan->source, starg_at_line(line),
-                                 "%zu numbers, and %d on the lines before; give all points a "
+                                 "%zu numbers, and %zu on the lines before; give all points a "
                                  "direction, or none",
-                                 count, points->directions.count > 0 ? 6 : 3);
+                                 count, poses->width);
     return STARG_OK;
 }
 
-static starg_status check_direction(const starg_scan *scan, size_t line, const double d[3]) {
-    if (d[0] != 0 || d[1] != 0 || d[2] != 0)
+/* A direction, and what is up: neither is zero, nor is up along the direction. */
+static starg_status check_direction(const starg_scan *scan, size_t line, size_t count,
+                                    const double *d) {
+    double across[3];
+    if (count < 6)
         return STARG_OK;
-    return starg_source_fail(scan->source, starg_at_line(line),
-                             "the direction is (0, 0, 0), which is none");
+    if (d[0] == 0 && d[1] == 0 && d[2] == 0)
+        return starg_source_fail(scan->source, starg_at_line(line),
+                                 "the direction is (0, 0, 0), which is none");
+    if (count < 9)
+        return STARG_OK;
+    vec3_cross(d, d + 3, across);
+    if (across[0] == 0 && across[1] == 0 && across[2] == 0)
+        return starg_source_fail(scan->source, starg_at_line(line),
+                                 "what is up, (%g, %g, %g), lies along the direction", d[3], d[4],
+                                 d[5]);
+    return STARG_OK;
 }
 
 static bool is_passed_over(starg_word word) {
@@ -64,10 +83,10 @@ static bool is_passed_over(starg_word word) {
 }
 
 /* One line: nothing, a keyword of OBJ that stands for no vertex, or a point. */
-static starg_status scan_line(starg_scan *scan, candidate_points *points) {
+static starg_status scan_line(starg_scan *scan, pose_scan *poses) {
     starg_status status = STARG_OK;
     starg_word word;
-    double p[6], x;
+    double p[9], x;
     size_t count = 0, line = scan->line;
     bool more = starg_scan_word_here(scan, &word);
     if (!more || is_passed_over(word))
@@ -80,14 +99,15 @@ static starg_status scan_line(starg_scan *scan, candidate_points *points) {
             return starg_source_fail(scan->source, starg_at_line(line),
                                      "coordinate %c is %g; it must be finite and below 1e100",
                                      "xyz"[count % 3], x);
-        if (count < 6)
+        if (count < 9)
             p[count] = x;
         count++;
     }
-    STARG_TRY(check_count(scan, line, count, points));
-    if (count == 6)
-        STARG_TRY(check_direction(scan, line, p + 3));
-    STARG_TRY(candidates_push(scan->source->context, points, p, count == 6 ? p + 3 : NULL));
+    STARG_TRY(check_count(scan, line, count, poses));
+    STARG_TRY(check_direction(scan, line, count, p + 3));
+    STARG_TRY(candidates_push_pose(scan->source->context, poses->points, p,
+                                   count > 3 ? p + 3 : NULL, count > 6 ? p + 6 : NULL));
+    poses->width = count;
 done:
     return status;
 }
@@ -96,10 +116,11 @@ static starg_status scan_text(const starg_source *source, candidate_points *poin
     starg_status status = STARG_OK;
     starg_c_locale locale = {0};
     starg_scan scan = starg_scan_make(source);
+    pose_scan poses = {.points = points};
     scan.comments = true;
     STARG_TRY(starg_c_locale_enter(source->context, &locale));
     do
-        STARG_TRY(scan_line(&scan, points));
+        STARG_TRY(scan_line(&scan, &poses));
     while (starg_scan_next_line(&scan));
 done:
     starg_c_locale_leave(&locale);
@@ -126,14 +147,19 @@ static bool is_skeleton(const starg_source *source) {
     return false;
 }
 
+void starg_poses_free(starg_context *context, starg_poses *poses) {
+    starg_release(context, poses->points);
+    starg_release(context, poses->directions);
+    starg_release(context, poses->ups);
+    *poses = (starg_poses){0};
+}
+
 starg_status starg_poses_read_memory(starg_context *context, const void *bytes, size_t size,
-                                     const char *name, double **points, double **directions,
-                                     size_t *count) {
+                                     const char *name, starg_poses *out) {
     starg_status status = STARG_OK;
     starg_source source = {context, name, bytes, size};
     candidate_points found = {0};
-    *points = *directions = NULL;
-    *count = 0;
+    *out = (starg_poses){0};
     if (is_json(&source))
         STARG_TRY(take_positions(&source, &found));
     else if (is_skeleton(&source))
@@ -145,41 +171,47 @@ starg_status starg_poses_read_memory(starg_context *context, const void *bytes, 
                             "'%s' has no points; write three numbers per line", name);
         goto done;
     }
-    *points = found.data.data;
-    *directions = found.directions.data;
-    *count = found.data.count / 3;
-    found.data.data = found.directions.data = NULL;
+    *out = (starg_poses){.points = found.data.data,
+                         .directions = found.directions.data,
+                         .ups = found.ups.data,
+                         .count = found.data.count / 3};
+    found = (candidate_points){0};
 done:
     candidates_free(context, &found);
     return status;
 }
 
-starg_status starg_poses_read(starg_context *context, const char *path, double **points,
-                              double **directions, size_t *count) {
+starg_status starg_poses_read(starg_context *context, const char *path, starg_poses *out) {
     char *bytes = NULL;
     size_t size;
-    *points = *directions = NULL;
-    *count = 0;
+    *out = (starg_poses){0};
     starg_status status = starg_file_read(context, STAGE, path, &bytes, &size);
     if (status == STARG_OK)
-        status = starg_poses_read_memory(context, bytes, size, path, points, directions, count);
+        status = starg_poses_read_memory(context, bytes, size, path, out);
     starg_release(context, bytes);
     return status;
 }
 
+static void keep_points(starg_context *context, starg_poses *poses, double **points,
+                        size_t *count) {
+    *points = poses->points;
+    *count = poses->count;
+    poses->points = NULL;
+    starg_poses_free(context, poses);
+}
+
 starg_status starg_points_read_memory(starg_context *context, const void *bytes, size_t size,
                                       const char *name, double **points, size_t *count) {
-    double *directions;
-    starg_status status =
-        starg_poses_read_memory(context, bytes, size, name, points, &directions, count);
-    starg_release(context, directions);
+    starg_poses poses;
+    starg_status status = starg_poses_read_memory(context, bytes, size, name, &poses);
+    keep_points(context, &poses, points, count);
     return status;
 }
 
 starg_status starg_points_read(starg_context *context, const char *path, double **points,
                                size_t *count) {
-    double *directions;
-    starg_status status = starg_poses_read(context, path, points, &directions, count);
-    starg_release(context, directions);
+    starg_poses poses;
+    starg_status status = starg_poses_read(context, path, &poses);
+    keep_points(context, &poses, points, count);
     return status;
 }

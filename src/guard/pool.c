@@ -32,6 +32,10 @@ static const double *direction_of(const candidate_points *points, size_t index) 
     return points->directions.count > 0 ? points->directions.data + 3 * index : NULL;
 }
 
+static const double *up_of(const candidate_points *points, size_t index) {
+    return points->ups.count > 0 ? points->ups.data + 3 * index : NULL;
+}
+
 /* Moves the finished rows together and appends their points, but for those that are empty unless
  * these may be. */
 static starg_status keep_finished(guard_pool *pool, const candidate_points *points, bool empty,
@@ -42,8 +46,8 @@ static starg_status keep_finished(guard_pool *pool, const candidate_points *poin
         pool->time_limited = pool->time_limited || !finished[i];
         if (!finished[i] || (!empty && starg_bits_count(rows, i) == 0))
             continue;
-        STARG_TRY(candidates_push(pool->context, &pool->points, points->data.data + 3 * i,
-                                  direction_of(points, i)));
+        STARG_TRY(candidates_push_pose(pool->context, &pool->points, points->data.data + 3 * i,
+                                       direction_of(points, i), up_of(points, i)));
         memmove(starg_bits_row_mutable(rows, kept), starg_bits_row(rows, i),
                 rows->words * sizeof *rows->data);
         kept++;
@@ -84,6 +88,7 @@ static starg_status add_rows(guard_pool *pool, const candidate_points *points, b
     uint8_t *finished = NULL;
     size_t count = candidates_count(points);
     view.directions = points->directions.data;
+    view.ups = points->ups.data;
     STARG_NEW_ZERO(pool->context, STAGE, finished, count);
     STARG_TRY(visibility_rows(pool->context, pool->solid, points->data.data, count, &view, finished,
                               &added));
@@ -100,9 +105,10 @@ done:
 starg_status pool_add(guard_pool *pool, const candidate_points *points) {
     starg_status status = STARG_OK;
     candidate_points turned = {0};
-    if (pool->options->visibility.cone >= 360 || points->directions.count > 0)
+    if (!sensor_is_directed(&pool->options->visibility) || points->directions.count > 0)
         return add_rows(pool, points, true);
-    STARG_TRY(candidates_turn(pool->context, points, pool->options->visibility.cone, &turned));
+    STARG_TRY(
+        candidates_turn(pool->context, pool->solid, &pool->options->visibility, points, &turned));
     STARG_TRY(add_rows(pool, &turned, false)); /* most directions of a point see nothing whole */
 done:
     candidates_free(pool->context, &turned);
@@ -114,7 +120,7 @@ void pool_truncate(guard_pool *pool, size_t count) {
         return;
     pool->points.data.count = 3 * count;
     if (pool->points.directions.count > 0)
-        pool->points.directions.count = 3 * count;
+        pool->points.directions.count = pool->points.ups.count = 3 * count;
     pool->rows->rows = count;
     memset(pool->coverable, 0, pool->rows->words * sizeof *pool->coverable);
     for (size_t i = 0; i < count; i++)
@@ -130,10 +136,11 @@ starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, g
     STARG_TRY(pool_create(context, level, finest->options, out));
     STARG_NEW_ZERO(context, STAGE, finished, count);
     for (size_t i = 0; i < count; i++)
-        STARG_TRY(candidates_push(context, &out->points, pool_point(finest, i),
-                                  pool_direction(finest, i)));
+        STARG_TRY(candidates_push_pose(context, &out->points, pool_point(finest, i),
+                                       pool_direction(finest, i), pool_up(finest, i)));
     starg_visibility_options view = out->options->visibility;
     view.directions = out->points.directions.data;
+    view.ups = out->points.ups.data;
     STARG_TRY(
         visibility_rows(context, level, out->points.data.data, count, &view, finished, &out->rows));
     for (size_t i = 0; i < count; i++) {
@@ -197,7 +204,7 @@ starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
         if (pool->curtailed)
             break;
         mark_unseen(pool, unseen);
-        found.data.count = found.directions.count = 0;
+        found.data.count = found.directions.count = found.ups.count = 0;
         status = augment_candidates(pool->context, &all, unseen, &found, &pending);
         if (status == STARG_ERROR_TIME) {
             status = STARG_OK;

@@ -33,12 +33,16 @@ static inline const double *pool_point(const guard_pool *pool, size_t candidate)
     return pool->points.data.data + 3 * candidate;
 }
 
-/* The direction of a candidate, or NULL where views are no cones. */
+/* The direction of a candidate, and what is up for it, or NULL where views are not directed. */
 static inline const double *pool_direction(const guard_pool *pool, size_t candidate) {
     return pool->points.directions.count > 0 ? pool->points.directions.data + 3 * candidate : NULL;
 }
 
-/* Adds points and their rows. Where views are cones, points without directions look in all of them
+static inline const double *pool_up(const guard_pool *pool, size_t candidate) {
+    return pool->points.ups.count > 0 ? pool->points.ups.data + 3 * candidate : NULL;
+}
+
+/* Adds points and their rows. Where views are directed, points without directions look in all of them
  * (guard/directions.c). Those that the time limit leaves unfinished are left out.
  * Errors: MEMORY, CANCELLED. */
 starg_status pool_add(guard_pool *pool, const candidate_points *points);

@@ -64,8 +64,10 @@ static starg_status begin_points(search *s) {
     for (size_t i = 0; i < pool_count(s->pool); i++) {
         search_point point = {.candidate = (uint32_t)i};
         vec3_copy(pool_point(s->pool, i), point.place);
-        if (s->scene.view->cone < 360)
+        if (sensor_is_directed(s->scene.view)) {
             vec3_copy(pool_direction(s->pool, i), point.direction);
+            vec3_copy(pool_up(s->pool, i), point.up);
+        }
         STARG_PUSH(context_of(s), STAGE, &s->points, point);
     }
 done:
@@ -79,7 +81,7 @@ static starg_status begin_places(search *s, const guard_detail *detail) {
     const guard_problem *p = s->problem;
     const candidate_shape shape = guard_shape(p, detail);
     candidate_points places = {0};
-    if (p->options->candidates == STARG_CANDIDATES_MEDIAL || s->scene.view->cone < 360)
+    if (p->options->candidates == STARG_CANDIDATES_MEDIAL || sensor_is_directed(s->scene.view))
         return STARG_OK;
     status = candidates_find(p->context, &shape, STARG_CANDIDATES_MEDIAL,
                              p->options->candidate_count, &places);

@@ -223,7 +223,7 @@ static starg_status look_from(starg_context *context, void *shared, void *scratc
 static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, double step) {
     starg_status status = STARG_OK;
     search_scene *scene = &m->s->scene;
-    bool cone = scene->view->cone < 360;
+    bool looks = sensor_is_directed(scene->view);
     for (size_t i = 0; i < m->count; i++) {
         const source *n = &m->sources[i];
         starg_rng rng =
@@ -235,8 +235,10 @@ static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, 
                             .by = n->witness,
                             .least = fmin(n->value, WORTH) - TIE};
             propose(m, n, (int)kind % 3, step, &rng, q->point.place);
-            if (cone)
+            if (looks) {
                 turn(n, step, &rng, q->point.direction);
+                vec3_copy(n->best.up, q->point.up);
+            }
         }
     }
     const starg_parallel_loop loop = {.stage = STAGE,

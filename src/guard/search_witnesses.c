@@ -185,8 +185,9 @@ starg_status search_hold(search *s, const uint32_t *points, size_t count) {
         search_point *point = &s->points.data[points[i]];
         if (point->candidate != UINT32_MAX)
             continue;
-        STARG_TRY(candidates_push(context, &found, point->place,
-                                  s->scene.view->cone < 360 ? point->direction : NULL));
+        bool looks = sensor_is_directed(s->scene.view);
+        STARG_TRY(candidates_push_pose(context, &found, point->place,
+                                       looks ? point->direction : NULL, point->up));
         point->candidate = next++;
     }
     s->scene.work += candidates_count(&found) * s->pool->columns / 20;

@@ -38,8 +38,14 @@ static inline bool solid_is_target(const starg_solid *solid, bool vertices, size
     return solid->targets[vertices] == NULL || starg_bit_test(solid->targets[vertices], index);
 }
 
-/* Clears the bits of a row, by face or by vertex, that are no targets. */
-void solid_mask_row(const starg_solid *solid, bool vertices, uint64_t *row);
+/* Do faces that stand twice count as seen from either side? */
+static inline bool solid_is_two_sided(const starg_solid *solid) {
+    return solid->space.two_sided && solid->other_side != NULL;
+}
+
+/* Gives faces that count from either side the bits of their other sides, and clears the bits of a
+ * row, by face or by vertex, that are no targets. */
+void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row);
 
 /* A box that holds all places where guards may stand. */
 void solid_reach(const starg_solid *solid, bvh_box *out);

@@ -56,6 +56,10 @@ static starg_status check_options(starg_context *context, const starg_space_opti
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
                           "a soup has neither an outside nor an orientation; say where guards may "
                           "stand by a box, by distances or by a point");
+    if (o->two_sided && !o->soup)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "faces of a solid have the free space on one side; only a soup is seen "
+                          "from both");
     for (int k = 0; is_bounded(o) && k < 3; k++)
         if (!(fabs(o->within[k]) < 1e100 && fabs(o->within[k + 3]) < 1e100 &&
               o->within[k] < o->within[k + 3]))
@@ -428,8 +432,11 @@ uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t ha
     return other == TOPOLOGY_NONE ? twins[halfedge] : 3 * other + 2 - halfedge % 3;
 }
 
-void solid_mask_row(const starg_solid *solid, bool vertices, uint64_t *row) {
+void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row) {
     const starg_mesh *mesh = solid->mesh;
+    for (size_t f = 0; !vertices && solid_is_two_sided(solid) && f < solid->model_faces; f++)
+        if (starg_bit_test(row, solid->other_side[f]))
+            starg_bit_set(row, f);
     const uint64_t *targets = solid->targets[vertices];
     size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
     for (size_t w = 0; targets != NULL && w < starg_bit_words(columns); w++)

@@ -9,17 +9,16 @@
  *
  * A guard must also be admissible, and a whole interval of heights is asked for, from 0.7 h to h,
  * so that no search by geometric series, which augmentation is, can have missed it: range      the
- * corners are within the range from h, and nearer from below clearance  the middle of the interval
- * keeps it with half the interval to spare cone       looking at the centroid, it holds the corners
- * from 0.6 h, and from above Faces that are so thin that rounding moves the centroid across them
- * are left out. What sees a face whole sees its vertices, so this holds for both rules, and for
- * vertices as the target.
+ * corners are within the range from h, and nearer from below; near the same from 0.6 h and above;
+ * clearance  the middle of the interval keeps it with half the interval to spare; cone, field of
+ * view and incidence  looking at the centroid, they hold the corners from 0.6 h, and from above.
+ * Faces that are so thin that rounding moves the centroid across them are left out. What sees a
+ * face whole sees its vertices, so this holds for both rules, and for vertices as the target.
  *
  * Cost: at most MOST_TESTS visits of the tree, mostly of tiny boxes. Signs are exact. */
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/cone.h"
 #include "verify/facts.h"
 #include "verify/measure.h"
 #include "verify/sight.h"
@@ -109,6 +108,16 @@ static bool in_range(const prover *own, const double p[3]) {
     return true;
 }
 
+/* Far enough, from 0.6 of the height as well. */
+static bool is_clear_of_near(const prover *own, double height) {
+    double low[3];
+    along(own, 0.6 * height, low);
+    for (int i = 0; i < 3; i++)
+        if (own->view.near > 0 && verify_nearer(low, own->corner[i], own->view.near * (1 + MARGIN)))
+            return false;
+    return true;
+}
+
 static bool keeps_clearance(const prover *own, double height) {
     double middle[3], clearance = own->known->guards->options.clearance;
     if (!(clearance > 0))
@@ -118,19 +127,21 @@ static bool keeps_clearance(const prover *own, double height) {
            clearance * (1 + MARGIN) + 0.16 * height;
 }
 
-static bool in_cone(const prover *own, double height) {
+/* Does a view from 0.6 of the height, straight down, hold the corners, at the incidence allowed?
+ * From above it does as well. A rectangular view holds the cone of its smaller angle. */
+static bool in_view(const prover *own, double height) {
+    const starg_visibility_options *o = &own->known->guards->options.visibility;
     double low[3], direction[3];
-    if (own->known->guards->options.visibility.cone >= 360)
-        return true;
+    double cone = o->fov[0] > 0 ? fmin(o->fov[0], o->fov[1]) * (1 - MARGIN) : o->cone;
     along(own, 0.6 * height, low);
     for (int k = 0; k < 3; k++)
         direction[k] = -own->normal[k];
     for (int i = 0; i < 3; i++)
-        if (!verify_in_cone(low, direction,
-                            starg_cone_cosine(own->known->guards->options.visibility.cone),
-                            own->corner[i]))
+        if (cone < 360 && !verify_in_cone(low, direction, starg_cone_cosine(cone), own->corner[i]))
             return false;
-    return true;
+    return own->view.steepest == 0 ||
+           (verify_side(own->corner[0], own->corner[1], own->corner[2], low) > 0 &&
+            verify_faces(&own->view, low, own->corner));
 }
 
 static bool is_inside(const prover *own, const double p[3]) {
@@ -150,7 +161,7 @@ static bool prove_face(prover *own, uint32_t face, double p[3]) {
             continue; /* by rounding */
         if (!sees_whole(own, p) || !in_range(own, p))
             return false;
-        if (keeps_clearance(own, height) && in_cone(own, height))
+        if (keeps_clearance(own, height) && is_clear_of_near(own, height) && in_view(own, height))
             return is_inside(own, p);
     }
     return false;
@@ -195,7 +206,7 @@ starg_status verify_find_coverable(const verify_facts *known, size_t enough,
                                    verify_coverable *found) {
     starg_status status = STARG_OK;
     const verify_surface *surface = known->surface;
-    prover own = {.known = known, .view = verify_view_of(known->guards, NULL), .tests = MOST_TESTS};
+    prover own = {.known = known, .view = verify_view_around(known->guards), .tests = MOST_TESTS};
     uint8_t *proven = NULL;
     *found = (verify_coverable){0};
     STARG_NEW_ZERO(surface->context, STAGE, proven,

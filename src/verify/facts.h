@@ -44,8 +44,14 @@ static inline const starg_bits *verify_rows(const verify_facts *known) {
 /* In how many rows each column is; the caller releases `held`. Errors: MEMORY. */
 starg_status verify_count_held(const verify_facts *known, uint32_t **held);
 
-/* The view of a guard that looks this way; NULL: all around. */
-verify_view verify_view_of(const starg_guards *guards, const double *direction);
+/* The view of a guard that looks all around. */
+verify_view verify_view_around(const starg_guards *guards);
+
+/* Does a guard look in one direction? */
+static inline bool verify_is_aimed(const verify_facts *known) {
+    return known->guards->options.visibility.cone < 360 ||
+           known->guards->options.visibility.fov[0] > 0;
+}
 
 /* How many of the elements that no guard sees could be seen (verify/coverable.c)? The search ends
  * once there are more than `enough`. */

@@ -57,13 +57,25 @@ static void note_row(starg_bits *rows, size_t row, const uint8_t *seen, const ui
             starg_bit_set(bits, j);
 }
 
-verify_view verify_view_of(const starg_guards *guards, const double *direction) {
+verify_view verify_view_around(const starg_guards *guards) {
     const starg_visibility_options *o = &guards->options.visibility;
-    verify_view view = {.range = o->range, .rule = o->face_rule};
-    if (o->cone < 360 && direction != NULL) {
-        view.direction = direction;
+    return (verify_view){.range = o->range,
+                         .near = o->near,
+                         .rule = o->face_rule,
+                         .steepest = o->incidence < 90 ? starg_cone_cosine(2 * o->incidence) : 0};
+}
+
+/* The view of a guard; a file without directions is wrong, which is told elsewhere. */
+static verify_view view_of(const starg_guards *guards, size_t guard) {
+    const starg_visibility_options *o = &guards->options.visibility;
+    verify_view view = verify_view_around(guards);
+    if (o->cone < 360 && guards->directions != NULL) {
+        view.direction = guards->directions + 3 * guard;
         view.cosine = starg_cone_cosine(o->cone);
     }
+    view.framed = o->fov[0] > 0 && guards->directions != NULL && guards->ups != NULL;
+    if (view.framed)
+        starg_frustum(guards->directions + 3 * guard, guards->ups + 3 * guard, o->fov, view.planes);
     return view;
 }
 
@@ -87,9 +99,7 @@ static starg_status examine_guard(starg_context *context, void *shared, void *sc
         return STARG_OK;
 
     const uint8_t *vertices, *faces;
-    const verify_view view = verify_view_of(known->guards, known->guards->directions != NULL
-                                                               ? known->guards->directions + 3 * g
-                                                               : NULL);
+    const verify_view view = view_of(known->guards, g);
     starg_status status = verify_look(scratch, p, &view, &vertices, &faces);
     if (status != STARG_OK)
         return status;
@@ -211,15 +221,32 @@ static void claim_model(starg_verdict *verdict, const verify_facts *known) {
                  surface->model_faces);
 }
 
-static void claim_options(starg_verdict *verdict, const starg_guard_options *options,
-                          bool directed) {
-    verify_claim(
-        verdict,
-        options->visibility.range >= 0 && options->coverage > 0 && options->coverage <= 1 &&
-            options->clearance >= 0 && options->visibility.cone > 0 &&
-            options->visibility.cone <= 360 && (options->visibility.cone == 360 || directed),
-        "the options make sense: range %g, cone %g, coverage %g, clearance %g",
-        options->visibility.range, options->visibility.cone, options->coverage, options->clearance);
+/* Is every guard told where to look, if it looks in one direction? */
+static bool are_aimed(const starg_guards *guards) {
+    const starg_visibility_options *o = &guards->options.visibility;
+    bool framed = o->fov[0] > 0 || o->fov[1] > 0, good = true;
+    if (framed && (!(o->fov[0] > 0 && o->fov[1] > 0 && o->fov[0] < 180 && o->fov[1] < 180) ||
+                   o->cone < 360 || guards->ups == NULL))
+        return false;
+    if (o->cone == 360 && !framed)
+        return true;
+    for (size_t i = 0; guards->directions != NULL && i < guards->count; i++) {
+        const double *d = guards->directions + 3 * i;
+        good = good && (d[0] != 0 || d[1] != 0 || d[2] != 0);
+    }
+    return good && guards->directions != NULL;
+}
+
+static void claim_options(starg_verdict *verdict, const starg_guards *guards) {
+    const starg_guard_options *options = &guards->options;
+    const starg_visibility_options *view = &options->visibility;
+    verify_claim(verdict,
+                 view->range >= 0 && view->near >= 0 && view->near < view->range &&
+                     view->incidence > 0 && view->incidence <= 90 && options->coverage > 0 &&
+                     options->coverage <= 1 && options->clearance >= 0 && view->cone > 0 &&
+                     view->cone <= 360 && are_aimed(guards),
+                 "the options make sense: range %g, cone %g, coverage %g, clearance %g",
+                 view->range, view->cone, options->coverage, options->clearance);
 }
 
 /* ---- claims about single guards ---- */
@@ -690,7 +717,7 @@ starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *
 
     STARG_TRY(verify_verdict_create(context, &verdict));
     claim_model(verdict, &known);
-    claim_options(verdict, &guards->options, guards->directions != NULL);
+    claim_options(verdict, guards);
     claim_inside(verdict, &known);
     claim_clearance(verdict, &known);
     claim_standoff(verdict, &known);

@@ -32,7 +32,7 @@ static bool must_hold(const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const starg_guard_options *o = &guards->options;
     return o->candidates != STARG_CANDIDATES_GIVEN && !(o->coverage < 1) && o->max_guards == 0 &&
-           o->visibility.cone >= 360 && !guards->time_limited &&
+           !verify_is_aimed(known) && !guards->time_limited &&
            guards->candidate_count >= guards->count + MANY;
 }
 
@@ -40,7 +40,7 @@ static starg_status look_about(const verify_facts *known, const uint8_t *lacks,
                                verify_lack *found) {
     starg_status status = STARG_OK;
     const verify_surface *surface = known->surface;
-    const verify_view view = verify_view_of(known->guards, NULL);
+    const verify_view view = verify_view_around(known->guards);
     size_t columns = verify_rows(known)->columns;
     verify_sight *sight = NULL;
     starg_rng rng = starg_rng_make(0, RNG_STAGE, 0);

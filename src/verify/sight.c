@@ -17,7 +17,6 @@
 #include <math.h>
 
 #include "core/memory.h"
-#include "verify/cone.h"
 #include "verify/signs.h"
 
 enum { SIDES = 6, MAX_LEVELS = 8 };
@@ -235,8 +234,7 @@ static starg_status look_at_vertices(verify_sight *sight, const double p[3],
     for (size_t v = 0; v < sight->surface->vertex_count; v++) {
         const double *q = sight->surface->vertices + 3 * v;
         sight->vertices[v] = 0;
-        if (!sight->used[v] || !verify_within(p, q, view->range) ||
-            (view->direction != NULL && !verify_in_cone(p, view->direction, view->cosine, q)))
+        if (!sight->used[v] || !verify_in_view(view, p, q))
             continue;
         starg_status status = find_cells(sight, p, &q, 1);
         if (status != STARG_OK)
@@ -246,14 +244,15 @@ static starg_status look_at_vertices(verify_sight *sight, const double p[3],
     return STARG_OK;
 }
 
-static starg_status look_at_faces(verify_sight *sight, const double p[3], starg_face_rule rule) {
+static starg_status look_at_faces(verify_sight *sight, const double p[3], const verify_view *view) {
     for (uint32_t f = 0; f < sight->surface->face_count; f++) {
         const uint32_t *corner = sight->surface->faces + 3 * (size_t)f;
         const double *t[3];
         verify_corners(sight->surface, f, t);
         sight->faces[f] = sight->vertices[corner[0]] && sight->vertices[corner[1]] &&
-                          sight->vertices[corner[2]] && verify_side(t[0], t[1], t[2], p) > 0;
-        if (!sight->faces[f] || rule != STARG_FACES_WHOLE)
+                          sight->vertices[corner[2]] && verify_side(t[0], t[1], t[2], p) > 0 &&
+                          verify_faces(view, p, t);
+        if (!sight->faces[f] || view->rule != STARG_FACES_WHOLE)
             continue;
         starg_status status = find_cells(sight, p, t, 3);
         if (status != STARG_OK)
@@ -263,13 +262,21 @@ static starg_status look_at_faces(verify_sight *sight, const double p[3], starg_
     return STARG_OK;
 }
 
+/* Faces that count from either side are seen where their backs are. */
+static void add_backs(verify_sight *sight) {
+    const verify_surface *surface = sight->surface;
+    for (size_t f = 0; surface->backs > 0 && f < surface->model_faces; f++)
+        sight->faces[f] |= sight->faces[surface->backs + f];
+}
+
 starg_status verify_look(verify_sight *sight, const double p[3], const verify_view *view,
                          const uint8_t **vertices, const uint8_t **faces) {
     starg_status status = STARG_OK;
     STARG_TRY(list_faces(sight, p));
     STARG_TRY(sort_listings(sight));
     STARG_TRY(look_at_vertices(sight, p, view));
-    STARG_TRY(look_at_faces(sight, p, view->rule));
+    STARG_TRY(look_at_faces(sight, p, view));
+    add_backs(sight);
     *vertices = sight->vertices;
     *faces = sight->faces;
 done:

@@ -3,7 +3,7 @@
 #ifndef STARG_VERIFY_SIGHT_H
 #define STARG_VERIFY_SIGHT_H
 
-#include "starguard/visibility.h"
+#include "verify/sensor.h"
 #include "verify/surface.h"
 
 /* Memory for looking around from points, one at a time; one thread. */
@@ -11,14 +11,6 @@ typedef struct verify_sight verify_sight;
 
 starg_status verify_sight_create(const verify_surface *surface, verify_sight **out);
 void verify_sight_free(verify_sight *sight);
-
-/* What limits a view. */
-typedef struct verify_view {
-    double range; /* vertices farther away count as not seen */
-    starg_face_rule rule;
-    const double *direction; /* of a cone of view, or NULL: all around  */
-    double cosine;           /* of half the cone's opening              */
-} verify_view;
 
 /* Looks around from p, which must lie off the surface. Vertices out of the view and vertices of no
  * face count as not seen. On success `vertices` and `faces` point to a byte each: 1 is seen; they

@@ -81,10 +81,11 @@ int verify_turn(const double a[3], const double b[3], const double c[3], int axi
     return plus - minus < -bound ? -1 : exact_turn(a, b, c, u, v);
 }
 
-bool verify_within(const double p[3], const double q[3], double radius) {
+/* Sign of radius - |p - q|. */
+static int compare_radius(const double p[3], const double q[3], double radius) {
     if (radius >= 1e101)
-        return true; /* farther than any two points below 1e100 */
-    exact_sum sum;   /* r^2 - sum of (p - q)^2 */
+        return 1;  /* farther than any two points below 1e100 */
+    exact_sum sum; /* r^2 - sum of (p - q)^2 */
     exact_sum_clear(&sum);
     exact_sum_add(&sum, radius, radius, 1);
     for (int k = 0; k < 3; k++) {
@@ -92,7 +93,15 @@ bool verify_within(const double p[3], const double q[3], double radius) {
         exact_sum_add(&sum, 2 * p[k], q[k], 1);
         exact_sum_add(&sum, -q[k], q[k], 1);
     }
-    return exact_sum_sign(&sum) >= 0;
+    return exact_sum_sign(&sum);
+}
+
+bool verify_within(const double p[3], const double q[3], double radius) {
+    return compare_radius(p, q, radius) >= 0;
+}
+
+bool verify_nearer(const double p[3], const double q[3], double radius) {
+    return compare_radius(p, q, radius) > 0;
 }
 
 /* ---- points and segments ---- */

@@ -17,6 +17,9 @@ int verify_turn(const double a[3], const double b[3], const double c[3], int axi
 /* Is |p - q| <= radius (radius >= 0, infinity allowed)? */
 bool verify_within(const double p[3], const double q[3], double radius);
 
+/* Is |p - q| < radius? */
+bool verify_nearer(const double p[3], const double q[3], double radius);
+
 /* Does p lie on the closed triangle t? */
 bool verify_on_triangle(const double p[3], const double *const t[3]);
 

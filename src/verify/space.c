@@ -17,6 +17,7 @@ typedef struct gathering {
     starg_context *context;
     STARG_ARRAY(double) vertices;
     STARG_ARRAY(uint32_t) faces;
+    size_t backs; /* of a soup: the other side of its first face */
 } gathering;
 
 static starg_status add_vertices(gathering *g, const starg_mesh *mesh, uint32_t *first) {
@@ -109,6 +110,7 @@ static starg_status add_obstacles(gathering *g, const starg_mesh *model, bool so
     for (size_t i = 0; i < count; i++)
         if (!closed[i])
             STARG_TRY(add_sheet(g, obstacles[i], FRONT));
+    g->backs = g->faces.count / 3;
     if (soup)
         STARG_TRY(add_sheet(g, model, FRONT));
     for (size_t i = 0; i < count; i++)
@@ -171,6 +173,7 @@ starg_status verify_space_create(starg_context *context, const starg_mesh *mesh,
     g.vertices.data = NULL;
     surface->model_vertices = starg_mesh_vertex_count(mesh);
     surface->model_faces = starg_mesh_face_count(mesh);
+    surface->backs = guards->space.two_sided ? g.backs : 0;
     surface->ambient = guards->space.outside || guards->space.soup ? 1 : 0;
     STARG_TRY(weigh(context, mesh, guards, surface));
     *out = surface;

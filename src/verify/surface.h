@@ -21,6 +21,8 @@ typedef struct verify_surface {
     int ambient;                        /* the winding number far away */
     size_t model_vertices, model_faces; /* those of obstacles follow   */
     double *importance;                 /* by face: how much its area counts; NULL: 1 each */
+    size_t backs; /* above 0: face f of the model counts from either side, and face backs + f is its
+                     back */
     double *own_vertices;               /* freed with the surface */
 } verify_surface;
 

@@ -394,10 +394,21 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
     return reason;
 }
 
+/* A face that counts from either side is hidden where both sides are; scenes of such faces have no
+ * certificates, so that nobody asks for both reasons. */
+static box_reason ask_sides(box_worker *w, const box_question *q, uint32_t face, bool recorded) {
+    const starg_solid *solid = w->scene->solid;
+    box_reason reason = ask_face(w, q, face, recorded);
+    if (reason.kind != BOX_OPEN && solid_is_two_sided(solid) &&
+        solid->other_side[face] != BOX_NONE)
+        reason = ask_face(w, q, solid->other_side[face], recorded);
+    return reason;
+}
+
 static box_reason ask(box_worker *w, const box_question *q, uint32_t target, bool recorded) {
     uint32_t seed;
     if (q->target == STARG_TARGET_FACES)
-        return ask_face(w, q, target, recorded);
+        return ask_sides(w, q, target, recorded);
     box_reason_kind kind = ask_vertex_once(w, q, target, recorded, &seed);
     return hidden_by(w->scene, kind, target, seed, false);
 }

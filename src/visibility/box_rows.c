@@ -6,6 +6,7 @@
 #include "core/fields.h"
 #include "core/parallel.h"
 #include "visibility/box.h"
+#include "visibility/sensor.h"
 
 static const char STAGE[] = "visibility";
 
@@ -42,15 +43,16 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     }
     uint64_t *row = starg_bits_row_mutable(all->rows, item);
     box_look(scratch, &question, row, NULL);
-    solid_mask_row(all->solid, question.target == STARG_TARGET_VERTICES, row);
+    solid_finish_row(all->solid, question.target == STARG_TARGET_VERTICES, row);
     return STARG_OK;
 }
 
 static starg_status check_arguments(starg_context *context, const double *boxes, size_t count,
                                     const starg_visibility_options *options) {
-    if (options->cone != 360)
+    if (sensor_is_directed(options))
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the cone is %g degrees; from boxes it must be 360", options->cone);
+                          "boxes look in all directions; leave out the %s",
+                          options->cone < 360 ? "cone" : "field of view");
     for (size_t i = 0; i < count; i++)
         for (size_t k = 0; k < 3; k++) {
             double lower = boxes[6 * i + k], upper = boxes[6 * i + 3 + k];

@@ -10,7 +10,11 @@ static const starg_field ROWS[] = {
     VISIBILITY_TARGET_FIELD(starg_visibility_options, target),
     VISIBILITY_FACE_RULE_FIELD(starg_visibility_options, face_rule),
     VISIBILITY_RANGE_FIELD(starg_visibility_options, range),
+    VISIBILITY_NEAR_FIELD(starg_visibility_options, near),
+    VISIBILITY_INCIDENCE_FIELD(starg_visibility_options, incidence),
     VISIBILITY_CONE_FIELD(starg_visibility_options, cone, NULL),
+    VISIBILITY_FOV_FIELD(starg_visibility_options, fov, NULL),
+    VISIBILITY_UP_FIELD(starg_visibility_options, up, NULL),
 };
 static const starg_fields TABLE = {
     .name = "visibility options", .size = sizeof(starg_visibility_options), FIELD_ROWS(ROWS)};

@@ -51,5 +51,33 @@ extern const char *const visibility_face_rule_words[];
         .help = "Full opening angle of guards that look in one direction, like cameras.",          \
         .default_text = "360, all directions"                                                      \
     }
+#define VISIBILITY_NEAR_FIELD(T, MEMBER)                                                           \
+    {                                                                                              \
+        .key = "near", .option = "near", .kind = STARG_FIELD_REAL,                                 \
+        .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE, FIELD_MEMBER(T, MEMBER), .high = 1e100,  \
+        .value = "R", .help = "Smallest distance at which corners of faces are seen."              \
+    }
+#define VISIBILITY_INCIDENCE_FIELD(T, MEMBER)                                                      \
+    {                                                                                              \
+        .key = "incidence", .option = "incidence", .kind = STARG_FIELD_REAL,                       \
+        .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE | STARG_FIELD_ABOVE,                      \
+        FIELD_MEMBER(T, MEMBER), .high = 90, .standard = 90, .value = "DEGREES",                   \
+        .help = "Faces count only where they are seen at most so far from their normal, at every " \
+                "point."                                                                           \
+    }
+#define VISIBILITY_FOV_FIELD(T, MEMBER, OPTION)                                                    \
+    {                                                                                              \
+        .key = "fov", .option = (OPTION), .kind = STARG_FIELD_NUMBERS,                             \
+        .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE | STARG_FIELD_ABOVE,                      \
+        FIELD_MEMBER(T, MEMBER), .length = 2, .high = 179.99, .value = "H,V",                      \
+        .help = "Horizontal and vertical opening in degrees of guards with a rectangular view."    \
+    }
+#define VISIBILITY_UP_FIELD(T, MEMBER, OPTION)                                                     \
+    {                                                                                              \
+        .key = "up", .option = (OPTION), .kind = STARG_FIELD_NUMBERS,                              \
+        .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE, FIELD_MEMBER(T, MEMBER), .length = 3,    \
+        .low = -1e100, .high = 1e100, .value = "X,Y,Z", .help = "What is up for them.",            \
+        .default_text = "0,1,0"                                                                    \
+    }
 
 #endif

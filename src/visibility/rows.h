@@ -15,9 +15,7 @@ typedef struct visibility_job {
     size_t count;
     starg_bits *rows;
     uint8_t *finished; /* by point; may be NULL */
-    /* Both follow from the options; visibility_fill sets them. */
-    const visibility_engine *engine;
-    double cosine; /* of half the cone */
+    const visibility_engine *engine; /* follows from the options; visibility_fill sets it */
 } visibility_job;
 
 /* Makes what the engine of the options needs to work on `count` points. Errors: MEMORY. */

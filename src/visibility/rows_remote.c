@@ -19,15 +19,15 @@ enum { LEAST_WORK = 1 << 22 };
 /* The fixed part of a job. */
 typedef struct job_head {
     uint64_t points, vertices, faces;
-    double range, cone, diagonal;
-    uint32_t engine, target, face_rule, embedded, ambient;
+    double range, near, incidence, cone, fov[2], up[3], diagonal;
+    uint32_t engine, target, face_rule, embedded, ambient, has_ups;
 } job_head;
 
 typedef struct remote_job {
     starg_solid *solid;
     visibility_scene *scene;
     starg_visibility_options options;
-    double *points, *directions;
+    double *points, *directions, *ups;
     size_t count;
 } remote_job;
 
@@ -47,19 +47,26 @@ starg_status visibility_pack(starg_context *context, const visibility_job *job, 
                            .vertices = mesh->vertex_count,
                            .faces = mesh->face_count,
                            .range = o->range,
+                           .near = o->near,
+                           .incidence = o->incidence,
                            .cone = o->cone,
+                           .fov = {o->fov[0], o->fov[1]},
+                           .up = {o->up[0], o->up[1], o->up[2]},
                            .diagonal = solid->check->diagonal,
                            .engine = o->engine,
                            .target = o->target,
                            .face_rule = o->face_rule,
                            .embedded = solid->check->embedded,
-                           .ambient = (uint32_t)solid->ambient};
+                           .ambient = (uint32_t)solid->ambient,
+                           .has_ups = sensor_is_directed(o) && o->ups != NULL};
     STARG_TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
     STARG_TRY(starg_bytes_put(context, out, mesh->vertices, 3 * mesh->vertex_count, 8));
     STARG_TRY(starg_bytes_put(context, out, mesh->faces, 3 * mesh->face_count, 4));
     STARG_TRY(starg_bytes_put(context, out, job->points, 3 * job->count, 8));
-    if (o->cone < 360)
+    if (sensor_is_directed(o))
         STARG_TRY(starg_bytes_put(context, out, o->directions, 3 * job->count, 8));
+    if (head.has_ups)
+        STARG_TRY(starg_bytes_put(context, out, o->ups, 3 * job->count, 8));
 done:
     return status;
 }
@@ -92,6 +99,7 @@ static void end(starg_context *context, void *state) {
     starg_solid_free(job->solid);
     starg_release(context, job->points);
     starg_release(context, job->directions);
+    starg_release(context, job->ups);
     starg_release(context, job);
 }
 
@@ -126,7 +134,7 @@ static starg_status begin(starg_context *context, starg_bytes_reader *bytes, voi
     starg_status status = STARG_OK;
     remote_job *job = NULL;
     job_head head;
-    void *points, *directions;
+    void *points, *directions, *ups;
     *state = NULL;
     STARG_NEW_ZERO(context, STAGE, job, 1);
     *state = job;
@@ -135,16 +143,24 @@ static starg_status begin(starg_context *context, starg_bytes_reader *bytes, voi
     STARG_TRY(take_solid(context, bytes, &head, &job->solid));
     STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &points));
     job->points = points;
-    if (head.cone < 360) {
-        STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &directions));
-        job->directions = directions;
-    }
-    job->count = head.points;
     job->options = (starg_visibility_options){.engine = (starg_visibility_engine)head.engine,
                                               .target = (starg_target)head.target,
                                               .face_rule = (starg_face_rule)head.face_rule,
                                               .range = head.range,
-                                              .cone = head.cone};
+                                              .near = head.near,
+                                              .incidence = head.incidence,
+                                              .cone = head.cone,
+                                              .fov = {head.fov[0], head.fov[1]},
+                                              .up = {head.up[0], head.up[1], head.up[2]}};
+    if (sensor_is_directed(&job->options)) {
+        STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &directions));
+        job->directions = directions;
+    }
+    if (head.has_ups) {
+        STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &ups));
+        job->ups = ups;
+    }
+    job->count = head.points;
     STARG_TRY(visibility_scene_for(context, job->solid, &job->options, job->count, &job->scene));
 done:
     return status;
@@ -164,6 +180,8 @@ static starg_status run(starg_context *context, void *state, size_t first, size_
         return STARG_ERROR_RANK;
     if (all->directions != NULL)
         options.directions = all->directions + 3 * first;
+    if (all->ups != NULL)
+        options.ups = all->ups + 3 * first;
     STARG_TRY(starg_bits_create(context, count, columns, &rows));
     STARG_NEW_ZERO(context, STAGE, finished, count);
     const visibility_job job = {.scene = all->scene,

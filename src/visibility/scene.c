@@ -32,6 +32,29 @@ static void order_vertices(visibility_scene *scene) {
         }
 }
 
+/* Ranks of the other sides of faces that count from either side. */
+static starg_status find_backs(visibility_scene *scene) {
+    starg_status status = STARG_OK;
+    uint32_t *rank_of = NULL;
+    if (!solid_is_two_sided(scene->solid))
+        return STARG_OK;
+    STARG_NEW(scene->context, "visibility", scene->backs, scene->face_count);
+    STARG_NEW(scene->context, "visibility", rank_of, scene->face_count);
+    for (size_t rank = 0; rank < scene->face_count; rank++)
+        rank_of[scene->face_of[rank]] = (uint32_t)rank;
+    for (size_t rank = 0; rank < scene->face_count; rank++) {
+        uint32_t back = scene->solid->other_side[scene->face_of[rank]];
+        scene->backs[rank] = back == SCENE_NONE ? SCENE_NONE : rank_of[back];
+    }
+done:
+    starg_release(scene->context, rank_of);
+    return status;
+}
+
+uint32_t scene_back(const visibility_scene *scene, size_t rank) {
+    return scene->backs == NULL ? SCENE_NONE : scene->backs[rank];
+}
+
 /* The error bound: with e the longest extent of an edge and h that of the box, a normal's
  * components are below 2 e^2 and carry 4 roundings, the products another 4; there are six terms
  * with factors up to h (which itself carries a rounding). 128 covers the sum. */
@@ -100,6 +123,7 @@ starg_status scene_create(starg_context *context, const starg_solid *solid,
     STARG_NEW(context, "visibility", scene->offset, m);
     order_vertices(scene);
     compute_planes(scene);
+    STARG_TRY(find_backs(scene));
     *out = scene;
 done:
     if (status != STARG_OK)
@@ -118,6 +142,7 @@ void scene_free(visibility_scene *scene) {
     starg_release(context, scene->y);
     starg_release(context, scene->z);
     starg_release(context, scene->corners);
+    starg_release(context, scene->backs);
     starg_release(context, scene->nx);
     starg_release(context, scene->ny);
     starg_release(context, scene->nz);

@@ -9,6 +9,7 @@
 
 #include "mesh/solid.h"
 #include "starguard/visibility.h"
+#include "visibility/sensor.h"
 
 #define SCENE_NONE UINT32_MAX
 
@@ -38,6 +39,7 @@ typedef struct visibility_scene {
     uint32_t *slot_of;               /* vertex of the mesh -> slot, or SCENE_NONE if unused   */
     const uint32_t *face_of;         /* rank -> face of the mesh, in spatial order            */
     uint32_t *corners;               /* rank x 3 -> slots                                     */
+    uint32_t *backs; /* rank -> rank of the other side, or SCENE_NONE; NULL: only fronts count */
     double *x, *y, *z;               /* by slot                                               */
 
     /* Plane of each face by rank: normal . (centre - p) + offset is positive where p is inside. */
@@ -98,14 +100,18 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
                              size_t count, const starg_visibility_options *options,
                              uint8_t *finished, starg_bits **out);
 
-/* Does p, strictly inside, see the vertex in `slot`, by the tree? With a cone, options->directions
- * has the one direction of p. */
+/* Does p, strictly inside, see the vertex in `slot`, by the tree? Where views are
+ * directed, options->directions and ups have the one direction of p. */
 bool scene_sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
                        const starg_visibility_options *options);
 
-/* Does p, strictly inside, see the one face? The rules of starg_visibility, by the tree. */
+/* Does p, strictly inside, see the one face, from either side of it where the scene says so? The
+ * rules of starg_visibility, by the tree. */
 bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
                      const starg_visibility_options *options);
+
+/* Where faces count from either side: the rank of the other side of a face, else SCENE_NONE. */
+uint32_t scene_back(const visibility_scene *scene, size_t rank);
 
 /* Is every point of the face of `rank` visible from p? Its three vertices are, and p is on its
  * inner side. `side` holds the sides of p by rank, or is NULL. Exact. */

@@ -26,27 +26,46 @@ static bool passes_alone(void *user, size_t rank) {
     return !scene_blocks(query->scene, rank, side, query->p, query->slot);
 }
 
-bool scene_sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
-                       const starg_visibility_options *options) {
+static bool sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
+                        const sensor *looks) {
     const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
     tree_query query = {scene, p, NULL, slot};
-    if (options->range < 1e100 && compare_distance(p, q, options->range) > 0)
+    return sensor_reaches(looks, p, q) && sensor_frames(looks, p, q) &&
+           bvh_query_segment(scene->solid->tree, p, q, passes_alone, &query);
+}
+
+static bool sees_side(const visibility_scene *scene, const double p[3], size_t rank,
+                      const sensor *looks) {
+    const double *a = scene_corner(scene, rank, 0), *b = scene_corner(scene, rank, 1);
+    const double *c = scene_corner(scene, rank, 2);
+    if (orient3d(a, b, c, p) <= 0 || !sensor_faces(looks, p, a, b, c))
         return false;
-    if (options->cone < 360 &&
-        compare_cone(p, options->directions, starg_cone_cosine(options->cone), q) < 0)
-        return false;
-    return bvh_query_segment(scene->solid->tree, p, q, passes_alone, &query);
+    for (size_t k = 0; k < 3; k++)
+        if (!sees_vertex(scene, p, scene->corners[3 * rank + k], looks))
+            return false;
+    return looks->options->face_rule != STARG_FACES_WHOLE ||
+           face_is_wholly_visible(scene, p, NULL, rank);
+}
+
+static sensor aimed(const starg_visibility_options *options) {
+    sensor looks = sensor_of(options);
+    if (sensor_is_directed(options))
+        sensor_aim(&looks, options->directions, options->ups);
+    return looks;
+}
+
+bool scene_sees_vertex(const visibility_scene *scene, const double p[3], uint32_t slot,
+                       const starg_visibility_options *options) {
+    const sensor looks = aimed(options);
+    return sees_vertex(scene, p, slot, &looks);
 }
 
 bool scene_sees_face(const visibility_scene *scene, const double p[3], size_t rank,
                      const starg_visibility_options *options) {
-    if (orient3d(scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
-                 scene_corner(scene, rank, 2), p) <= 0)
-        return false;
-    for (size_t k = 0; k < 3; k++)
-        if (!scene_sees_vertex(scene, p, scene->corners[3 * rank + k], options))
-            return false;
-    return options->face_rule != STARG_FACES_WHOLE || face_is_wholly_visible(scene, p, NULL, rank);
+    const sensor looks = aimed(options);
+    uint32_t back = scene_back(scene, rank);
+    return sees_side(scene, p, rank, &looks) ||
+           (back != SCENE_NONE && sees_side(scene, p, back, &looks));
 }
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {

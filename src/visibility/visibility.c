@@ -6,7 +6,6 @@
 #include "core/bits.h"
 #include "core/fields.h"
 #include "core/memory.h"
-#include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "visibility/rows.h"
 
@@ -18,17 +17,12 @@ typedef visibility_job job;
 typedef struct worker {
     void *engine_scratch;
     const job *job;
-    int8_t *side;       /* by rank */
-    uint8_t *visible;   /* by slot */
-    uint8_t *within;    /* by slot: visible, and within the cone; only with one */
+    int8_t *side;     /* by rank */
+    uint8_t *visible; /* by slot */
+    uint8_t *within;  /* by slot: visible, and in the view; only where it is directed */
+    sensor sensor;
     const double *last; /* point that side and visible are for, or NULL */
 } worker;
-
-double starg_cone_cosine(double degrees) {
-    if (degrees == 180)
-        return 0;
-    return degrees >= 360 ? -1 : cos(degrees * (3.14159265358979323846 / 360));
-}
 
 static void free_worker(starg_context *context, void *scratch) {
     worker *w = scratch;
@@ -48,6 +42,7 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     if (w == NULL)
         return STARG_ERROR_MEMORY;
     w->job = all;
+    w->sensor = sensor_of(all->options);
     w->side = starg_allocate(context, all->scene->face_count, sizeof *w->side);
     w->visible = starg_allocate(context, all->scene->vertex_count, sizeof *w->visible);
     w->within = starg_allocate(context, all->scene->vertex_count, sizeof *w->within);
@@ -62,28 +57,28 @@ static starg_status make_worker(starg_context *context, void *shared, void **scr
     return STARG_OK;
 }
 
-static void drop_out_of_range(const job *all, const double p[3], uint8_t *visible) {
-    if (all->options->range >= 1e100)
-        return;
-    const visibility_scene *scene = all->scene;
-    for (size_t slot = 0; slot < scene->vertex_count; slot++) {
+static void drop_out_of_reach(const worker *w, const double p[3]) {
+    const visibility_scene *scene = w->job->scene;
+    for (size_t slot = 0; w->sensor.reaches && slot < scene->vertex_count; slot++) {
         const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
-        if (visible[slot] && compare_distance(p, q, all->options->range) > 0)
-            visible[slot] = 0;
+        w->visible[slot] = w->visible[slot] && sensor_reaches(&w->sensor, p, q);
     }
 }
 
 static void look_all_around(const job *all, worker *w, const double p[3]) {
     scene_sides(all->scene, p, w->side);
     all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
-    drop_out_of_range(all, p, w->visible);
+    drop_out_of_reach(w, p);
 }
 
-static void narrow(const job *all, worker *w, const double p[3], const double direction[3]) {
+/* Aims the sensor of an item and leaves out what is not in its view. */
+static void narrow(const job *all, worker *w, const double p[3], size_t item) {
     const visibility_scene *scene = all->scene;
+    const starg_visibility_options *o = all->options;
+    sensor_aim(&w->sensor, o->directions + 3 * item, o->ups != NULL ? o->ups + 3 * item : NULL);
     for (size_t slot = 0; slot < scene->vertex_count; slot++) {
         const double q[3] = {scene->x[slot], scene->y[slot], scene->z[slot]};
-        w->within[slot] = w->visible[slot] && compare_cone(p, direction, all->cosine, q) >= 0;
+        w->within[slot] = w->visible[slot] && sensor_frames(&w->sensor, p, q);
     }
 }
 
@@ -106,7 +101,9 @@ static void write_faces(const job *all, const worker *w, const uint8_t *visible,
     bool whole = all->options->face_rule == STARG_FACES_WHOLE;
     for (size_t rank = 0; rank < scene->face_count; rank++) {
         const uint32_t *c = scene->corners + 3 * rank;
-        if (w->side[rank] <= 0 || !(visible[c[0]] & visible[c[1]] & visible[c[2]]))
+        if (w->side[rank] <= 0 || !(visible[c[0]] & visible[c[1]] & visible[c[2]]) ||
+            !sensor_faces(&w->sensor, p, scene_corner(scene, rank, 0), scene_corner(scene, rank, 1),
+                          scene_corner(scene, rank, 2)))
             continue;
         if (!whole || sees_whole(all, w, p, rank))
             starg_bit_set(row, scene->face_of[rank]);
@@ -125,8 +122,8 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
         if (w->last == NULL || !vec3_equal(w->last, p))
             look_all_around(all, w, p);
         w->last = p;
-        if (all->options->cone < 360) {
-            narrow(all, w, p, all->options->directions + 3 * item);
+        if (sensor_is_directed(all->options)) {
+            narrow(all, w, p, item);
             visible = w->within;
         }
         if (all->options->target == STARG_TARGET_VERTICES)
@@ -136,31 +133,6 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     }
     if (all->finished != NULL)
         all->finished[item] = 1;
-    return STARG_OK;
-}
-
-static starg_status check_cone(starg_context *context, size_t count,
-                               const starg_visibility_options *options) {
-    const double *d = options->directions;
-    if (options->cone == 360)
-        return STARG_OK;
-    if (options->face_rule == STARG_FACES_WHOLE && options->cone > 180)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "the cone is %g degrees; whole faces need one of at most 180, or of 360",
-                          options->cone);
-    if (d == NULL && count > 0)
-        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
-                          "a cone needs a direction for each point");
-    for (size_t i = 0; i < count; i++, d += 3) {
-        uint64_t point = i;
-        if (!(fabs(d[0]) < 1e100 && fabs(d[1]) < 1e100 && fabs(d[2]) < 1e100) ||
-            (d[0] == 0 && d[1] == 0 && d[2] == 0))
-            return starg_fail_at(context, STARG_ERROR_ARGUMENT, STAGE, STARG_ELEMENT_CANDIDATE,
-                                 &point, 1,
-                                 "the direction of point %zu is (%g, %g, %g); it must be finite "
-                                 "and not zero",
-                                 i, d[0], d[1], d[2]);
-    }
     return STARG_OK;
 }
 
@@ -201,7 +173,6 @@ starg_status visibility_fill(starg_context *context, const visibility_job *of,
                              const starg_parallel_remote *remote) {
     job all = *of;
     all.engine = choose_engine(of->options);
-    all.cosine = starg_cone_cosine(of->options->cone);
     const starg_parallel_loop loop = {.stage = STAGE,
                                       .count = of->count,
                                       .shared = &all,
@@ -239,7 +210,7 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     if (options == NULL)
         options = &defaults;
     STARG_TRY(check_arguments(context, points, count, options));
-    STARG_TRY(check_cone(context, count, options));
+    STARG_TRY(sensor_check(context, STAGE, count, options));
     STARG_TRY(visibility_scene_for(context, solid, options, count, &scene));
     size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
                                                               : solid->mesh->face_count;
@@ -255,8 +226,8 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
         status = STARG_OK;
     STARG_TRY(status);
     for (size_t i = 0; i < count; i++)
-        solid_mask_row(solid, options->target == STARG_TARGET_VERTICES,
-                       starg_bits_row_mutable(rows, i));
+        solid_finish_row(solid, options->target == STARG_TARGET_VERTICES,
+                         starg_bits_row_mutable(rows, i));
     *out = rows;
 done:
     scene_free(scene);

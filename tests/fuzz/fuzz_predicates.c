@@ -9,7 +9,7 @@
 #include "geometry/intersect.h"
 #include "geometry/predicates.h"
 #include "support.h"
-#include "verify/cone.h"
+#include "verify/sensor.h"
 #include "verify/signs.h"
 
 enum { POINTS = 6 };

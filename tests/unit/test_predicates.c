@@ -6,7 +6,7 @@
 #include "exact_oracle.h"
 #include "geometry/predicates.h"
 #include "support.h"
-#include "verify/cone.h"
+#include "verify/sensor.h"
 
 enum { ROUNDS = 1500, LONG_ROUNDS = 70000, POINTS = 5 };
 

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "visibility/sensor.h"
+
+#include <math.h>
+
+#include "core/fields.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+
+static const double HALF_DEGREE = 3.14159265358979323846 / 360;
+
+/* ---- definitions that a verifier shares ---- */
+
+double starg_cone_cosine(double degrees) {
+    if (degrees == 180)
+        return 0;
+    return degrees >= 360 ? -1 : cos(degrees * HALF_DEGREE);
+}
+
+static void normalize(double v[3]) {
+    double most = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    for (int k = 0; k < 3 && most > 0; k++)
+        v[k] /= most; /* squares neither overflow nor vanish */
+    double length = vec3_length(v);
+    for (int k = 0; k < 3 && length > 0; k++)
+        v[k] /= length;
+}
+
+void starg_frustum(const double direction[3], const double up[3], const double fov[2],
+                   double planes[4][3]) {
+    double ahead[3], above[3], right[3];
+    vec3_copy(direction, ahead);
+    vec3_copy(up, above);
+    normalize(ahead);
+    normalize(above);
+    vec3_cross(ahead, above, right);
+    for (int k = 0; k < 3 && !(vec3_length(right) > 1e-9); k++) {
+        for (int i = 0; i < 3; i++)
+            above[i] = i == k;
+        vec3_cross(ahead, above, right);
+    }
+    normalize(right);
+    vec3_cross(right, ahead, above);
+    for (int side = 0; side < 4; side++) {
+        const double *across = side < 2 ? right : above;
+        double half = fov[side / 2] * HALF_DEGREE, sign = side % 2 == 0 ? 1 : -1;
+        for (int k = 0; k < 3; k++)
+            planes[side][k] = sin(half) * ahead[k] + sign * cos(half) * across[k];
+    }
+}
+
+/* ---- the sensor ---- */
+
+sensor sensor_of(const starg_visibility_options *options) {
+    sensor own;
+    own.options = options;
+    own.reaches = options->range < 1e100 || options->near > 0;
+    own.conical = options->cone < 360;
+    own.rectangular = options->fov[0] > 0;
+    own.cosine = own.conical ? starg_cone_cosine(options->cone) : -1;
+    own.steepest = options->incidence < 90 ? starg_cone_cosine(2 * options->incidence) : 0;
+    own.direction = NULL;
+    return own;
+}
+
+static bool is_zero(const double v[3]) {
+    return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+void sensor_aim(sensor *own, const double direction[3], const double up[3]) {
+    static const double Y[3] = {0, 1, 0};
+    own->direction = direction;
+    if (!own->rectangular)
+        return;
+    if (up == NULL || is_zero(up))
+        up = own->options->up;
+    starg_frustum(direction, is_zero(up) ? Y : up, own->options->fov, own->planes);
+}
+
+bool sensor_reaches(const sensor *own, const double p[3], const double q[3]) {
+    const starg_visibility_options *o = own->options;
+    return !own->reaches || ((o->range >= 1e100 || compare_distance(p, q, o->range) <= 0) &&
+                             (o->near <= 0 || compare_distance(p, q, o->near) >= 0));
+}
+
+bool sensor_frames(const sensor *own, const double p[3], const double q[3]) {
+    if (own->conical && compare_cone(p, own->direction, own->cosine, q) < 0)
+        return false;
+    for (int side = 0; own->rectangular && side < 4; side++)
+        if (compare_plane(p, own->planes[side], q) < 0)
+            return false;
+    return true;
+}
+
+bool sensor_faces(const sensor *own, const double p[3], const double a[3], const double b[3],
+                  const double c[3]) {
+    return own->steepest == 0 || (compare_incidence(a, b, c, p, a, own->steepest) >= 0 &&
+                                  compare_incidence(a, b, c, p, b, own->steepest) >= 0 &&
+                                  compare_incidence(a, b, c, p, c, own->steepest) >= 0);
+}
+
+/* ---- arguments ---- */
+
+static bool is_finite(const double v[3]) {
+    return fabs(v[0]) < 1e100 && fabs(v[1]) < 1e100 && fabs(v[2]) < 1e100;
+}
+
+static starg_status check_directions(starg_context *context, const char *stage, size_t count,
+                                     const starg_visibility_options *o) {
+    if (o->directions == NULL && count > 0)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
+                          "a %s needs a direction for each point",
+                          o->cone < 360 ? "cone" : "field of view");
+    for (size_t i = 0; i < count; i++) {
+        const double *d = o->directions + 3 * i, *up = o->ups != NULL ? o->ups + 3 * i : NULL;
+        uint64_t point = i;
+        if (!is_finite(d) || is_zero(d))
+            return starg_fail_at(context, STARG_ERROR_ARGUMENT, stage, STARG_ELEMENT_CANDIDATE,
+                                 &point, 1,
+                                 "the direction of point %zu is (%g, %g, %g); it must be finite "
+                                 "and not zero",
+                                 i, d[0], d[1], d[2]);
+        if (up != NULL && !is_finite(up))
+            return starg_fail_at(context, STARG_ERROR_ARGUMENT, stage, STARG_ELEMENT_CANDIDATE,
+                                 &point, 1, "what is up for point %zu is not finite", i);
+    }
+    return STARG_OK;
+}
+
+starg_status sensor_check(starg_context *context, const char *stage, size_t count,
+                          const starg_visibility_options *o) {
+    if (o->face_rule == STARG_FACES_WHOLE && o->cone < 360 && o->cone > 180)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
+                          "the cone is %g degrees; whole faces need one of at most 180, or of 360",
+                          o->cone);
+    if ((o->fov[0] > 0) != (o->fov[1] > 0) || !(o->fov[0] >= 0 && o->fov[0] < 180) ||
+        !(o->fov[1] >= 0 && o->fov[1] < 180))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
+                          "the field of view is %g by %g degrees; both must be above 0 and below "
+                          "180; for wider views use a cone",
+                          o->fov[0], o->fov[1]);
+    if (o->fov[0] > 0 && o->cone < 360)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
+                          "a cone and a field of view exclude each other");
+    if (!is_finite(o->up))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage, "what is up is not finite");
+    if (!(o->near < o->range))
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
+                          "nothing is at least %g and at most %g away; the near distance must be "
+                          "below the range",
+                          o->near, o->range);
+    if (o->incidence < 90 && o->target == STARG_TARGET_VERTICES)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
+                          "vertices are seen from any side: a limited incidence is for faces");
+    return sensor_is_directed(o) ? check_directions(context, stage, count, o) : STARG_OK;
+}
