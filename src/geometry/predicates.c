@@ -350,7 +350,8 @@ int compare_incidence(const double a[3], const double b[3], const double c[3], c
                          u[0] * v[1] - u[1] * v[0]};
     double far = length_of(line), first = length_of(u), second = length_of(v);
     double excess = dot_of(n, line) - cosine * length_of(n) * far;
-    if (far > 1e-60 && first > 1e-60 && second > 1e-60 &&
+    double least = fmin(far, fmin(first, second)), most = fmax(far, fmax(first, second));
+    if (least > 1e-60 && most < 1e60 && /* squares of the normal neither vanish nor overflow */
         fabs(excess) > 64 * EPSILON * first * second * far)
         return sign_of(excess);
     return compare_incidence_exact((const double *const[]){a, b, c}, p, q, cosine);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Scenes by their definition: random lattices of rooms, crates that touch, overlap and stand in
- * line with walls, and sheets; from inside and from outside. Free is what is in the room and in no
- * crate; a vertex of the room is seen if nothing meets the segment to it. */
+ * line with walls, and sheets; from inside and from outside; by sensors of all kinds. Free is what
+ * is in the room and in no crate; a vertex of the room is seen if nothing meets the segment to it,
+ * and if it is in the view; a face if its corners are, from its front or from either side. All in
+ * rationals. */
 #include "support.h"
 
 #include <math.h>
@@ -24,7 +26,7 @@ typedef struct scene {
     bool open[MOST_OBSTACLES];
     starg_mesh *mesh, *others[MOST_OBSTACLES];
     size_t count;
-    bool outside, soup;
+    bool outside, soup, two_sided;
     double *weights; /* by face; NULL: none given */
     starg_solid *solid;
     double points[3 * POINTS];
@@ -95,6 +97,7 @@ static void make(scene *s, uint64_t seed) {
     starg_space_options_default(&options);
     options.outside = s->outside;
     options.soup = s->soup;
+    options.two_sided = s->two_sided = s->soup && seed % 2 == 0;
     options.standoff_most = s->outside ? 3 : 0;
     test_ok(s->context,
             starg_space_create(s->context, s->mesh, (const starg_mesh *const *)s->others, s->count,
@@ -170,19 +173,98 @@ static bool blocks(const shape *s, const double p[3], const double q[3]) {
     return false;
 }
 
-static bool sees_vertex(const scene *s, const double p[3], const double q[3]) {
-    bool seen = !blocks(&s->model, p, q);
-    for (size_t i = 0; i < s->count && seen; i++)
-        seen = !blocks(&s->obstacles[i], p, q);
+/* ---- sensors ---- */
+
+typedef struct view {
+    starg_visibility_options options;
+    double directions[3 * POINTS], ups[3 * POINTS];
+} view;
+
+/* Limits at which lattices have ties: whole distances, right angles, halves of them; directions
+ * along axes, to corners and at random. */
+static void make_view(const scene *s, uint64_t seed, view *v) {
+    static const double angles[] = {45, 54.735610317245346, 60, 90, 120};
+    starg_rng rng = starg_rng_make(seed, 44, 0);
+    starg_visibility_options_default(&v->options);
+    starg_visibility_options *o = &v->options;
+    uint64_t kind = starg_rng_below(&rng, 4);
+    if (starg_rng_below(&rng, 2) == 0)
+        o->range = 1 + 0.5 * (double)starg_rng_below(&rng, 6);
+    if (starg_rng_below(&rng, 2) == 0)
+        o->near = 0.5 * (double)(1 + starg_rng_below(&rng, 2));
+    if (starg_rng_below(&rng, 2) == 0)
+        o->incidence = angles[starg_rng_below(&rng, 3)];
+    if (kind == 1)
+        o->cone = angles[starg_rng_below(&rng, 5)];
+    if (kind >= 2) {
+        o->fov[0] = angles[starg_rng_below(&rng, 5)];
+        o->fov[1] = angles[starg_rng_below(&rng, 5)];
+        o->up[starg_rng_below(&rng, 3)] = starg_rng_below(&rng, 2) ? 1 : 0;
+    }
+    for (size_t i = 0; i < 3 * POINTS; i++) {
+        const double *at =
+            s->model.vertices + 3 * starg_rng_below(&rng, s->model.vertex_count) + i % 3;
+        v->directions[i] = i / 3 % 3 == 0   ? (double)(i % 3 == seed % 3)
+                           : i / 3 % 3 == 1 ? *at - s->points[i] + 1e-3
+                                            : starg_rng_unit(&rng) - 0.5;
+        v->ups[i] = kind == 3 ? starg_rng_unit(&rng) - 0.5 : 0;
+    }
+    o->directions = v->directions;
+    o->ups = kind == 3 ? v->ups : NULL;
+}
+
+/* Is the vertex q in the view of point i? */
+static bool frames(const scene *s, const view *v, size_t i, const double q[3]) {
+    static const double y[3] = {0, 1, 0};
+    const starg_visibility_options *o = &v->options;
+    const double *p = s->points + 3 * i, *d = v->directions + 3 * i, *up = o->up;
+    double planes[4][3];
+    if ((o->range < 1e100 && oracle_compare_distance(p, q, o->range) > 0) ||
+        oracle_compare_distance(p, q, o->near) < 0)
+        return false;
+    if (o->cone < 360 && oracle_compare_cone(p, d, starg_cone_cosine(o->cone), q) < 0)
+        return false;
+    if (o->fov[0] == 0)
+        return true;
+    if (o->ups != NULL)
+        up = o->ups + 3 * i;
+    else if (up[0] == 0 && up[1] == 0 && up[2] == 0)
+        up = y;
+    starg_frustum(d, up, o->fov, planes);
+    for (int side = 0; side < 4; side++)
+        if (oracle_compare_plane(p, planes[side], q) < 0)
+            return false;
+    return true;
+}
+
+/* Is the triangle, whose inner side p is on, seen steeply enough? */
+static bool is_steep(const view *v, const double p[3], const double *a, const double *b,
+                     const double *c) {
+    const double *const corners[3] = {a, b, c};
+    double cosine = starg_cone_cosine(2 * v->options.incidence);
+    for (int k = 0; v->options.incidence < 90 && k < 3; k++)
+        if (oracle_compare_incidence(a, b, c, p, corners[k], cosine) < 0)
+            return false;
+    return true;
+}
+
+static bool sees_vertex(const scene *s, const view *v, size_t i, const double q[3]) {
+    const double *p = s->points + 3 * i;
+    bool seen = frames(s, v, i, q) && !blocks(&s->model, p, q);
+    for (size_t k = 0; k < s->count && seen; k++)
+        seen = !blocks(&s->obstacles[k], p, q);
     return seen;
 }
 
 /* By what is known of the vertices. */
-static bool sees_face(const scene *s, const double p[3], const bool *vertex, size_t f) {
-    int side = oracle_orient3d(corner(&s->model, f, 0), corner(&s->model, f, 1),
-                               corner(&s->model, f, 2), p);
-    bool seen =
-        side == (s->outside || s->soup ? -1 : 1) && (s->weights == NULL || s->weights[f] > 0);
+static bool sees_face(const scene *s, const view *v, size_t i, const bool *vertex, size_t f) {
+    const double *a = corner(&s->model, f, 0), *b = corner(&s->model, f, 1);
+    const double *c = corner(&s->model, f, 2), *p = s->points + 3 * i;
+    int side = oracle_orient3d(a, b, c, p);
+    bool from_front = s->outside || s->soup ? side < 0 : side > 0;
+    bool seen = side != 0 && (from_front || s->two_sided) &&
+                (s->weights == NULL || s->weights[f] > 0) &&
+                (side > 0 ? is_steep(v, p, a, b, c) : is_steep(v, p, a, c, b));
     for (size_t k = 0; k < 3 && seen; k++)
         seen = vertex[s->model.faces[3 * f + k]];
     return seen;
@@ -224,38 +306,38 @@ static void pick_points(scene *s, uint64_t seed) {
     }
 }
 
-/* What p sees: faces, or vertices, of the model. */
-static void expect(const scene *s, const double p[3], bool vertices, bool *expected) {
+/* What point i sees: faces, or vertices, of the model. */
+static void expect(const scene *s, const view *v, size_t i, bool vertices, bool *expected) {
     size_t n = s->model.vertex_count;
-    bool *vertex = malloc(n * sizeof *vertex), inside = is_free(s, p);
+    bool *vertex = malloc(n * sizeof *vertex), inside = is_free(s, s->points + 3 * i);
     assert_non_null(vertex);
-    for (size_t v = 0; v < n; v++)
-        vertex[v] = inside && sees_vertex(s, p, s->model.vertices + 3 * v);
+    for (size_t k = 0; k < n; k++)
+        vertex[k] = inside && sees_vertex(s, v, i, s->model.vertices + 3 * k);
     for (size_t f = 0; !vertices && f < s->model.face_count; f++)
-        expected[f] = sees_face(s, p, vertex, f);
-    for (size_t v = 0; vertices && v < n; v++)
-        expected[v] = vertex[v] && is_wanted_vertex(s, (uint32_t)v);
+        expected[f] = sees_face(s, v, i, vertex, f);
+    for (size_t k = 0; vertices && k < n; k++)
+        expected[k] = vertex[k] && is_wanted_vertex(s, (uint32_t)k);
     free(vertex);
 }
 
-/* Obstacles, whose columns come last, are no targets. */
-static void check_engines(const scene *s, bool vertices) {
-    size_t columns = vertices ? s->model.vertex_count : s->model.face_count;
+/* Obstacles, whose columns come last, are no targets. Returns how much was seen. */
+static size_t check_engines(const scene *s, view *v, bool vertices) {
+    size_t columns = vertices ? s->model.vertex_count : s->model.face_count, seen = 0;
     bool *expected = malloc(POINTS * columns * sizeof *expected);
     assert_non_null(expected);
+    starg_visibility_options *options = &v->options;
+    options->target = vertices ? STARG_TARGET_VERTICES : STARG_TARGET_FACES;
     for (size_t i = 0; i < s->point_count; i++)
-        expect(s, s->points + 3 * i, vertices, expected + i * columns);
+        expect(s, v, i, vertices, expected + i * columns);
     for (int engine = 0; engine < 5; engine++) {
-        starg_visibility_options options;
         starg_bits *bits = NULL;
-        starg_visibility_options_default(&options);
-        options.engine = (starg_visibility_engine)engine;
-        options.target = vertices ? STARG_TARGET_VERTICES : STARG_TARGET_FACES;
+        options->engine = (starg_visibility_engine)engine;
         test_ok(s->context,
-                starg_visibility(s->context, s->solid, s->points, s->point_count, &options, &bits));
+                starg_visibility(s->context, s->solid, s->points, s->point_count, options, &bits));
         for (size_t i = 0; i < s->point_count; i++)
             for (size_t j = 0; j < starg_bits_columns(bits); j++) {
                 bool right = j < columns && expected[i * columns + j];
+                seen += right;
                 if (starg_bits_test(bits, i, j) != right)
                     print_error("engine %d, point %zu, column %zu\n", engine, i, j);
                 assert_int_equal(starg_bits_test(bits, i, j), right);
@@ -263,6 +345,7 @@ static void check_engines(const scene *s, bool vertices) {
         starg_bits_free(bits);
     }
     free(expected);
+    return seen;
 }
 
 /* What a point sees is seen from every box that holds it. */
@@ -289,71 +372,120 @@ static void check_boxes(const scene *s, uint64_t seed) {
     starg_bits_free(box);
 }
 
+/* A sample, or twenty times as many where all are wanted. */
+static uint64_t scenes_of(uint64_t few) {
+    return test_rounds(few, 100 * few);
+}
+
 static void test_random_scenes(void **state) {
     (void)state;
-    size_t seen = 0;
-    for (uint64_t seed = 0; seed < 24; seed++) {
+    size_t points = 0;
+    for (uint64_t seed = 0; seed < scenes_of(24); seed++) {
         scene s;
+        view all = {0};
+        starg_visibility_options_default(&all.options);
         make(&s, seed);
         pick_points(&s, seed);
-        check_engines(&s, false);
-        check_engines(&s, true);
+        check_engines(&s, &all, false);
+        check_engines(&s, &all, true);
         check_boxes(&s, seed);
-        seen += s.point_count;
+        points += s.point_count;
         end(&s);
     }
-    assert_true(seen > 60);
+    assert_true(points > 60);
+}
+
+static void test_random_sensors(void **state) {
+    (void)state;
+    size_t seen = 0;
+    for (uint64_t seed = 100; seed < 100 + scenes_of(40); seed++) {
+        scene s;
+        view v;
+        make(&s, seed);
+        pick_points(&s, seed);
+        make_view(&s, seed, &v);
+        seen += check_engines(&s, &v, false);
+        if (v.options.incidence == 90)
+            seen += check_engines(&s, &v, true);
+        end(&s);
+    }
+    assert_true(seen > 500);
 }
 
 /* ---- guards ---- */
 
+static starg_status guard_scene(const scene *s, const view *v, bool ilp, starg_guards **out) {
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.candidate_count = 200;
+    options.method = ilp ? STARG_GUARD_ILP : STARG_GUARD_PILP;
+    options.visibility = v->options;
+    options.visibility.directions = options.visibility.ups = NULL;
+    return starg_guard(s->context, s->solid, &options, out);
+}
+
+/* What is said to be seen by no guard is seen by none. */
+static void check_uncovered(scene *s, const view *v, const starg_guards *guards) {
+    bool *seen = malloc(s->model.face_count * sizeof *seen);
+    assert_non_null(seen);
+    for (size_t g = 0; g < guards->count; g++) {
+        view own = *v;
+        memcpy(s->points, guards->positions + 3 * g, 3 * sizeof *s->points);
+        own.options.directions = guards->directions != NULL ? guards->directions + 3 * g : NULL;
+        own.options.ups = guards->ups != NULL ? guards->ups + 3 * g : NULL;
+        for (int k = 0; guards->directions != NULL && k < 3; k++)
+            own.directions[k] = own.options.directions[k];
+        assert_true(is_free(s, s->points));
+        expect(s, &own, 0, false, seen);
+        for (size_t i = 0; i < guards->uncovered_count; i++)
+            assert_false(seen[guards->uncovered[i]]);
+    }
+    free(seen);
+}
+
+static void check_verdict(const scene *s, uint64_t seed, const starg_guards *guards) {
+    starg_verdict *verdict = NULL;
+    const starg_guards_evidence evidence = {.obstacles = (const starg_mesh *const *)s->others,
+                                            .obstacle_count = s->count};
+    test_ok(s->context, starg_verify_guards_with(s->context, s->mesh, &evidence, guards, &verdict));
+    for (size_t i = 0; i < verdict->count; i++)
+        if (!verdict->claims[i].holds)
+            print_error("seed %d: %s\n", (int)seed, verdict->claims[i].text);
+    assert_true(verdict->passed);
+    starg_verdict_free(s->context, verdict);
+}
+
 static void test_guards_of_scenes(void **state) {
     (void)state;
-    size_t checked = 0;
-    for (uint64_t seed = 0; seed < 20; seed++) {
+    size_t checked = 0, aimed = 0;
+    for (uint64_t seed = 0; seed < scenes_of(24); seed++) {
         scene s;
-        starg_guard_options options;
+        view v = {0};
         starg_guards *guards = NULL;
-        starg_verdict *verdict = NULL;
         make(&s, seed);
-        starg_guard_options_default(&options);
-        options.candidate_count = 200;
-        options.method = seed % 2 ? STARG_GUARD_ILP : STARG_GUARD_PILP;
-        starg_status status = starg_guard(s.context, s.solid, &options, &guards);
-        if (status == STARG_ERROR_MESH) { /* crates fill the room */
+        starg_visibility_options_default(&v.options);
+        if (seed % 2 == 1)
+            make_view(&s, seed, &v);
+        starg_status status = guard_scene(&s, &v, seed % 4 < 2, &guards);
+        if (status == STARG_ERROR_MESH) { /* crates fill the room, or nobody sees anything */
             end(&s);
             continue;
         }
         test_ok(s.context, status);
-        for (size_t g = 0; g < guards->count; g++)
-            assert_true(is_free(&s, guards->positions + 3 * g));
-        bool *seen = malloc(s.model.face_count * sizeof *seen);
-        assert_non_null(seen);
-        for (size_t g = 0; g < guards->count; g++) {
-            expect(&s, guards->positions + 3 * g, false, seen);
-            for (size_t i = 0; i < guards->uncovered_count; i++)
-                assert_false(seen[guards->uncovered[i]]);
-        }
-        free(seen);
-        const starg_guards_evidence evidence = {.obstacles = (const starg_mesh *const *)s.others,
-                                                .obstacle_count = s.count};
-        test_ok(s.context,
-                starg_verify_guards_with(s.context, s.mesh, &evidence, guards, &verdict));
-        for (size_t i = 0; i < verdict->count; i++)
-            if (!verdict->claims[i].holds)
-                print_error("seed %d: %s\n", (int)seed, verdict->claims[i].text);
-        assert_true(verdict->passed);
-        starg_verdict_free(s.context, verdict);
+        check_uncovered(&s, &v, guards);
+        check_verdict(&s, seed, guards);
         checked += guards->count;
+        aimed += guards->directions != NULL ? guards->count : 0;
         starg_guards_free(s.context, guards);
         end(&s);
     }
-    assert_true(checked > 15);
+    assert_true(checked > 15 && aimed > 3);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_random_scenes),
+        cmocka_unit_test(test_random_sensors),
         cmocka_unit_test(test_guards_of_scenes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

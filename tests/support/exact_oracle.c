@@ -186,20 +186,15 @@ int oracle_compare_distance(const double p[3], const double q[3], double radius)
     return (sign > 0) - (sign < 0);
 }
 
-int oracle_compare_cone(const double p[3], const double d[3], double cosine, const double q[3]) {
-    const double origin[3] = {0, 0, 0};
-    vector v, axis;
+/* Sign of u . v - cosine |u| |v|: x |x| grows with x, and so compares two numbers by squares that
+ * keep their signs. */
+static int compare_angle(const vector *u, const vector *v, double cosine) {
     mpq_t dot, far, length, c;
-    vector_init(&v);
-    vector_init(&axis);
     mpq_inits(dot, far, length, c, (mpq_ptr)NULL);
-    vector_difference(&v, q, p);
-    vector_difference(&axis, d, origin);
-    vector_dot(dot, &v, &axis);
-    vector_dot(far, &v, &v);
-    vector_dot(length, &axis, &axis);
+    vector_dot(dot, u, v);
+    vector_dot(far, u, u);
+    vector_dot(length, v, v);
     mpq_set_d(c, cosine);
-    /* x |x| grows with x, and so compares two numbers by squares that keep their signs */
     mpq_mul(far, far, length);
     mpq_mul(far, far, c);
     mpq_abs(c, c);
@@ -208,9 +203,73 @@ int oracle_compare_cone(const double p[3], const double d[3], double cosine, con
     mpq_mul(dot, dot, length);
     int sign = mpq_cmp(dot, far);
     mpq_clears(dot, far, length, c, (mpq_ptr)NULL);
+    return (sign > 0) - (sign < 0);
+}
+
+static const double ORIGIN[3] = {0, 0, 0};
+
+int oracle_compare_cone(const double p[3], const double d[3], double cosine, const double q[3]) {
+    vector v, axis;
+    vector_init(&v);
+    vector_init(&axis);
+    vector_difference(&v, q, p);
+    vector_difference(&axis, d, ORIGIN);
+    int sign = compare_angle(&v, &axis, cosine);
     vector_clear(&axis);
     vector_clear(&v);
-    return (sign > 0) - (sign < 0);
+    return sign;
+}
+
+int oracle_compare_plane(const double p[3], const double n[3], const double q[3]) {
+    return oracle_compare_cone(p, n, 0, q);
+}
+
+int oracle_compare_incidence(const double a[3], const double b[3], const double c[3],
+                             const double p[3], const double q[3], double cosine) {
+    vector u, v, normal, line;
+    if (oracle_orient3d(a, b, c, p) <= 0)
+        return -1;
+    vector_init(&u);
+    vector_init(&v);
+    vector_init(&normal);
+    vector_init(&line);
+    vector_difference(&u, c, a);
+    vector_difference(&v, b, a);
+    vector_cross(&normal, &u, &v);
+    vector_difference(&line, p, q);
+    int sign = compare_angle(&normal, &line, cosine);
+    vector_clear(&u);
+    vector_clear(&v);
+    vector_clear(&normal);
+    vector_clear(&line);
+    return sign;
+}
+
+/* The sum of the lines from the corners to p: three times that from the centroid. */
+static void from_centroid(vector *out, const double *const t[3], const double p[3]) {
+    vector line;
+    vector_init(&line);
+    vector_difference(out, p, t[0]);
+    for (int i = 1; i < 3; i++) {
+        vector_difference(&line, p, t[i]);
+        for (int k = 0; k < 3; k++)
+            mpq_add(out->x[k], out->x[k], line.x[k]);
+    }
+    vector_clear(&line);
+}
+
+int oracle_compare_parallax(const double a[3], const double b[3], const double c[3],
+                            const double p[3], const double q[3], double cosine) {
+    vector u, v;
+    const double *const t[3] = {a, b, c};
+    vector_init(&u);
+    vector_init(&v);
+    from_centroid(&u, t, p);
+    from_centroid(&v, t, q);
+    int sign = compare_angle(&u, &v, cosine);
+    vector_clear(&u);
+    vector_clear(&v);
+    return sign;
 }
 
 /* ---- linear systems ---- */

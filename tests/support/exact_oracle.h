@@ -16,6 +16,11 @@ int oracle_insphere(const double a[3], const double b[3], const double c[3], con
                     const double e[3]);
 int oracle_compare_distance(const double p[3], const double q[3], double radius);
 int oracle_compare_cone(const double p[3], const double d[3], double cosine, const double q[3]);
+int oracle_compare_plane(const double p[3], const double n[3], const double q[3]);
+int oracle_compare_incidence(const double a[3], const double b[3], const double c[3],
+                             const double p[3], const double q[3], double cosine);
+int oracle_compare_parallax(const double a[3], const double b[3], const double c[3],
+                            const double p[3], const double q[3], double cosine);
 bool oracle_collinear(const double a[3], const double b[3], const double c[3]);
 
 /* The contracts of geometry/intersect.h. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Every predicate against rational arithmetic, on families of input that break careless ones. */
 #include <math.h>
+#include <string.h>
 
 #include "adversarial.h"
 #include "exact_oracle.h"
@@ -20,8 +21,8 @@ static void refute(const char *what, point_family family, points x, int expected
 }
 
 /* Calls `check` with many inputs of every family. */
-static void for_all(void check(point_family family, points x)) {
-    size_t rounds = test_rounds(ROUNDS, LONG_ROUNDS);
+static void for_share(size_t share, void check(point_family family, points x)) {
+    size_t rounds = test_rounds(ROUNDS / share, LONG_ROUNDS / share);
     for (int family = 0; family < POINT_FAMILIES; family++)
         for (uint64_t round = 0; round < rounds; round++) {
             starg_rng rng = starg_rng_make(11, (uint64_t)family, round);
@@ -29,6 +30,10 @@ static void for_all(void check(point_family family, points x)) {
             adversarial_points(&rng, (point_family)family, x, POINTS);
             check((point_family)family, x);
         }
+}
+
+static void for_all(void check(point_family family, points x)) {
+    for_share(1, check);
 }
 
 static void check_orient3d(point_family family, points x) {
@@ -134,6 +139,93 @@ static void test_compare_cone(void **state) {
     for_all(check_cone);
 }
 
+static void check_plane(point_family family, points x) {
+    const verify_view view = {.range = INFINITY,
+                              .framed = true,
+                              .planes = {{x[2][0], x[2][1], x[2][2]},
+                                         {x[2][0], x[2][1], x[2][2]},
+                                         {x[2][0], x[2][1], x[2][2]},
+                                         {x[2][0], x[2][1], x[2][2]}}};
+    int expected = oracle_compare_plane(x[0], x[2], x[1]);
+    int found = compare_plane(x[0], x[2], x[1]);
+    if (found != expected)
+        refute("compare_plane", family, x, expected, found);
+    if (verify_in_view(&view, x[0], x[1]) != (expected >= 0))
+        refute("verify_in_view", family, x, expected, !(expected >= 0));
+}
+
+static void test_compare_plane(void **state) {
+    (void)state;
+    for_all(check_plane);
+}
+
+/* The cosine of the angle that two vectors make, about, and others. */
+static void list_cosines(const double u[3], const double v[3], double cosines[4]) {
+    double first = hypot(hypot(u[0], u[1]), u[2]), second = hypot(hypot(v[0], v[1]), v[2]), dot = 0;
+    for (int k = 0; k < 3 && first > 0 && second > 0; k++)
+        dot += u[k] / first * (v[k] / second);
+    double edge = dot >= -1 && dot <= 1 ? dot : 1;
+    const double all[4] = {edge, nextafter(edge, -1), nextafter(edge, 1), 0.5};
+    memcpy(cosines, all, sizeof all);
+}
+
+static void check_incidence(point_family family, points x) {
+    const double *const t[3] = {x[0], x[1], x[2]};
+    double u[3], v[3], n[3], line[3], cosines[4];
+    for (int k = 0; k < 3; k++) {
+        u[k] = x[2][k] - x[0][k];
+        v[k] = x[1][k] - x[0][k];
+        line[k] = x[3][k] - x[1][k];
+    }
+    for (int k = 0; k < 3; k++)
+        n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    list_cosines(n, line, cosines);
+    for (size_t i = 0; i < 4; i++) {
+        bool all = true;
+        if (!(cosines[i] >= 0))
+            continue;
+        for (int corner = 0; corner < 3; corner++) {
+            int expected = oracle_compare_incidence(x[0], x[1], x[2], x[3], x[corner], cosines[i]);
+            int found = compare_incidence(x[0], x[1], x[2], x[3], x[corner], cosines[i]);
+            all = all && expected >= 0;
+            if (found != expected)
+                refute("compare_incidence", family, x, expected, found);
+        }
+        const verify_view view = {.steepest = cosines[i]};
+        bool inner = oracle_orient3d(x[0], x[1], x[2], x[3]) > 0;
+        if (inner && cosines[i] > 0 && verify_faces(&view, x[3], t) != all)
+            refute("verify_faces", family, x, all, !all);
+    }
+}
+
+static void test_compare_incidence(void **state) {
+    (void)state;
+    for_share(12, check_incidence);
+}
+
+static void check_parallax(point_family family, points x) {
+    const double *const t[3] = {x[0], x[1], x[2]};
+    double u[3], v[3], cosines[4];
+    for (int k = 0; k < 3; k++) {
+        u[k] = x[3][k] - x[0][k] + (x[3][k] - x[1][k]) + (x[3][k] - x[2][k]);
+        v[k] = x[4][k] - x[0][k] + (x[4][k] - x[1][k]) + (x[4][k] - x[2][k]);
+    }
+    list_cosines(u, v, cosines);
+    for (size_t i = 0; i < 4; i++) {
+        int expected = oracle_compare_parallax(x[0], x[1], x[2], x[3], x[4], cosines[i]);
+        int found = compare_parallax(x[0], x[1], x[2], x[3], x[4], cosines[i]);
+        if (found != expected)
+            refute("compare_parallax", family, x, expected, found);
+        if (verify_apart(t, x[3], x[4], cosines[i]) != (expected <= 0))
+            refute("verify_apart", family, x, expected <= 0, !(expected <= 0));
+    }
+}
+
+static void test_compare_parallax(void **state) {
+    (void)state;
+    for_share(12, check_parallax);
+}
+
 static void check_collinear(point_family family, points x) {
     int expected = oracle_collinear(x[0], x[1], x[2]);
     int found = collinear(x[0], x[1], x[2]);
@@ -184,10 +276,17 @@ static void test_families_reach_every_sign(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orient3d),     cmocka_unit_test(test_orient2d),
-        cmocka_unit_test(test_insphere),     cmocka_unit_test(test_compare_distance),
-        cmocka_unit_test(test_compare_cone), cmocka_unit_test(test_collinear),
-        cmocka_unit_test(test_meaning),      cmocka_unit_test(test_families_reach_every_sign),
+        cmocka_unit_test(test_orient3d),
+        cmocka_unit_test(test_orient2d),
+        cmocka_unit_test(test_insphere),
+        cmocka_unit_test(test_compare_distance),
+        cmocka_unit_test(test_compare_cone),
+        cmocka_unit_test(test_compare_plane),
+        cmocka_unit_test(test_compare_incidence),
+        cmocka_unit_test(test_compare_parallax),
+        cmocka_unit_test(test_collinear),
+        cmocka_unit_test(test_meaning),
+        cmocka_unit_test(test_families_reach_every_sign),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
