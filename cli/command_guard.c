@@ -32,11 +32,12 @@ typedef struct values {
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("GUARDS.json", "Guards (docs/formats.md); '-' writes to standard output."),
-    CLI_INPUT_OPTION("candidates", candidates, "skeleton|medial|interior|FILE",
-                     "Candidate positions: on the curve skeleton (default), on the medial axis, on "
-                     "an interior lattice, or from a file: text with three numbers per line, or "
-                     "six with the direction in which a camera looks (--cone, --fov), or nine with what is up "
-                     "for it, a skeleton of 'starguard skeleton', or another GUARDS.json."),
+    CLI_INPUT_OPTION(
+        "candidates", candidates, "skeleton|medial|interior|FILE",
+        "Candidate positions: on the curve skeleton (default), on the medial axis, on "
+        "an interior lattice, or from a file: text with three numbers per line, or "
+        "six with the direction in which a camera looks (--cone, --fov), or nine with what is up "
+        "for it, a skeleton of 'starguard skeleton', or another GUARDS.json."),
     CLI_TEXT_OPTION(
         "picture", picture, "FILE.png",
         "Picture of the translucent model with its guards; uncovered faces are dark red."),
@@ -132,6 +133,9 @@ static void say_guards(cli_session *session, const starg_guards *g) {
     if (g->options.visibility.target == STARG_TARGET_VERTICES)
         cli_say(session, "              %g %% of the vertices\n",
                 cli_percent(g->coverage_vertices));
+    if (g->options.baseline > 0)
+        cli_say(session, "baseline      %s seen by two guards %g degrees apart\n",
+                cli_count_of(g->baseline_faces, "face", "faces").text, g->options.baseline);
     cli_say(session, "uncovered     %s", cli_count_of(g->uncovered_count, "face", "faces").text);
     size_t wanted = g->target_count > 0 ? g->target_count : g->face_count;
     size_t hidden = wanted - g->coverable_faces;

@@ -15,6 +15,7 @@
 #include <math.h>
 
 #include "core/fields.h"
+#include "guard/baseline.h"
 #include "guard/certificate.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
@@ -44,6 +45,13 @@ static starg_status check_options(starg_context *context, const starg_guard_opti
     STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), o));
     if (o->candidates != STARG_CANDIDATES_GIVEN)
         STARG_TRY(candidates_check(context, o->candidates, o->candidate_count, o->clearance));
+    if (o->baseline > 0 && (o->redundancy < 2 || wants_part(o)))
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "a baseline is one of two guards or more, and of all that can be seen; "
+                            "ask for a redundancy of 2, and for no part");
+    else if (o->baseline > 0 && o->visibility.target == STARG_TARGET_VERTICES)
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "a baseline is as seen from a face; the targets are vertices");
 done:
     return status;
 }
@@ -367,6 +375,7 @@ static starg_status guard_solid(starg_context *context, const starg_solid *solid
     STARG_TRY(check_options(context, &used));
     STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
     STARG_TRY(find_guards(&problem, &outcome));
+    STARG_TRY(baseline_guards(&problem, &outcome.pool, &outcome.selection));
     STARG_TRY(certify_one(&problem, &outcome));
     STARG_TRY(report_guards(&problem, &outcome, out));
     warn_of_shells(&problem, *out);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The result: what a set of guards sees, counted anew from its positions. */
 #include "geometry/vec3.h"
+#include "guard/baseline.h"
 #include "guard/stages.h"
 
 static const char STAGE[] = "guard";
@@ -60,6 +61,23 @@ done:
     return status;
 }
 
+/* Faces that two guards see that are the baseline apart. */
+static size_t count_paired(const guard_problem *problem, const starg_bits *seen,
+                           const starg_guards *result) {
+    double cosine = starg_cone_cosine(2 * problem->options->baseline);
+    size_t paired = 0;
+    for (size_t f = 0; problem->options->baseline > 0 && f < seen->columns; f++) {
+        bool found = false;
+        for (size_t i = 0; i < result->count && !found; i++)
+            for (size_t j = i + 1; starg_bits_test(seen, i, f) && j < result->count && !found; j++)
+                found = starg_bits_test(seen, j, f) &&
+                        baseline_holds(problem->solid->mesh, f, cosine, result->positions + 3 * i,
+                                       result->positions + 3 * j);
+        paired += found;
+    }
+    return paired;
+}
+
 static starg_status measure_faces(const guard_problem *problem, starg_guards *result) {
     starg_status status = STARG_OK;
     const starg_visibility_options options =
@@ -74,6 +92,7 @@ static starg_status measure_faces(const guard_problem *problem, starg_guards *re
     STARG_TRY(measure_curve(problem, seen, joined, result));
     STARG_TRY(list_missing(problem, joined, STARG_TARGET_FACES, NULL, &result->uncovered,
                            &result->uncovered_count));
+    result->baseline_faces = count_paired(problem, seen, result);
     result->coverage_faces = result->count > 0 ? result->curve_faces[result->count - 1] : 0;
     result->coverage_area = result->count > 0 ? result->curve_area[result->count - 1] : 0;
 done:

@@ -66,6 +66,9 @@ starg_status verify_find_coverable(const verify_facts *known, size_t enough,
 /* How many guards of the result, chosen among them, are as good as all (verify/needed.c)? */
 starg_status verify_find_needed(const verify_facts *known, size_t *needed);
 
+/* How many faces do two guards see that are the baseline apart (verify/baseline.c)? */
+size_t verify_count_paired(const verify_facts *known);
+
 /* Points that are drawn for that. */
 enum { VERIFY_PLACES = 12 };
 

@@ -567,6 +567,19 @@ static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts 
     return STARG_OK;
 }
 
+static void claim_baseline(starg_verdict *verdict, const verify_facts *known) {
+    const starg_guards *guards = known->guards;
+    if (!(guards->options.baseline > 0))
+        return;
+    size_t found = verify_count_paired(known);
+    verify_claim(verdict, guards->baseline_faces == found,
+                 "two guards that are %g degrees apart see %zu faces (found: %zu)",
+                 guards->options.baseline, guards->baseline_faces, found);
+    if (found < known->wanted_faces)
+        verify_leave(verdict, "that no two candidates so far apart see the other %zu faces",
+                     known->wanted_faces - found);
+}
+
 /* The least area that a number of faces that no guard sees can have: that number times the area of
  * the smallest of them. */
 static double least_unseen_area(const verify_facts *known, size_t count) {
@@ -728,6 +741,7 @@ starg_status starg_verify_guards_with(starg_context *context, const starg_mesh *
     STARG_TRY(claim_coverable(verdict, &known));
     claim_goal(verdict, &known);
     STARG_TRY(claim_redundancy(verdict, &known));
+    claim_baseline(verdict, &known);
     STARG_TRY(claim_numbers(verdict, &known, evidence->certificate));
     *out = verdict;
     verdict = NULL;

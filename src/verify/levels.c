@@ -2,7 +2,7 @@
 /* Levels of detail against one another, the model and the guards. Their meshes are not in the file,
  * so that what their guards see of them cannot be checked. Their guards are candidates of the
  * model, and so inside of it. A guard keeps the level that first asked for it, as long as all that
- * follow choose it; refinement may add guards of the last level. */
+ * follow choose it; refinement and baselines may add guards of the last level. */
 #include "verify/facts.h"
 
 static bool is_among(const double p[3], const starg_guard_level *level) {
@@ -29,9 +29,9 @@ static bool is_named(const starg_guards *guards, size_t guard) {
     int level = guards->levels[guard];
     if (level < 0 || (size_t)level >= guards->level_count)
         return false;
+    bool may_add = guards->options.refine || guards->options.baseline > 0;
     bool last = (size_t)level + 1 == guards->level_count;
-    for (size_t i = (size_t)level; i < guards->level_count && !(last && guards->options.refine);
-         i++)
+    for (size_t i = (size_t)level; i < guards->level_count && !(last && may_add); i++)
         if (!is_among(guards->positions + 3 * guard, &guards->level_list[i]))
             return false;
     return true;
