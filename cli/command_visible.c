@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard visible: what do points inside a solid, or boxes in it, see? */
 #include <stdlib.h>
+#include <string.h>
 
 #include "commands.h"
 #include "extensions.h"
@@ -8,11 +9,14 @@
 #include "numbers.h"
 #include "report.h"
 #include "scene.h"
+#include "starguard/guard.h"
 #include "starguard/picture.h"
 #include "starguard/visibility.h"
 
 typedef struct values {
     starg_places from, boxes;
+    bool unseen;
+    uint64_t work;
     starg_visibility_options view;
     const char *output;
     cli_scene scene;
@@ -28,7 +32,14 @@ static const cli_option options[] = {
         "FILE.ply",
         "Model with each face in the colour of the first point or box that sees it; unseen faces "
         "are grey. With --target vertices, a face counts if one point sees all its vertices."),
+    {CLI_OPTION("unseen", STARG_FIELD_FLAG, unseen, NULL,
+                "Faces that no point of the free space sees, with proof, instead of what points "
+                "see. --from, if given, says where the free space is reached from.")},
+    {CLI_OPTION("work", STARG_FIELD_COUNT, work, "N",
+                "--unseen: budget, in tests of a vertex against a box (about a microsecond each)."),
+     .most = UINT64_MAX >> 1, .initial = 30000000},
     CLI_SCENE_OPTIONS,
+    CLI_LIMIT_OPTIONS,
 };
 
 /* Everything about one call. */
@@ -43,7 +54,7 @@ typedef struct look {
 /* Exactly 1 when all is seen, never more. */
 static double area_seen(const look *l, size_t row) {
     double seen = 0, hidden = 0;
-    for (size_t face = 0; face < starg_bits_columns(l->seen); face++)
+    for (size_t face = 0; face < starg_space_model_faces(l->solid); face++)
         *(starg_bits_test(l->seen, row, face) ? &seen : &hidden) += l->fractions[face];
     return seen / (seen + hidden);
 }
@@ -135,8 +146,81 @@ static starg_status write_seen(cli_session *session, const look *l) {
     return status;
 }
 
-static starg_status prepare(cli_session *session, void *data) {
-    const values *v = data;
+/* ---- what nobody sees ---- */
+
+static const uint8_t UNSEEN[3] = {139, 0, 0}, UNDECIDED[3] = {230, 159, 0};
+
+static const struct {
+    starg_face_state state;
+    const char *key, *name;
+} states[] = {{STARG_FACE_SEEN, "seen", NULL},
+              {STARG_FACE_UNSEEN, "unseen", "that no point of the free space sees"},
+              {STARG_FACE_UNDECIDED, "undecided", "of which neither is known"}};
+
+static void tell_states(cli_session *session, const starg_solid *solid, const uint8_t *state,
+                        const double *fractions) {
+    for (size_t i = 0; i < sizeof states / sizeof *states; i++) {
+        json_t *faces = session->report != NULL ? json_array() : NULL;
+        size_t count = 0;
+        double area = 0;
+        for (size_t f = 0; f < starg_space_model_faces(solid); f++) {
+            if (state[f] != states[i].state)
+                continue;
+            count++;
+            area += fractions[f];
+            if (faces != NULL && states[i].name != NULL)
+                cli_append(session, faces, json_integer((json_int_t)f));
+        }
+        cli_say(session, "%-13s %s, %.2f %% of the area%s%s\n", states[i].key,
+                cli_count_of(count, "face", "faces").text, cli_percent(area),
+                states[i].name != NULL ? ", " : "", states[i].name != NULL ? states[i].name : "");
+        if (faces != NULL && states[i].name != NULL)
+            cli_put(session, session->report, states[i].key, faces);
+        else if (faces != NULL) {
+            json_decref(faces);
+            cli_put(session, session->report, states[i].key, json_integer((json_int_t)count));
+        }
+    }
+}
+
+static starg_status write_states(cli_session *session, const values *v, const starg_solid *solid,
+                                 const uint8_t *state) {
+    uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
+    if (colors == NULL)
+        return cli_fail_memory(session);
+    for (size_t f = 0; f < starg_space_model_faces(solid); f++)
+        if (state[f] == STARG_FACE_UNSEEN || state[f] == STARG_FACE_UNDECIDED)
+            memcpy(colors + 3 * f, state[f] == STARG_FACE_UNSEEN ? UNSEEN : UNDECIDED, 3);
+    starg_status status =
+        cli_mesh_write(session, starg_solid_mesh(solid), STARG_MESH_PLY_BINARY, colors, v->output);
+    free(colors);
+    return status;
+}
+
+static starg_status run_unseen(cli_session *session, values *v, const double *fractions) {
+    starg_status status = STARG_OK;
+    uint8_t *state = NULL;
+    CLI_TRY(starg_unseen(session->context, session->solid, &v->view, 0, v->work, &state));
+    tell_states(session, session->solid, state, fractions);
+    if (v->output != NULL)
+        CLI_TRY(write_states(session, v, session->solid, state));
+done:
+    starg_unseen_free(session->context, state);
+    return status;
+}
+
+/* ---- the command ---- */
+
+static starg_status check_viewpoints(cli_session *session, const values *v) {
+    if (v->unseen && v->boxes.count > 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--unseen asks about the whole free space; leave out --box, or say where "
+                        "guards may stand by --within");
+    if (v->unseen)
+        return STARG_OK;
+    if (v->scene.cell > 0 || v->scene.standoff.count > 0 || v->scene.within.count > 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--standoff, --within and --cell are about the free space; add --unseen");
     if (v->from.count == 0 && v->boxes.count == 0)
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "no viewpoint; add --from X,Y,Z or --box X0,Y0,Z0,X1,Y1,Z1");
@@ -144,9 +228,19 @@ static starg_status prepare(cli_session *session, void *data) {
         return cli_fail(session, STARG_ERROR_ARGUMENT,
                         "--from and --box exclude each other: visibility from points is exact, "
                         "from boxes conservative");
-    starg_status status = cli_scene_prepare(session, &v->scene);
-    return status != STARG_OK ? status
-                              : cli_announce_with_extension(session, "-o", v->output, ".ply");
+    return STARG_OK;
+}
+
+static starg_status prepare(cli_session *session, void *data) {
+    values *v = data;
+    starg_status status = STARG_OK;
+    CLI_TRY(check_viewpoints(session, v));
+    if (v->unseen) /* lent: freed where it comes from */
+        v->scene.from = v->from;
+    CLI_TRY(cli_scene_prepare(session, &v->scene));
+    CLI_TRY(cli_announce_with_extension(session, "-o", v->output, ".ply"));
+done:
+    return status;
 }
 
 /* Boxes by opposite corners become boxes by lower and upper ones. */
@@ -175,12 +269,16 @@ static starg_status run(cli_session *session, void *data) {
     double *fractions = NULL;
     CLI_TRY(cli_scene_make(session, &v->scene));
     const starg_solid *solid = session->solid;
-    CLI_TRY(see(session, v, &seen));
-    fractions = cli_area_fractions(starg_solid_mesh(solid));
+    fractions = cli_area_fractions(starg_solid_mesh(solid), starg_space_model_faces(solid));
     if (fractions == NULL) {
         status = cli_fail_memory(session);
         goto done;
     }
+    if (v->unseen) {
+        status = run_unseen(session, v, fractions);
+        goto done;
+    }
+    CLI_TRY(see(session, v, &seen));
     look l = {.wanted = v, .solid = solid, .seen = seen, .fractions = fractions};
     CLI_TRY(tell(session, &l));
     if (v->output != NULL)
@@ -193,14 +291,16 @@ done:
 
 const cli_command cli_command_visible = {
     .name = "visible",
-    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1 [-o FILE.ply] [...]",
+    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1|--unseen [-o FILE.ply] [...]",
     .summary = "compute which faces are visible from points or boxes",
     .description =
         "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is "
         "visible if the segment from the point to it meets the boundary nowhere else; a face, if "
         "its three vertices are and the point is on its inner side. A point that is not inside "
         "sees nothing. --json lists the face indices (from 0, in file order). From a box, the "
-        "result is conservative: all that any interior point of the box sees, and possibly more.",
+        "result is conservative: all that any interior point of the box sees, and possibly more. "
+        "--unseen finds the faces that no point of the free space sees, and tells those for which "
+        "that is proven from those for which neither is known.",
     .examples = "# how much of the room is visible from here\n"
                 "starguard visible room.off --from 1,1.7,2\n"
                 "# two points, and a coloured model for a mesh viewer\n"
@@ -208,7 +308,9 @@ const cli_command cli_command_visible = {
                 "# all that is visible from any point of a box\n"
                 "starguard visible room.off --box 0.5,0.5,0.5,1.5,1.5,1.5\n"
                 "# indices of the faces that are entirely visible, within 5 units\n"
-                "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json",
+                "starguard visible room.off --from 1,1.7,2 --faces whole --range 5 --json\n"
+                "# what nobody sees of the room from outside\n"
+                "starguard visible room.off --outside --unseen",
     CLI_OPTIONS(options),
     CLI_OPERANDS(1, 1),
     CLI_LIBRARY(starg_visibility_options_fields, view),

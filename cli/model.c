@@ -207,8 +207,7 @@ static double doubled_area(const double *vertices, const uint32_t *corners, doub
     return sqrt(x * x + y * y + z * z);
 }
 
-double *cli_area_fractions(const starg_mesh *mesh) {
-    size_t count = starg_mesh_face_count(mesh);
+double *cli_area_fractions(const starg_mesh *mesh, size_t count) {
     double *areas = malloc((count + 1) * sizeof *areas);
     double lower[3], upper[3], unit = 0, sum = 0;
     starg_mesh_bounds(mesh, lower, upper);

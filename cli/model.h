@@ -35,7 +35,7 @@ uint8_t *cli_colors_create(const starg_mesh *mesh);
 void cli_colors_by_viewer(uint8_t *colors, const starg_bits *seen);
 
 /* Areas of all faces as fractions of their sum; NULL when memory is out. */
-double *cli_area_fractions(const starg_mesh *mesh);
+double *cli_area_fractions(const starg_mesh *mesh, size_t count);
 
 /* An array of the columns that a row holds. */
 json_t *cli_json_row(cli_session *session, const starg_bits *bits, size_t row);

@@ -44,21 +44,25 @@ extern const char *const cli_orientation_words[];
                          "How much each face matters: a number for each face of the model in a "   \
                          "text file. Its area counts so many times; 0: need not be seen.")
 
-/* Where guards may stand; for `guard` alone. */
-#define CLI_PLACE_OPTIONS                                                                          \
+/* Where guards may stand. */
+#define CLI_LIMIT_OPTIONS                                                                          \
     {CLI_OPTION("standoff", STARG_FIELD_PLACES, scene.standoff, "MIN,MAX",                         \
                 "Guards keep these distances from the model."),                                    \
      .length = 2},                                                                                 \
         {CLI_OPTION("within", STARG_FIELD_PLACES, scene.within, "X0,Y0,Z0,X1,Y1,Z1",               \
                     "Guards stand in this box."),                                                  \
          .length = 6},                                                                             \
-        {CLI_OPTION(                                                                               \
-             "from", STARG_FIELD_PLACES, scene.from, "X,Y,Z",                                      \
-             "Guards stand where one gets from this point through cubes that no face meets; "      \
-             "their size is that of --cell."),                                                     \
-         .length = 3},                                                                             \
         CLI_POSITIVE_OPTION("cell", scene.cell, "D", 1e100, 0, "a hundredth of the diagonal",      \
                             "--from: size of the cubes.")
+
+/* The same for `guard`, which does not look from points. */
+#define CLI_PLACE_OPTIONS                                                                          \
+    CLI_LIMIT_OPTIONS, {                                                                           \
+        CLI_OPTION("from", STARG_FIELD_PLACES, scene.from, "X,Y,Z",                                \
+                   "Guards stand where one gets from this point through cubes that no face "       \
+                   "meets; their size is that of --cell."),                                        \
+            .length = 3                                                                            \
+    }
 
 /* Names the files that it reads. */
 starg_status cli_scene_prepare(cli_session *session, const cli_scene *scene);

@@ -198,6 +198,23 @@ STARG_API starg_status starg_guards_scene(starg_context *context, const starg_me
 STARG_API starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
                                         const starg_guards *guards, starg_bits **out);
 
+/* What is known of a face and the points of the free space. */
+typedef enum starg_face_state {
+    STARG_FACE_SEEN = 0,      /* one of them sees it */
+    STARG_FACE_UNSEEN = 1,    /* proven: none of them does */
+    STARG_FACE_UNDECIDED = 2, /* none was found that does */
+    STARG_FACE_IGNORED = 3    /* it need not be seen */
+} starg_face_state;
+
+/* Which faces no point of the free space sees, at least `clearance` from the boundary: *out has a
+ * starg_face_state for each face of the model; free it with starg_unseen_free. `view` may be NULL for
+ * the defaults; views in one direction and vertices are not asked about. `work` is a budget, in tests
+ * of a vertex against a box (about a microsecond each). Errors: ARGUMENT, MEMORY, CANCELLED, TIME. */
+STARG_API starg_status starg_unseen(starg_context *context, const starg_solid *scene,
+                                    const starg_visibility_options *view, double clearance,
+                                    uint64_t work, uint8_t **out);
+STARG_API void starg_unseen_free(starg_context *context, uint8_t *faces);
+
 STARG_API void starg_guards_free(starg_context *context, starg_guards *guards);
 
 /* Candidate points: count x 3 doubles, each strictly inside and at least `clearance` from the

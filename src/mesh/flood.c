@@ -23,7 +23,7 @@ static const char STAGE[] = "scene";
 
 static const double MOST_CELLS = 0x1p30;
 
-enum { FACES_PER_CLOCK = 1024 };
+enum { FACES_PER_CLOCK = 1024, MOST_ASKED = 4096 };
 
 struct flood_cells {
     starg_context *context;
@@ -217,6 +217,23 @@ void flood_free(flood_cells *f) {
 bool flood_reaches(const flood_cells *f, const double p[3]) {
     size_t at[3];
     return locate(f, p, at) && starg_bit_test(f->bits, cell_at(f, at));
+}
+
+bool flood_meets(const flood_cells *f, const bvh_box *box) {
+    size_t range[3][2], at[3], count = 1;
+    for (int k = 0; k < 3; k++) {
+        if (!find_range(f, k, box->lower[k], box->upper[k], range[k]))
+            return false;
+        count *= range[k][1] - range[k][0] + 1;
+    }
+    if (count > MOST_ASKED)
+        return true;
+    for (at[2] = range[2][0]; at[2] <= range[2][1]; at[2]++)
+        for (at[1] = range[1][0]; at[1] <= range[1][1]; at[1]++)
+            for (at[0] = range[0][0]; at[0] <= range[0][1]; at[0]++)
+                if (starg_bit_test(f->bits, cell_at(f, at)))
+                    return true;
+    return false;
 }
 
 double flood_volume(const flood_cells *f) {

@@ -17,6 +17,9 @@ void flood_free(flood_cells *cells);
 /* Is p in one of them? */
 bool flood_reaches(const flood_cells *cells, const double p[3]);
 
+/* Is a point of the box in one of them, as far as is known? */
+bool flood_meets(const flood_cells *cells, const bvh_box *box);
+
 /* Their volume. */
 double flood_volume(const flood_cells *cells);
 

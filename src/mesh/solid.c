@@ -203,6 +203,7 @@ void starg_solid_free(starg_solid *solid) {
     bvh_free(solid->tree);
     starg_release(context, solid->obstacle_sizes);
     starg_release(context, solid->other_side);
+    starg_release(context, solid->once_twin);
     flood_free(solid->reached);
     starg_release(context, solid->importance);
     starg_release(context, solid->targets[0]);

@@ -25,6 +25,9 @@ struct starg_solid {
     size_t *obstacle_sizes; /* vertices and faces of each, as given */
     uint32_t *other_side;   /* by face: of a triangle that stands twice, front and back, the other
                                one, else TOPOLOGY_NONE; NULL: there are none */
+    size_t once_faces;           /* those before the backs, and their halfedges across edges of two
+                                    of them; NULL: there are no backs */
+    uint32_t *once_twin;
     struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
     double *importance;          /* by face; NULL: 1 each */
     uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */
@@ -50,11 +53,16 @@ void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row);
 /* A box that holds all places where guards may stand. */
 void solid_reach(const starg_solid *solid, bvh_box *out);
 
+/* Is it certain that no place of a box is at a distance, and in a part of the free space, that guards
+ * are bound to? */
+bool solid_bars(const starg_solid *solid, const bvh_box *box);
+
 /* A box that holds them and the mesh. */
 void solid_extent(const starg_solid *solid, bvh_box *out);
 
-/* The halfedge on the other side of one, by the topology of the mesh; where more than two faces may
- * meet, that of the triangle's other side. */
+/* The halfedge on the other side of one, by the topology of the mesh. Sheets go on over edges of two
+ * triangles, each side on its own; at their borders, and where more meet, it is that of the triangle's
+ * other side. So every halfedge has one that runs back. */
 uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t halfedge);
 
 /* Logs what is wrong with the surface of a solid. It names faces of the mesh that was given: for

@@ -19,6 +19,7 @@
 
 #include "core/bits.h"
 #include "core/memory.h"
+#include "geometry/vec3.h"
 #include "mesh/examine.h"
 #include "mesh/flood.h"
 #include "mesh/solid.h"
@@ -130,6 +131,32 @@ static starg_status push_sheet(parts *p, const starg_mesh *mesh, bool reversed) 
     }
 done:
     starg_release(p->context, first);
+    return status;
+}
+
+/* The halfedge across an edge of two faces that run along it in opposite ways, by halfedge; else
+ * TOPOLOGY_NONE. Of faces that stand once, before their backs follow: the same of the backs is then
+ * its mirror image. NULL: there are no sheets. */
+static starg_status pair_sheets(const parts *p, uint32_t **twin) {
+    starg_status status = STARG_OK;
+    starg_mesh *mesh = NULL;
+    mesh_topology *topology = NULL;
+    const uint32_t *corner = p->faces.data;
+    *twin = NULL;
+    if (p->sheets.count == 0)
+        return STARG_OK;
+    STARG_TRY(starg_mesh_create(p->context, p->vertices.data, p->vertices.count / 3, corner,
+                                p->faces.count / 3, &mesh));
+    STARG_TRY(topology_create(p->context, mesh, &topology));
+    STARG_NEW(p->context, STAGE, *twin, p->faces.count);
+    for (uint32_t h = 0; h < p->faces.count; h++) {
+        uint32_t t = topology->twin[h];
+        bool back = t != TOPOLOGY_NONE && corner[t] == corner[corner_next(h)];
+        (*twin)[h] = back ? t : TOPOLOGY_NONE;
+    }
+done:
+    topology_free(topology);
+    starg_mesh_free(mesh);
     return status;
 }
 
@@ -349,6 +376,8 @@ starg_status starg_space_create(starg_context *context, const starg_mesh *model,
     scene->space = *o;
     scene->model_vertices = model->vertex_count;
     scene->model_faces = model->face_count;
+    scene->once_faces = p.faces.count / 3;
+    STARG_TRY(pair_sheets(&p, &scene->once_twin));
     STARG_TRY(push_backs(&p, &scene->other_side));
     STARG_TRY(starg_mesh_create(context, p.vertices.data, p.vertices.count / 3, p.faces.data,
                                 p.faces.count / 3, &scene->mesh));
@@ -396,6 +425,30 @@ bool starg_space_admits(const starg_solid *scene, const double p[3]) {
     return starg_solid_contains(scene, p);
 }
 
+/* Half the diagonal and distances come with roundings, for which a millionth is more than enough
+ * unless coordinates are huge beside the box: then it bars nothing. */
+bool solid_bars(const starg_solid *solid, const bvh_box *box) {
+    const starg_space_options *o = &solid->space;
+    double centre[3], largest = 0, reach = 0.5 * vec3_distance(box->lower, box->upper);
+    if (!solid->scene)
+        return false;
+    if (solid->reached != NULL && !flood_meets(solid->reached, box))
+        return true;
+    if (!(o->standoff_least > 0 || o->standoff_most > 0))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
+        largest = fmax(largest, fmax(fabs(box->lower[k]), fabs(box->upper[k])));
+    }
+    double distance =
+        bvh_distance(solid->model_tree != NULL ? solid->model_tree : solid->tree, centre);
+    double room = 1e-6 * (reach + distance);
+    if (largest > 1e6 * (reach + distance))
+        return false;
+    return distance + reach + room < o->standoff_least ||
+           (o->standoff_most > 0 && distance - reach - room > o->standoff_most);
+}
+
 void solid_reach(const starg_solid *solid, bvh_box *out) {
     const starg_space_options *o = &solid->space;
     *out = solid->model_tree != NULL ? solid->model_tree->nodes[0].box : solid->tree->nodes[0].box;
@@ -426,10 +479,19 @@ void solid_extent(const starg_solid *solid, bvh_box *out) {
     }
 }
 
+/* (a, b, c) and (a, c, b): edges 0, 1 and 2 of the one are 2, 1 and 0 of the other. */
+static uint32_t mirror(const starg_solid *solid, uint32_t halfedge) {
+    return 3 * solid->other_side[halfedge / 3] + 2 - halfedge % 3;
+}
+
 uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t halfedge) {
-    uint32_t other = solid->other_side != NULL ? solid->other_side[halfedge / 3] : TOPOLOGY_NONE;
-    /* (a, b, c) and (a, c, b): edges 0, 1 and 2 of the one are 2, 1 and 0 of the other */
-    return other == TOPOLOGY_NONE ? twins[halfedge] : 3 * other + 2 - halfedge % 3;
+    if (solid->other_side == NULL || solid->other_side[halfedge / 3] == TOPOLOGY_NONE)
+        return twins[halfedge];
+    bool back = halfedge / 3 >= solid->once_faces;
+    uint32_t twin = solid->once_twin[back ? mirror(solid, halfedge) : halfedge];
+    if (twin == TOPOLOGY_NONE)
+        return mirror(solid, halfedge);
+    return back ? mirror(solid, twin) : twin;
 }
 
 void solid_finish_row(const starg_solid *solid, bool vertices, uint64_t *row) {

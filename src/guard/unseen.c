@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Faces that nobody sees, wherever in the free space he stands: what a scanner misses, and what a
+ * program that draws need not keep.
+ *
+ * Stages:
+ *   1. Candidates, and points above the faces that these do not see (guard/augment.c): what one of
+ *      them sees is seen.
+ *   2. Of the others, the free space is cut into boxes. What is surely hidden from a box is known
+ *      (visibility/box.h); a part is asked about what the whole leaves open, and a box with nothing
+ *      open needs no parts. From the middle of each part the open faces are looked at as well.
+ *   3. A face that no box leaves open is seen by nobody: the boxes hold all places where guards may
+ *      stand. What some box still leaves open when the work is used up is undecided.
+ * Boxes are cut in the middle of their longest sides, those with most open faces first, in batches:
+ * the result depends on the work alone, not on threads.
+ *
+ * Cost: work is counted in tests of a vertex against a box, as in a search. */
+#include <stdlib.h>
+
+#include "core/fields.h"
+#include "core/parallel.h"
+#include "guard/pool.h"
+#include "guard/proxy.h"
+#include "visibility/box.h"
+#include "visibility/scene.h"
+
+static const char STAGE[] = "unseen";
+
+enum { BATCH = 256, CANDIDATES = 300 };
+
+typedef struct unseen_box {
+    bvh_box box;
+    uint64_t *open; /* bits of the list: what some point of the box may see */
+    uint32_t count; /* of them, when it was last counted */
+} unseen_box;
+
+typedef struct unseen_search {
+    starg_context *context;
+    const starg_solid *solid;
+    starg_visibility_options view;
+    double clearance;
+    visibility_scene *points;
+    box_scene *boxes;
+    uint32_t *rank_of;
+    STARG_ARRAY(uint32_t) list; /* faces that no candidate sees */
+    uint64_t *open;             /* bits of the list: not seen so far */
+    STARG_ARRAY(unseen_box) leaves;
+    unseen_box *parts; /* of a batch: two for each leaf that is cut */
+    uint32_t *cut;     /* the leaves */
+    uint64_t *looks;   /* of each part: what its middle sees */
+    uint64_t *work;    /* of each part */
+    uint64_t spent;
+} unseen_search;
+
+static size_t words_of(const unseen_search *s) {
+    return starg_bit_words(s->list.count);
+}
+
+/* ---- looking from points ---- */
+
+static starg_status look_from_candidates(unseen_search *s, const starg_guard_options *options) {
+    starg_status status = STARG_OK;
+    guard_pool pool = {0};
+    candidate_points points = {0};
+    column_weights weights = {0};
+    const candidate_shape shape = {s->solid, s->solid, s->clearance};
+    STARG_TRY(column_weights_create(s->context, s->solid, STARG_TARGET_FACES, &weights));
+    STARG_TRY(pool_create(s->context, s->solid, options, &pool));
+    STARG_TRY(candidates_find(s->context, &shape, STARG_CANDIDATES_INTERIOR, CANDIDATES, &points));
+    STARG_TRY(pool_add(&pool, &points));
+    STARG_TRY(pool_augment(&pool, &weights));
+    for (uint32_t f = 0; f < starg_space_model_faces(s->solid); f++)
+        if (solid_is_target(s->solid, false, f) && !starg_bit_test(pool.coverable, f))
+            STARG_PUSH(s->context, STAGE, &s->list, f);
+done:
+    pool_free(&pool);
+    candidates_free(s->context, &points);
+    column_weights_free(s->context, &weights);
+    return status;
+}
+
+static void look_from_middle(const unseen_search *s, const unseen_box *part, uint64_t *seen) {
+    double p[3];
+    for (int k = 0; k < 3; k++)
+        p[k] = 0.5 * part->box.lower[k] + 0.5 * part->box.upper[k];
+    if (!candidates_allowed(s->solid, p, s->clearance))
+        return;
+    for (size_t w = 0; w < words_of(s); w++)
+        STARG_FOR_BITS (bit, part->open[w] & s->open[w])
+            if (scene_sees_face(s->points, p, s->rank_of[s->list.data[64 * w + bit]], &s->view))
+                starg_bit_set(seen, 64 * w + bit);
+}
+
+/* ---- looking from boxes ---- */
+
+static uint64_t look_from_box(const unseen_search *s, box_worker *worker, const uint64_t *among,
+                              unseen_box *part) {
+    const box_question question = {.box = part->box,
+                                   .target = STARG_TARGET_FACES,
+                                   .targets = s->list.data,
+                                   .count = s->list.count,
+                                   .range = s->view.range,
+                                   .among = among};
+    uint64_t before = box_worker_tests(worker);
+    if (!solid_bars(s->solid, &part->box))
+        box_look(worker, &question, part->open, NULL);
+    return box_worker_tests(worker) - before + 1;
+}
+
+static starg_status make_worker(starg_context *context, void *shared, void **scratch) {
+    const unseen_search *s = shared;
+    box_worker *worker = NULL;
+    (void)context;
+    starg_status status = box_worker_create(s->boxes, &worker);
+    *scratch = worker;
+    return status;
+}
+
+static void free_worker(starg_context *context, void *scratch) {
+    (void)context;
+    box_worker_free(scratch);
+}
+
+static starg_status look_from_part(starg_context *context, void *shared, void *scratch,
+                                   size_t item) {
+    unseen_search *s = shared;
+    unseen_box *part = &s->parts[item];
+    (void)context;
+    s->work[item] = look_from_box(s, scratch, s->leaves.data[s->cut[item / 2]].open, part);
+    look_from_middle(s, part, s->looks + item * words_of(s));
+    return STARG_OK;
+}
+
+/* ---- cutting ---- */
+
+static int longest_side(const bvh_box *box) {
+    int longest = 0;
+    for (int k = 1; k < 3; k++)
+        if (box->upper[k] - box->lower[k] > box->upper[longest] - box->lower[longest])
+            longest = k;
+    return longest;
+}
+
+/* False: the box is as small as doubles go. */
+static bool halve(const bvh_box *box, bvh_box parts[2]) {
+    int k = longest_side(box);
+    double at = 0.5 * box->lower[k] + 0.5 * box->upper[k];
+    parts[0] = parts[1] = *box;
+    parts[0].upper[k] = parts[1].lower[k] = at;
+    return at > box->lower[k] && at < box->upper[k];
+}
+
+/* How many faces are neither seen nor hidden from the box. */
+static uint32_t count_open(const unseen_search *s, const unseen_box *leaf) {
+    size_t count = 0;
+    for (size_t w = 0; w < words_of(s); w++)
+        count += (size_t)__builtin_popcountll(leaf->open[w] & s->open[w]);
+    return (uint32_t)count;
+}
+
+/* Forgets the leaves that leave nothing open. */
+static void drop_leaves(unseen_search *s) {
+    size_t kept = 0;
+    for (size_t i = 0; i < s->leaves.count; i++) {
+        unseen_box *leaf = &s->leaves.data[i];
+        leaf->count = count_open(s, leaf);
+        if (leaf->count > 0)
+            s->leaves.data[kept++] = *leaf;
+        else
+            starg_release(s->context, leaf->open);
+    }
+    s->leaves.count = kept;
+}
+
+static double volume_of(const bvh_box *box) {
+    return (box->upper[0] - box->lower[0]) * (box->upper[1] - box->lower[1]) *
+           (box->upper[2] - box->lower[2]);
+}
+
+/* Largest first, by faces times volume: what is left undecided are then small boxes. */
+static int by_size(const void *a, const void *b) {
+    const unseen_box *x = a, *y = b;
+    double first = x->count * volume_of(&x->box), second = y->count * volume_of(&y->box);
+    if (first != second)
+        return first > second ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (x->box.lower[k] != y->box.lower[k])
+            return x->box.lower[k] < y->box.lower[k] ? -1 : 1;
+    return 0;
+}
+
+/* The leaves that are cut, and room for their parts. */
+static starg_status choose_cut(unseen_search *s, size_t *count) {
+    starg_status status = STARG_OK;
+    *count = 0;
+    qsort(s->leaves.data, s->leaves.count, sizeof *s->leaves.data, by_size);
+    for (size_t i = 0; i < s->leaves.count && *count < BATCH; i++) {
+        bvh_box halves[2];
+        if (!halve(&s->leaves.data[i].box, halves))
+            continue;
+        for (size_t k = 0; k < 2; k++) {
+            unseen_box *part = &s->parts[2 * *count + k];
+            *part = (unseen_box){.box = halves[k]};
+            STARG_NEW_ZERO(s->context, STAGE, part->open, words_of(s));
+        }
+        s->cut[(*count)++] = (uint32_t)i;
+    }
+done:
+    return status;
+}
+
+/* Parts take the places of what was cut. */
+static starg_status take_parts(unseen_search *s, size_t count) {
+    starg_status status = STARG_OK;
+    for (size_t i = 0; i < 2 * count; i++) {
+        const uint64_t *seen = s->looks + i * words_of(s);
+        s->spent += s->work[i];
+        for (size_t w = 0; w < words_of(s); w++)
+            s->open[w] &= ~seen[w];
+    }
+    for (size_t i = 0; i < 2 * count; i++) {
+        unseen_box *leaf = &s->leaves.data[s->cut[i / 2]];
+        if (i % 2 == 0) {
+            starg_release(s->context, leaf->open);
+            *leaf = s->parts[i];
+        } else
+            STARG_PUSH(s->context, STAGE, &s->leaves, s->parts[i]);
+        s->parts[i].open = NULL;
+    }
+done:
+    return status;
+}
+
+static starg_status cut_batch(unseen_search *s, size_t *count) {
+    starg_status status = STARG_OK;
+    STARG_TRY(choose_cut(s, count));
+    memset(s->looks, 0, 2 * BATCH * words_of(s) * sizeof *s->looks);
+    const starg_parallel_loop loop = {.stage = STAGE,
+                                      .count = 2 * *count,
+                                      .shared = s,
+                                      .item = look_from_part,
+                                      .make_scratch = make_worker,
+                                      .free_scratch = free_worker,
+                                      .silent = true};
+    STARG_TRY(starg_parallel_for(s->context, &loop));
+    STARG_TRY(take_parts(s, *count));
+done:
+    return status;
+}
+
+static starg_status begin_leaves(unseen_search *s) {
+    starg_status status = STARG_OK;
+    unseen_box root = {0};
+    solid_reach(s->solid, &root.box);
+    STARG_NEW_ZERO(s->context, STAGE, s->open, words_of(s));
+    STARG_NEW_ZERO(s->context, STAGE, s->parts, 2 * BATCH);
+    STARG_NEW_ZERO(s->context, STAGE, s->cut, BATCH);
+    STARG_NEW_ZERO(s->context, STAGE, s->work, 2 * BATCH);
+    STARG_NEW_ZERO(s->context, STAGE, s->looks, 2 * BATCH * words_of(s));
+    STARG_NEW_ZERO(s->context, STAGE, root.open, words_of(s));
+    for (size_t i = 0; i < s->list.count; i++) {
+        starg_bit_set(s->open, i);
+        starg_bit_set(root.open, i);
+    }
+    STARG_PUSH(s->context, STAGE, &s->leaves, root);
+    root.open = NULL;
+done:
+    starg_release(s->context, root.open);
+    return status;
+}
+
+static starg_status cut_boxes(unseen_search *s, uint64_t budget) {
+    starg_status status = STARG_OK;
+    size_t count = 1;
+    STARG_TRY(begin_leaves(s));
+    while (s->leaves.count > 0 && count > 0 && s->spent < budget &&
+           !starg_time_is_over(s->context)) {
+        STARG_TRY(starg_check_cancel(s->context, STAGE));
+        STARG_TRY(cut_batch(s, &count));
+        drop_leaves(s);
+    }
+done:
+    return status;
+}
+
+/* ---- the call ---- */
+
+static starg_status begin(unseen_search *s) {
+    starg_status status = STARG_OK;
+    STARG_TRY(scene_create(s->context, s->solid, &s->points));
+    STARG_TRY(box_scene_create(s->context, s->solid, &s->boxes));
+    STARG_NEW(s->context, STAGE, s->rank_of, s->points->face_count);
+    for (size_t rank = 0; rank < s->points->face_count; rank++)
+        s->rank_of[s->points->face_of[rank]] = (uint32_t)rank;
+done:
+    return status;
+}
+
+static void end(unseen_search *s) {
+    starg_context *context = s->context;
+    scene_free(s->points);
+    box_scene_free(s->boxes);
+    for (size_t i = 0; i < s->leaves.count; i++)
+        starg_release(context, s->leaves.data[i].open);
+    for (size_t i = 0; s->parts != NULL && i < 2 * BATCH; i++)
+        starg_release(context, s->parts[i].open);
+    STARG_ARRAY_FREE(context, &s->leaves);
+    STARG_ARRAY_FREE(context, &s->list);
+    starg_release(context, s->rank_of);
+    starg_release(context, s->open);
+    starg_release(context, s->parts);
+    starg_release(context, s->cut);
+    starg_release(context, s->work);
+    starg_release(context, s->looks);
+}
+
+/* Whether a face of the list is left open by some leaf. */
+static starg_status report(const unseen_search *s, uint8_t **out) {
+    starg_status status = STARG_OK;
+    size_t faces = starg_space_model_faces(s->solid);
+    STARG_NEW_ZERO(s->context, STAGE, *out, faces);
+    for (size_t f = 0; f < faces; f++)
+        (*out)[f] = solid_is_target(s->solid, false, f) ? STARG_FACE_SEEN : STARG_FACE_IGNORED;
+    for (size_t i = 0; i < s->list.count; i++) {
+        bool open = false;
+        for (size_t k = 0; k < s->leaves.count && !open; k++)
+            open = starg_bit_test(s->leaves.data[k].open, i);
+        if (starg_bit_test(s->open, i))
+            (*out)[s->list.data[i]] = open ? STARG_FACE_UNDECIDED : STARG_FACE_UNSEEN;
+    }
+done:
+    return status;
+}
+
+starg_status starg_unseen(starg_context *context, const starg_solid *scene,
+                          const starg_visibility_options *view, double clearance, uint64_t work,
+                          uint8_t **out) {
+    starg_status status = STARG_OK;
+    starg_guard_options options;
+    *out = NULL;
+    starg_guard_options_default(&options);
+    if (view != NULL)
+        options.visibility = *view;
+    options.visibility.target = STARG_TARGET_FACES;
+    options.clearance = clearance;
+    unseen_search s = {
+        .context = context, .solid = scene, .view = options.visibility, .clearance = clearance};
+    STARG_TRY(fields_check(context, STAGE, starg_guard_options_fields(), &options));
+    if (sensor_is_directed(&options.visibility)) {
+        status = starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                            "what nobody sees is hidden in all directions; leave out cone and "
+                            "field of view");
+        goto done;
+    }
+    STARG_TRY(sensor_check(context, STAGE, 0, &options.visibility));
+    STARG_TRY(begin(&s));
+    STARG_TRY(look_from_candidates(&s, &options));
+    if (s.list.count > 0)
+        STARG_TRY(cut_boxes(&s, work));
+    status = report(&s, out);
+done:
+    end(&s);
+    return status;
+}
+
+void starg_unseen_free(starg_context *context, uint8_t *faces) {
+    starg_release(context, faces);
+}
