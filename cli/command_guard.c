@@ -24,7 +24,7 @@ static const struct {
 static const uint8_t UNCOVERED[3] = {139, 0, 0};
 
 typedef struct values {
-    const char *output, *marks, *picture, *certificate, *candidates;
+    const char *output, *marks, *picture, *certificate, *candidates, *poses_file;
     starg_guard_options wanted;
     cli_scene scene;
     starg_poses poses; /* --candidates FILE */
@@ -47,6 +47,9 @@ static const cli_option options[] = {
     CLI_TEXT_OPTION("marks", marks, "FILE.ply",
                     "Model with each face in the colour of the first guard that sees it; uncovered "
                     "faces are dark red."),
+    CLI_TEXT_OPTION("poses", poses_file, "FILE.csv|.json",
+                    "Poses for other programs: positions, and with --cone or --fov rotations "
+                    "(quaternions) and points to look at."),
     CLI_SCENE_OPTIONS,
     CLI_PLACE_OPTIONS,
 };
@@ -176,14 +179,10 @@ static starg_status write_marks(cli_session *session, const starg_solid *solid,
                                 const starg_guards *g, const char *name) {
     starg_status status = STARG_OK;
     starg_bits *seen = NULL;
-    starg_visibility_options view = g->options.visibility;
-    view.target = STARG_TARGET_FACES;
-    view.directions = g->directions;
-    view.ups = g->ups;
     uint8_t *colors = cli_colors_create(starg_solid_mesh(solid));
     if (colors == NULL)
         return cli_fail_memory(session);
-    CLI_TRY(starg_visibility(session->context, solid, g->positions, g->count, &view, &seen));
+    CLI_TRY(starg_guards_see(session->context, solid, g, &seen));
     cli_colors_by_viewer(colors, seen);
     paint_uncovered(colors, g);
     CLI_TRY(cli_mesh_write(session, starg_solid_mesh(solid), STARG_MESH_PLY_BINARY, colors, name));
@@ -217,6 +216,10 @@ static starg_status write_files(cli_session *session, const values *v, const sta
     if (v->certificate != NULL)
         CLI_TRY(starg_certificate_write(session->context, why, size,
                                         cli_outputs_place(&session->outputs, v->certificate)));
+    if (v->poses_file != NULL)
+        CLI_TRY(starg_guards_write_poses(session->context, g,
+                                         cli_has_extension(v->poses_file, ".csv"),
+                                         cli_outputs_place(&session->outputs, v->poses_file)));
     if (v->marks != NULL)
         CLI_TRY(write_marks(session, solid, g, v->marks));
     if (v->picture != NULL)
@@ -225,6 +228,13 @@ static starg_status write_files(cli_session *session, const values *v, const sta
                                cli_outputs_place(&session->outputs, v->output)));
 done:
     return status;
+}
+
+static starg_status announce_poses(cli_session *session, const char *name) {
+    if (name != NULL && !cli_has_extension(name, ".csv") && !cli_has_extension(name, ".json"))
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--poses needs a name that ends in .csv or .json, not '%.200s'", name);
+    return cli_announce(session, name);
 }
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -237,6 +247,7 @@ static starg_status prepare(cli_session *session, void *data) {
                         "--certificate says why the bound of --prove holds; add --prove");
     CLI_TRY(cli_announce_with_extension(session, "--marks", v->marks, ".ply"));
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+    CLI_TRY(announce_poses(session, v->poses_file));
     CLI_TRY(cli_scene_prepare(session, &v->scene));
     if (v->candidates != NULL)
         CLI_TRY(take_candidates(session, v->candidates, &v->wanted, &v->poses));

@@ -52,7 +52,7 @@ typedef struct starg_guard_options {
     const double *points;   /* STARG_CANDIDATES_GIVEN: point_count x 3                     */
     const double *directions; /* of these, with a cone or a field of view: point_count x 3; NULL:
                                  they may look anywhere */
-    const double *ups; /* of these directions: what is up, as in starg_visibility_options */
+    const double *ups;        /* of these directions: what is up, as in starg_visibility_options */
     size_t point_count;
     starg_visibility_options visibility;
     double coverage;     /* fraction in (0, 1] of the coverable area to cover (of the coverable
@@ -207,9 +207,10 @@ typedef enum starg_face_state {
 } starg_face_state;
 
 /* Which faces no point of the free space sees, at least `clearance` from the boundary: *out has a
- * starg_face_state for each face of the model; free it with starg_unseen_free. `view` may be NULL for
- * the defaults; views in one direction and vertices are not asked about. `work` is a budget, in tests
- * of a vertex against a box (about a microsecond each). Errors: ARGUMENT, MEMORY, CANCELLED, TIME. */
+ * starg_face_state for each face of the model; free it with starg_unseen_free. `view` may be NULL
+ * for the defaults; views in one direction and vertices are not asked about. `work` is a budget, in
+ * tests of a vertex against a box (about a microsecond each). Errors: ARGUMENT, MEMORY, CANCELLED,
+ * TIME. */
 STARG_API starg_status starg_unseen(starg_context *context, const starg_solid *scene,
                                     const starg_visibility_options *view, double clearance,
                                     uint64_t work, uint8_t **out);
@@ -239,6 +240,15 @@ STARG_API starg_status starg_guards_write(starg_context *context, const starg_gu
 STARG_API starg_status starg_guards_write_memory(starg_context *context, const starg_guards *guards,
                                                  const char *model_file, char **text, size_t *size);
 
+/* How a camera that looks along -z with y up is turned to look where the guard does: a quaternion
+ * (x, y, z, w). False: the guard looks all around. */
+STARG_API bool starg_guards_rotation(const starg_guards *guards, size_t index, double rotation[4]);
+
+/* Writes the poses of guards, as CSV or JSON (docs/formats.md); path "-" is standard output.
+ * Errors: WRITE, MEMORY. */
+STARG_API starg_status starg_guards_write_poses(starg_context *context, const starg_guards *guards,
+                                                bool csv, const char *path);
+
 /* Reads GUARDS.json. Errors: READ, FORMAT (what and which key), MEMORY. */
 STARG_API starg_status starg_guards_read(starg_context *context, const char *path,
                                          starg_guards **out);
@@ -256,8 +266,8 @@ typedef struct starg_poses {
 } starg_poses;
 
 /* Reads candidate poses: text with three numbers per line, six with a viewing direction, or nine
- * with what is up there (optionally after "v"; # begins a comment), the nodes of a skeleton (OBJ, CG,
- * VTK), or the guards of a GUARDS.json, recognized by content. Errors: READ, FORMAT (line and
+ * with what is up there (optionally after "v"; # begins a comment), the nodes of a skeleton (OBJ,
+ * CG, VTK), or the guards of a GUARDS.json, recognized by content. Errors: READ, FORMAT (line and
  * reason), MEMORY. */
 STARG_API starg_status starg_poses_read(starg_context *context, const char *path, starg_poses *out);
 STARG_API starg_status starg_poses_read_memory(starg_context *context, const void *bytes,

@@ -65,7 +65,7 @@ STARG_API double starg_cone_cosine(double degrees);
 
 /* The normals of the four planes through the point of a rectangular view, of about unit length, as
  * used by the test: left, right, below and above of a direction. Right is direction x up; where that
- * is zero, the first axis that makes it not zero stands in for up. */
+ * is zero, the first of the axes y, z and x that makes it not zero stands in for up. */
 STARG_API void starg_frustum(const double direction[3], const double up[3], const double fov[2],
                              double planes[4][3]);
 

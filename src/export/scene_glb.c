@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A scene as binary glTF 2.0. Below the root, which is moved to the middle of all, stand the nodes
- * "model", "guards" with "guard_0000" and so on, "pieces" with "piece_0000" and so on, "skeleton".
- * What results say about a guard or a piece is in the extras of its node.
+ * "model", "guards" with "guard_0000" and so on, each with its "camera_0000" if it looks one way,
+ * "pieces" with "piece_0000" and so on, "skeleton". What results say about a guard or a piece is in
+ * the extras of its node.
  *
  * Numbers stand in one view for each kind, of which accessors take ranges: all pieces share their
  * vertices, and all guards one ball. There are no normals, so that programs shade each face flat,
@@ -49,7 +50,7 @@ typedef struct glb_scene {
     view views[VIEW_KINDS];
     size_t bytes;
     bool failed; /* memory was out while JSON was made */
-    json_t *root, *nodes, *meshes, *materials, *accessors, *buffer_views;
+    json_t *root, *nodes, *meshes, *materials, *accessors, *buffer_views, *cameras;
 } glb_scene;
 
 static bool is_points(view_kind kind) {
@@ -250,6 +251,29 @@ static void describe_guard(glb_scene *s, json_t *node, size_t index) {
     put(s, node, "extras", extras);
 }
 
+/* A camera at the guard, which looks the same way: with its field of view, or with one that holds
+ * its cone. Wider than WIDEST degrees none can be. */
+static void add_camera(glb_scene *s, json_t *node, size_t index) {
+    const double WIDEST = 170, DEGREE = 3.14159265358979323846 / 180;
+    const starg_guards *g = s->job->scene->guards;
+    const starg_visibility_options *o = &g->options.visibility;
+    double q[4], size = s->job->size, yfov = fmin(o->cone, WIDEST), aspect = 1;
+    if (!starg_guards_rotation(g, index, q))
+        return;
+    if (o->fov[0] > 0) {
+        yfov = o->fov[1];
+        aspect = tan(0.5 * o->fov[0] * DEGREE) / tan(0.5 * o->fov[1] * DEGREE);
+    }
+    json_t *lens = json_pack("{s:f, s:f, s:f, s:f}", "yfov", yfov * DEGREE, "aspectRatio", aspect,
+                             "znear", fmax(o->near, 1e-3 * size), "zfar",
+                             o->range < 1e100 ? fmax(o->range, 2e-3 * size) : 4 * size);
+    json_int_t camera =
+        append(s, s->cameras, json_pack("{s:s, s:o}", "type", "perspective", "perspective", lens));
+    json_t *eye = add_node(s, node, "camera", index, -1);
+    put(s, eye, "camera", json_integer(camera));
+    put(s, eye, "rotation", json_pack("[f, f, f, f]", q[0], q[1], q[2], q[3]));
+}
+
 static void add_guards(glb_scene *s) {
     if (s->job->guards == 0)
         return;
@@ -260,7 +284,9 @@ static void add_guards(glb_scene *s) {
         uint8_t rgb[3];
         starg_distinct_color(g, rgb);
         json_int_t mesh = add_mesh(s, points, faces, MODE_TRIANGLES, add_material(s, rgb, 1));
-        describe_guard(s, add_node(s, parent, "guard", g, mesh), g);
+        json_t *node = add_node(s, parent, "guard", g, mesh);
+        describe_guard(s, node, g);
+        add_camera(s, node, g);
     }
 }
 
@@ -313,6 +339,7 @@ static json_t *describe(glb_scene *s) {
     s->materials = json_array();
     s->accessors = json_array();
     s->buffer_views = json_array();
+    s->cameras = json_array();
     s->root = json_pack("{s:s, s:o}", "name", "starguard", "translation", triple(s->job->center));
     append(s, s->nodes, s->root);
     describe_views(s);
@@ -325,6 +352,9 @@ static json_t *describe(glb_scene *s) {
                              "scenes", "nodes", 0, "nodes", s->nodes, "meshes", s->meshes,
                              "materials", s->materials, "accessors", s->accessors, "bufferViews",
                              s->buffer_views, "buffers", "byteLength", (json_int_t)s->bytes);
+    if (json_array_size(s->cameras) > 0)
+        put(s, json, "cameras", json_incref(s->cameras));
+    json_decref(s->cameras);
     if (!s->failed)
         return json;
     json_decref(json);

@@ -26,9 +26,8 @@ static void normalize(double v[3]) {
         v[k] /= length;
 }
 
-void starg_frustum(const double direction[3], const double up[3], const double fov[2],
-                   double planes[4][3]) {
-    double ahead[3], above[3], right[3];
+void sensor_frame(const double direction[3], const double up[3], double frame[3][3]) {
+    double *right = frame[0], *above = frame[1], *ahead = frame[2];
     vec3_copy(direction, ahead);
     vec3_copy(up, above);
     normalize(ahead);
@@ -36,16 +35,21 @@ void starg_frustum(const double direction[3], const double up[3], const double f
     vec3_cross(ahead, above, right);
     for (int k = 0; k < 3 && !(vec3_length(right) > 1e-9); k++) {
         for (int i = 0; i < 3; i++)
-            above[i] = i == k;
+            above[i] = i == (k + 1) % 3;
         vec3_cross(ahead, above, right);
     }
     normalize(right);
     vec3_cross(right, ahead, above);
+}
+
+void starg_frustum(const double direction[3], const double up[3], const double fov[2],
+                   double planes[4][3]) {
+    double frame[3][3];
+    sensor_frame(direction, up, frame);
     for (int side = 0; side < 4; side++) {
-        const double *across = side < 2 ? right : above;
         double half = fov[side / 2] * HALF_DEGREE, sign = side % 2 == 0 ? 1 : -1;
         for (int k = 0; k < 3; k++)
-            planes[side][k] = sin(half) * ahead[k] + sign * cos(half) * across[k];
+            planes[side][k] = sin(half) * frame[2][k] + sign * cos(half) * frame[side / 2][k];
     }
 }
 

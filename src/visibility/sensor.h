@@ -31,6 +31,9 @@ static inline bool sensor_is_directed(const starg_visibility_options *o) {
 /* The sensor of some options, which must outlive it; not aimed. */
 sensor sensor_of(const starg_visibility_options *options);
 
+/* Right, above and ahead of a direction, of unit length; see starg_frustum. */
+void sensor_frame(const double direction[3], const double up[3], double frame[3][3]);
+
 /* Aims it, if it looks in one direction; `up` may be NULL. */
 void sensor_aim(sensor *own, const double direction[3], const double up[3]);
 
