@@ -8,7 +8,7 @@
 #include "core/json.h"
 #include "geometry/vec3.h"
 #include "guard/stages.h"
-#include "mesh/mesh.h"
+#include "mesh/formats/io.h"
 
 static const char STAGE[] = "poses";
 

@@ -38,6 +38,9 @@ static const entry CATALOGUE[] = {
     {{"star", "an icosahedron with a spike on every face", 1}, RIGID, solid_star},
     {{"shell", "a ball with a ball-shaped cavity", 1}, RIGID, solid_shell},
     {{"sphere", "a ball", 1}, RIGID, solid_sphere},
+    {{"office", "an office building with furniture (--orientation keep)", 1}, RIGID, solid_office},
+    {{"level", "a level of a game, open triangles (--soup)", 1}, RIGID, solid_level},
+    {{"statue", "a person on a plinth, to be seen from outside", 1}, RIGID, solid_statue},
 };
 
 enum { COUNT = sizeof CATALOGUE / sizeof *CATALOGUE };

@@ -26,4 +26,9 @@ starg_status solid_sphere(starg_context *context, size_t vertex_count, starg_mes
 starg_status solid_shell(starg_context *context, size_t vertex_count, starg_mesh **out);
 starg_status solid_star(starg_context *context, size_t vertex_count, starg_mesh **out);
 
+/* Scenes (building.c): shells that touch, open sheets, shells that overlap. */
+starg_status solid_office(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_level(starg_context *context, size_t vertex_count, starg_mesh **out);
+starg_status solid_statue(starg_context *context, size_t vertex_count, starg_mesh **out);
+
 #endif
