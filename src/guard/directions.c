@@ -110,8 +110,10 @@ static aim_view view_at(const aiming *a, const double direction[3], double slack
 static double depth_in(const aim_view *v, const aim_item *item) {
     double depth = 2;
     for (int side = 0; side < v->count; side++)
-        for (int k = 0; k < 3; k++)
-            depth = fmin(depth, vec3_dot(v->normal[side], item->corner[k]));
+        for (int k = 0; k < 3; k++) {
+            double d = vec3_dot(v->normal[side], item->corner[k]);
+            depth = d < depth ? d : depth;
+        }
     return depth;
 }
 

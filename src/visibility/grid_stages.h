@@ -112,7 +112,7 @@ static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_s
     for (size_t c = 0; c < chunk_count; c++) {
         size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
         for (; rank < end && rank < scene->face_count; rank++) {
-            uint8_t keep = !scene->cull || side[rank] > 0;
+            uint8_t keep = scene_may_block(scene, rank, side[rank]);
             const uint32_t *corner = scene->corners + 3 * rank;
             g->front_facing[g->front_facing_count] = (uint32_t)rank;
             g->front_facing_count += keep;

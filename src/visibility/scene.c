@@ -32,6 +32,18 @@ static void order_vertices(visibility_scene *scene) {
         }
 }
 
+static starg_status find_least(visibility_scene *scene) {
+    starg_status status = STARG_OK;
+    const uint32_t *other_side = scene->solid->other_side;
+    if (other_side == NULL)
+        return STARG_OK;
+    STARG_NEW(scene->context, "visibility", scene->least, scene->face_count);
+    for (size_t rank = 0; rank < scene->face_count; rank++)
+        scene->least[rank] = other_side[scene->face_of[rank]] != SCENE_NONE ? 0 : -1;
+done:
+    return status;
+}
+
 /* Ranks of the other sides of faces that count from either side. */
 static starg_status find_backs(visibility_scene *scene) {
     starg_status status = STARG_OK;
@@ -123,6 +135,7 @@ starg_status scene_create(starg_context *context, const starg_solid *solid,
     STARG_NEW(context, "visibility", scene->offset, m);
     order_vertices(scene);
     compute_planes(scene);
+    STARG_TRY(find_least(scene));
     STARG_TRY(find_backs(scene));
     *out = scene;
 done:
@@ -143,6 +156,7 @@ void scene_free(visibility_scene *scene) {
     starg_release(context, scene->z);
     starg_release(context, scene->corners);
     starg_release(context, scene->backs);
+    starg_release(context, scene->least);
     starg_release(context, scene->nx);
     starg_release(context, scene->ny);
     starg_release(context, scene->nz);

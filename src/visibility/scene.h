@@ -34,6 +34,11 @@ typedef struct visibility_scene {
      * through d, because d is in the interior.) With x = q the same holds of a visible vertex. */
     bool cull;
 
+    /* By rank: the least side at which a face has to be tested as a blocker. A triangle that stands
+     * twice blocks the same with either side, so that the one that faces away may be left out: 0. NULL:
+     * all alike, 1 if `cull`, else -1. */
+    int8_t *least;
+
     size_t vertex_count, face_count; /* vertex_count: those that faces use */
     uint32_t *vertex_of;             /* slot -> vertex of the mesh, in spatial order          */
     uint32_t *slot_of;               /* vertex of the mesh -> slot, or SCENE_NONE if unused   */
@@ -59,6 +64,11 @@ void scene_free(visibility_scene *scene);
 
 /* Makes the adjacency, if the boundary is embedded. Errors: MEMORY. */
 starg_status scene_add_adjacency(visibility_scene *scene);
+
+/* Can the face be the first to block a view from a point that has this side of it? */
+static inline bool scene_may_block(const visibility_scene *scene, size_t rank, int8_t side) {
+    return side >= (scene->least != NULL ? scene->least[rank] : scene->cull ? 1 : -1);
+}
 
 /* side[rank] = 1 where p lies strictly on the inner side of the face, -1 outer, 0 in its plane. */
 void scene_sides(const visibility_scene *scene, const double p[3], int8_t *side);

@@ -187,7 +187,7 @@ static size_t measure_ranges(const visibility_scene *scene, const double p[3], c
                              sweep_scratch *s) {
     size_t count = 0;
     for (size_t rank = 0; rank < scene->face_count; rank++)
-        if (!scene->cull || side[rank] > 0)
+        if (scene_may_block(scene, rank, side[rank]))
             count += measure_range(scene, s->directions, p, (uint32_t)rank, s->ranges + count);
     return count;
 }

@@ -107,7 +107,7 @@ static bool is_plainly_outside(const cone *k, size_t rank) {
 
 static bool passes(void *user, size_t rank) {
     const cone *k = user;
-    if (k->side != NULL && k->scene->cull && k->side[rank] <= 0)
+    if (k->side != NULL && !scene_may_block(k->scene, rank, k->side[rank]))
         return true; /* by the proof in scene.h another face blocks the same view first */
     if (rank == k->rank || is_plainly_outside(k, rank))
         return true;

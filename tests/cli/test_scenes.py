@@ -168,6 +168,82 @@ class Scenes(Case):
                                status=2)
         self.assertIn("line 1", err)
 
+    def test_rectangular_views(self):
+        """Rectangular views, with what is up; poses for other programs; results are candidates."""
+        result = self.guards("room.off", "--fov", "90,60", "--up", "0,0,1", "--incidence", "80",
+                             "--near", "0.1", "--range", "9", "--poses", "p.csv")
+        self.assertEqual(result["options"]["fov"], [90, 60])
+        self.assertEqual({tuple(g["up"]) for g in result["guards"]}, {(0, 0, 1)})
+        self.verified("room.off")
+        lines = self.read("p.csv").decode().splitlines()
+        self.assertEqual(len(lines), 1 + len(result["guards"]))
+        for line, guard in zip(lines[1:], result["guards"]):
+            _, x, y, z, qx, qy, qz, qw, *_ = map(float, line.split(","))
+            self.assertEqual([x, y, z], guard["position"])
+            ahead = (-2 * (qx * qz + qy * qw), -2 * (qy * qz - qx * qw), 2 * (qx * qx + qy * qy) - 1)
+            for found, expected in zip(ahead, guard["direction"]):
+                self.assertAlmostEqual(found, expected, 9)
+        self.write("again.json", self.read("g.json"))
+        self.guards("room.off", "--fov", "90,60", "--incidence", "80", "--near", "0.1",
+                    "--range", "9", "--candidates", "again.json", "--poses", "p.json")
+        self.assertEqual(json.loads(self.read("p.json"))["fov"], [90, 60])
+
+    def test_roll(self):
+        """A camera on its side sees what is high, not what is wide."""
+        seen = []
+        for up in ("0 0 1", "0 1 0"):
+            self.write("c.txt", f"0.5 3 1.5 1 0 0 {up}\n")
+            seen.append(self.guards("room.off", "--fov", "120,30", "--candidates", "c.txt"))
+        faces = [set(range(len(ROOM[1]))) - set(r["coverage"]["uncovered_faces"]) for r in seen]
+        self.assertTrue(faces[0] - faces[1] and faces[1] - faces[0])
+        self.verified("room.off")
+
+    def test_baseline(self):
+        result = self.guards("crate.off", "--outside", "--standoff", "0.5,2", "--redundancy", "2",
+                             "--baseline", "30", "--incidence", "75")
+        self.assertEqual(result["coverage"]["baseline_faces"], len(box(*CRATE, 2)[1]))
+        self.verified("crate.off")
+        result["coverage"]["baseline_faces"] -= 1
+        self.write("g.json", json.dumps(result))
+        self.run_text("verify", "crate.off", "g.json", status=4)
+
+    def test_two_sided(self):
+        """A sheet is seen from either side only where that is asked for."""
+        self.write("wall.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 4 0\n0 4 0\n3 0 1 2\n3 0 2 3\n")
+        for words, unseen in ([], [0, 1]), (["--two-sided"], []):
+            result = self.guards("wall.off", "--soup", "--within", "0,0,-3,4,4,-1", *words)
+            self.assertEqual(result["coverage"]["uncovered_faces"], unseen)
+            self.verified("wall.off")
+
+    def test_unseen(self):
+        """A box in a closed box is proven unseen from outside of both, and seen from between them."""
+        self.write("nest.off", off(box((0, 0, 0), (4, 4, 4), 2), box((1, 1, 1), (3, 3, 3))))
+        outer = len(box((0, 0, 0), (4, 4, 4), 2)[1])
+        around = ["nest.off", "--soup", "--within", "-2,-2,-2,6,6,6", "--cell", "0.25", "--unseen",
+                  "--work", "2000000"]
+        found = self.run_json("visible", *around, "--from", "-1,1,1")
+        self.assertEqual(found["unseen"], list(range(outer, outer + 12)))
+        self.assertEqual(found["undecided"], [])
+        found = self.run_json("visible", *around, "--from", "0.5,0.5,0.5")
+        self.assertEqual(found["unseen"], list(range(outer)))
+        ground = off(box((-9, -9, -1), (19, 19, 0)))
+        self.write("ground.off", ground)
+        found = self.run_json("visible", "crate.off", "--outside", "--standoff", "0.1,2", "--obstacles",
+                              "ground.off", "--unseen", "--work", "50000")
+        self.assertEqual(len(found["unseen"]) + len(found["undecided"]), 8)
+
+    def test_export(self):
+        """Cameras with the right field of view; results of scenes can be shown."""
+        self.guards("room.off", "--obstacles", "crate.off", "--fov", "90,60")
+        self.run_text("export", "g.json", "-o", "g.glb")
+        with open(self.path("g.glb"), "rb") as file:
+            data = file.read()
+        scene = json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])
+        self.assertEqual(len(scene["cameras"]), sum("camera" in node for node in scene["nodes"]))
+        lens = scene["cameras"][0]["perspective"]
+        self.assertAlmostEqual(lens["yfov"], 1.0471975511965976, 9)
+        self.assertAlmostEqual(lens["aspectRatio"], 3 ** 0.5, 9)
+
     def test_visible(self):
         """`visible` takes scenes as well; what is behind the crate is hidden by it."""
         plain = self.run_json("visible", "room.off", "--from", "1,3,0.5")
@@ -187,12 +263,23 @@ class Scenes(Case):
         _, err = self.run_text("verify", "room.off", "g.json", status=1)
         self.assertIn("obstacle 0", err)
 
+    def test_bad_questions(self):
+        for words, says in [
+                (["room.off", "--unseen", "--box", "0,0,0,1,1,1"], "leave out --box"),
+                (["room.off", "--from", "1,1,1", "--within", "0,0,0,1,1,1"], "add --unseen"),
+        ]:
+            _, err = self.run_text("visible", *words, status=1)
+            self.assertIn(says, err)
+
     def test_bad_input(self):
         self.write("far.off", off(box((20, 0, 0), (21, 1, 1))))
         self.write("short.txt", "1 2 3\n")
         self.write("negative.txt", "1 " * (len(ROOM[1]) - 1) + "-1\n")
         self.write("nothing.txt", "0 " * len(ROOM[1]))
         self.write("beyond.txt", "0 99999\n")
+        self.write("along.txt", "1 1 1  0 0 1  0 0 2\n")
+        self.write("zero.txt", "1 1 1  0 0 0  0 0 1\n")
+        self.write("mixed.txt", "1 1 1  0 0 1\n1 1 1  0 0 1  0 1 0\n")
         for words, status, says in [
                 (["room.off", "--obstacles", "far.off"], 1, "obstacle 0"),
                 (["crate.off", "--outside"], 1, "--standoff"),
@@ -211,6 +298,20 @@ class Scenes(Case):
                 (["room.off", "--see", "short.txt", "--ignore", "short.txt"], 1, "exclude"),
                 (["room.off", "--see", "missing.txt"], 2, "missing.txt"),
                 (["room.off", "--orientation", "keeep"], 1, "did you mean 'keep'"),
+                (["room.off", "--two-sided"], 1, "only a soup"),
+                (["room.off", "--fov", "200,60"], 1, "--fov takes H,V"),
+                (["room.off", "--fov", "90"], 1, "--fov takes H,V"),
+                (["room.off", "--fov", "90,0"], 1, "--fov takes H,V"),
+                (["room.off", "--fov", "90,60", "--cone", "90"], 1, "exclude each other"),
+                (["room.off", "--up", "1,2"], 1, "--up takes X,Y,Z"),
+                (["room.off", "--incidence", "95"], 1, "at most 90"),
+                (["room.off", "--incidence", "60", "--target", "vertices"], 1, "incidence"),
+                (["room.off", "--near", "3", "--range", "2"], 1, "below the range"),
+                (["room.off", "--baseline", "20"], 1, "redundancy of 2"),
+                (["room.off", "--poses", "p.txt"], 1, "ends in .csv or .json"),
+                (["room.off", "--fov", "90,60", "--candidates", "along.txt"], 2, "along the direction"),
+                (["room.off", "--fov", "90,60", "--candidates", "zero.txt"], 2, "which is none"),
+                (["room.off", "--fov", "90,60", "--candidates", "mixed.txt"], 2, "line 2"),
         ]:
             with self.subTest(words):
                 _, err = self.run_text("guard", *words, "-o", "bad.json", status=status)

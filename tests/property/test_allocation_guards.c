@@ -113,15 +113,14 @@ static starg_status points_read_memory(starg_context *context, input_bytes text)
 }
 
 static starg_status poses_read(starg_context *context, bool from_memory) {
-    static const char text[] = "1 2 3 0 0 1\n";
-    double *points = NULL, *directions = NULL;
-    size_t count = 0;
-    starg_status status = from_memory ? starg_poses_read_memory(context, text, sizeof text - 1, "p",
-                                                                &points, &directions, &count)
-                                      : starg_poses_read(context, failing_input("guards.json"),
-                                                         &points, &directions, &count);
-    starg_points_free(context, directions);
-    return points_result(context, status, points, count);
+    static const char text[] = "1 2 3 0 0 1 0 1 0\n";
+    starg_poses poses;
+    starg_status status = from_memory
+                              ? starg_poses_read_memory(context, text, sizeof text - 1, "p", &poses)
+                              : starg_poses_read(context, failing_input("guards.json"), &poses);
+    assert_int_equal(status == STARG_OK, poses.points != NULL);
+    starg_poses_free(context, &poses);
+    return status;
 }
 
 /* ---- scenes ---- */
@@ -176,6 +175,30 @@ static starg_status name_obstacles(starg_context *context) {
     return status;
 }
 
+static starg_status unseen(starg_context *context) {
+    uint8_t *out = NULL;
+    starg_status status = starg_unseen(context, in.solid, NULL, 0, 1000, &out);
+    failing_result(status, out);
+    starg_unseen_free(context, out);
+    return status;
+}
+
+static starg_status scene_again(starg_context *context) {
+    starg_solid *out = NULL;
+    starg_status status = starg_guards_scene(context, in.room, NULL, in.guards, &out);
+    failing_result(status, out);
+    starg_solid_free(out);
+    return status;
+}
+
+static starg_status see_again(starg_context *context) {
+    starg_bits *out = NULL;
+    starg_status status = starg_guards_see(context, in.solid, in.guards, &out);
+    failing_result(status, out);
+    starg_bits_free(out);
+    return status;
+}
+
 static starg_status scenes(starg_context *context) {
     FAILING_BY(starg_space_create, "outside", scene_of(context, false));
     FAILING_BY(starg_space_create, "soup", scene_of(context, true));
@@ -183,6 +206,11 @@ static starg_status scenes(starg_context *context) {
     FAILING_BY(starg_faces_read, "", weights_read(context, true));
     FAILING_BY(starg_weights_read, "", weights_read(context, false));
     FAILING_BY(starg_guards_name_obstacles, "", name_obstacles(context));
+    FAILING_BY(starg_unseen, "", unseen(context));
+    FAILING_BY(starg_guards_scene, "", scene_again(context));
+    FAILING_BY(starg_guards_see, "", see_again(context));
+    FAILING(starg_guards_write_poses, "csv", in.guards, true, failing_output("p.csv"));
+    FAILING(starg_guards_write_poses, "json", in.guards, false, failing_output("p.json"));
     FAILING_BY(starg_poses_read, "", poses_read(context, false));
     FAILING_BY(starg_poses_read_memory, "", poses_read(context, true));
     return STARG_OK;
@@ -262,6 +290,10 @@ static starg_status guards(starg_context *context) {
            o.point_count = in.guards->count, o.visibility.face_rule = STARG_FACES_WHOLE));
     GUARD(starg_guard, "cone, at most 2",
           (o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.cone = 120, o.max_guards = 2));
+    GUARD(starg_guard, "field of view, twice, apart",
+          (o = few(), o.candidates = STARG_CANDIDATES_INTERIOR, o.visibility.fov[0] = 90,
+           o.visibility.fov[1] = 60, o.visibility.incidence = 80, o.redundancy = 2,
+           o.baseline = 20));
     GUARD(starg_guard, "anywhere, at most 2", (o = proving(), o.max_guards = 2));
     GUARD(starg_guard, "anywhere, twice", (o = proving(), o.redundancy = 2));
     GUARD(starg_guard, "anywhere, given points",

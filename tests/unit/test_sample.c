@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "starguard/sample.h"
+#include "starguard/space.h"
 
 /* ---- closed 2-manifold ---------------------------------------------------------------------- */
 
@@ -255,8 +256,15 @@ static long expected_euler(const char *name) {
     return 2;
 }
 
+/* These are no single embedded shell (scenes_are_what_they_say). */
+static bool is_scene(const char *name) {
+    return strcmp(name, "office") == 0 || strcmp(name, "level") == 0 || strcmp(name, "statue") == 0;
+}
+
 static void check_sample(starg_context *context, const starg_sample_info *info, int pose,
                          size_t vertex_count, double tolerance) {
+    if (is_scene(info->name))
+        return;
     starg_mesh *mesh = make(context, info->name, pose, vertex_count);
     size_t crossings = count_crossings(mesh);
     double angle = smallest_angle(mesh);
@@ -272,6 +280,50 @@ static void check_sample(starg_context *context, const starg_sample_info *info, 
     double count = (double)starg_mesh_vertex_count(mesh);
     assert_true(fabs(count - (double)vertex_count) <= tolerance * (double)vertex_count);
     starg_mesh_free(mesh);
+}
+
+static starg_solid *scene_of(starg_context *context, const char *name, size_t vertex_count,
+                             const starg_space_options *options) {
+    starg_mesh *mesh = make(context, name, 0, vertex_count);
+    starg_solid *scene = NULL;
+    double count = (double)starg_mesh_vertex_count(mesh);
+    assert_true(count > 0.4 * (double)vertex_count && count < 2.5 * (double)vertex_count);
+    test_ok(context, starg_space_create(context, mesh, NULL, 0, options, &scene));
+    starg_mesh_free(mesh);
+    return scene;
+}
+
+/* In an office one stands in the corridor, and not in the cabinet of its first room; a level is
+ * open; a statue has an outside. */
+static void scenes_are_what_they_say(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    const double corridor[3] = {1, 1, 6.5}, cabinet[3] = {3.75, 1, 3.5}, beside[3] = {3.25, 1, 3.5};
+    const double above[3] = {1, 1, 1}, far[3] = {0, 5, 0};
+    for (size_t vertices = 1000; vertices <= 20000; vertices *= 20) {
+        starg_space_options options;
+        starg_space_options_default(&options);
+        options.orientation = STARG_ORIENTATION_KEEP;
+        starg_solid *office = scene_of(context, "office", vertices, &options);
+        assert_true(starg_space_admits(office, corridor));
+        assert_true(starg_space_admits(office, beside));
+        assert_false(starg_space_admits(office, cabinet));
+        starg_solid_free(office);
+        starg_space_options_default(&options);
+        options.soup = true;
+        starg_solid *level = scene_of(context, "level", vertices, &options), *closed;
+        assert_true(starg_space_admits(level, above));
+        starg_solid_free(level);
+        starg_mesh *open = make(context, "level", 0, vertices);
+        assert_int_equal(starg_solid_create(context, open, &closed), STARG_ERROR_MESH);
+        starg_mesh_free(open);
+        starg_space_options_default(&options);
+        options.outside = true;
+        starg_solid *statue = scene_of(context, "statue", vertices, &options);
+        assert_true(starg_space_admits(statue, far));
+        starg_solid_free(statue);
+    }
+    test_context_free(context);
 }
 
 /* Every sample in the rest pose and in poses `from` to `to`, as far as it has them. */
@@ -447,6 +499,7 @@ int main(void) {
         cmocka_unit_test(samples_of_500),
         cmocka_unit_test(samples_of_5000),
         cmocka_unit_test(samples_of_20000),
+        cmocka_unit_test(scenes_are_what_they_say),
         cmocka_unit_test(poses_share_connectivity_and_differ),
         cmocka_unit_test(same_bytes_for_any_thread_count),
         cmocka_unit_test(volumes_are_right),

@@ -119,6 +119,93 @@ static void test_bad_cones(void **state) {
     test_context_free(context);
 }
 
+/* Limits that cannot be met, or exclude each other. */
+static void test_bad_limits(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "sphere", 500);
+    const double point[3] = {0, 0, 0}, forward[3] = {1, 0, 0}, endless[3] = {0, NAN, 0};
+    starg_visibility_options good;
+    starg_visibility_options_default(&good);
+    good.directions = forward;
+    starg_visibility_options bad[11];
+    for (size_t i = 0; i < 11; i++)
+        bad[i] = good;
+    bad[0].fov[0] = 90;
+    bad[1].fov[0] = bad[1].fov[1] = 180;
+    bad[2].fov[0] = bad[2].fov[1] = -5;
+    bad[3].fov[0] = bad[3].fov[1] = 60;
+    bad[3].cone = 90;
+    bad[4].fov[0] = bad[4].fov[1] = 60;
+    bad[4].directions = NULL;
+    bad[5].fov[0] = bad[5].fov[1] = 60;
+    bad[5].ups = endless;
+    bad[6].near = 2;
+    bad[6].range = 1;
+    bad[7].near = -1;
+    bad[8].incidence = 0;
+    bad[9].incidence = 100;
+    bad[10].incidence = 60;
+    bad[10].target = STARG_TARGET_VERTICES;
+    for (size_t i = 0; i < 11; i++) {
+        starg_bits *rows = NULL;
+        assert_int_equal(starg_visibility(context, solid, point, 1, &bad[i], &rows),
+                         STARG_ERROR_ARGUMENT);
+        assert_null(rows);
+    }
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+/* Planes of a view along x with z up: 45 degrees to the left and right, 30 up and down; and what is
+ * up does not matter where it lies along the direction. */
+static void test_frustum(void **state) {
+    (void)state;
+    const double x[3] = {1, 0, 0}, z[3] = {0, 0, 2}, fov[2] = {90, 60};
+    double planes[4][3];
+    starg_frustum(x, z, fov, planes);
+    const double expected[4][3] = {{sqrt(0.5), -sqrt(0.5), 0},
+                                   {sqrt(0.5), sqrt(0.5), 0},
+                                   {0.5, 0, sqrt(0.75)},
+                                   {0.5, 0, -sqrt(0.75)}};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(planes[i][k] - expected[i][k]) < 1e-15);
+    starg_frustum(z, z, fov, planes);
+    for (int i = 0; i < 4; i++) {
+        double length = hypot(hypot(planes[i][0], planes[i][1]), planes[i][2]);
+        assert_true(fabs(length - 1) < 1e-15 && planes[i][2] > 0);
+    }
+}
+
+/* Two guards that see a face from one side of it are no pair; where candidates allow, all faces
+ * have one, and the bound is still that of seeing each twice. */
+static void test_baseline(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    starg_solid *solid = test_sample(context, "gallery", 500);
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.candidate_count = 100;
+    options.redundancy = 2;
+    options.method = STARG_GUARD_ILP;
+    starg_guards *twice = test_guard(context, solid, &options);
+    options.baseline = 40;
+    starg_guards *apart = test_guard(context, solid, &options);
+    assert_int_equal(apart->lower_bound, twice->lower_bound);
+    assert_true(apart->count > twice->count);
+    assert_true(apart->baseline_faces > apart->face_count * 9 / 10);
+    starg_guards_free(context, twice);
+    starg_guards_free(context, apart);
+    options.redundancy = 1;
+    assert_int_equal(starg_guard(context, solid, &options, &apart), STARG_ERROR_ARGUMENT);
+    options.redundancy = 2;
+    options.coverage = 0.9;
+    assert_int_equal(starg_guard(context, solid, &options, &apart), STARG_ERROR_ARGUMENT);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
 /* The narrower the view, the more guards; all of them look somewhere. */
 static void test_guards_with_cones(void **state) {
     (void)state;
@@ -150,9 +237,9 @@ static void test_guards_with_cones(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rows),
-        cmocka_unit_test(test_bad_cones),
-        cmocka_unit_test(test_guards_with_cones),
+        cmocka_unit_test(test_rows),       cmocka_unit_test(test_bad_cones),
+        cmocka_unit_test(test_bad_limits), cmocka_unit_test(test_frustum),
+        cmocka_unit_test(test_baseline),   cmocka_unit_test(test_guards_with_cones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
