@@ -8,7 +8,7 @@
 #include "visibility/isa.h"
 #include "visibility/scene.h"
 
-enum { CHUNK = 128, LANES = 8 };
+enum { CHUNK = SCENE_CHUNK, LANES = 8 };
 
 /* Rows of a cube face with m vertices: this times sqrt(m). Flat long cells are best: a face then
  * touches few rows, and in each of them one run of vertices. */

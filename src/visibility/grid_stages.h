@@ -104,13 +104,17 @@ static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
     return count;
 }
 
-/* Stage 1: lists the faces that can block first, and the vertices that they use. */
-static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_scratch *g) {
+/* Stage 1: lists the faces that can block first, and the vertices that they use; others are not seen,
+ * or out of range. */
+static void keep_faces(const visibility_scene *scene, const double p[3], const int8_t *side,
+                       grid_scratch *g) {
     size_t chunk_count = order_chunks(scene, g);
     g->front_facing_count = g->used_count = 0;
     memset(g->in_use, 0, scene->vertex_count);
     for (size_t c = 0; c < chunk_count; c++) {
         size_t rank = (size_t)g->chunks[c].chunk * CHUNK, end = rank + CHUNK;
+        if (scene_is_beyond(scene, g->chunks[c].chunk, p))
+            continue;
         for (; rank < end && rank < scene->face_count; rank++) {
             uint8_t keep = scene_may_block(scene, rank, side[rank]);
             const uint32_t *corner = scene->corners + 3 * rank;
@@ -132,7 +136,7 @@ static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_s
 void GRID_RUN(const visibility_scene *scene, grid_scratch *g, const double p[3], const int8_t *side,
               uint8_t *visible) {
     cube_make_relative(scene, p, &g->at);
-    keep_faces(scene, side, g);
+    keep_faces(scene, p, side, g);
     cube_project(scene->vertex_count, &g->at);
     sort_into_cells(scene, g);
     test_faces(scene, p, side, g);

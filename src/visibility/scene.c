@@ -118,6 +118,7 @@ starg_status scene_create(starg_context *context, const starg_solid *solid,
     scene->solid = solid;
     scene->mesh = solid->mesh;
     scene->find_sides = choose_sides();
+    scene->range = INFINITY;
     scene->cull = solid->check->embedded;
     scene->face_count = solid->mesh->face_count;
     scene->face_of = solid->tree->order;
@@ -144,6 +145,31 @@ done:
     return status;
 }
 
+starg_status scene_limit(visibility_scene *scene, double range) {
+    starg_status status = STARG_OK;
+    size_t count = (scene->face_count + SCENE_CHUNK - 1) / SCENE_CHUNK;
+    if (!(range < 1e100) || !(range > 1e-100)) /* squares neither overflow nor vanish */
+        return STARG_OK;
+    STARG_NEW(scene->context, "visibility", scene->chunks, count);
+    scene->range = range;
+    for (size_t c = 0; c < count; c++)
+        for (int k = 0; k < 3; k++) {
+            scene->chunks[c].lower[k] = INFINITY;
+            scene->chunks[c].upper[k] = -INFINITY;
+        }
+    for (size_t rank = 0; rank < scene->face_count; rank++) {
+        bvh_box *box = &scene->chunks[rank / SCENE_CHUNK];
+        for (int corner = 0; corner < 3; corner++)
+            for (int k = 0; k < 3; k++) {
+                double x = scene_corner(scene, rank, corner)[k];
+                box->lower[k] = fmin(box->lower[k], x);
+                box->upper[k] = fmax(box->upper[k], x);
+            }
+    }
+done:
+    return status;
+}
+
 void scene_free(visibility_scene *scene) {
     if (scene == NULL)
         return;
@@ -157,6 +183,7 @@ void scene_free(visibility_scene *scene) {
     starg_release(context, scene->corners);
     starg_release(context, scene->backs);
     starg_release(context, scene->least);
+    starg_release(context, scene->chunks);
     starg_release(context, scene->nx);
     starg_release(context, scene->ny);
     starg_release(context, scene->nz);

@@ -13,6 +13,9 @@
 
 #define SCENE_NONE UINT32_MAX
 
+/* Faces in a chunk of ranks. */
+enum { SCENE_CHUNK = 128 };
+
 struct visibility_scene;
 
 /* side[rank] = 1 or -1 as scene_sides says where rounding leaves no doubt, else 0. */
@@ -55,6 +58,9 @@ typedef struct visibility_scene {
     double side_bound; /* larger than the rounding error of that expression for p in the box */
     sides_run *find_sides;
 
+    double range;    /* vertices farther away need not be looked at; INFINITY: all are */
+    bvh_box *chunks; /* with a range: boxes of SCENE_CHUNK faces each, by rank */
+
     struct visibility_adjacency *adjacency; /* for the engine by contours if `cull` */
 } visibility_scene;
 
@@ -64,6 +70,23 @@ void scene_free(visibility_scene *scene);
 
 /* Makes the adjacency, if the boundary is embedded. Errors: MEMORY. */
 starg_status scene_add_adjacency(visibility_scene *scene);
+
+/* Lets engines leave out what is farther than the range. Errors: MEMORY. */
+starg_status scene_limit(visibility_scene *scene, double range);
+
+/* Is all of a chunk of faces beyond the range of p? Then it blocks no view that ends within. */
+static inline bool scene_is_beyond(const visibility_scene *scene, size_t chunk, const double p[3]) {
+    double square = 0;
+    if (scene->chunks == NULL)
+        return false;
+    for (int k = 0; k < 3; k++) {
+        double below = scene->chunks[chunk].lower[k] - p[k];
+        double above = p[k] - scene->chunks[chunk].upper[k];
+        double gap = below > 0 ? below : above > 0 ? above : 0;
+        square += gap * gap;
+    }
+    return square > scene->range * scene->range * (1 + 1e-9); /* more than its roundings */
+}
 
 /* Can the face be the first to block a view from a point that has this side of it? */
 static inline bool scene_may_block(const visibility_scene *scene, size_t rank, int8_t side) {

@@ -163,6 +163,8 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
                                   const starg_visibility_options *options, size_t count,
                                   visibility_scene **out) {
     starg_status status = scene_create(context, solid, out);
+    if (status == STARG_OK)
+        status = scene_limit(*out, options->range);
     if (status == STARG_OK && options->engine >= STARG_VISIBILITY_CONTOURS &&
         count > 1) /* one does not pay for it */
         status = scene_add_adjacency(*out);
