@@ -202,6 +202,9 @@ static starg_status run_unseen(cli_session *session, values *v, const double *fr
     uint8_t *state = NULL;
     CLI_TRY(starg_unseen(session->context, session->solid, &v->view, 0, v->work, &state));
     tell_states(session, session->solid, state, fractions);
+    if (session->report != NULL)
+        cli_put(session, session->report, "options",
+                cli_json_record(session, starg_visibility_options_fields(), &v->view));
     if (v->output != NULL)
         CLI_TRY(write_states(session, v, session->solid, state));
 done:

@@ -9,10 +9,10 @@
 /* What an option takes. */
 static const char *kind_name(starg_field_kind kind) {
     static const char *const names[] = {
-        [STARG_FIELD_FLAG] = "flag",  [STARG_FIELD_COUNT] = "count",
-        [STARG_FIELD_REAL] = "real",  [STARG_FIELD_CHOICE] = "choice",
-        [STARG_FIELD_TEXT] = "text",  [STARG_FIELD_PLACES] = "points",
-        [STARG_FIELD_TEXTS] = "texts"};
+        [STARG_FIELD_FLAG] = "flag",   [STARG_FIELD_COUNT] = "count",
+        [STARG_FIELD_REAL] = "real",   [STARG_FIELD_CHOICE] = "choice",
+        [STARG_FIELD_TEXT] = "text",   [STARG_FIELD_PLACES] = "points",
+        [STARG_FIELD_TEXTS] = "texts", [STARG_FIELD_NUMBERS] = "numbers"};
     return names[kind];
 }
 

@@ -3,6 +3,7 @@
 #ifndef STARGUARD_SAMPLE_H
 #define STARGUARD_SAMPLE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "context.h"
@@ -18,6 +19,7 @@ typedef struct starg_sample_info {
     const char *name;        /* lower case, for example "horse"                             */
     const char *description; /* one line                                                    */
     int poses;               /* 1 for rigid solids; poses of one sample share connectivity  */
+    bool scene;              /* not one embedded shell: shells that touch or overlap, open sheets */
 } starg_sample_info;
 
 STARG_API size_t starg_sample_count(void);

@@ -38,13 +38,13 @@ typedef struct starg_visibility_options {
     starg_visibility_engine engine;
     starg_target target;       /* meaning of the columns of the result */
     starg_face_rule face_rule; /* for STARG_TARGET_FACES                            */
-    double range; /* largest distance of vertices (all three of a face); INFINITY: unlimited */
-    double near;  /* smallest distance of vertices (all three of a face) */
+    double range;     /* largest distance of vertices (all three of a face); INFINITY: unlimited */
+    double near;      /* smallest distance of vertices (all three of a face) */
     double incidence; /* of faces: largest angle in degrees, up to 90, between their normal and the
-                         line to the point, at each corner and so at every point of the face */
-    double cone;  /* full opening angle in degrees, above 0; 360: all directions. A vertex is in the
-                     cone if the cosine of its angle to the direction is at least that of half the
-                     opening. With STARG_FACES_WHOLE at most 180, or 360 */
+                         line to the point, at each corner and so at every point; 0: any */
+    double cone; /* full opening angle in degrees, above 0; 360: all directions. A vertex is in the
+                    cone if the cosine of its angle to the direction is at least that of half the
+                    opening. With STARG_FACES_WHOLE at most 180, or 360 */
     double fov[2]; /* horizontal and vertical opening in degrees, below 180, of a rectangular view:
                       a vertex is in it if it is on the positive side of the planes of
                       starg_frustum, or in them; both 0: not rectangular */
@@ -63,9 +63,12 @@ STARG_API const starg_fields *starg_visibility_options_fields(void);
 /* The cosine of half an opening angle in degrees, as used by the test. */
 STARG_API double starg_cone_cosine(double degrees);
 
+/* The cosine of an incidence, as used by the test; 0: any. */
+STARG_API double starg_incidence_cosine(double degrees);
+
 /* The normals of the four planes through the point of a rectangular view, of about unit length, as
- * used by the test: left, right, below and above of a direction. Right is direction x up; where that
- * is zero, the first of the axes y, z and x that makes it not zero stands in for up. */
+ * used by the test: left, right, below and above of a direction. Right is direction x up; where
+ * that is zero, the first of the axes y, z and x that makes it not zero stands in for up. */
 STARG_API void starg_frustum(const double direction[3], const double up[3], const double fov[2],
                              double planes[4][3]);
 
@@ -81,9 +84,9 @@ STARG_API starg_status starg_visibility(starg_context *context, const starg_soli
  * first): a matrix of count rows with one column per face (or vertex). A 0 proves that no interior
  * point of the solid in the closed box sees it. A 1 is conservative: smaller boxes give fewer false
  * ones. Only the options `target` and `range` are used; faces visible by either rule are included;
- * what looks in one direction is an error. `options` may be NULL. Parallel over the boxes. Errors: ARGUMENT (range
- * negative or NaN, a cone, a box with corners that are not finite or in the wrong order), MEMORY,
- * CANCELLED, TIME. */
+ * what looks in one direction is an error. `options` may be NULL. Parallel over the boxes. Errors:
+ * ARGUMENT (range negative or NaN, a cone, a box with corners that are not finite or in the wrong
+ * order), MEMORY, CANCELLED, TIME. */
 STARG_API starg_status starg_visibility_region(starg_context *context, const starg_solid *solid,
                                                const double *boxes, size_t count,
                                                const starg_visibility_options *options,

@@ -22,7 +22,7 @@ from .descriptors import (NO_CLASS, Descriptor, Reconstruction, Retrieval, Signa
                           signatures)
 from .errors import (ArgumentError, CancelledError, Error, FormatError, MeshError, OutOfMemoryError,
                      RangeError, ReadError, SolverError, TimeLimitError, WriteError)
-from .guards import Guards, GuardLevel, candidate_points, guard, points_from_bytes, read_points
+from .guards import Guards, GuardLevel, candidate_points, guard, points_from_bytes, read_points, unseen
 from .kernels import Kernel, kernel
 from .mesh import NO_VERTEX, Check, Finding, Level, Mesh, RepairReport, as_mesh
 from .morphs import (FrameMeasures, Morph, SurfaceMap, animation_from_bytes, map_surface,
@@ -51,6 +51,6 @@ __all__ = [
     "describe", "directions", "distances", "distinct_colors", "guard", "is_descriptor",
     "is_tetrahedral", "kernel", "logger", "map_surface", "match", "page_available", "picture",
     "points_from_bytes", "read_animation", "read_landmarks", "read_points", "read_result", "retrieval", "sample", "samples", "signature",
-    "signatures", "skeleton", "tetrahedralize", "verify", "visible", "visible_from_box",
+    "signatures", "skeleton", "tetrahedralize", "unseen", "verify", "visible", "visible_from_box",
     "write_animation", "write_chart", "write_matrix_picture", "write_page", "write_picture", "write_picture_sheet",
     "write_scene"]

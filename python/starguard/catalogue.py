@@ -42,7 +42,8 @@ def samples() -> list[SampleInfo]:
 
 @takes(_OPTIONS)
 def sample(name: str, *, progress: Progress | None = None, **options: Unpack[SampleOptions]) -> Mesh:
-    """Generates a sample: a closed, outward oriented, embedded mesh.
+    """Generates a sample: a closed, outward oriented, embedded mesh, or a scene ("office", "level",
+    "statue").
 
     >>> import starguard
     >>> starguard.sample("dog", pose=2, vertices=1000)

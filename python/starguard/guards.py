@@ -157,6 +157,13 @@ class Guards:
         session.call(lib.starg_guards_write, session.context, self._handle,
                      _arrays.path(name) if name is not None else ffi.NULL, _arrays.path(path))
 
+    def write_poses(self, path: PathLike) -> None:
+        """Writes poses for other programs, as CSV or JSON by the extension (docs/formats.md)."""
+        session = Session()
+        name = os.fsdecode(path)
+        session.call(lib.starg_guards_write_poses, session.context, self._handle,
+                     name.lower().endswith(".csv"), _arrays.path(path))
+
 
 def _certified(session: Session, path: PathLike, solid: Any, wanted: Any, **call: Any) -> Any:
     """Guards, and the file that says why their bound holds."""
@@ -214,6 +221,28 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
                               session.context, solid._handle, wanted.pointer, shared=True,
                               progress=progress, time_limit=time_limit)
     return Guards._of(handle, solid.mesh.file)
+
+
+def unseen(model: Any, *, clearance: float = 0.0, work: int = 30_000_000, threads: int | None = None,
+           time_limit: float | None = None, progress: Progress | None = None) -> Array:
+    """For each face: 0 if some point of the free space sees it, 1 if none does, proven, 2 if neither is
+    known, 3 if it need not be seen. `work` is a budget, about a microsecond each.
+
+    >>> import starguard
+    >>> room = starguard.sample("l-room", vertices=500)
+    >>> int(starguard.unseen(room).max())
+    0
+    """
+    solid = as_solid(model)
+    session = Session(threads)
+    out = ffi.new("uint8_t **")
+    session.call(lib.starg_unseen, session.context, solid._handle, ffi.NULL, clearance, work, out,
+                 progress=progress, time_limit=time_limit)
+    faces = lib.starg_space_model_faces(solid._handle)
+    try:
+        return np.frombuffer(ffi.buffer(out[0], faces), np.uint8).copy()
+    finally:
+        lib.starg_unseen_free(session.context, out[0])
 
 
 def name_of(file: PathLike | None) -> str | None:
@@ -274,7 +303,7 @@ def _read_points(session: Session, function: Any, *arguments: Any) -> Array:
     poses = ffi.new("starg_poses *")
     try:
         session.call(function, session.context, *arguments, poses)
-        blocks = [_arrays.view(None, block, (poses.count, 3), np.float64)
+        blocks = [np.frombuffer(ffi.buffer(block, 24 * poses.count)).reshape(-1, 3)
                   for block in (poses.points, poses.directions, poses.ups) if block]
         return np.hstack(blocks[:3 if len(blocks) == 3 and blocks[2].any() else 2])
     finally:

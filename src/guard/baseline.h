@@ -10,8 +10,8 @@ bool baseline_holds(const starg_mesh *mesh, size_t face, double cosine, const do
                     const double q[3]);
 
 /* Adds candidates to a choice until two guards that are the baseline apart see each face, as far as
- * candidates allow, and takes those out that are not needed then. Nothing without a baseline. Errors:
- * MEMORY, CANCELLED. */
+ * candidates allow, and takes those out that are not needed then. Nothing without a baseline.
+ * Errors: MEMORY, CANCELLED. */
 starg_status baseline_guards(const guard_problem *problem, const guard_pool *pool,
                              guard_selection *selection);
 

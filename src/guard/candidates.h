@@ -9,8 +9,8 @@
 #include "starguard/guard.h"
 #include "visibility/sensor.h"
 
-/* Points of three doubles; data.count is three times their number. Where views are directed each has
- * a direction as well, and what is up for it (0: what the options say); else both are empty. */
+/* Points of three doubles; data.count is three times their number. Where views are directed each
+ * has a direction as well, and what is up for it (0: what the options say); else both are empty. */
 typedef struct candidate_points {
     STARG_ARRAY(double) data, directions, ups;
 } candidate_points;
@@ -19,10 +19,10 @@ static inline size_t candidates_count(const candidate_points *points) {
     return points->data.count / 3;
 }
 
-/* `direction` is NULL where views are not directed, `up` where the options say it. Errors: MEMORY. */
+/* `direction` is NULL where views are not directed, `up` where the options say it. Errors: MEMORY.
+ */
 starg_status candidates_push_pose(starg_context *context, candidate_points *points,
-                                  const double p[3], const double direction[3],
-                                  const double up[3]);
+                                  const double p[3], const double direction[3], const double up[3]);
 starg_status candidates_push(starg_context *context, candidate_points *points, const double p[3],
                              const double direction[3]);
 void candidates_free(starg_context *context, candidate_points *points);

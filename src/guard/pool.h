@@ -42,9 +42,9 @@ static inline const double *pool_up(const guard_pool *pool, size_t candidate) {
     return pool->points.ups.count > 0 ? pool->points.ups.data + 3 * candidate : NULL;
 }
 
-/* Adds points and their rows. Where views are directed, points without directions look in all of them
- * (guard/directions.c). Those that the time limit leaves unfinished are left out.
- * Errors: MEMORY, CANCELLED. */
+/* Adds points and their rows. Where views are directed, points without directions look in all of
+ * them (guard/directions.c). Those that the time limit leaves unfinished are left out. Errors:
+ * MEMORY, CANCELLED. */
 starg_status pool_add(guard_pool *pool, const candidate_points *points);
 
 /* The candidates from before augmentation, with the same indices, and what they see of another

@@ -62,7 +62,7 @@ verify_view verify_view_around(const starg_guards *guards) {
     return (verify_view){.range = o->range,
                          .near = o->near,
                          .rule = o->face_rule,
-                         .steepest = o->incidence < 90 ? starg_cone_cosine(2 * o->incidence) : 0};
+                         .steepest = starg_incidence_cosine(o->incidence)};
 }
 
 /* The view of a guard; a file without directions is wrong, which is told elsewhere. */
@@ -242,7 +242,7 @@ static void claim_options(starg_verdict *verdict, const starg_guards *guards) {
     const starg_visibility_options *view = &options->visibility;
     verify_claim(verdict,
                  view->range >= 0 && view->near >= 0 && view->near < view->range &&
-                     view->incidence > 0 && view->incidence <= 90 && options->coverage > 0 &&
+                     view->incidence >= 0 && view->incidence <= 90 && options->coverage > 0 &&
                      options->coverage <= 1 && options->clearance >= 0 && view->cone > 0 &&
                      view->cone <= 360 && are_aimed(guards),
                  "the options make sense: range %g, cone %g, coverage %g, clearance %g",

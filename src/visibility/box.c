@@ -399,8 +399,7 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
 static box_reason ask_sides(box_worker *w, const box_question *q, uint32_t face, bool recorded) {
     const starg_solid *solid = w->scene->solid;
     box_reason reason = ask_face(w, q, face, recorded);
-    if (reason.kind != BOX_OPEN && solid_is_two_sided(solid) &&
-        solid->other_side[face] != BOX_NONE)
+    if (reason.kind != BOX_OPEN && solid_is_two_sided(solid) && solid->other_side[face] != BOX_NONE)
         reason = ask_face(w, q, solid->other_side[face], recorded);
     return reason;
 }

@@ -61,7 +61,7 @@ extern const char *const visibility_face_rule_words[];
     {                                                                                              \
         .key = "incidence", .option = "incidence", .kind = STARG_FIELD_REAL,                       \
         .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE | STARG_FIELD_ABOVE,                      \
-        FIELD_MEMBER(T, MEMBER), .high = 90, .standard = 90, .value = "DEGREES",                   \
+        FIELD_MEMBER(T, MEMBER), .high = 90, .value = "DEGREES", .default_text = "any",                   \
         .help = "Faces count only where they are seen at most so far from their normal, at every " \
                 "point."                                                                           \
     }

@@ -38,8 +38,8 @@ typedef struct visibility_scene {
     bool cull;
 
     /* By rank: the least side at which a face has to be tested as a blocker. A triangle that stands
-     * twice blocks the same with either side, so that the one that faces away may be left out: 0. NULL:
-     * all alike, 1 if `cull`, else -1. */
+     * twice blocks the same with either side, so that the one that faces away may be left out: 0.
+     * NULL: all alike, 1 if `cull`, else -1. */
     int8_t *least;
 
     size_t vertex_count, face_count; /* vertex_count: those that faces use */
@@ -47,8 +47,8 @@ typedef struct visibility_scene {
     uint32_t *slot_of;               /* vertex of the mesh -> slot, or SCENE_NONE if unused   */
     const uint32_t *face_of;         /* rank -> face of the mesh, in spatial order            */
     uint32_t *corners;               /* rank x 3 -> slots                                     */
-    uint32_t *backs; /* rank -> rank of the other side, or SCENE_NONE; NULL: only fronts count */
-    double *x, *y, *z;               /* by slot                                               */
+    uint32_t *backs;   /* rank -> rank of the other side, or SCENE_NONE; NULL: only fronts count */
+    double *x, *y, *z; /* by slot                                               */
 
     /* Plane of each face by rank: normal . (centre - p) + offset is positive where p is inside. */
     double *nx, *ny, *nz, *offset;

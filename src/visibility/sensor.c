@@ -26,6 +26,10 @@ static void normalize(double v[3]) {
         v[k] /= length;
 }
 
+double starg_incidence_cosine(double degrees) {
+    return degrees > 0 && degrees < 90 ? cos(degrees * (2 * HALF_DEGREE)) : 0;
+}
+
 void sensor_frame(const double direction[3], const double up[3], double frame[3][3]) {
     double *right = frame[0], *above = frame[1], *ahead = frame[2];
     vec3_copy(direction, ahead);
@@ -62,7 +66,7 @@ sensor sensor_of(const starg_visibility_options *options) {
     own.conical = options->cone < 360;
     own.rectangular = options->fov[0] > 0;
     own.cosine = own.conical ? starg_cone_cosine(options->cone) : -1;
-    own.steepest = options->incidence < 90 ? starg_cone_cosine(2 * options->incidence) : 0;
+    own.steepest = starg_incidence_cosine(options->incidence);
     own.direction = NULL;
     return own;
 }
@@ -153,7 +157,7 @@ starg_status sensor_check(starg_context *context, const char *stage, size_t coun
                           "nothing is at least %g and at most %g away; the near distance must be "
                           "below the range",
                           o->near, o->range);
-    if (o->incidence < 90 && o->target == STARG_TARGET_VERTICES)
+    if (o->incidence > 0 && o->target == STARG_TARGET_VERTICES)
         return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
                           "vertices are seen from any side: a limited incidence is for faces");
     return sensor_is_directed(o) ? check_directions(context, stage, count, o) : STARG_OK;

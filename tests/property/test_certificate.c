@@ -53,7 +53,7 @@ static void find_known(subject *s) {
                 starg_bits_create(s->context, s->guards->count,
                                   k == 0 ? surface->vertex_count : surface->face_count, rows[k]));
     for (size_t g = 0; g < s->guards->count; g++) {
-        const verify_view view = verify_view_of(s->guards, NULL);
+        const verify_view view = verify_view_around(s->guards);
         test_ok(s->context,
                 verify_look(sight, s->guards->positions + 3 * g, &view, &seen[0], &seen[1]));
         for (int k = 0; k < 2; k++)

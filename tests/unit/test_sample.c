@@ -256,14 +256,9 @@ static long expected_euler(const char *name) {
     return 2;
 }
 
-/* These are no single embedded shell (scenes_are_what_they_say). */
-static bool is_scene(const char *name) {
-    return strcmp(name, "office") == 0 || strcmp(name, "level") == 0 || strcmp(name, "statue") == 0;
-}
-
 static void check_sample(starg_context *context, const starg_sample_info *info, int pose,
                          size_t vertex_count, double tolerance) {
-    if (is_scene(info->name))
+    if (info->scene) /* scenes_are_what_they_say */
         return;
     starg_mesh *mesh = make(context, info->name, pose, vertex_count);
     size_t crossings = count_crossings(mesh);

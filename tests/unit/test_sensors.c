@@ -143,7 +143,7 @@ static void test_bad_limits(void **state) {
     bad[6].near = 2;
     bad[6].range = 1;
     bad[7].near = -1;
-    bad[8].incidence = 0;
+    bad[8].incidence = -1;
     bad[9].incidence = 100;
     bad[10].incidence = 60;
     bad[10].target = STARG_TARGET_VERTICES;
