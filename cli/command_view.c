@@ -79,6 +79,8 @@ const cli_command cli_command_view = {
         "content, at most one of each kind:\n"
         "GUARDS.json: guards in the translucent model; click one to see what it covers; the "
         "coverage curve. The file names its model.\n"
+        "The certificate of its bound: the faces that prove it, and where guards may see their "
+        "share of them.\n"
         "PIECES.vtk and PIECES.json: coloured pieces, which can be exploded.\n"
         "A skeleton (.obj, .cg, .vtk of 'starguard skeleton') with its radii.\n"
         "A morph (the folder of 'starguard morph', or its .glb) with a time slider.\n"

@@ -15,7 +15,7 @@ enum { HEAD = 4096 }; /* bytes of a file that tell what it holds */
 
 typedef enum kind {
     KIND_MODEL,
-    KIND_RESULT, /* guards, pieces, a report of pieces */
+    KIND_RESULT, /* guards, a certificate, pieces, a report of pieces */
     KIND_SKELETON,
     KIND_FRAMES,
     KIND_ANIMATION,
@@ -38,7 +38,8 @@ static bool is_curve(FILE *file) {
 }
 
 static kind kind_of_content(const char *name, const char *head, size_t size, FILE *file) {
-    static const char database[] = "SQLite format 3", vtk[] = "# vtk", curve[] = "# D:";
+    static const char database[] = "SQLite format 3", vtk[] = "# vtk",
+                      curve[] = "# D:", certificate[] = "starguard-certificate";
     const char *first = head + strspn(head, " \t\r\n");
     if (size >= sizeof database && memcmp(head, database, sizeof database) == 0)
         return KIND_DATABASE;
@@ -48,7 +49,7 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
         return strstr(head, "DATASET POLYDATA") != NULL ? KIND_SKELETON : KIND_RESULT;
     if (strncmp(head, curve, sizeof curve - 1) == 0)
         return KIND_SKELETON;
-    if (*first == '{')
+    if (*first == '{' || strncmp(head, certificate, sizeof certificate - 1) == 0)
         return KIND_RESULT;
     if (cli_has_extension(name, ".csv"))
         return KIND_TABLE;
@@ -93,6 +94,12 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
             return fail_twice(session, "guards file", file);
         page->guards = result->guards;
         show->guards_file = file;
+    } else if (result->certificate != NULL) {
+        if (show->proof != NULL)
+            return fail_twice(session, "certificate", file);
+        status =
+            starg_certificate_outline_create(session->context, result->certificate, &show->proof);
+        page->proof = show->proof;
     } else if (result->pieces != NULL) {
         if (page->pieces != NULL)
             return fail_twice(session, "pieces file", file);
@@ -103,7 +110,7 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
         page->report = result->report;
         show->report_file = file;
     }
-    return STARG_OK;
+    return status;
 }
 
 static starg_status take_animation(cli_session *session, const char *file, cli_show *show) {
@@ -339,6 +346,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
     free(show->radii);
     starg_skeleton_free(context, show->skeleton);
     starg_bits_free(show->seen);
+    starg_certificate_outline_free(context, show->proof);
     starg_solid_free(show->solid);
     starg_mesh_free(show->model);
     starg_tetmesh_free(show->tetmesh);

@@ -15,6 +15,7 @@ typedef struct cli_show {
     starg_mesh *model, **frames;
     starg_solid *solid;
     starg_bits *seen;
+    starg_certificate_outline *proof;
     starg_result **results;             /* one for each operand, or NULL */
     starg_skeleton *skeleton, measured; /* as read; with radii */
     double *radii;

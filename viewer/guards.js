@@ -2,15 +2,17 @@
 // Guards: points inside the glass model; what one sees is painted when it is picked, and what the
 // first few see when the slider moves.
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";
-import page, { bytes, floats } from "./data.js";
+import page, { bytes, floats, indices } from "./data.js";
 import { coverageCurve } from "./curve.js";
 import { element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
 import { PickPoints } from "./points.js";
+import { Proof } from "./proof.js";
 import { amount, count, percent, point } from "./text.js";
 import { themeColor } from "./theme.js";
 import { following, View } from "./view.js";
 
 const POINTER = 0.14; // length of the line that shows where a guard looks
+const NONE = new Set();
 const METHODS = { pilp: "progressive", ilp: "integer program", greedy: "greedy" };
 
 export class GuardsView extends View {
@@ -31,6 +33,10 @@ export class GuardsView extends View {
         this.first = told.list.length;
         this.objects = [this.points.object];
         if (told.list[0]?.direction) this.objects.push((this.pointers = this.makePointers()));
+        if (told.proof) {
+            this.proof = new Proof(told.proof, indices("model-faces"), () => this.update());
+            this.objects.push(this.proof.object);
+        }
         this.node = this.makePanel();
         this.update();
     }
@@ -75,6 +81,7 @@ export class GuardsView extends View {
 
     applyTheme() {
         this.pointers?.material.color.set(themeColor("text"));
+        this.proof?.applyTheme();
     }
 
     // ---- panel ----
@@ -93,6 +100,7 @@ export class GuardsView extends View {
         });
         const node = element("div", {}, this.makeFacts());
         if (number > 0 && told.list[0].covered) node.append(...this.makeCurve());
+        if (this.proof) node.append(this.proof.node);
         node.append(heading("Pick a guard to see what it sees"), this.list.node);
         this.place = note("");
         node.append(this.place);
@@ -204,7 +212,7 @@ export class GuardsView extends View {
             const viewers = this.firstViewers();
             this.surface.paint((f) => (viewers[f] < this.first ? viewers[f] : -1), this.unseen);
         } else {
-            this.surface.paint(null, this.unseen);
+            this.surface.paint(null, this.unseen, this.proof?.shown ? this.proof.faces : NONE);
         }
     }
 

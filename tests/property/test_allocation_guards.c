@@ -271,6 +271,8 @@ static starg_status guards(starg_context *context) {
     FAILING_BY(starg_guard_certified, "", certified(context));
     FAILING_MAKES(starg_certificate_read_memory, "", starg_certificate, starg_certificate_free(out),
                   why_text.data, why_text.size, "c");
+    FAILING_MAKES(starg_certificate_outline_create, "", starg_certificate_outline,
+                  starg_certificate_outline_free(context, out), why);
     FAILING_MAKES(starg_verify_guards_with, "", starg_verdict, starg_verdict_free(context, out),
                   in.room, &(starg_guards_evidence){.certificate = why}, proven);
     FAILING(starg_certificate_write, "", why_text.data, why_text.size, failing_output("c.txt"));

@@ -249,12 +249,22 @@ static void guards_and_what_they_see(void **state) {
     starg_bits *seen = NULL;
     test_ok(context, starg_visibility(context, solid, guards->positions, guards->count,
                                       &guards->options.visibility, &seen));
-    const starg_page page = {.model = mesh, .guards = guards, .seen = seen};
+    uint32_t witnesses[] = {7, 3};
+    double cells[] = {0, 0, 0, 1, 1, 1, 1, 0, 0, 1.5, 0.5, 1};
+    const starg_certificate_outline proof = {.vertex_count = guards->vertex_count,
+                                             .face_count = guards->face_count,
+                                             .bound = 2,
+                                             .witness_count = 2,
+                                             .witnesses = witnesses,
+                                             .cell_count = 2,
+                                             .cells = cells};
+    const starg_page page = {.model = mesh, .guards = guards, .seen = seen, .proof = &proof};
     char *text = write_page(context, &page);
     size_t size, faces = starg_mesh_face_count(mesh), row = (faces + 7) / 8;
     check_points(text, "model-points", starg_mesh_vertices(mesh), starg_mesh_vertex_count(mesh));
     check_indices(text, "model-faces", starg_mesh_faces(mesh), 3 * faces);
     check_points(text, "guard-points", guards->positions, guards->count);
+    check_points(text, "proof-cells", cells, 4);
     uint8_t *bits = decode(text, "guard-seen", &size);
     assert_int_equal(size, guards->count * row);
     for (size_t g = 0; g < guards->count; g++)
@@ -267,6 +277,9 @@ static void guards_and_what_they_see(void **state) {
         assert_int_equal(json_integer_value(json_object_get(
                              json_array_get(json_object_get(told, "list"), g), "faces")),
                          guards->seen_faces[g]);
+    json_t *why = json_object_get(told, "proof");
+    assert_int_equal(json_integer_value(json_object_get(why, "bound")), 2);
+    assert_int_equal(json_integer_value(json_array_get(json_object_get(why, "witnesses"), 1)), 3);
     json_decref(data);
     free(bits);
     free(text);
@@ -494,6 +507,10 @@ static void parts_that_do_not_fit(void **state) {
     expect_refused(context, &(starg_page){.model = mesh, .guards = guards, .seen = bits},
                    "one row");
     expect_refused(context, &(starg_page){.guards = guards, .seen = bits}, "one row");
+    const starg_certificate_outline proof = {.vertex_count = 3, .face_count = 1};
+    expect_refused(context, &(starg_page){.model = mesh, .proof = &proof}, "needs its guards");
+    expect_refused(context, &(starg_page){.model = mesh, .guards = guards, .proof = &proof},
+                   "certificate belongs to a model with 3 vertices");
     const starg_mesh *frames[] = {mesh, other};
     expect_refused(context, &(starg_page){.frames = frames, .frame_count = 1}, "one frame");
     expect_refused(context, &(starg_page){.frames = frames, .frame_count = 2}, "frame 1");
