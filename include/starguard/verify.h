@@ -101,6 +101,7 @@ typedef struct starg_pieces_mesh {
     double *vertices;     /* vertex_count x 3           */
     uint32_t *tetrahedra; /* count x 4                  */
     int32_t *labels;      /* count: the piece of each   */
+    double *corners;      /* count x 4 x 3: images of the corners in balls, or NULL */
 } starg_pieces_mesh;
 
 /* The contents of PIECES.json. */
@@ -118,6 +119,9 @@ typedef struct starg_pieces_report {
     double distance;      /* largest distance from the boundary to the model's surface */
     double distance_back; /* and back; infinite if not given */
     double flattest;      /* least height over longest edge of a tetrahedron; 0: not given */
+    /* Maps to balls; the rest only if there are any. */
+    bool balls;
+    double ball_worst, ball_mean, ball_above_10;
 } starg_pieces_report;
 
 /* Reads PIECES.vtk with a separate reader: a legacy VTK unstructured grid of tetrahedra with the

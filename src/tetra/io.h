@@ -12,6 +12,7 @@ typedef struct tet_builder {
     starg_mesh_builder points; /* its vertices, ticks and source; it gets no faces */
     STARG_ARRAY(uint32_t) tetrahedra;
     STARG_ARRAY(int32_t) regions; /* one per tetrahedron */
+    double *corners;              /* twelve numbers per tetrahedron, or NULL */
 } tet_builder;
 
 /* Room for so many, which the caller has checked against the size of the source. */

@@ -31,6 +31,9 @@ starg_status verify_claim_numbers(const verify_context *own);
 /* Star-shapedness, and what guards see; only with good labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_stars(const verify_context *own);
 
+/* Maps of pieces to balls, if there are any. Errors: MEMORY. */
+starg_status verify_claim_balls(const verify_context *own);
+
 /* ---- words for elements ---- */
 
 typedef struct verify_words {

@@ -14,7 +14,7 @@
  *
  * Order: the shortest merge first, so that what sticks out stays for long.
  * Cost: O(degree^2) for each removal with its neighbourhood, O(log n) for the queue. */
-#include "morph/rings.h"
+#include "sphere/rings.h"
 
 #include <math.h>
 #include <string.h>

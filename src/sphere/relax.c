@@ -16,7 +16,7 @@
  * A vertex goes down the gradient in its tangent plane, by the longest of some halved steps that
  * lowers the energy of its triangles. No rounding decides validity: the triangles about the new
  * place must pass the exact predicate. Cost: O(edges) a sweep. */
-#include "morph/relax.h"
+#include "sphere/relax.h"
 
 #include <math.h>
 
