@@ -20,7 +20,7 @@ static bool is_standard(const char *path) {
     return strcmp(path, "-") == 0;
 }
 
-/* Reads the stream to its end into a growing block; the files that matter are read in one go. */
+/* Reads a stream to its end into a growing block; typical files take one read. */
 static starg_status slurp(starg_context *context, const char *stage, const char *path, FILE *file,
                           size_t expected, char **bytes, size_t *size) {
     starg_status status = STARG_OK;
@@ -142,8 +142,7 @@ static void forget(starg_output *output) {
     *output = (starg_output){.context = output->context, .stage = output->stage};
 }
 
-/* A write has failed and its errno is lost: another write, which nobody will read, sets it again.
- */
+/* The errno of an earlier failed write is lost; writing once more sets it again. */
 static int ask_for_reason(FILE *stream) {
     static const char block[1 << 14];
     clearerr(stream);
