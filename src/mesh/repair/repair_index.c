@@ -12,7 +12,7 @@ starg_status repair_index_create(const repair_state *state, repair_index *index)
     *index = (repair_index){.state = state, .tracked = repair_face_count(state)};
     STARG_NEW(state->context, REPAIR_STAGE, index->vertices, state->vertices.count);
     STARG_NEW(state->context, REPAIR_STAGE, index->faces, state->faces.count);
-    if (index->tracked != 0) { /* else the arrays may be NULL */
+    if (index->tracked != 0) { /* otherwise the arrays may be NULL */
         memcpy(index->vertices, state->vertices.data, state->vertices.count * sizeof(double));
         memcpy(index->faces, state->faces.data, state->faces.count * sizeof(uint32_t));
     }
