@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows are gone through in strips of a cache line, and of those only the columns that have a
- * multiplier at all: once the method has run for a while most have none. */
+/* Rows are scanned in strips of a cache line, restricted to columns with a nonzero multiplier:
+ * after some steps most are zero. */
 enum { STRIP = 8 };
 
-/* Bits of the columns of a strip whose multiplier is not zero. */
+/* Bits of a strip's columns with nonzero multipliers. */
 static void mark_strip(const cover_instance *instance, const int64_t *multipliers, size_t first,
                        size_t count, uint64_t *marks) {
     for (size_t k = 0; k < count; k++) {
@@ -49,7 +49,7 @@ int64_t cover_dual_value(const cover_instance *instance, const int64_t *multipli
     return value;
 }
 
-/* The multiplier of one column that uses up the smallest reduced cost among its rows. */
+/* Raises the multiplier of one column until the smallest reduced cost among its rows is zero. */
 static int64_t raise_column(const cover_instance *instance, size_t column, int64_t *left) {
     int64_t least = COVER_ONE;
     const uint64_t *rows = cover_column(instance, column);
