@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Samples under the moves of mesh/halfedges.h.
  *
- * Invariants: every point has a depth, which grows by one with each cut and never beyond MAX_DEPTH;
- * points whose faces change become dirty. */
+ * Invariants: every point has a depth, which grows by one per cut, up to MAX_DEPTH; points whose
+ * faces change become dirty. */
 #include "skeleton/sample_mesh.h"
 
 static const char STAGE[] = "surface samples";

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Surface samples by subdivision: edges are split in the middle, each decided by itself, and a face
- * is cut into two, three or four by the edges of it that are. So the result is again a closed mesh
+/* Surface samples by subdivision: edges are split at their midpoints, each independently, and a
+ * face is cut into two, three or four according to its split edges. So the result is a closed mesh
  * of the same topology, whatever is split.
  *
- * Cost: linear in the result for each round; a round halves what is too long. */
+ * Cost: linear in the result for each round; a round halves long edges. */
 #include "skeleton/samples.h"
 
 #include "geometry/vec3.h"
@@ -11,10 +11,10 @@
 
 static const char STAGE[] = "surface samples";
 
-/* Long thin faces would ask for far more points than wanted. */
+/* Long thin faces would need far more points than wanted. */
 enum { MAX_ROUNDS = 24, MOST_ADDED = 2 };
 
-/* Numbers the edges to be split; each appears in two faces and is asked for once. */
+/* Numbers the edges to split; each occurs in two faces and is tested once. */
 static starg_status number_splits(starg_context *context, const surface_samples *samples,
                                   samples_split *split, void *user, edge_table *table) {
     starg_status status = edge_table_make(context, STAGE, samples->face_count * 3 / 2, table);
@@ -47,7 +47,7 @@ static uint32_t *push_face(uint32_t *out, uint32_t a, uint32_t b, uint32_t c) {
     return out + 3;
 }
 
-/* A quadrilateral is cut along its shorter diagonal. */
+/* Cuts a quadrilateral along its shorter diagonal. */
 static uint32_t *push_quad(uint32_t *out, const double *points, const uint32_t q[4]) {
     double first = vec3_distance_squared(points + 3 * (size_t)q[0], points + 3 * (size_t)q[2]);
     double second = vec3_distance_squared(points + 3 * (size_t)q[1], points + 3 * (size_t)q[3]);
@@ -75,7 +75,7 @@ static uint32_t *cut_face(uint32_t *out, const double *points, const uint32_t v[
         out = push_face(out, v[k], m[k], v[(k + 2) % 3]);
         return push_face(out, m[k], v[(k + 1) % 3], v[(k + 2) % 3]);
     }
-    while (m[k] != EDGE_NONE) /* the edge that stays */
+    while (m[k] != EDGE_NONE) /* to the edge that is not split */
         k++;
     uint32_t next = m[(k + 1) % 3], last = m[(k + 2) % 3];
     out = push_face(out, next, v[(k + 2) % 3], last);
@@ -152,7 +152,7 @@ starg_status samples_create(starg_context *context, const starg_solid *solid, si
     starg_status status = STARG_OK;
     *samples = (surface_samples){0};
     STARG_TRY(copy_mesh(context, solid->mesh, samples));
-    /* Twice the edge of equilateral triangles that share the area evenly. */
+    /* twice the edge of equilateral triangles that share the area evenly */
     length_rule rule = {samples, 2 * sqrt(1.1547 * solid->check->area / (double)wanted)};
     size_t splits = 1;
     size_t most = solid->mesh->vertex_count + MOST_ADDED * wanted;
