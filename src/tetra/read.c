@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading a tetrahedral mesh of any format; the format is recognized by content. TetGen's pair
- * of files has none, and is known by its name. */
+/* Reads a tetrahedral mesh of any format, recognized by content; TetGen's pair of files by name. */
 #include "core/file.h"
 #include "core/memory.h"
 #include "tetra/io.h"
@@ -30,7 +29,7 @@ bool starg_tetmesh_recognized(const void *bytes, size_t size, const char *name) 
     return is_tetgen(name) || detect(&source) != NULL;
 }
 
-/* Long names are shown by their ends, so that a message has room for what it says. */
+/* Shortens long names to their ends, to leave room for the message. */
 static void show_name(const char *name, char *shown, size_t size) {
     size_t length = strlen(name);
     if (length < size)
@@ -39,7 +38,7 @@ static void show_name(const char *name, char *shown, size_t size) {
         snprintf(shown, size, "...%s", name + length - (size - 4));
 }
 
-/* Runs one reader on sources whose names are short enough to be shown. */
+/* Runs a reader on sources with shortened names. */
 static starg_status read_source(const starg_source *source, const starg_source *elements,
                                 starg_tetmesh **out) {
     starg_status status = STARG_OK;
