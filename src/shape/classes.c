@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Classes of models: from their file names, or from a text. */
+/* Classes of models, from their file names or from a text. */
 #include <stdlib.h>
 
 #include "core/file.h"
@@ -11,7 +11,7 @@ static const char BLANKS[] = " \t\r";
 
 /* ---- from words ---- */
 
-/* A model and the word of its class, which is a part of a longer text. */
+/* A model and its class word, a part of a longer text. */
 typedef struct naming {
     const char *word;
     size_t size;
@@ -42,7 +42,7 @@ done:
     return status;
 }
 
-/* Sorts the namings and numbers the different words. */
+/* Sorts the entries and numbers the distinct words. */
 static starg_status make_classes(starg_context *context, naming *namings, size_t count,
                                  size_t model_count, starg_classes **out) {
     starg_status status = STARG_OK;
@@ -129,7 +129,7 @@ done:
     return status;
 }
 
-/* The class is the last word, the model all before it. */
+/* The class is the last word, the model everything before it. */
 static starg_status read_line(reading *r, char *line) {
     line += strspn(line, BLANKS);
     size_t size = strlen(line);
