@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Maps between surfaces, the first of the steps of section 5.2 of [YL11].
+/* Maps between surfaces, the first step of section 5.2 of [YL11].
  *
- * Stages for surfaces of genus 0 with different faces: check both; spread both over the sphere
- * (sphere.c); turn one onto the other (align.c); warp it until the landmarks are met (landmarks.c);
- * find the vertices of the one among the faces of the other (locate.c). The composition of the
- * spread of A and the inverse of that of B is a bijection of the surfaces. */
+ * Stages for surfaces of genus 0 with different faces: check both; embed both in the sphere
+ * (sphere.c); rotate one to match the other (align.c); warp it until the landmarks are met and
+ * optimize the composed map (compose.c); locate the vertices of one in the faces of the other
+ * (locate.c). Composing the embedding of A with the inverse of that of B gives a bijection of the
+ * surfaces. */
 #include "morph/map.h"
 
 #include <math.h>
@@ -18,7 +19,7 @@
 #include "morph/landmarks.h"
 
 static const char STAGE[] = "map";
-enum { SAME_SHARE = 20 }; /* one face in so many may differ between poses */
+enum { SAME_SHARE = 20 }; /* fraction of faces that may differ between poses: one in so many */
 
 void starg_map_options_default(starg_map_options *options) {
     *options = (starg_map_options){0};
@@ -196,7 +197,7 @@ static starg_status spread_surface(starg_context *context, const starg_mesh *mes
                                    spread *out) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
-    /* it may meet itself: only what its faces share counts */
+    /* it may touch itself: only shared topology counts */
     STARG_TRY(solid_make_in_time(context, mesh, &solid));
     STARG_TRY(check_surface(context, starg_solid_check(solid), name));
     STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
@@ -211,7 +212,7 @@ static void spread_free(spread *s) {
     starg_mesh_free(s->unit);
 }
 
-/* A face with that vertex as a corner. */
+/* A face with the vertex as a corner. */
 static void at_vertex(const starg_mesh *b, uint32_t vertex, uint32_t *face, double coordinates[3]) {
     uint32_t corner = 0;
     while (b->faces[corner] != vertex)
@@ -221,7 +222,7 @@ static void at_vertex(const starg_mesh *b, uint32_t vertex, uint32_t *face, doub
         coordinates[k] = k == corner % 3;
 }
 
-/* Coordinates found for the corners of a face of the solid, as corners of the same face of B. */
+/* Converts coordinates for a face of the solid to the corner order of the same face of B. */
 static void reorder(const starg_mesh *solid, const starg_mesh *b, uint32_t face,
                     double coordinates[3]) {
     double found[3];
@@ -252,7 +253,7 @@ done:
     return status;
 }
 
-/* The pairs as two lists. */
+/* Splits the pairs into two lists. */
 static starg_status split_landmarks(starg_context *context, const starg_map_options *options,
                                     uint32_t **lists, landmark_list *out) {
     starg_status status = STARG_OK;
@@ -265,8 +266,8 @@ done:
     return status;
 }
 
-/* Composes both spreads. Without landmarks the ends of limbs are brought together where that can be
- * done; they are a guess, so that what they contradict is no error. */
+/* Composes both embeddings. Without landmarks, extremities are matched if possible; they are
+ * guesses, so contradictions between them are not an error. */
 static starg_status compose(sphere *from, const locator *to, const landmark_list *marks,
                             const feature_pairs *features) {
     starg_status status = STARG_OK;

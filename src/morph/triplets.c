@@ -13,8 +13,7 @@ triplet *triplets_put_edge(uint32_t a, uint32_t b, double w, triplet *next) {
     return next;
 }
 
-/* By columns, in the order given: a counting sort whose starts are one place ahead while it runs.
- */
+/* Counting sort by columns, stable; its starts are one place ahead while it runs. */
 static void lay_out(const triplet *triplets, size_t count, sparse_matrix *m) {
     for (size_t i = 0; i < count; i++)
         m->starts[triplets[i].column + (size_t)2]++;
