@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The claims that hold for any labelled tetrahedra: each is positive, triangles fit together,
- * labels are complete, pieces are connected. Signs are exact. Cost: O(n). */
+/* Claims for any labelled tetrahedra: each is positive, triangles fit together, labels are
+ * complete, pieces are connected. Signs are exact. Cost: O(n). */
 #include <stdio.h>
 
 #include "core/memory.h"
