@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Each script is a table in the shell's own words: for every command its options, what each of them
- * takes, and what the operands are. What an option takes is known by its kind: a choice has its
- * words, text is a file or one of the lower-case words of its form ("skeleton|medial|FILE"), and
- * for a number nothing can be offered. */
+/* Each script is a table in the shell's own syntax: for every command its options, their values,
+ * and its operands. Values follow from the option's kind: a choice has its words, a text is a file
+ * or one of the lower-case words of its form ("skeleton|medial|FILE"), and numbers have no
+ * suggestions. */
 #include "completion.h"
 
 #include <string.h>
