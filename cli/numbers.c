@@ -45,7 +45,7 @@ bool cli_number_list(const char *word, double *values, int count) {
 }
 
 double cli_percent(double fraction) {
-    double hundredths = floor(1e4 * fraction); /* rounding of the product may put it one off */
+    double hundredths = floor(1e4 * fraction); /* the product is rounded and may be one off */
     if ((hundredths + 1) / 1e4 <= fraction)
         hundredths++;
     else if (hundredths / 1e4 > fraction)
