@@ -92,7 +92,7 @@ static starg_status cut(cli_session *session, const subject *s,
     return status;
 }
 
-/* ---- what was found ---- */
+/* ---- report ---- */
 
 static size_t count_single(const starg_decomposition *d) {
     size_t count = 0;

@@ -38,7 +38,7 @@ done:
     return status;
 }
 
-/* ---- what was found ---- */
+/* ---- report ---- */
 
 static void tell(cli_session *session, const starg_descriptor *d, const starg_reconstruction *r) {
     cli_say(session, "guards        %zu, joined by %zu edges\n", d->guard_count, d->edge_count);

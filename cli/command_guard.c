@@ -50,7 +50,7 @@ static const cli_option options[] = {
     CLI_PLACE_OPTIONS,
 };
 
-/* ---- what was asked for ---- */
+/* ---- options ---- */
 
 /* Recognizes a known source, or reads a file of points. A bare word that names no file is an error
  * in the command line. */
@@ -87,7 +87,7 @@ static starg_status take_candidates(cli_session *session, const char *word,
     return status;
 }
 
-/* ---- what was found ---- */
+/* ---- report ---- */
 
 static void say_bound(cli_session *session, const starg_guards *g) {
     size_t gap = g->count - g->lower_bound;

@@ -91,7 +91,7 @@ done:
     return status;
 }
 
-/* ---- what was asked for ---- */
+/* ---- options ---- */
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
@@ -415,7 +415,7 @@ done:
     return status;
 }
 
-/* ---- what was made ---- */
+/* ---- report ---- */
 
 static json_t *guards_json(cli_session *session, const starg_morph *morph, int end) {
     json_t *list = json_array();

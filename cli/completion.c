@@ -9,7 +9,7 @@
 
 #include "completion_parts.h"
 
-/* ---- what can be offered ---- */
+/* ---- values of options ---- */
 
 void completion_visit_words(FILE *stream, const cli_option *o, completion_word_fn *visit) {
     if (o->kind == STARG_FIELD_CHOICE)
@@ -41,7 +41,7 @@ void completion_put_brief(FILE *stream, const char *text, const char *special) {
     }
 }
 
-/* ---- all commands, the members of groups too ---- */
+/* ---- all commands, including members of groups ---- */
 
 void completion_visit_commands(FILE *stream, const cli_command *const *table,
                                completion_command_fn *visit) {

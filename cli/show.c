@@ -229,7 +229,7 @@ static starg_status take_model(cli_session *session, const char *model, cli_show
     return status;
 }
 
-/* ---- what is computed ---- */
+/* ---- computed contents ---- */
 
 static starg_status check_model(cli_session *session, const cli_show *show) {
     const starg_guards *g = show->page.guards;
@@ -296,7 +296,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 /* The page's title is the model, or the first file. */
 static void fill_page(const cli_session *session, const char *model, cli_show *show) {

@@ -45,7 +45,7 @@ typedef struct job {
     uint8_t *rgb;
 } job;
 
-/* ---- fragments ------------------------------------------------------------------------------ */
+/* ---- fragments ---- */
 
 /* Lines overlap where they meet: two on one sample at nearly the same depth count once. */
 static bool line_is_there(const fragment *list, size_t count, const fragment *f, double radius) {
@@ -76,7 +76,7 @@ static void insert(band *b, size_t column, size_t row, const fragment *f) {
     b->counts[sample] = (uint8_t)count;
 }
 
-/* ---- light ---------------------------------------------------------------------------------- */
+/* ---- light ---- */
 
 static const uint8_t NEUTRAL[3] = {174, 192, 212};
 static const uint8_t INK[3] = {44, 54, 70};
@@ -104,7 +104,7 @@ static void shade(const uint8_t base[3], const double n[3], double gloss, uint8_
         rgb[k] = to_byte(((double)base[k] * light) * rim + 255 * highlight);
 }
 
-/* ---- triangles ------------------------------------------------------------------------------ */
+/* ---- triangles ---- */
 
 /* One edge of a triangle as a half-plane: value(x, y) > 0 inside, and on the edge if `closed`. */
 typedef struct half_plane {
@@ -244,7 +244,7 @@ static void draw_triangle(band *b, const starg_raster_scene *scene, size_t face)
         }
 }
 
-/* ---- lines and balls ------------------------------------------------------------------------ */
+/* ---- lines and balls ---- */
 
 static void draw_line(band *b, const starg_raster_scene *scene, const uint32_t *line) {
     const double *ends[2] = {scene->positions + 3 * (size_t)line[0],
@@ -297,7 +297,7 @@ static void draw_ball(band *b, const starg_raster_scene *scene, const starg_rast
         }
 }
 
-/* ---- bands ---------------------------------------------------------------------------------- */
+/* ---- bands ---- */
 
 /* Adds the colour of one sample, 0 to 255 per channel, over white. */
 static void blend(const fragment *list, size_t count, double sum[3]) {

@@ -235,7 +235,7 @@ done:
     return status;
 }
 
-/* ---- what is left ---- */
+/* ---- compaction ---- */
 
 uint32_t halfedges_compact(const mesh_halfedges *m, uint32_t *number, uint32_t *faces) {
     uint32_t count = 0;

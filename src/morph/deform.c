@@ -184,7 +184,7 @@ done:
     return status;
 }
 
-/* ---- mending ---- */
+/* ---- untangling ---- */
 
 /* The face opposite vertex v of tetrahedron t, seen from v, as a row of the program, in units of
  * `unit`. A zero-area face only bounds the room. */
@@ -332,7 +332,7 @@ done:
     return status;
 }
 
-/* ---- the way ---- */
+/* ---- time steps ---- */
 
 starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, double *reached) {
     starg_status status = STARG_OK;

@@ -103,7 +103,7 @@ static bool jacobian(const starg_morph *m, size_t face, double out[9]) {
     return true;
 }
 
-/* ---- the whole ---- */
+/* ---- global rotation ---- */
 
 static void mean_of(const double *positions, size_t count, double out[3]) {
     out[0] = out[1] = out[2] = 0;

@@ -164,7 +164,7 @@ static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
     return STARG_OK;
 }
 
-/* ---- the identity ---- */
+/* ---- identity maps ---- */
 
 static starg_status map_same(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                              size_t different, const starg_map_options *options, starg_map **out) {
@@ -186,7 +186,7 @@ done:
     return status;
 }
 
-/* ---- by the sphere ---- */
+/* ---- maps by spherical embeddings ---- */
 
 typedef struct spread {
     starg_mesh *unit;

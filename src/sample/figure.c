@@ -54,7 +54,7 @@ static void build_vertebrate(const vertebrate *table, figure *f) {
         f->turns[f->turn_count++] = table->turns[i];
 }
 
-/* ---- octopus -------------------------------------------------------------------------------- */
+/* ---- octopus ---- */
 
 enum { ARMS = 8, SEGMENTS = 4 };
 

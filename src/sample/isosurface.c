@@ -59,7 +59,7 @@ static void point_position(const mesher *m, const lattice_point *p, double out[3
         out[k] = m->origin[k] + m->half * (double)p->x[k];
 }
 
-/* ---- cubes near the surface ----------------------------------------------------------------- */
+/* ---- cubes near the surface ---- */
 
 /* A cube of the octree: its centre, and half its side in lattice units (a power of two). */
 static starg_status descend(mesher *m, const lattice_point *center, int64_t half) {
@@ -101,7 +101,7 @@ static starg_status find_cubes(mesher *m, double spacing) {
     return descend(m, &center, cubes);
 }
 
-/* ---- tetrahedra ----------------------------------------------------------------------------- */
+/* ---- tetrahedra ---- */
 
 typedef struct corner {
     lattice_point point;

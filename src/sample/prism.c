@@ -104,7 +104,7 @@ static void border_point(const cell *l, size_t a, size_t *x, size_t *z) {
     }
 }
 
-/* ---- counting ------------------------------------------------------------------------------- */
+/* ---- counting ---- */
 
 static bool side_is_open(const cell *l, int side) {
     static const int across[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
@@ -160,7 +160,7 @@ static cutting find_cutting(const plan *p, size_t vertex_count) {
     return best;
 }
 
-/* ---- building ------------------------------------------------------------------------------- */
+/* ---- building ---- */
 
 /* The vertex at step (x, z) of the cell and at a level. */
 static starg_status grid_vertex(mesh_builder *b, const cell *l, size_t x, size_t z, size_t level,
@@ -284,7 +284,7 @@ done:
     return status;
 }
 
-/* ---- plans ---------------------------------------------------------------------------------- */
+/* ---- plans ---- */
 
 starg_status solid_l_room(starg_context *context, size_t vertex_count, starg_mesh **out) {
     static const plan room = {.columns = 2,

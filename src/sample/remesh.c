@@ -74,7 +74,7 @@ static size_t ring_of(const surface *s, uint32_t v, uint32_t ring[MAX_RING]) {
     return halfedges_ring(&s->mesh, v, ring, MAX_RING);
 }
 
-/* ---- work on all vertices ------------------------------------------------------------------- */
+/* ---- work on all vertices ---- */
 
 typedef void vertex_work(const surface *s, uint32_t v);
 
@@ -110,7 +110,7 @@ static void measure_thickness(const surface *s, uint32_t v) {
     s->thickness[v] = implicit_evaluate(s->field, position(s, v)).radius;
 }
 
-/* ---- collapse ------------------------------------------------------------------------------- */
+/* ---- collapse ---- */
 
 /* Squared length over thickness. */
 static double edge_cost(const surface *s, uint32_t h) {
@@ -187,7 +187,7 @@ static bool collapse_edge(surface *s, uint32_t h) {
     return true;
 }
 
-/* ---- flips ---------------------------------------------------------------------------------- */
+/* ---- flips ---- */
 
 /* Cotangent of the angle at p. */
 static double cotangent(const double p[3], const double a[3], const double b[3]) {
@@ -252,7 +252,7 @@ static void flip_edges(surface *s) {
             flip_edge(s, h);
 }
 
-/* ---- coarsening -------------------------------------------------------------------------- */
+/* ---- coarsening ---- */
 
 static double mean_cost(const surface *s) {
     double sum = 0;
@@ -277,7 +277,7 @@ done:
     return status;
 }
 
-/* ---- smoothing ------------------------------------------------------------------------------ */
+/* ---- smoothing ---- */
 
 /* New place of v: towards the mean of its neighbours, along the surface, unless that would spoil a
  * face. Written to `moved`. */
@@ -310,7 +310,7 @@ static starg_status smooth(surface *s) {
     return status;
 }
 
-/* ---- result --------------------------------------------------------------------------------- */
+/* ---- result ---- */
 
 /* Makes the mesh of the remaining vertices. */
 static starg_status compact(const surface *s, starg_mesh **out) {

@@ -9,7 +9,7 @@
 static const char STAGE[] = "classes";
 static const char BLANKS[] = " \t\r";
 
-/* ---- from words ---- */
+/* ---- from file names ---- */
 
 /* A model and its class word, a part of a longer text. */
 typedef struct naming {

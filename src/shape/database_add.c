@@ -32,7 +32,7 @@ typedef struct adding {
     starg_database_report *report;
 } adding;
 
-/* ---- what is stored ---- */
+/* ---- stored signatures ---- */
 
 /* Number of a model's stored signatures that are up to date. */
 static starg_status prepare_stored(adding *a, sqlite3_stmt **out) {
@@ -186,7 +186,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 /* A starg_parallel_loop's advance. */
 static starg_status store_described(starg_context *context, void *shared, size_t described) {

@@ -255,7 +255,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 static starg_status check_options(starg_context *context, const starg_descriptor_options *o) {
     if (o->detail != 0 && o->detail < LEAST_DETAIL)

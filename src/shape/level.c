@@ -74,7 +74,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 /* Replaces a mesh by another. */
 static void replace(starg_mesh **mesh, starg_mesh *by) {

@@ -124,7 +124,7 @@ static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
     return halfedges_find(&c->mesh.net, v, w) != TOPOLOGY_NONE;
 }
 
-/* ---- what is lost ---- */
+/* ---- lost edges and faces ---- */
 
 /* The halfedges from v, counter-clockwise, all marked as not found. */
 static starg_status find_ring(conformer *c, uint32_t v) {

@@ -205,7 +205,7 @@ done:
     return status;
 }
 
-/* ---- is the boundary the surface? ---- */
+/* ---- comparison of the boundary with the surface ---- */
 
 /* A face rotated to start with its lowest vertex. */
 typedef struct turned_face {

@@ -119,7 +119,7 @@ static void claim_volume(const verify_context *own) {
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 static starg_status claim_nearness(const verify_context *own) {
     verify_nearness nearness;

@@ -86,7 +86,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 starg_status verify_claim_stars(const verify_context *own) {
     starg_status status = STARG_OK;

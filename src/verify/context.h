@@ -29,7 +29,7 @@ starg_status verify_claim_numbers(const verify_context *own);
 /* Star-shapedness, and what guards see. Requires valid labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_stars(const verify_context *own);
 
-/* ---- words for elements ---- */
+/* ---- names of elements ---- */
 
 typedef struct verify_words {
     char text[96];

@@ -452,7 +452,7 @@ static void claim_levels(starg_verdict *verdict, const verify_facts *known) {
     verify_leave(verdict, "what guards see of coarser levels: their meshes are not in the file");
 }
 
-/* ---- claims about what could be seen ---- */
+/* ---- claims about coverable elements ---- */
 
 /* The target of the options. */
 typedef struct target {

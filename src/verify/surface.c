@@ -238,7 +238,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 static starg_status orient(verify_surface *surface, bool turns) {
     starg_context *context = surface->context;

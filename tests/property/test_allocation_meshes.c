@@ -81,7 +81,7 @@ static starg_status meshes(starg_context *context) {
     return STARG_OK;
 }
 
-/* ---- what is made of meshes ---- */
+/* ---- results from meshes ---- */
 
 static starg_status repair(starg_context *context, const starg_mesh *mesh, bool unite) {
     starg_repair_report report;
@@ -123,7 +123,7 @@ static starg_status made_of_meshes(starg_context *context) {
     return STARG_OK;
 }
 
-/* ---- what is looked at ---- */
+/* ---- pictures and pages ---- */
 
 static starg_status frames_result(starg_context *context, starg_status status, starg_mesh **frames,
                                   size_t count) {

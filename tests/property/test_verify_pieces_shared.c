@@ -107,7 +107,7 @@ static void free_result(result *r) {
     free(r->report.contacts);
 }
 
-/* ---- what must pass, and what must not ---- */
+/* ---- verdicts ---- */
 
 static bool passes(starg_context *context, const starg_mesh *model, const result *r, bool tell) {
     starg_verdict *verdict = NULL;

@@ -130,7 +130,7 @@ static void reconstruction_gets_closer(void **state) {
     test_context_free(context);
 }
 
-/* ---- what does not depend on guards ---- */
+/* ---- parts that do not depend on guards ---- */
 
 /* From points uniform in a unit ball, the boundary is 3/4 away on average. The shell has the
  * spectrum of the sphere: l (l + 1) times 4 pi, 2 l + 1 times each. */
@@ -371,7 +371,7 @@ static void broken_files(void **state) {
     test_context_free(context);
 }
 
-/* ---- what may go wrong ---- */
+/* ---- failures ---- */
 
 static void refused(void **state) {
     (void)state;

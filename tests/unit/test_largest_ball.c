@@ -149,7 +149,7 @@ static double solve_program(const problem *p, uint64_t seed) {
     return solution.point[3];
 }
 
-/* ---- what the ball claims ---- */
+/* ---- the ball's proof ---- */
 
 static void check_proof(const problem *p, const largest_ball *ball, double tolerance) {
     double sum = 0, combination[3] = {0}, bound = 0;

@@ -147,7 +147,7 @@ static bool viewer_is_missing(void) {
     return !starg_page_available();
 }
 
-/* ---- what is in a page ---- */
+/* ---- contents of a page ---- */
 
 static size_t count_of(const char *text, const char *what) {
     size_t count = 0;

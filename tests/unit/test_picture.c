@@ -15,7 +15,7 @@
 #include "starguard/picture.h"
 #include "starguard/sample.h"
 
-/* ---- reading a PNG -------------------------------------------------------------------------- */
+/* ---- reading a PNG ---- */
 
 typedef struct image {
     size_t width, height;
@@ -125,7 +125,7 @@ static bool is_white(const uint8_t *p) {
     return p[0] == 255 && p[1] == 255 && p[2] == 255;
 }
 
-/* ---- scenes --------------------------------------------------------------------------------- */
+/* ---- scenes ---- */
 
 static char folder[64];
 

@@ -65,7 +65,7 @@ static void perfect(void **state) {
     test_context_free(context);
 }
 
-/* ---- straight from the definitions ---- */
+/* ---- by the definitions ---- */
 
 typedef struct world {
     size_t count;

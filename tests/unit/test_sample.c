@@ -11,7 +11,7 @@
 
 #include "starguard/sample.h"
 
-/* ---- closed 2-manifold ---------------------------------------------------------------------- */
+/* ---- closed 2-manifold ---- */
 
 typedef struct directed_edge {
     uint32_t from, to, opposite;
@@ -96,7 +96,7 @@ static size_t count_components(const starg_mesh *mesh) {
     return components;
 }
 
-/* ---- geometry ------------------------------------------------------------------------------- */
+/* ---- geometry ---- */
 
 static const double *corner(const starg_mesh *mesh, size_t face, size_t k) {
     return starg_mesh_vertices(mesh) + 3 * (size_t)starg_mesh_faces(mesh)[3 * face + k % 3];
@@ -145,7 +145,7 @@ static double smallest_angle(const starg_mesh *mesh) {
     return smallest;
 }
 
-/* ---- self-intersection ---------------------------------------------------------------------- */
+/* ---- self-intersection ---- */
 
 /* Does the segment p q pass through the triangle a b c? Contact alone and cases within rounding do
  * not count. */
@@ -225,7 +225,7 @@ static size_t count_crossings(const starg_mesh *mesh) {
     return crossings;
 }
 
-/* ---- tests ---------------------------------------------------------------------------------- */
+/* ---- tests ---- */
 
 static starg_mesh *make(starg_context *context, const char *name, int pose, size_t vertex_count) {
     starg_sample_options options;
@@ -418,7 +418,7 @@ static void cancellation_stops_it(void **state) {
     test_context_free(context);
 }
 
-/* ---- memory that runs out ------------------------------------------------------------------- */
+/* ---- memory that runs out ---- */
 
 static void memory_failures_leak_nothing(void **state) {
     (void)state;

@@ -242,7 +242,7 @@ static void test_a_single_node(void **state) {
     test_context_free(context);
 }
 
-/* ---- early ends ---- */
+/* ---- failures while writing ---- */
 
 static void test_unwritable(void **state) {
     (void)state;

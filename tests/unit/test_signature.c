@@ -427,7 +427,7 @@ static void same_bytes_on_any_threads(void **state) {
     test_context_free(four);
 }
 
-/* ---- what is refused ---- */
+/* ---- rejections ---- */
 
 static void poor_meshes(void **state) {
     (void)state;

@@ -80,7 +80,7 @@ static starg_mesh *simplify(starg_context *context, const starg_mesh *mesh, size
     return coarse;
 }
 
-/* ---- topology and embedding ----------------------------------------------------------------- */
+/* ---- topology and embedding ---- */
 
 /* To a reachable target, and as far as possible. */
 static void check_mesh(starg_context *context, const starg_mesh *mesh, size_t target,
@@ -210,7 +210,7 @@ static void test_shared_solids(void **state) {
     test_context_free(context);
 }
 
-/* ---- the rules of a collapse ---------------------------------------------------------------- */
+/* ---- the rules of a collapse ---- */
 
 /* A lens over a ring of six corners: one vertex below, two above, joined by an edge. */
 static shape lens(void) {
@@ -347,7 +347,7 @@ static void test_embedding_against_the_check(void **state) {
     test_context_free(context);
 }
 
-/* ---- shape ---------------------------------------------------------------------------------- */
+/* ---- shape ---- */
 
 /* The largest distance of random points of a mesh from a solid. */
 static double farthest(const starg_mesh *mesh, const starg_solid *solid, uint64_t seed) {
@@ -496,7 +496,7 @@ static void test_crossing_input_keeps_its_topology(void **state) {
     test_context_free(context);
 }
 
-/* ---- levels --------------------------------------------------------------------------------- */
+/* ---- levels ---- */
 
 static void test_levels(void **state) {
     (void)state;
@@ -578,7 +578,7 @@ static void test_levels_that_are_left_out(void **state) {
     test_context_free(context);
 }
 
-/* ---- bad input ------------------------------------------------------------------------------ */
+/* ---- bad input ---- */
 
 static void assert_refused(starg_context *context, const shape *s, const char *word) {
     starg_mesh *mesh = test_mesh_of(context, s), *coarse = mesh;
@@ -664,7 +664,7 @@ static void test_it_can_be_stopped(void **state) {
     test_context_free(context);
 }
 
-/* ---- memory that runs out ------------------------------------------------------------------- */
+/* ---- memory that runs out ---- */
 
 static void test_every_allocation_fails_once(void **state) {
     (void)state;
@@ -702,7 +702,7 @@ static void test_every_allocation_fails_once(void **state) {
     test_context_free(context);
 }
 
-/* ---- the queue ------------------------------------------------------------------------------ */
+/* ---- the queue ---- */
 
 /* Against a table searched linearly. */
 static void test_heap_against_a_table(void **state) {

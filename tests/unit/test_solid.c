@@ -95,7 +95,7 @@ static void test_refuses_nothing(void **state) {
     expect_refusal(&s, "no faces", STARG_ELEMENT_NONE, 0, 0);
 }
 
-/* ---- what is taken ---- */
+/* ---- accepted input ---- */
 
 static void test_keeps_order(void **state) {
     (void)state;

@@ -79,7 +79,7 @@ static void test_text_formats(void **state) {
     test_context_free(context);
 }
 
-/* ---- binary, made by hand ---- */
+/* ---- hand-made binary files ---- */
 
 typedef struct bytes {
     unsigned char data[4096];

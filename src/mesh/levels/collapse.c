@@ -27,7 +27,7 @@ static const double SLIVER = 1e-3;
 /* Fraction of its volume that a component must keep in a collapse. */
 static const double LEAST_VOLUME = 0.5;
 
-/* ---- topology ------------------------------------------------------------------------------- */
+/* ---- topology ---- */
 
 /* Appends the faces around the start of `first` that the collapse keeps; false if too many. */
 static bool gather_end(const mesh_surface *s, uint32_t first, collapse_star *star) {
@@ -61,7 +61,7 @@ bool collapse_gather(const mesh_surface *s, uint32_t halfedge, collapse_star *st
                             star->count - about_a - 1) == 0;
 }
 
-/* ---- shape ---------------------------------------------------------------------------------- */
+/* ---- shape ---- */
 
 static double longest_squared(const double u[3], const double v[3]) {
     return fmax(fmax(vec3_dot(u, u), vec3_dot(v, v)), vec3_distance_squared(u, v));
@@ -123,7 +123,7 @@ bool collapse_keeps_shape(const mesh_surface *s, const collapse_star *star,
            keeps_volume(s, star, position);
 }
 
-/* ---- embedding ------------------------------------------------------------------------------ */
+/* ---- embedding ---- */
 
 /* Data for tests against nearby faces. */
 typedef struct change {

@@ -45,7 +45,7 @@ typedef struct simplifier {
     size_t handled;    /* edges taken from the queue */
 } simplifier;
 
-/* ---- placements ----------------------------------------------------------------------------- */
+/* ---- placements ---- */
 
 typedef struct placement {
     double error, position[3];
@@ -113,7 +113,7 @@ static bool place(const simplifier *s, uint32_t edge, int rank, placement *out) 
     return false;
 }
 
-/* ---- the queue ------------------------------------------------------------------------------ */
+/* ---- the queue ---- */
 
 static void enter(simplifier *s, uint32_t edge, int attempt) {
     placement next;
@@ -146,7 +146,7 @@ static void make_quadrics(simplifier *s) {
     }
 }
 
-/* ---- collapses ------------------------------------------------------------------------------ */
+/* ---- collapses ---- */
 
 static starg_status collapse(simplifier *s, const collapse_star *star, const double position[3]) {
     mesh_surface *surface = s->surface;
@@ -220,7 +220,7 @@ done:
     return status;
 }
 
-/* ---- beginning and end ---------------------------------------------------------------------- */
+/* ---- start and result ---- */
 
 static starg_status begin(simplifier *s, starg_context *context, const starg_mesh *mesh,
                           const starg_simplify_options *options) {
@@ -276,7 +276,7 @@ done:
     return status;
 }
 
-/* ---- the calls ------------------------------------------------------------------------------ */
+/* ---- public functions ---- */
 
 void starg_simplify_options_default(starg_simplify_options *options) {
     *options = (starg_simplify_options){0};
