@@ -54,7 +54,7 @@ static starg_status work_on_block(helper *h, const ranks_message *head) {
     return status;
 }
 
-static starg_status leave(helper *h, const ranks_message *head) {
+static starg_status release_helper(helper *h, const ranks_message *head) {
     h->released = true;
     if (head->kind != RANKS_END)
         return STARG_ERROR_RANK;
@@ -75,7 +75,7 @@ static starg_status take_message(helper *h) {
     else if (head.kind == RANKS_BLOCK)
         status = work_on_block(h, &head);
     else
-        status = leave(h, &head);
+        status = release_helper(h, &head);
 done:
     starg_release(h->context, bytes);
     return status;

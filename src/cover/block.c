@@ -147,7 +147,7 @@ done:
 }
 
 /* Multipliers from before any row was fixed are valid for the whole block. */
-static void tell_prices(block_solve *block, const cover_dual *dual) {
+static void export_prices(block_solve *block, const cover_dual *dual) {
     double *prices = block->run->prices;
     if (prices == NULL || block->priced)
         return;
@@ -166,7 +166,7 @@ static starg_status run_round(block_solve *block, bool *again) {
     STARG_TRY(offer_cover(block, &cover));
     STARG_TRY(cover_dual_create(&block->rest, &dual));
     STARG_TRY(bound_rest(block, &dual, &cover));
-    tell_prices(block, &dual);
+    export_prices(block, &dual);
     if (is_closed(block) || block->run->relaxed || cover_time_is_over(block->run))
         goto done;
     cover_state_free(&cover); /* the rest is about to change */

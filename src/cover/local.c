@@ -141,7 +141,7 @@ static size_t choose_open(local_search *search) {
 }
 
 /* Increments the weights of open columns, and updates scores. */
-static void weigh_open(local_search *search) {
+static void raise_weights(local_search *search) {
     for (size_t w = 0; w < search->instance->row_words; w++) {
         STARG_FOR_BITS (bit, search->at.open[w]) {
             size_t column = 64 * w + bit;
@@ -160,11 +160,11 @@ static void take_step(local_search *search) {
     size_t in = choose_to_add(search, choose_open(search));
     if (in != SIZE_MAX)
         add_row(search, in);
-    weigh_open(search);
+    raise_weights(search);
 }
 
 /* Records a full cover; drops rows of least loss until it is no longer full. */
-static void note_cover(local_search *search, cover_state *best) {
+static void record_cover(local_search *search, cover_state *best) {
     while (search->at.weight == search->instance->total && search->at.count != 0) {
         cover_state_copy(best, &search->at);
         remove_at(search, choose_to_remove(search, UINT64_MAX));
@@ -193,7 +193,7 @@ done:
 static starg_status iterate(cover_run *run, local_search *search, size_t enough,
                             cover_state *best) {
     uint64_t check = 0, last_work = search->work, last_step = search->step;
-    note_cover(search, best);
+    record_cover(search, best);
     while (best->count > enough && search->work - last_work < PATIENT_WORK &&
            search->step - last_step < PATIENT_STEPS * search->instance->rows) {
         if (search->work >= check) {
@@ -204,7 +204,7 @@ static starg_status iterate(cover_run *run, local_search *search, size_t enough,
         }
         size_t before = best->count;
         take_step(search);
-        note_cover(search, best);
+        record_cover(search, best);
         if (best->count < before) {
             last_work = search->work;
             last_step = search->step;

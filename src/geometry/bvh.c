@@ -234,7 +234,7 @@ bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user) {
 
 /* Where the upward line from p passes edge a b in projection: 1 if on its left. p is perturbed to
  * (x + e, y + e^2), so that it never lies on the edge. */
-static int shaken_turn(const double a[3], const double b[3], const double p[3]) {
+static int perturbed_turn(const double a[3], const double b[3], const double p[3]) {
     int turn = orient2d(a, b, p, 0, 1);
     if (turn == 0)
         turn = (a[1] > b[1]) - (a[1] < b[1]);
@@ -247,7 +247,7 @@ int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]) {
     const double *a = corner(tree, triangle, 0);
     const double *b = corner(tree, triangle, 1);
     const double *c = corner(tree, triangle, 2);
-    int ab = shaken_turn(a, b, p), bc = shaken_turn(b, c, p), ca = shaken_turn(c, a, p);
+    int ab = perturbed_turn(a, b, p), bc = perturbed_turn(b, c, p), ca = perturbed_turn(c, a, p);
     if (ab == 0 || ab != bc || bc != ca)
         return 0;
     /* The triangle is not vertical, and ab tells whether it faces up. */

@@ -169,7 +169,7 @@ typedef struct interval {
     uint32_t low_row, high_row; /* NO_ROW: the ball */
 } interval;
 
-static void hold(linear_solution *out, uint32_t row) {
+static void add_tight(linear_solution *out, uint32_t row) {
     if (row != NO_ROW)
         out->tight[out->tight_count++] = row;
 }
@@ -211,22 +211,22 @@ static bool solve_on_line(const solver *s, const flat *f, size_t count, linear_s
     interval left = {-radius, radius, NO_ROW, NO_ROW};
     for (size_t i = 0; i < count; i++)
         if (!clip(s, &line, s->order[i], &left)) {
-            hold(out, s->order[i]);
+            add_tight(out, s->order[i]);
             return false;
         }
     double one = 1, slope = dot(program->objective, line.basis[0], program->dimension);
     double middle = 0.5 * (left.low + left.high);
     advance(program, &line, line.point, middle, &one, out->point);
     if (is_empty(s, &left, out->point)) {
-        hold(out, left.low_row);
-        hold(out, left.high_row);
+        add_tight(out, left.low_row);
+        add_tight(out, left.high_row);
         return false;
     }
     if (fabs(slope) <= PARALLEL)
         return true;
     if (left.low < left.high)
         advance(program, &line, line.point, slope > 0 ? left.high : left.low, &one, out->point);
-    hold(out, slope > 0 ? left.high_row : left.low_row);
+    add_tight(out, slope > 0 ? left.high_row : left.low_row);
     return true;
 }
 
@@ -245,7 +245,7 @@ static bool solve_on(const solver *s, const flat *f, size_t count, linear_soluti
         bool met = cut(s, f, row, out->point, &plane);
         out->tight_count = 0;
         bool feasible = met && solve_on(s, &plane, i, out);
-        hold(out, row);
+        add_tight(out, row);
         if (!feasible)
             return false;
         move_to_front(s->order, i);

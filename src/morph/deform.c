@@ -262,7 +262,7 @@ static size_t examine(walk *w) {
     return inverted;
 }
 
-static starg_status mend(walk *w, size_t *inverted) {
+static starg_status untangle(walk *w, size_t *inverted) {
     starg_status status = STARG_OK;
     size_t least = SIZE_MAX;
     int idle = 0;
@@ -343,7 +343,7 @@ starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, doub
     STARG_TRY(prepare(&w));
     while (*reached < 1 && step >= SHORTEST_STEP) {
         STARG_TRY(predict(&w, fmin(1, *reached + step)));
-        STARG_TRY(mend(&w, inverted));
+        STARG_TRY(untangle(&w, inverted));
         if (*inverted == 0) {
             *reached = fmin(1, *reached + step);
             memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);

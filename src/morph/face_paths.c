@@ -160,14 +160,14 @@ static void decompose(const starg_morph *m, const double whole[9], size_t face, 
 }
 
 /* The angle between two faces' rotations. */
-static double unlike(const face_path *a, const face_path *b) {
+static double angle_between(const face_path *a, const face_path *b) {
     double near[3];
     vec3_copy(b->rotation, near);
     rotation_vector_near(a->rotation, near);
     return vec3_distance(a->rotation, near);
 }
 
-static size_t calmest(const starg_morph *m, const uint8_t *fixed) {
+static size_t least_rotated(const starg_morph *m, const uint8_t *fixed) {
     size_t best = m->mesh->face_count;
     double least = INFINITY;
     for (size_t f = 0; f < m->mesh->face_count; f++) {
@@ -193,7 +193,7 @@ static void offer_neighbours(const starg_morph *m, const mesh_topology *topology
         if (topology->twin[h] == TOPOLOGY_NONE)
             continue;
         uint32_t other = topology->twin[h] / 3;
-        double key = unlike(&m->faces[face], &m->faces[other]);
+        double key = angle_between(&m->faces[face], &m->faces[other]);
         if (p->fixed[other] || !(key < p->keys[other]))
             continue;
         p->keys[other] = key;
@@ -228,7 +228,7 @@ static starg_status unwrap(starg_morph *m) {
     for (size_t f = 0; f < count; f++) {
         if (p.fixed[f])
             continue;
-        size_t first = parts++ == 0 ? calmest(m, p.fixed) : f;
+        size_t first = parts++ == 0 ? least_rotated(m, p.fixed) : f;
         unwrap_part(m, topology, &p, (uint32_t)first);
         if (!p.fixed[f])
             unwrap_part(m, topology, &p, (uint32_t)f);
@@ -243,7 +243,8 @@ done:
 }
 
 /* Length-weighted difference of rotation vectors across edges. */
-static double tear(const starg_morph *m, const mesh_topology *topology, const double *vectors) {
+static double variation(const starg_morph *m, const mesh_topology *topology,
+                        const double *vectors) {
     double sum = 0;
     for (uint32_t h = 0; h < 3 * m->mesh->face_count; h++) {
         uint32_t twin = topology->twin[h];
@@ -272,7 +273,7 @@ static starg_status keep_smoother(starg_morph *m) {
         vec3_copy(m->faces[f].rotation, shortest + 3 * f);
         rotation_vector_near(zero, shortest + 3 * f);
     }
-    if (tear(m, topology, shortest) < tear(m, topology, along))
+    if (variation(m, topology, shortest) < variation(m, topology, along))
         for (size_t f = 0; f < count; f++)
             vec3_copy(shortest + 3 * f, m->faces[f].rotation);
 done:

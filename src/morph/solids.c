@@ -89,7 +89,7 @@ done:
     return status;
 }
 
-static starg_status take_along(const starg_morph *m, deform_mesh *c) {
+static starg_status deform_along(const starg_morph *m, deform_mesh *c) {
     size_t inverted;
     double reached;
     starg_status status = deform(m, c, &inverted, &reached);
@@ -152,7 +152,7 @@ starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2
     STARG_TRY(list_surface(m, &surface, &c.fixed));
     c.surface = surface;
     STARG_TRY(fill(m, solid, &c));
-    STARG_TRY(take_along(m, &c));
+    STARG_TRY(deform_along(m, &c));
     STARG_TRY(cut(m, &c, out));
 done:
     starg_time_end(m->context, former);

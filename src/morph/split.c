@@ -70,7 +70,7 @@ static const double *place(const splitting *s, uint32_t vertex) {
 }
 
 /* The longest edge of a tetrahedron still to be split; ties go to the lower number. */
-static uint32_t name_edge(const splitting *s, size_t t) {
+static uint32_t select_edge(const splitting *s, size_t t) {
     const uint32_t *corner = s->c->tetrahedra.data + 4 * t;
     uint32_t best = NONE;
     double longest = -1;
@@ -95,7 +95,7 @@ static void name_edges(const splitting *s, size_t tetrahedra) {
         s->middle[i] = NONE;
     }
     for (size_t t = 0; t < tetrahedra; t++) {
-        s->choice[t] = name_edge(s, t);
+        s->choice[t] = select_edge(s, t);
         if (s->choice[t] != NONE)
             s->named[s->choice[t]]++;
     }

@@ -110,7 +110,7 @@ static starg_status fail_line(const reading *r, const char *what, const char *wo
                          "'%s', line %zu: %s '%.200s'", r->path, r->line, what, word);
 }
 
-static starg_status give_class(reading *r, const char *model, const char *class) {
+static starg_status assign_class(reading *r, const char *model, const char *class) {
     starg_status status = STARG_OK;
     size_t found = 0;
     for (size_t i = 0; i < r->models->count; i++) {
@@ -146,7 +146,7 @@ static starg_status read_line(reading *r, char *line) {
     if (end == line)
         return fail_line(r, "no class behind", line);
     *end = '\0';
-    return give_class(r, line, class);
+    return assign_class(r, line, class);
 }
 
 starg_status starg_classes_read(starg_context *context, const char *path,

@@ -173,7 +173,7 @@ static void put(laplacian *l, int64_t *next, uint32_t row, uint32_t column, doub
 }
 
 /* By columns: the diagonal, then the edges in the order of their numbers. */
-static starg_status lay_out(starg_context *context, const sums *sum, laplacian *l) {
+static starg_status store_columns(starg_context *context, const sums *sum, laplacian *l) {
     starg_status status = STARG_OK;
     int64_t *next = NULL;
     size_t entries = l->count + 2 * (size_t)sum->edges.count;
@@ -220,7 +220,7 @@ static starg_status assemble(const surface *s, laplacian *l) {
         add_face(s, s->faces + 3 * i, &sum, l->masses);
     for (size_t i = 0; i < l->count; i++)
         l->masses[i] /= sum.area;
-    STARG_TRY(lay_out(context, &sum, l));
+    STARG_TRY(store_columns(context, &sum, l));
 done:
     edge_table_free(context, &sum.edges);
     starg_release(context, sum.weights);

@@ -229,7 +229,7 @@ static void multiply(const fitting *f, const double *x, double *out) {
     }
 }
 
-static void make_right(const fitting *f, size_t axis) {
+static void compute_right_side(const fitting *f, size_t axis) {
     double guards = (double)f->from.guards, edges = (double)f->from.edges;
     memset(f->right, 0, MAP * f->from.guards * sizeof *f->right);
     for (size_t i = 0; i < f->from.guards; i++)
@@ -320,7 +320,7 @@ static void descend(const fitting *f, double *x) {
 static void improve(fitting *f, double *x) {
     bound(f);
     for (size_t axis = 0; axis < 3; axis++) {
-        make_right(f, axis);
+        compute_right_side(f, axis);
         for (size_t i = 0; i < f->from.guards; i++)
             memcpy(x + MAP * i, f->maps + MAP * (3 * i + axis), MAP * sizeof *x);
         descend_together(f, x);

@@ -65,16 +65,17 @@ static const double FLAT = 0.99;
 #define NARROW (-0.98)
 
 /* A strategy for what flips cannot resolve. */
-typedef struct manner {
+typedef struct strategy {
     bool pierces; /* inserts points where faces are pierced, otherwise by bisection */
     double fold;  /* cosine of the angle below which an edge is a fold; -1: none */
-} manner;
+} strategy;
 
-enum { MANNER_COUNT = CONFORM_RESULTS - 1 };
+enum { STRATEGY_COUNT = CONFORM_RESULTS - 1 };
 
 /* No strategy is best for all meshes. The first changes the surface least and adds the fewest
  * points; the last two treat every edge sharper than a right angle as a fold. */
-static const manner MANNERS[MANNER_COUNT] = {{false, -1}, {true, NARROW}, {false, 0}, {true, 0}};
+static const strategy STRATEGIES[STRATEGY_COUNT] = {
+    {false, -1}, {true, NARROW}, {false, 0}, {true, 0}};
 
 typedef struct conformer {
     starg_context *context;
@@ -162,7 +163,7 @@ static void find_in_star(conformer *c, uint32_t (*star)[3], size_t count) {
 
 /* Searches the edges and faces at v in the tetrahedra at v: each edge at its lower end, each face
  * at its lowest corner. */
-static starg_status look_at(conformer *c, uint32_t v) {
+static starg_status examine_point(conformer *c, uint32_t v) {
     starg_status status = STARG_OK;
     uint32_t(*star)[3];
     size_t count;
@@ -184,7 +185,7 @@ done:
 
 /* Must v be examined again? Creating or deleting a tetrahedron changes all of its points, so an
  * edge whose other end has not changed is still there. */
-static bool is_to_look_at(conformer *c, uint32_t v) {
+static bool needs_examination(conformer *c, uint32_t v) {
     uint32_t first = c->mesh.net.leaving.data[v], h = first;
     bool changed = delaunay_take_change(c->builder, v), dirty = c->mesh.dirty.data[v];
     c->mesh.dirty.data[v] = false;
@@ -229,10 +230,10 @@ static starg_status find_lost(conformer *c) {
     for (uint32_t v = 0; v < point_count(c); v++) {
         if (c->mesh.net.leaving.data[v] == TOPOLOGY_NONE)
             continue;
-        if (is_to_look_at(c, v)) {
+        if (needs_examination(c, v)) {
             skip_lost(&c->last_edges, v, &next_edge);
             skip_lost(&c->last_faces, v, &next_face);
-            STARG_TRY(look_at(c, v));
+            STARG_TRY(examine_point(c, v));
         } else {
             STARG_TRY(keep_lost(c, &c->last_edges, v, &next_edge, &c->lost_edges));
             STARG_TRY(keep_lost(c, &c->last_faces, v, &next_face, &c->lost_faces));
@@ -350,7 +351,7 @@ static void unfold(conformer *c, uint32_t f, double fold, size_t *flips) {
 
 /* Folds wait until no other flip applies: faces lost nearby for another reason could be mistaken
  * for folds. */
-static starg_status flip_lost(conformer *c, const manner *how, size_t *flips) {
+static starg_status flip_lost(conformer *c, const strategy *how, size_t *flips) {
     starg_status status = STARG_OK;
     *flips = 0;
     for (size_t i = 0; i < c->lost_edges.count; i++) {
@@ -511,7 +512,7 @@ done:
 }
 
 /* Flips until no flip applies. */
-static starg_status settle(conformer *c, const manner *how) {
+static starg_status settle(conformer *c, const strategy *how) {
     starg_status status = STARG_OK;
     STARG_TRY(reserve_places(c));
     for (int pass = 0;; pass++) {
@@ -533,7 +534,7 @@ static bool is_spent(const conformer *c) {
 }
 
 /* Alternates points and flips, from a settled state. */
-static starg_status run_rounds(conformer *c, const manner *how) {
+static starg_status run_rounds(conformer *c, const strategy *how) {
     starg_status status = STARG_OK;
     size_t least_round = 0;
     c->least = c->lost_faces.count;
@@ -578,7 +579,7 @@ static starg_status start(conformer *c, surface_samples *samples) {
     STARG_TRY(delaunay_begin(c->context, c->mesh.points.data, point_count(c), &c->builder));
     c->most_points = 3 * point_count(c) / 2 + 2000;
     c->most_work = WORK * point_count(c);
-    STARG_TRY(settle(c, &MANNERS[0]));
+    STARG_TRY(settle(c, &STRATEGIES[0]));
 done:
     return status;
 }
@@ -623,8 +624,8 @@ static void sort_in(conformed *results, size_t count) {
 }
 
 /* Continues from a state that stays unchanged except for its work counter. */
-static starg_status try_manner(conformer *from, const manner *how, conformed *result,
-                               bool *hopeless) {
+static starg_status try_strategy(conformer *from, const strategy *how, conformed *result,
+                                 bool *hopeless) {
     starg_status status = STARG_OK;
     conformer c = {.context = from->context};
     STARG_TRY(conformer_copy(from, &c));
@@ -645,8 +646,8 @@ starg_status conform_samples(starg_context *context, surface_samples *samples,
     *count = 0;
     memset(results, 0, CONFORM_RESULTS * sizeof *results);
     STARG_TRY(start(&first, samples));
-    for (const manner *how = MANNERS; how < MANNERS + MANNER_COUNT && !over; how++) {
-        STARG_TRY(try_manner(&first, how, &results[(*count)++], &over));
+    for (const strategy *how = STRATEGIES; how < STRATEGIES + STRATEGY_COUNT && !over; how++) {
+        STARG_TRY(try_strategy(&first, how, &results[(*count)++], &over));
         sort_in(results, *count);
         over = over || results[0].lost == 0;
     }

@@ -215,7 +215,7 @@ static double mean_radius(const curve *c) {
     return sum / (double)count;
 }
 
-static starg_status lay_trails(curve *c) {
+static starg_status prepare_trails(curve *c) {
     starg_status status = STARG_OK;
     STARG_NEW(c->context, STAGE, c->smooth, c->trails.count);
     STARG_NEW(c->context, STAGE, c->arcs, c->trails.count);
@@ -275,7 +275,7 @@ static void point_at(const curve *c, size_t i, double arc, double p[3]) {
 }
 
 /* Places the nodes of a branch and assigns each of its kept nodes to the nearest one. */
-static starg_status lay_branch(curve *c, const branch *b, double step) {
+static starg_status place_branch(curve *c, const branch *b, double step) {
     starg_status status = STARG_OK;
     size_t inner = inner_count(c, b, step), at = b->first, last = b->first + b->count - 1;
     uint32_t base = (uint32_t)(c->positions.count / 3), node = 0;
@@ -302,14 +302,14 @@ done:
     return status;
 }
 
-static starg_status lay_branches(curve *c, size_t wanted) {
+static starg_status place_branches(curve *c, size_t wanted) {
     starg_status status = STARG_OK;
     double total = 0;
     for (size_t i = 0; i < c->branches.count; i++)
         total += c->branches.data[i].length;
     for (size_t i = 0; i < c->branches.count; i++) {
         STARG_TRY(starg_check_cancel(c->context, STAGE));
-        STARG_TRY(lay_branch(c, &c->branches.data[i], total / (double)wanted));
+        STARG_TRY(place_branch(c, &c->branches.data[i], total / (double)wanted));
     }
 done:
     return status;
@@ -411,9 +411,9 @@ starg_status curve_create(starg_context *context, const starg_solid *solid,
                .skeleton = skeleton};
     STARG_TRY(place_kept(&c));
     STARG_TRY(find_branches(&c));
-    STARG_TRY(lay_trails(&c));
+    STARG_TRY(prepare_trails(&c));
     STARG_TRY(take_special(&c));
-    STARG_TRY(lay_branches(&c, wanted));
+    STARG_TRY(place_branches(&c, wanted));
     STARG_TRY(smooth_nodes(&c));
     STARG_TRY(assign_vertices(&c));
     STARG_TRY(finish(&c));

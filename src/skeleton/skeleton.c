@@ -112,15 +112,15 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
     starg_status status = STARG_OK;
     attempt a = {0};
     surface_samples samples = {0};
-    conformed manners[CONFORM_RESULTS] = {0};
+    conformed results[CONFORM_RESULTS] = {0};
     size_t count;
     STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
-    STARG_TRY(conform_samples(context, &samples, manners, &count));
+    STARG_TRY(conform_samples(context, &samples, results, &count));
     /* Counts decide between strategies that lose faces. If the surface intersects itself, none is
      * right. */
-    size_t judged = manners[0].lost > 0 && solid->check->embedded ? count : 1;
+    size_t judged = results[0].lost > 0 && solid->check->embedded ? count : 1;
     for (size_t i = 0; i < judged; i++) {
-        STARG_TRY(make_attempt(context, solid, &manners[i], &a));
+        STARG_TRY(make_attempt(context, solid, &results[i], &a));
         if (best->complex == NULL ||
             count_faults(solid->check, &a) < count_faults(solid->check, best)) {
             attempt_free(context, best);
@@ -135,12 +135,12 @@ done:
     attempt_free(context, &a);
     samples_free(context, &samples);
     for (size_t i = 0; i < CONFORM_RESULTS; i++)
-        conformed_free(context, &manners[i]);
+        conformed_free(context, &results[i]);
     return status;
 }
 
 /* Removes components and loops that the solid does not have. */
-static starg_status mend(starg_context *context, const starg_solid *solid, attempt *a) {
+static starg_status repair_topology(starg_context *context, const starg_solid *solid, attempt *a) {
     starg_status status = STARG_OK;
     const starg_check *check = solid->check;
     size_t parts = check->components - check->cavities, loops = (size_t)check->genus;
@@ -166,7 +166,7 @@ static starg_status find_graph(starg_context *context, const starg_solid *solid,
     if (a->complex->node_count == 0)
         STARG_TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
                              "the solid is too flat for interior tetrahedra"));
-    STARG_TRY(mend(context, solid, a));
+    STARG_TRY(repair_topology(context, solid, a));
 done:
     return status;
 }

@@ -114,7 +114,7 @@ static starg_status take_bits(tet_numbers *numbers, tet_type type, const char *w
     return STARG_OK;
 }
 
-static double as_real(uint64_t bits, tet_type type) {
+static double decode_real(uint64_t bits, tet_type type) {
     double wide;
     float narrow;
     uint32_t half = (uint32_t)bits;
@@ -132,7 +132,7 @@ starg_status tet_real(tet_numbers *numbers, tet_type type, const char *what, dou
         return starg_scan_real(&numbers->scan, what, value);
     starg_status status = take_bits(numbers, type, what, &bits);
     if (status == STARG_OK)
-        *value = as_real(bits, type);
+        *value = decode_real(bits, type);
     return status;
 }
 

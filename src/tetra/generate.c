@@ -106,7 +106,7 @@ static bool is_thin(const starg_solid *solid) {
 }
 
 /* Reports why the surface is not kept: defects of the model before messages of the program. */
-static void tell_stuffing(starg_context *context, const starg_solid *solid) {
+static void log_stuffing(starg_context *context, const starg_solid *solid) {
     char thin[96];
     snprintf(thin, sizeof thin, "the solid is very thin (about %.2g)", thickness_of(solid));
     starg_log(context, STARG_LOG_WARNING,
@@ -138,7 +138,7 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
         status = try_tetgen(context, solid, options, report, out);
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
             goto done;
-        tell_stuffing(context, solid);
+        log_stuffing(context, solid);
     }
     const tetra_shape shape = {
         .mesh = solid->mesh, .tree = solid->tree, .volume = solid->check->volume};

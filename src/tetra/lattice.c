@@ -149,7 +149,7 @@ static bool winds_around(const lattice *l, const double x[3]) {
     return sense * winding_number(l->shape->field, x) > 0.5;
 }
 
-static starg_status do_open_column(lattice *l, lattice_point p, size_t number, size_t count) {
+static starg_status classify_open_column(lattice *l, lattice_point p, size_t number, size_t count) {
     for (size_t i = 0; i < count; i++, p.x[2] += 2) {
         double x[3];
         lattice_position(l, &p, x);
@@ -158,7 +158,8 @@ static starg_status do_open_column(lattice *l, lattice_point p, size_t number, s
     return STARG_OK;
 }
 
-static starg_status do_column(starg_context *context, void *shared, void *scratch, size_t item) {
+static starg_status classify_column(starg_context *context, void *shared, void *scratch,
+                                    size_t item) {
     lattice *l = shared;
     column *c = scratch;
     lattice_point p;
@@ -166,7 +167,7 @@ static starg_status do_column(starg_context *context, void *shared, void *scratc
     (void)context;
     size_t count = column_start(l, item, &p), number = lattice_number(l, &p);
     if (l->shape->field != NULL)
-        return do_open_column(l, p, number, count);
+        return classify_open_column(l, p, number, count);
     lattice_position(l, &p, x);
     const bvh_box line = {{x[0], x[1], -INFINITY}, {x[0], x[1], INFINITY}};
     c->triangles.count = 0;
@@ -191,7 +192,7 @@ static starg_status find_insides(lattice *l) {
     starg_parallel_loop loop = {.stage = STAGE,
                                 .count = columns,
                                 .shared = l,
-                                .item = do_column,
+                                .item = classify_column,
                                 .make_scratch = make_column,
                                 .free_scratch = free_column};
     STARG_TRY(starg_parallel_for(l->context, &loop));

@@ -26,7 +26,7 @@
 enum { NOT_FOUND = 127, FIRST_NAP = 1000000, LONGEST_NAP = 20000000 }; /* naps in nanoseconds */
 
 /* Runs in the child; never returns. Where supported, the child dies with its parent. */
-static void become(const char *const *arguments) {
+static void exec_child(const char *const *arguments) {
     setpgid(0, 0);
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -60,8 +60,8 @@ static starg_status explain(starg_context *context, const char *stage, const cha
 }
 
 /* Checks cancellation and time while waiting. */
-static starg_status look_around(starg_context *context, const char *stage, const char *program,
-                                double deadline) {
+static starg_status check_stop(starg_context *context, const char *stage, const char *program,
+                               double deadline) {
     starg_status status = starg_check_cancel(context, stage);
     if (status == STARG_OK && (starg_clock() > deadline || starg_time_is_over(context)))
         status = starg_fail(context, STARG_ERROR_SOLVER, stage,
@@ -81,7 +81,7 @@ static starg_status await(starg_context *context, const char *stage, const char 
         if (ended < 0 && errno != EINTR)
             return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was lost: %s", program,
                               strerror(errno));
-        starg_status reason = look_around(context, stage, program, deadline);
+        starg_status reason = check_stop(context, stage, program, deadline);
         if (reason != STARG_OK) {
             kill(-child, SIGKILL);
             kill(child, SIGKILL); /* it may have no group yet */
@@ -102,7 +102,7 @@ starg_status starg_process_run(starg_context *context, const char *stage,
         return starg_fail(context, STARG_ERROR_SOLVER, stage, "cannot start '%s': %s", arguments[0],
                           strerror(errno));
     if (child == 0)
-        become(arguments);
+        exec_child(arguments);
     return await(context, stage, arguments[0], child, seconds);
 }
 

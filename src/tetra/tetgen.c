@@ -277,7 +277,7 @@ done:
 }
 
 /* Everything but memory, time and cancellation counts as a failure of the program. */
-static starg_status blame(run *r, starg_status status) {
+static starg_status as_solver_error(run *r, starg_status status) {
     char message[384];
     if (status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ||
         status == STARG_ERROR_TIME || status == STARG_ERROR_SOLVER)
@@ -328,5 +328,5 @@ done:
     }
     clean_up(&r, &points, &elements);
     starg_c_locale_leave(&locale);
-    return blame(&r, status);
+    return as_solver_error(&r, status);
 }

@@ -141,7 +141,8 @@ static void compare_shells(const shells *all, const verify_surface *model, verif
 
 /* ---- all faces ---- */
 
-static void take_down(const matcher *own, const shells *all, double rounding, verify_match *match) {
+static void record_face(const matcher *own, const shells *all, double rounding,
+                        verify_match *match) {
     const double *s[3];
     verify_corners(own->outer, own->face, s);
     match->equal += own->best == EQUAL;
@@ -178,7 +179,7 @@ starg_status verify_match_boundary(const verify_pieces *pieces, const verify_sur
         if (f % CANCEL_STEP == 0)
             STARG_TRY(starg_check_cancel(context, STAGE));
         find_place(&own, f);
-        take_down(&own, &all, rounding, match);
+        record_face(&own, &all, rounding, match);
     }
     compare_shells(&all, model, match);
 done:

@@ -470,7 +470,7 @@ static target target_of(const verify_facts *known) {
 
 /* The reason for not looking above the unseen faces; NULL: none. With a partial goal, the search
  * for candidates may end before the last faces; the goal is then relative to everything. */
-static const char *excuse_of(const verify_facts *known) {
+static const char *reason_unchecked(const verify_facts *known) {
     const starg_guard_options *o = &known->guards->options;
     if (o->candidates == STARG_CANDIDATES_GIVEN)
         return "the candidates were given, and are not in the file";
@@ -494,7 +494,7 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
                  goal.all, goal.name, goal.covered);
     if (goal.coverable < goal.covered || goal.coverable >= goal.all)
         return STARG_OK;
-    const char *excuse = excuse_of(known);
+    const char *excuse = reason_unchecked(known);
     if (excuse != NULL) {
         verify_leave(verdict, "that the other %zu %s cannot be seen: %s", goal.all - goal.coverable,
                      goal.name, excuse);

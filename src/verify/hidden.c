@@ -135,7 +135,7 @@ static bool add_met(void *data, uint32_t face) {
 }
 
 /* Lists the faces that meet the box; false when out of memory. */
-static bool know_met(verify_watch *w) {
+static bool list_met(verify_watch *w) {
     if (!w->met_known) {
         w->met.count = 0;
         verify_tree_visit(w->scene->tree, w->box.lower, w->box.upper, add_met, w);
@@ -337,7 +337,7 @@ static bool patch_hides(verify_watch *w, const shaft *s, uint32_t seed, flood_ki
 /* All faces that meet the box face away from v, in closed patches. */
 static bool entry_hides(verify_watch *w, const shaft *s) {
     bool any = false;
-    if (!know_met(w))
+    if (!list_met(w))
         return false;
     for (size_t i = 0; i < w->met.count; i++) {
         const double *t[3];
@@ -537,7 +537,7 @@ bool verify_box_outside(verify_watch *w) {
     bool on_surface;
     if (w->empty)
         return true;
-    if (!know_met(w) || w->met.count > 0)
+    if (!list_met(w) || w->met.count > 0)
         return false;
     centre_of(&w->box, centre);
     int winding = verify_tree_winding(w->scene->tree, centre, &on_surface);

@@ -49,7 +49,7 @@ static bool can_go(const removal *own, uint32_t guard) {
     return same || own->reached - lost >= own->goal;
 }
 
-static void take_away(removal *own, uint32_t guard) {
+static void remove_guard(removal *own, uint32_t guard) {
     const uint64_t *row = starg_bits_row(own->rows, guard);
     for (size_t w = 0; w < own->rows->words; w++)
         STARG_FOR_BITS (bit, row[w]) {
@@ -59,7 +59,7 @@ static void take_away(removal *own, uint32_t guard) {
         }
 }
 
-static size_t take_away_all(removal *own) {
+static size_t remove_guards(removal *own) {
     size_t left = own->known->guards->count;
     own->reached = 0;
     for (size_t j = 0; j < own->rows->columns; j++) {
@@ -68,7 +68,7 @@ static size_t take_away_all(removal *own) {
     }
     for (size_t i = 0; i < own->known->guards->count; i++)
         if (can_go(own, own->order[i])) {
-            take_away(own, own->order[i]);
+            remove_guard(own, own->order[i]);
             left--;
         }
     return left;
@@ -115,7 +115,7 @@ starg_status verify_find_needed(const verify_facts *known, size_t *needed) {
     STARG_NEW(context, STAGE, own.order, known->guards->count);
     for (int by_sight = 0; by_sight < 2; by_sight++) {
         order_guards(&own, by_sight == 1);
-        size_t left = take_away_all(&own);
+        size_t left = remove_guards(&own);
         *needed = left < *needed ? left : *needed;
     }
 done:

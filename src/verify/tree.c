@@ -92,7 +92,7 @@ static void exchange(uint32_t *a, uint32_t *b) {
 }
 
 /* Partitions a range at its middle (Hoare's selection). */
-static void part_at_middle(verify_tree *tree, node own, int axis) {
+static void partition_at_median(verify_tree *tree, node own, int axis) {
     uint32_t *order = tree->order;
     size_t middle = own.begin + (own.end - own.begin) / 2, begin = own.begin, last = own.end - 1;
     while (begin < last) {
@@ -124,7 +124,7 @@ static box build(verify_tree *tree, node own) {
             widen(&all, one.lower, one.upper);
         }
     } else {
-        part_at_middle(tree, own, longest_axis(tree, own));
+        partition_at_median(tree, own, longest_axis(tree, own));
         for (int side = 0; side < 2; side++) {
             box half = build(tree, child_of(own, side));
             widen(&all, half.lower, half.upper);

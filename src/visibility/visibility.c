@@ -73,7 +73,7 @@ static void drop_out_of_range(const job *all, const double p[3], uint8_t *visibl
     }
 }
 
-static void look_all_around(const job *all, worker *w, const double p[3]) {
+static void find_visible(const job *all, worker *w, const double p[3]) {
     scene_sides(all->scene, p, w->side);
     all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
     drop_out_of_range(all, p, w->visible);
@@ -123,7 +123,7 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     if (starg_solid_contains(all->scene->solid, p)) {
         /* directions at the same point are consecutive */
         if (w->last == NULL || !vec3_equal(w->last, p))
-            look_all_around(all, w, p);
+            find_visible(all, w, p);
         w->last = p;
         if (all->options->cone < 360) {
             narrow(all, w, p, all->options->directions + 3 * item);

@@ -138,25 +138,25 @@ static starg_status make_call(starg_context *context) {
 enum { LEAST = 10, MOST = 2000 }; /* n that are tried one by one */
 
 /* How a table is processed. */
-typedef struct manner {
+typedef struct run_mode {
     int threads;
     bool for_good;
     double seconds, thorough; /* processor time for the first n; thorough 0: for every n */
-} manner;
+} run_mode;
 
-static const manner manners[] = {{1, false, 0.2, 0}, {1, true, 0.04, 4}, {2, false, 0.04, 4}};
+static const run_mode RUN_MODES[] = {{1, false, 0.2, 0}, {1, true, 0.04, 4}, {2, false, 0.04, 4}};
 
 typedef struct tally {
     size_t allocations, attempts, failed;
 } tally;
 
-static void report_failure(const manner *how, size_t n, const char *what) {
+static void report_failure(const run_mode *how, size_t n, const char *what) {
     print_error("%s (%s), %d threads, allocation %zu%s: %s\n", turn.name, turn.variant,
                 how->threads, n, how->for_good ? " and all later ones" : "", what);
     fail();
 }
 
-static void check_failure(const manner *how, size_t n, const starg_context *context,
+static void check_failure(const run_mode *how, size_t n, const starg_context *context,
                           starg_status status) {
     const starg_error *error = starg_context_error(context);
     if (status != STARG_ERROR_MEMORY) {
@@ -168,7 +168,7 @@ static void check_failure(const manner *how, size_t n, const starg_context *cont
 }
 
 /* Makes the n-th allocation fail; false if the call succeeded with fewer. */
-static bool attempt(const manner *how, size_t n, tally *sum) {
+static bool attempt(const run_mode *how, size_t n, tally *sum) {
     starg_context_options options;
     starg_context *context = NULL;
     starg_context_options_default(&options);
@@ -214,7 +214,7 @@ typedef struct extent {
 static extent measure(void) {
     tally sum = {0};
     clock_t began = clock();
-    attempt(&manners[0], SIZE_MAX, &sum);
+    attempt(&RUN_MODES[0], SIZE_MAX, &sum);
     return (extent){sum.allocations, (double)(clock() - began) / CLOCKS_PER_SEC};
 }
 
@@ -224,13 +224,13 @@ static size_t choose_limit(double seconds, const extent *whole) {
     return limit < LEAST ? LEAST : limit < MOST ? (size_t)limit : MOST;
 }
 
-static void tell(const manner *how, const tally *sum) {
+static void tell(const run_mode *how, const tally *sum) {
     printf("%-34s %-24s %7d %-6s %11zu %8zu %8zu\n", turn.name, turn.variant, how->threads,
            how->for_good ? "all" : "one", sum->allocations, sum->attempts, sum->failed);
 }
 
 /* Every n, until the call succeeds with fewer allocations. */
-static void try_all(const manner *how) {
+static void try_all(const run_mode *how) {
     tally sum = {0};
     for (size_t n = 1; attempt(how, n, &sum);)
         n++;
@@ -238,7 +238,7 @@ static void try_all(const manner *how) {
 }
 
 /* All n up to a limit, then about a quarter as many, evenly spaced from a random start. */
-static void try_some(const manner *how, double seconds, const extent *whole) {
+static void try_some(const run_mode *how, double seconds, const extent *whole) {
     tally sum = {0};
     size_t limit = choose_limit(seconds, whole), last = whole->allocations, stride = 1;
     starg_rng rng = starg_rng_make(1, limit, last);
@@ -266,12 +266,12 @@ void failing_run(failing_calls *calls) {
         extent once = measure();
         if (turn.name == NULL)
             break;
-        for (size_t m = 0; m < sizeof manners / sizeof *manners; m++) {
-            double seconds = thorough ? manners[m].thorough : manners[m].seconds;
+        for (size_t m = 0; m < sizeof RUN_MODES / sizeof *RUN_MODES; m++) {
+            double seconds = thorough ? RUN_MODES[m].thorough : RUN_MODES[m].seconds;
             if (seconds == 0)
-                try_all(&manners[m]);
+                try_all(&RUN_MODES[m]);
             else
-                try_some(&manners[m], seconds, &once);
+                try_some(&RUN_MODES[m], seconds, &once);
         }
     }
     remove_folder();
