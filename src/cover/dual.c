@@ -79,7 +79,9 @@ static int compare_rare(const void *a, const void *b) {
     return (x->column > y->column) - (x->column < y->column);
 }
 
-starg_status cover_dual_ascent(const cover_instance *instance, int64_t *multipliers) {
+/* Dual ascent: raises multipliers one by one, rare columns first, while all reduced costs stay at
+ * least 0. Fast and weak. */
+static starg_status ascend(const cover_instance *instance, int64_t *multipliers) {
     starg_status status = STARG_OK;
     starg_context *context = instance->context;
     int64_t *left = NULL;
@@ -106,7 +108,7 @@ starg_status cover_dual_create(const cover_instance *instance, cover_dual *out) 
     *out = (cover_dual){0};
     STARG_NEW(context, "bound", out->multipliers, instance->columns);
     STARG_NEW(context, "bound", out->reduced, instance->rows);
-    STARG_TRY(cover_dual_ascent(instance, out->multipliers));
+    STARG_TRY(ascend(instance, out->multipliers));
     out->value = cover_dual_value(instance, out->multipliers, out->reduced);
 done:
     if (status != STARG_OK)

@@ -26,10 +26,6 @@ static inline size_t cover_dual_rows(int64_t value) {
     return value <= 0 ? 0 : (size_t)((value + COVER_ONE - 1) / COVER_ONE);
 }
 
-/* Dual ascent: raises multipliers one by one, rare columns first, while all reduced costs stay >=
- * 0. Fast and weak. Errors: MEMORY. */
-starg_status cover_dual_ascent(const cover_instance *instance, int64_t *multipliers);
-
 /* The best known bound and its proof. */
 typedef struct cover_dual {
     int64_t *multipliers;

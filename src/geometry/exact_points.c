@@ -117,7 +117,8 @@ void exact_plane_set(exact_plane *out, const double *const corner[3], int scale)
     dot(&out->offset, out->normal, p[0]);
 }
 
-void exact_point_round(exact_point *point, int scale) {
+/* Fills `rounded` from x, which the caller set. */
+static void round_point(exact_point *point, int scale) {
     for (int k = 0; k < 3; k++)
         point->rounded[k] = round_quotient(&point->x[k], &point->x[3], scale);
 }
@@ -135,7 +136,7 @@ static void set_zero(exact_point *out, const exact p[3], const exact *at_p, cons
     combine(out, p, at_q, q, at_p);
     exact_subtract(&out->x[3], at_q, at_p);
     make_positive(out);
-    exact_point_round(out, scale);
+    round_point(out, scale);
 }
 
 void exact_point_on_plane(exact_point *out, const double p[3], const double q[3],
@@ -175,7 +176,7 @@ void exact_point_of_planes(exact_point *out, const exact_plane *const plane[3], 
         exact_determinant(&out->x[column], row[0], row[1], row[2]);
     }
     make_positive(out);
-    exact_point_round(out, scale);
+    round_point(out, scale);
 }
 
 void exact_point_between(exact_point *out, const exact_point *const corner[3],
@@ -200,7 +201,7 @@ void exact_point_between(exact_point *out, const exact_point *const corner[3],
         }
         copy(&out->x[k], &total);
     }
-    exact_point_round(out, scale);
+    round_point(out, scale);
 }
 
 /* ---- signs ---- */

@@ -33,8 +33,6 @@ typedef struct exact_plane {
 
 void exact_plane_set(exact_plane *out, const double *const corner[3], int scale);
 
-/* Fills `rounded` from x, which the caller set. */
-void exact_point_round(exact_point *point, int scale);
 void exact_point_set(exact_point *out, const double p[3], int scale);
 /* Intersection of line p q and the plane, in which they do not both lie. */
 void exact_point_on_plane(exact_point *out, const double p[3], const double q[3],

@@ -25,10 +25,11 @@ void starg_map_options_default(starg_map_options *options) {
     *options = (starg_map_options){0};
 }
 
-/* ---- parts that reading a map shares ---- */
+/* ---- tables ---- */
 
-starg_status map_make(starg_context *context, const starg_mesh *a, const starg_mesh *b,
-                      starg_map_kind kind, starg_map **out) {
+/* Allocates a map and its tables. */
+static starg_status make_map(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                             starg_map_kind kind, starg_map **out) {
     starg_status status = STARG_OK;
     starg_map *map = NULL;
     *out = NULL;
@@ -54,7 +55,8 @@ void starg_map_free(starg_context *context, starg_map *map) {
     starg_release(context, map);
 }
 
-size_t map_different_faces(const starg_mesh *a, const starg_mesh *b) {
+/* Number of faces that differ at equal positions in the lists; SIZE_MAX if counts differ. */
+static size_t different_faces(const starg_mesh *a, const starg_mesh *b) {
     size_t count = 0;
     if (a->vertex_count != b->vertex_count || a->face_count != b->face_count)
         return SIZE_MAX;
@@ -63,7 +65,8 @@ size_t map_different_faces(const starg_mesh *a, const starg_mesh *b) {
     return count;
 }
 
-starg_status map_identity(starg_context *context, const starg_mesh *b, starg_map *map) {
+/* Maps every vertex to the vertex with its number. */
+static starg_status fill_identity(starg_context *context, const starg_mesh *b, starg_map *map) {
     memset(map->faces, 0xff, map->vertex_count * sizeof *map->faces);
     memset(map->coordinates, 0, 3 * map->vertex_count * sizeof *map->coordinates);
     for (size_t i = 0; i < 3 * b->face_count; i++) {
@@ -180,8 +183,8 @@ static starg_status map_same(starg_context *context, const starg_mesh *a, const 
                               "the surfaces have the same faces, which maps vertex i to vertex i, "
                               "but landmark %zu pairs %u with %u",
                               i, options->landmarks[2 * i], options->landmarks[2 * i + 1]);
-    STARG_TRY(map_make(context, a, b, STARG_MAP_SAME, out));
-    STARG_TRY(map_identity(context, b, *out));
+    STARG_TRY(make_map(context, a, b, STARG_MAP_SAME, out));
+    STARG_TRY(fill_identity(context, b, *out));
 done:
     return status;
 }
@@ -304,7 +307,7 @@ static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, c
     STARG_TRY(locator_create(context, to.sphere, &where));
     STARG_TRY(align_spheres(from.sphere, &where, &marks, &features));
     STARG_TRY(compose(from.sphere, &where, &marks, &features));
-    STARG_TRY(map_make(context, a, b, STARG_MAP_SPHERE, out));
+    STARG_TRY(make_map(context, a, b, STARG_MAP_SPHERE, out));
     STARG_TRY(place_vertices(from.sphere, &where, b, &marks, *out));
 done:
     starg_release(context, lists);
@@ -324,7 +327,7 @@ starg_status starg_map_create(starg_context *context, const starg_mesh *a, const
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(check_landmarks(context, a, b, options));
-    size_t different = map_different_faces(a, b);
+    size_t different = different_faces(a, b);
     if (different <= a->face_count / SAME_SHARE)
         STARG_TRY(map_same(context, a, b, different, options, &map));
     else

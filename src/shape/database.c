@@ -28,7 +28,8 @@ static const char SCHEMA[] =
 
 /* ---- errors ---- */
 
-starg_status database_fail(starg_database *d) {
+/* Reports the failure of the last call on the connection. */
+static starg_status fail_sqlite(starg_database *d) {
     starg_context *context = d->context;
     const char *reason = sqlite3_errmsg(d->handle);
     int error = sqlite3_system_errno(d->handle);
@@ -74,13 +75,12 @@ static int wait_busy(void *user, int waits) {
 /* ---- statements ---- */
 
 starg_status database_run(starg_database *d, const char *sql) {
-    return sqlite3_exec(d->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? STARG_OK
-                                                                       : database_fail(d);
+    return sqlite3_exec(d->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? STARG_OK : fail_sqlite(d);
 }
 
 starg_status database_prepare(starg_database *d, const char *sql, sqlite3_stmt **out) {
     return sqlite3_prepare_v2(d->handle, sql, -1, out, NULL) == SQLITE_OK ? STARG_OK
-                                                                          : database_fail(d);
+                                                                          : fail_sqlite(d);
 }
 
 starg_status database_step(starg_database *d, sqlite3_stmt *statement, bool *row) {
@@ -88,7 +88,7 @@ starg_status database_step(starg_database *d, sqlite3_stmt *statement, bool *row
     *row = result == SQLITE_ROW;
     if (*row)
         return STARG_OK;
-    starg_status status = result == SQLITE_DONE ? STARG_OK : database_fail(d);
+    starg_status status = result == SQLITE_DONE ? STARG_OK : fail_sqlite(d);
     sqlite3_reset(statement);
     return status;
 }

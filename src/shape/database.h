@@ -16,9 +16,6 @@ struct starg_database {
 
 extern const char DATABASE_STAGE[];
 
-/* Reports the failure of the last call on the connection. */
-starg_status database_fail(starg_database *database);
-
 starg_status database_run(starg_database *database, const char *sql);
 starg_status database_prepare(starg_database *database, const char *sql, sqlite3_stmt **out);
 

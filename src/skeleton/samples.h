@@ -18,11 +18,4 @@ starg_status samples_create(starg_context *context, const starg_solid *solid, si
                             surface_samples *samples);
 void samples_free(starg_context *context, surface_samples *samples);
 
-/* Decides whether to split the edge from u to v. */
-typedef bool samples_split(void *user, uint32_t u, uint32_t v);
-
-/* Splits edges at their midpoints, and their faces; *splits is their number. Errors: MEMORY. */
-starg_status samples_refine(starg_context *context, surface_samples *samples, samples_split *split,
-                            void *user, size_t *splits);
-
 #endif

@@ -7,8 +7,6 @@
 #include "verify/surface.h"
 #include "verify/tree.h"
 
-#define VERIFY_NO_FACE UINT32_MAX
-
 typedef struct verify_box {
     double lower[3], upper[3];
 } verify_box;
