@@ -41,13 +41,6 @@ static void box_add(bvh_box *box, const double p[3]) {
     }
 }
 
-static bool boxes_meet(const bvh_box *a, const bvh_box *b) {
-    for (int k = 0; k < 3; k++)
-        if (a->upper[k] < b->lower[k] || b->upper[k] < a->lower[k])
-            return false;
-    return true;
-}
-
 static bvh_box triangle_box(const bvh *tree, uint32_t triangle) {
     bvh_box box;
     box_clear(&box);
@@ -197,13 +190,13 @@ typedef struct box_query {
 
 static bool box_may_meet(void *user, const bvh_box *box) {
     const box_query *query = user;
-    return boxes_meet(query->box, box);
+    return bvh_boxes_meet(query->box, box);
 }
 
 static bool visit_if_met(void *user, size_t rank) {
     const box_query *query = user;
     bvh_box own = triangle_box(query->tree, query->tree->order[rank]);
-    return !boxes_meet(&own, query->box) || query->visit(query->user, query->tree->order[rank]);
+    return !bvh_boxes_meet(&own, query->box) || query->visit(query->user, query->tree->order[rank]);
 }
 
 bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *user) {

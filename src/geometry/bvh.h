@@ -15,6 +15,13 @@ typedef struct bvh_box {
     double lower[3], upper[3];
 } bvh_box;
 
+static inline bool bvh_boxes_meet(const bvh_box *a, const bvh_box *b) {
+    for (int k = 0; k < 3; k++)
+        if (a->upper[k] < b->lower[k] || b->upper[k] < a->lower[k])
+            return false;
+    return true;
+}
+
 /* An inner node has count 0 and its children at `first` and `first` + 1; a leaf holds the
  * triangles order[first .. first + count - 1]. */
 typedef struct bvh_node {

@@ -234,21 +234,14 @@ done:
 
 /* ---- pieces ---- */
 
-static void middle_of(const double *positions, const uint32_t corner[3], double out[3]) {
-    for (size_t k = 0; k < 3; k++)
-        out[k] = (positions[3 * (size_t)corner[0] + k] + positions[3 * (size_t)corner[1] + k] +
-                  positions[3 * (size_t)corner[2] + k]) /
-                 3;
-}
-
 /* The nearest guard that sees the face at both ends; UINT32_MAX if none does. */
 static uint32_t nearest_viewer(const guarding *g, size_t face) {
     const starg_morph *m = g->morph;
     const uint32_t *corner = m->mesh->faces + 3 * face;
     double a[3], b[3], least = INFINITY;
     uint32_t best = UINT32_MAX;
-    middle_of(m->mesh->vertices, corner, a);
-    middle_of(m->images, corner, b);
+    morph_centroid(m->mesh->vertices, corner, a);
+    morph_centroid(m->images, corner, b);
     for (uint32_t i = 0; i < m->guard_count; i++) {
         if (!starg_bits_test(g->seen, g->cover->rows[i], face))
             continue;

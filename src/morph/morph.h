@@ -69,6 +69,15 @@ starg_status morph_guard(starg_morph *m, size_t candidates);
 /* One end as a solid. Errors: MESH, MEMORY. */
 starg_status morph_solid(const starg_morph *m, int end, starg_solid **out);
 
+/* The centroid of a face. */
+static inline void morph_centroid(const double *positions, const uint32_t corner[3],
+                                  double out[3]) {
+    for (size_t k = 0; k < 3; k++)
+        out[k] = (positions[3 * (size_t)corner[0] + k] + positions[3 * (size_t)corner[1] + k] +
+                  positions[3 * (size_t)corner[2] + k]) /
+                 3;
+}
+
 /* The unit of length at t: volumes are linear in t. */
 double morph_size(const starg_morph *m, double t);
 

@@ -29,13 +29,6 @@ enum { FACE_TRIPLETS = 3 * EDGE_TRIPLETS + 16 };
 
 /* ---- system ---- */
 
-static void middle_of(const double *positions, const uint32_t corner[3], double out[3]) {
-    for (size_t k = 0; k < 3; k++)
-        out[k] = (positions[3 * (size_t)corner[0] + k] + positions[3 * (size_t)corner[1] + k] +
-                  positions[3 * (size_t)corner[2] + k]) /
-                 3;
-}
-
 /* Half the cotangents of the corners, positive semidefinite for any area above 0, and the anchor's
  * weight. A face in one point has none. */
 static void weigh_face(const starg_morph *m, size_t face, double weights[FACE_WEIGHTS]) {
@@ -56,7 +49,7 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[FACE_WE
     if (m->method != STARG_MORPH_STAR || !m->guarded[face] || m->flipped[face])
         return;
     double middle[3];
-    middle_of(m->mesh->vertices, corner, middle);
+    morph_centroid(m->mesh->vertices, corner, middle);
     double d = vec3_distance_squared(middle, m->places[0] + 3 * (size_t)m->pieces[face]);
     weights[3] = area / fmax(d, area);
 }

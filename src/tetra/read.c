@@ -29,15 +29,6 @@ bool starg_tetmesh_recognized(const void *bytes, size_t size, const char *name) 
     return is_tetgen(name) || detect(&source) != NULL;
 }
 
-/* Shortens long names to their ends, to leave room for the message. */
-static void show_name(const char *name, char *shown, size_t size) {
-    size_t length = strlen(name);
-    if (length < size)
-        memcpy(shown, name, length + 1);
-    else
-        snprintf(shown, size, "...%s", name + length - (size - 4));
-}
-
 /* Runs a reader on sources with shortened names. */
 static starg_status read_source(const starg_source *source, const starg_source *elements,
                                 starg_tetmesh **out) {
@@ -72,7 +63,7 @@ starg_status starg_tetmesh_read_memory(starg_context *context, const void *bytes
                                        const char *name, starg_tetmesh **out) {
     char shown[256];
     *out = NULL;
-    show_name(name, shown, sizeof shown);
+    starg_source_shorten(name, shown, sizeof shown);
     const starg_source source = {context, shown, bytes, size};
     return read_source(&source, NULL, out);
 }
@@ -97,7 +88,7 @@ static starg_status read_pair(starg_context *context, const char *path, starg_te
     STARG_TRY(with_extension(context, path, ".ele", &names[1]));
     for (int i = 0; i < 2; i++) {
         STARG_TRY(starg_file_read(context, STARG_MESH_FILE, names[i], &bytes[i], &size[i]));
-        show_name(names[i], shown[i], sizeof shown[i]);
+        starg_source_shorten(names[i], shown[i], sizeof shown[i]);
     }
     const starg_source points = {context, shown[0], bytes[0], size[0]};
     const starg_source elements = {context, shown[1], bytes[1], size[1]};

@@ -23,6 +23,9 @@ typedef struct starg_source {
     size_t size;
 } starg_source;
 
+/* Shortens a long name to its end, to leave room for the message; `size` bytes for `shown`. */
+void starg_source_shorten(const char *name, char *shown, size_t size);
+
 /* A position in a source: a line (from 1), a byte (from 0), or the whole file. */
 typedef struct starg_place {
     starg_element element; /* STARG_ELEMENT_LINE, _BYTE or _NONE */

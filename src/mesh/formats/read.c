@@ -52,8 +52,7 @@ static void pass_byte_order_mark(starg_source *source) {
     }
 }
 
-/* Shortens long names to their ends, to leave room for the message. */
-static void show_name(const char *name, char *shown, size_t size) {
+void starg_source_shorten(const char *name, char *shown, size_t size) {
     size_t length = strlen(name);
     if (length < size)
         memcpy(shown, name, length + 1);
@@ -65,7 +64,7 @@ starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, s
                                     const char *name, starg_mesh **out) {
     starg_status status = STARG_OK;
     char shown[256];
-    show_name(name, shown, sizeof shown);
+    starg_source_shorten(name, shown, sizeof shown);
     starg_source source = {context, shown, bytes, size};
     starg_mesh_builder builder = {.source = &source};
     starg_c_locale locale = {0};
