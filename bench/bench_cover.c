@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Times the set cover on random caps of a sphere: rows are caps, columns are points.
  *
- *  bench_cover [ROWS [COLUMNS [SMALLEST [LARGEST [TARGET [REDUNDANCY [SECONDS]]]]]]]
+ *     bench_cover [ROWS [COLUMNS [SMALLEST [LARGEST [TARGET [REDUNDANCY [SECONDS]]]]]]]
  *
  * SMALLEST and LARGEST are the fractions of the sphere covered by a cap, TARGET the fraction of the
  * weight to cover. Prints a line per method. */

@@ -2,7 +2,7 @@
 /* Linear relaxation with a limit K on the rows, for its multipliers: with y(j) the fraction of
  * column j that counts and h(j) the sum of x over R(j),
  *
- *  max sum w y,  sum x <= K,  demand(j) y(j) <= h(j),  0 <= x <= 1,  0 <= y <= 1.
+ *     max sum w y,  sum x <= K,  demand(j) y(j) <= h(j),  0 <= x <= 1,  0 <= y <= 1.
  *
  * Its value grows with K and is concave. In the relaxation, the fewest rows for a goal is the K
  * where it reaches the goal: K starts at the known bound and follows it, since the multipliers of
@@ -14,8 +14,8 @@
  * sides, which can only raise the covered weight. The columns with the largest overestimates are
  * added round by round, as
  *
- *  h + demand s >= demand   (kept:   s >= 0 takes w s away)   or
- *  h - demand e <= demand   (linear: e >= 0 takes w e away).
+ *     h + demand s >= demand   (kept:   s >= 0 takes w s away)   or
+ *     h - demand e <= demand   (linear: e >= 0 takes w e away).
  *
  * The last basis stays dual feasible, for Clp's dual simplex. When nothing is overestimated, the
  * relaxation of all columns is solved. The first sides come from an average of subgradient steps,

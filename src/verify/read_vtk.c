@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PIECES.vtk, read for the verifier: a legacy VTK file of this form only (docs/formats.md):
  *
- *  # vtk DataFile Version 2.0 to 4.2      CELLS m 5m          of "4 a b c d"
- *  a title                                CELL_TYPES m        of 10
- *  ASCII or BINARY                        CELL_DATA m
- *  DATASET UNSTRUCTURED_GRID              SCALARS piece int 1
- *  POINTS n float or double               LOOKUP_TABLE default
+ *     # vtk DataFile Version 2.0 to 4.2      CELLS m 5m          of "4 a b c d"
+ *     a title                                CELL_TYPES m        of 10
+ *     ASCII or BINARY                        CELL_DATA m
+ *     DATASET UNSTRUCTURED_GRID              SCALARS piece int 1
+ *     POINTS n float or double               LOOKUP_TABLE default
  *
  * Binary numbers are big-endian, integers of 32 bits. Further sections after the labels are
  * skipped. Declared counts are compared with the remaining bytes before allocating. */
