@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Draws the star pieces of starguard's own samples on one contact sheet (needs ImageMagick's montage).
+# Draws the star pieces of the bundled samples on one contact sheet (needs ImageMagick's montage).
 #   scripts/pieces-sheet.sh [STARGUARD] [SHEET.png]
 set -eu
 starguard=${1:-build/starguard}
