@@ -144,11 +144,12 @@ static void test_samples(void **state) {
     }
 }
 
-/* An octahedron whose corners are cut off by triangles of a size that no direction from the guard
- * can tell: rays coincide, and the piece is spread over the sphere. */
+/* An octahedron, out of its middle, one of whose corners is cut off by a triangle of a size that no
+ * direction from the guard can tell: rays coincide, and the piece is spread over the sphere. */
 static starg_solid *blunt_octahedron(starg_context *context, double size) {
-    const double vertices[8][3] = {{1, size, 0}, {1, -size, size}, {1, -size, -size}, {-1, 0, 0},
-                                   {0, 1, 0},    {0, -1, 0},       {0, 0, 1},         {0, 0, -1}};
+    const double vertices[8][3] = {{1, size, 0},   {1, -size, size}, {1, -size, -size},
+                                   {-1, 0.3, 0.2}, {0, 1.3, 0.2},    {0, -0.7, 0.2},
+                                   {0, 0.3, 1.2},  {0, 0.3, -0.8}};
     const uint32_t faces[12][3] = {{0, 1, 2}, {0, 4, 6}, {0, 6, 1}, {1, 6, 5},
                                    {1, 5, 2}, {2, 5, 7}, {2, 7, 0}, {0, 7, 4},
                                    {3, 6, 4}, {3, 5, 6}, {3, 7, 5}, {3, 4, 7}};
@@ -205,7 +206,7 @@ static void test_singular_values(void **state) {
 static void test_paper_mode(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    starg_solid *solid = test_sample(context, "l-room", 300);
+    starg_solid *solid = test_sample(context, "l-room", 500);
     starg_decomposition *d = NULL;
     starg_decompose_options options;
     starg_decompose_options_default(&options);
