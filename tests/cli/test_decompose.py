@@ -123,7 +123,7 @@ class Decompose(support.Case):
 
     def test_balls(self):
         """Maps to balls stand in the file, are verified, and are missed when they are spoiled."""
-        model = self.sample("horse", vertices=400)
+        model = self.sample("horse")
         base = ("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "5")
         self.run_text(*base)
         plain = self.read("p.vtk")
