@@ -4,9 +4,9 @@
 
 usage: pieces.py STARGUARD DATA [--than OTHER] [--groups cad,solids,table2] [--effort N]
 
-A row for each model where the programs differ, or the surface is not kept, or `verify` fails; then
-the sums: pieces, surfaces kept, seconds of processor time. OTHER is another build of the program.
-The table is Markdown.
+A row for each model where the programs differ, the surface is not kept, or `verify` fails; then the
+sums: pieces, surfaces kept, seconds of processor time. OTHER is another build of the program. The table
+is Markdown.
 """
 import argparse
 import glob

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard view: a page to look at results. */
+/* starguard view: writes a page that shows results. */
 #include "commands.h"
 #include "database.h"
 #include "model.h"
@@ -29,7 +29,7 @@ done:
     return status;
 }
 
-/* What there is to see, as the page's tabs name it. */
+/* Lists the contents, named like the page's tabs. */
 static void tell(cli_session *session, const values *v, const starg_page *page) {
     const struct {
         const char *name, *key;
@@ -79,6 +79,8 @@ const cli_command cli_command_view = {
         "content, at most one of each kind:\n"
         "GUARDS.json: guards in the translucent model; click one to see what it covers; the "
         "coverage curve. The file names its model.\n"
+        "The certificate of its bound: the faces that prove it, and where guards may see their "
+        "share of them.\n"
         "PIECES.vtk and PIECES.json: coloured pieces, which can be exploded.\n"
         "A skeleton (.obj, .cg, .vtk of 'starguard skeleton') with its radii.\n"
         "A morph (the folder of 'starguard morph', or its .glb) with a time slider.\n"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-#include "scene.h"
 #include "show.h"
+#include "scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,13 +10,13 @@
 #include "model.h"
 #include "starguard/animation.h"
 
-enum { HEAD = 4096 }; /* bytes of a file that tell what it holds */
+enum { HEAD = 4096 }; /* bytes used to recognize a file */
 
 /* ---- kinds of files ---- */
 
 typedef enum kind {
     KIND_MODEL,
-    KIND_RESULT, /* guards, pieces, a report of pieces */
+    KIND_RESULT, /* guards, a certificate, pieces, a report of pieces */
     KIND_SKELETON,
     KIND_FRAMES,
     KIND_ANIMATION,
@@ -24,7 +24,7 @@ typedef enum kind {
     KIND_TABLE
 } kind;
 
-/* Does an OBJ file have no face, or edges before the first one? */
+/* Does an OBJ file have no faces, or edges before the first one? */
 static bool is_curve(FILE *file) {
     char *line = NULL;
     size_t capacity = 0;
@@ -39,7 +39,8 @@ static bool is_curve(FILE *file) {
 }
 
 static kind kind_of_content(const char *name, const char *head, size_t size, FILE *file) {
-    static const char database[] = "SQLite format 3", vtk[] = "# vtk", curve[] = "# D:";
+    static const char database[] = "SQLite format 3", vtk[] = "# vtk",
+                      curve[] = "# D:", certificate[] = "starguard-certificate";
     const char *first = head + strspn(head, " \t\r\n");
     if (size >= sizeof database && memcmp(head, database, sizeof database) == 0)
         return KIND_DATABASE;
@@ -49,14 +50,14 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
         return strstr(head, "DATASET POLYDATA") != NULL ? KIND_SKELETON : KIND_RESULT;
     if (strncmp(head, curve, sizeof curve - 1) == 0)
         return KIND_SKELETON;
-    if (*first == '{')
+    if (*first == '{' || strncmp(head, certificate, sizeof certificate - 1) == 0)
         return KIND_RESULT;
     if (cli_has_extension(name, ".csv"))
         return KIND_TABLE;
     return cli_has_extension(name, ".obj") && is_curve(file) ? KIND_SKELETON : KIND_MODEL;
 }
 
-/* What cannot be opened is left to a reader, which says why. */
+/* A file that cannot be opened is left to a reader, which reports why. */
 static kind kind_of(const char *name) {
     char head[HEAD + 1] = {0};
     struct stat info;
@@ -94,6 +95,12 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
             return fail_twice(session, "guards file", file);
         page->guards = result->guards;
         show->guards_file = file;
+    } else if (result->certificate != NULL) {
+        if (show->proof != NULL)
+            return fail_twice(session, "certificate", file);
+        status =
+            starg_certificate_outline_create(session->context, result->certificate, &show->proof);
+        page->proof = show->proof;
     } else if (result->pieces != NULL) {
         if (page->pieces != NULL)
             return fail_twice(session, "pieces file", file);
@@ -104,7 +111,7 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
         page->report = result->report;
         show->report_file = file;
     }
-    return STARG_OK;
+    return status;
 }
 
 static starg_status take_animation(cli_session *session, const char *file, cli_show *show) {
@@ -158,7 +165,8 @@ static starg_status take_operands(cli_session *session, int distance, const char
 
 /* ---- the model ---- */
 
-/* The model that a result names: from where we stand, or beside the result. To be freed. */
+/* The model named by a result: relative to the current folder, or beside the result. The caller
+ * frees it. */
 static char *find_model(const char *named, const char *result) {
     struct stat info;
     if (named == NULL || strcmp(named, "-") == 0)
@@ -179,7 +187,7 @@ static char *find_model(const char *named, const char *result) {
     return NULL;
 }
 
-/* What the results call their model, and which of them does; NULL if none does. */
+/* The model name in the results, and the result that contains it; NULL if none does. */
 static const char *named_model(const cli_show *show, const char **result) {
     const starg_page *page = &show->page;
     *result = page->guards != NULL ? show->guards_file : show->report_file;
@@ -203,7 +211,7 @@ done:
     return status;
 }
 
-/* Guards cannot do without their model; a skeleton is glad of one; pieces show themselves. */
+/* Guards require their model, skeletons can use one, pieces do not need it. */
 static starg_status take_model(cli_session *session, const char *model, cli_show *show) {
     starg_status status = STARG_OK;
     const char *result, *named = named_model(show, &result);
@@ -222,7 +230,7 @@ static starg_status take_model(cli_session *session, const char *model, cli_show
     return status;
 }
 
-/* ---- what is computed ---- */
+/* ---- computed contents ---- */
 
 static starg_status check_model(cli_session *session, const cli_show *show) {
     const starg_guards *g = show->page.guards;
@@ -236,15 +244,15 @@ static starg_status check_model(cli_session *session, const cli_show *show) {
                     show->guards_file, g->vertex_count, g->face_count, vertices, faces);
 }
 
-/* What every guard sees, and whether the file says the same. */
+/* Computes what every guard sees, and compares it with the file. */
 static starg_status see(cli_session *session, cli_show *show) {
     starg_status status = STARG_OK;
     const starg_guards *g = show->page.guards;
     starg_mesh **obstacles = NULL;
     CLI_TRY(check_model(session, show));
     CLI_TRY(cli_scene_read_obstacles(session, g, &obstacles));
-    CLI_TRY(starg_guards_scene(session->context, show->model,
-                               (const starg_mesh *const *)obstacles, g, &show->solid));
+    CLI_TRY(starg_guards_scene(session->context, show->model, (const starg_mesh *const *)obstacles,
+                               g, &show->solid));
     CLI_TRY(starg_guards_see(session->context, show->solid, g, &show->seen));
     show->page.seen = show->seen;
     for (size_t i = 0; i < g->count; i++)
@@ -260,7 +268,7 @@ done:
     return status;
 }
 
-/* The skeleton as it is shown: where its file has no radii, the solid tells them. */
+/* The skeleton to show: computes radii from the solid if the file has none. */
 static starg_status measure(cli_session *session, cli_show *show) {
     const starg_skeleton *s = show->skeleton;
     show->measured = *s;
@@ -289,9 +297,9 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
-/* The page is called by the model, or by the first file. */
+/* The page's title is the model, or the first file. */
 static void fill_page(const cli_session *session, const char *model, cli_show *show) {
     starg_page *page = &show->page;
     page->frames = (const starg_mesh *const *)show->frames;
@@ -340,6 +348,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
     free(show->radii);
     starg_skeleton_free(context, show->skeleton);
     starg_bits_free(show->seen);
+    starg_certificate_outline_free(context, show->proof);
     starg_solid_free(show->solid);
     starg_mesh_free(show->model);
     starg_tetmesh_free(show->tetmesh);

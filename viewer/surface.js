@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model: glass, with faces painted that are seen, or that nothing sees.
+// The model: glass, with painted faces for what is seen, what nothing sees, or what proves a bound.
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
@@ -8,8 +8,9 @@ import { themeColor } from "./theme.js";
 
 const GLASS = 0,
     UNSEEN = 1,
-    PAINTED = 2; // kinds of faces; PAINTED + i has colour i
-const MOST_COLORS = 200; // of which each is drawn by itself; then they begin again
+    WITNESS = 2,
+    PAINTED = 3; // kinds of faces; PAINTED + i has colour i
+const MOST_COLORS = 200; // colours with a draw call each; then they repeat
 
 export class Surface {
     constructor() {
@@ -26,6 +27,7 @@ export class Surface {
         this.materials = [
             surfaceMaterial({ opacity: 0.3, rim: 0.45 }),
             surfaceMaterial({ defines: { STRIPED: "" } }),
+            surfaceMaterial(),
         ];
         for (const color of page.colors.slice(0, MOST_COLORS))
             this.materials.push(surfaceMaterial({ color }));
@@ -38,6 +40,7 @@ export class Surface {
     applyTheme() {
         this.materials[GLASS].uniforms.base.value.set(themeColor("surface"));
         this.materials[UNSEEN].uniforms.base.value.set(themeColor("warn"));
+        this.materials[WITNESS].uniforms.base.value.set(themeColor("accent"));
     }
 
     setOpacity(opacity) {
@@ -49,15 +52,15 @@ export class Surface {
     }
 
     /**
-     * Paints faces: `colorOf` tells the index of a face's colour, -1 for glass (null: all glass);
-     * what is in `unseen` and has no colour is marked.
+     * Paints faces: `colorOf` returns the index of a face's colour, -1 for glass (null: all glass);
+     * faces in `unseen` or `witnesses` without a colour are marked.
      */
-    paint(colorOf, unseen) {
+    paint(colorOf, unseen, witnesses = new Set()) {
         const { kinds } = this;
         for (let f = 0; f < this.faceCount; f++) {
             const color = colorOf === null ? -1 : colorOf(f);
-            kinds[f] =
-                color >= 0 ? PAINTED + (color % MOST_COLORS) : unseen.has(f) ? UNSEEN : GLASS;
+            if (color >= 0) kinds[f] = PAINTED + (color % MOST_COLORS);
+            else kinds[f] = unseen.has(f) ? UNSEEN : witnesses.has(f) ? WITNESS : GLASS;
         }
         this.sortFaces();
     }
@@ -84,7 +87,7 @@ export class Surface {
     }
 }
 
-/** Normals as bytes, four each so that they stay aligned. */
+/** Normals as bytes, four each for alignment. */
 export function normalAttribute(packed) {
     return new BufferAttribute(packed, 4, true);
 }

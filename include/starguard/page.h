@@ -34,6 +34,7 @@ typedef struct starg_page {
     const char *model_name;
     const starg_guards *guards;
     const starg_bits *seen; /* with guards and model: one row per guard, one column per face */
+    const starg_certificate_outline *proof; /* of the guards' bound, with guards and model */
     const starg_pieces_mesh *pieces;
     const starg_pieces_report *report; /* of the pieces */
     const starg_skeleton *skeleton;    /* uses positions, edges and radii; radii may be NULL */

@@ -58,6 +58,27 @@ STARG_API starg_status starg_certificate_read_memory(starg_context *context, con
                                                      starg_certificate **out);
 STARG_API void starg_certificate_free(starg_certificate *certificate);
 
+/* What a certificate is about, to be looked at. A guard that is to be one of `bound` guards that
+ * see all witnesses stands, on average, where it sees its share of them: 1 / bound of their prices
+ * (of their number if branching proves the bound). Cells are the leaves from which that is not
+ * ruled out. */
+typedef struct starg_certificate_outline {
+    size_t vertex_count, face_count; /* of the model */
+    starg_target target;
+    size_t bound;
+    size_t witness_count;
+    uint32_t *witnesses; /* faces or vertices */
+    size_t cell_count;
+    double *cells; /* cell_count x 6: lower corner, upper corner */
+} starg_certificate_outline;
+
+/* Errors: MEMORY, CANCELLED. */
+STARG_API starg_status starg_certificate_outline_create(starg_context *context,
+                                                        const starg_certificate *certificate,
+                                                        starg_certificate_outline **out);
+STARG_API void starg_certificate_outline_free(starg_context *context,
+                                              starg_certificate_outline *outline);
+
 /* What a check of guards may use beside the model. */
 typedef struct starg_guards_evidence {
     const starg_mesh *const *obstacles; /* the meshes that the result names, in its order */
@@ -80,6 +101,7 @@ typedef struct starg_pieces_mesh {
     double *vertices;     /* vertex_count x 3           */
     uint32_t *tetrahedra; /* count x 4                  */
     int32_t *labels;      /* count: the piece of each   */
+    double *corners;      /* count x 4 x 3: images of the corners in balls, or NULL */
 } starg_pieces_mesh;
 
 /* The contents of PIECES.json. */
@@ -97,6 +119,9 @@ typedef struct starg_pieces_report {
     double distance;      /* largest distance from the boundary to the model's surface */
     double distance_back; /* and back; infinite if not given */
     double flattest;      /* least height over longest edge of a tetrahedron; 0: not given */
+    /* Maps to balls; the rest only if there are any. */
+    bool balls;
+    double ball_worst, ball_mean, ball_above_10;
 } starg_pieces_report;
 
 /* Reads PIECES.vtk with a separate reader: a legacy VTK unstructured grid of tetrahedra with the

@@ -221,6 +221,7 @@ def pieces_mesh_of(d: Decomposition) -> Any:
     mesh.vertices = ffi.cast("double *", lib.starg_tetmesh_vertices(d.mesh._handle))
     mesh.tetrahedra = ffi.cast("uint32_t *", lib.starg_tetmesh_tetrahedra(d.mesh._handle))
     mesh.labels = d._handle.labels
+    mesh.corners = d._handle.ball_corners
     return mesh
 
 
@@ -238,4 +239,7 @@ def pieces_report_of(d: Decomposition) -> Any:
     report.distance = own.tetra.to_surface + own.tetra.step
     report.distance_back = own.tetra.from_surface + own.tetra.step
     report.flattest = own.flattest
+    report.balls = own.balls != lib.STARG_BALLS_NONE
+    for key in ("ball_worst", "ball_mean", "ball_above_10"):
+        setattr(report, key, getattr(own, key))
     return report

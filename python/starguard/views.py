@@ -17,7 +17,7 @@ from .guards import Guards
 from .mesh import Mesh, as_mesh
 from .pieces import Decomposition
 from .skeletons import Skeleton
-from .verification import PiecesMesh, PiecesReport, pieces_mesh_of, pieces_report_of
+from .verification import Certificate, PiecesMesh, PiecesReport, pieces_mesh_of, pieces_report_of
 from .visibility import Bits, visible
 
 _FORMATS = {"auto": lib.STARG_SCENE_AUTO, "glb": lib.STARG_SCENE_GLB, "vtu": lib.STARG_SCENE_VTU,
@@ -89,10 +89,12 @@ def page_available() -> bool:
 def write_page(path: PathLike, model: Any = None, *, title: str | None = None,
                guards: Guards | None = None, pieces: Decomposition | PiecesMesh | None = None,
                report: PiecesReport | None = None, skeleton: Skeleton | None = None,
-               frames: Sequence[Any] = (), shapes: Mapping[str, bytes] | None = None,
-               distances: ArrayLike | None = None, progress: Progress | None = None) -> None:
+               certificate: Certificate | None = None, frames: Sequence[Any] = (),
+               shapes: Mapping[str, bytes] | None = None, distances: ArrayLike | None = None,
+               progress: Progress | None = None) -> None:
     """Writes one self-contained HTML page of results (docs/viewer.md). `frames` are the shapes of a
     morph; `shapes` are names with thumbnails (PNG, or b""), and `distances` their matrix.
+    `certificate` is that of the guards.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -102,6 +104,12 @@ def write_page(path: PathLike, model: Any = None, *, title: str | None = None,
     session = Session()
     page = ffi.new("starg_page *")
     keep = _fill(page, model, guards, pieces, report, skeleton)
+    if certificate is not None:
+        keep.append(session.make("starg_certificate_outline",
+                                 lib.starg_certificate_outline_free,
+                                 lib.starg_certificate_outline_create, session.context,
+                                 certificate._handle, shared=True))
+        page.proof = keep[-1]
     if title is not None:
         keep.append(ffi.new("char[]", title.encode()))
         page.title = keep[-1]

@@ -69,6 +69,23 @@ static starg_status check_guards(starg_context *context, const starg_page *p) {
     return STARG_OK;
 }
 
+static starg_status check_proof(starg_context *context, const starg_page *p) {
+    const starg_certificate_outline *proof = p->proof;
+    if (proof == NULL)
+        return STARG_OK;
+    if (p->guards == NULL || p->model == NULL)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate needs its guards and their model");
+    if (proof->vertex_count != p->guards->vertex_count ||
+        proof->face_count != p->guards->face_count)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "the certificate belongs to a model with %zu vertices and %zu faces, but "
+                          "this one has %zu and %zu; give the certificate of these guards",
+                          proof->vertex_count, proof->face_count, p->guards->vertex_count,
+                          p->guards->face_count);
+    return STARG_OK;
+}
+
 static starg_status check_pieces(starg_context *context, const starg_page *p,
                                  const starg_piece_surfaces *surfaces) {
     if (p->report != NULL && p->pieces == NULL)
@@ -116,6 +133,7 @@ static starg_status check(starg_context *context, const book *b) {
         p->frame_count == 0 && p->shape_count == 0)
         return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE, "the page has no content");
     STARG_TRY(check_guards(context, p));
+    STARG_TRY(check_proof(context, p));
     STARG_TRY(check_pieces(context, p, &b->surfaces));
     STARG_TRY(check_frames(context, p));
     STARG_TRY(check_shapes(context, p));
@@ -204,6 +222,9 @@ static void put_guards(FILE *stream, const book *b) {
     put_points(stream, "guard-points", STARG_PAGE_SINGLE, &b->frame, g->positions, g->count);
     if (b->page->seen != NULL)
         put_bits(stream, "guard-seen", b->page->seen);
+    if (b->page->proof != NULL)
+        put_points(stream, "proof-cells", STARG_PAGE_SINGLE, &b->frame, b->page->proof->cells,
+                   2 * b->page->proof->cell_count);
 }
 
 static void put_pieces(FILE *stream, const book *b) {
@@ -311,6 +332,15 @@ static json_t *guard_json(book *b, size_t i) {
     return guard;
 }
 
+static json_t *proof_json(book *b) {
+    const starg_certificate_outline *proof = b->page->proof;
+    json_t *list = json_array();
+    for (size_t i = 0; i < proof->witness_count; i++)
+        append(b, list, json_integer(proof->witnesses[i]));
+    return json_pack("{s:I, s:b, s:o}", "bound", (json_int_t)proof->bound, "vertices",
+                     (int)(proof->target == STARG_TARGET_VERTICES), "witnesses", list);
+}
+
 static json_t *guards_json(book *b) {
     const starg_guards *g = b->page->guards;
     const char *method =
@@ -318,14 +348,17 @@ static json_t *guards_json(book *b) {
     json_t *list = json_array();
     for (size_t i = 0; i < g->count; i++)
         append(b, list, guard_json(b, i));
-    return json_pack("{s:o, s:I, s:s, s:f, s:f, s:I, s:I, s:b, s:I, s:f, s:f, s:b, s:o}", "list",
-                     list, "faces", (json_int_t)g->face_count, "method", method, "coverage_faces",
-                     g->coverage_faces, "coverage_area", g->coverage_area, "lower_bound",
-                     (json_int_t)g->lower_bound, "lower_bound_everywhere",
-                     (json_int_t)g->lower_bound_everywhere, "optimal_everywhere",
-                     (int)g->optimal_everywhere, "max_guards", (json_int_t)g->options.max_guards,
-                     "area_bound", g->area_bound, "area_bound_everywhere", g->area_bound_everywhere,
-                     "seen", (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
+    json_t *guards = json_pack(
+        "{s:o, s:I, s:s, s:f, s:f, s:I, s:I, s:b, s:I, s:f, s:f, s:b, s:o}", "list", list, "faces",
+        (json_int_t)g->face_count, "method", method, "coverage_faces", g->coverage_faces,
+        "coverage_area", g->coverage_area, "lower_bound", (json_int_t)g->lower_bound,
+        "lower_bound_everywhere", (json_int_t)g->lower_bound_everywhere, "optimal_everywhere",
+        (int)g->optimal_everywhere, "max_guards", (json_int_t)g->options.max_guards, "area_bound",
+        g->area_bound, "area_bound_everywhere", g->area_bound_everywhere, "seen",
+        (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
+    if (b->page->proof != NULL)
+        put(b, guards, "proof", proof_json(b));
+    return guards;
 }
 
 static json_t *piece_json(book *b, size_t i) {

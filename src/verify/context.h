@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verification context of a decomposition: what it is checked against, and the claims that are
- * checked. */
+/* Verification context of a decomposition: the model, the report, and the claims to check. */
 #ifndef STARG_VERIFY_CONTEXT_H
 #define STARG_VERIFY_CONTEXT_H
 
@@ -17,21 +16,23 @@ typedef struct verify_context {
     starg_verdict *verdict;
 } verify_context;
 
-/* What the tetrahedra are: positive, conforming, labelled, connected by piece. Errors: MEMORY,
+/* Claims about the tetrahedra: positive, conforming, labelled, connected by piece. Errors: MEMORY,
  * CANCELLED. */
 starg_status verify_claim_tetrahedra(const verify_context *own);
 
 /* The boundary and the volume are those of the model. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_boundary(const verify_context *own);
 
-/* The report's numbers. Without good labels nothing can be said about pieces. Errors: MEMORY,
- * CANCELLED. */
+/* The report's numbers. Requires valid labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_numbers(const verify_context *own);
 
-/* Star-shapedness, and what guards see; only with good labels. Errors: MEMORY, CANCELLED. */
+/* Star-shapedness, and what guards see. Requires valid labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_stars(const verify_context *own);
 
-/* ---- words for elements ---- */
+/* Maps of pieces to balls, if there are any. Errors: MEMORY. */
+starg_status verify_claim_balls(const verify_context *own);
+
+/* ---- names of elements ---- */
 
 typedef struct verify_words {
     char text[96];

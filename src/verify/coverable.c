@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Elements that no guard sees, but that a guard could see: each refutes that it cannot.
+/* Elements that no guard sees but that a guard could see: each refutes the claim that it is not
+ * coverable.
  *
- * From a point p strictly inside that sees a face whole, nothing is in the tetrahedron (p, face),
- * so every point of that tetrahedron sees the face whole as well. Hence the line above the centroid
- * says all: if a point at height h above any place of the face sees it whole, so do those above the
- * centroid up to h / 3. Heights double from the least one; the first at which something is in the
- * way ends the search.
+ * If a point p strictly inside sees a whole face, nothing is in the tetrahedron (p, face), so every
+ * point of that tetrahedron sees the whole face as well. Hence the line above the centroid is
+ * enough: if a point at height h above any place of the face sees all of it, so do those above the
+ * centroid up to h / 3. Heights double from the least one; the first at which the view is blocked
+ * ends the search.
  *
  * A guard must also be admissible, and a whole interval of heights is asked for, from 0.7 h to h,
  * so that no search by geometric series, which augmentation is, can have missed it: range      the
@@ -28,17 +29,17 @@ static const char STAGE[] = "verify";
 
 enum { MOST_TESTS = 20000, CANCEL_STEP = 256 };
 
-static const double LEAST_HEIGHT = 0x1p-28; /* of the diagonal */
+static const double LEAST_HEIGHT = 0x1p-28; /* relative to the diagonal */
 static const double LEAST_WIDTH = 1e-6;     /* of a face, likewise */
-static const double MARGIN = 1e-12;         /* of ranges and clearances */
+static const double MARGIN = 1e-12;         /* for ranges and clearances */
 
 typedef struct prover {
     const verify_facts *known;
     verify_view view;
     double diagonal, least;
-    size_t tests; /* that are left */
+    size_t tests; /* remaining */
 
-    uint32_t face; /* whose corners these are */
+    uint32_t face; /* the current face */
     const double *corner[3];
     double centroid[3], normal[3]; /* of unit length, inward */
 } prover;
@@ -158,7 +159,7 @@ static bool prove_face(prover *own, uint32_t face, double p[3]) {
         own->tests--;
         along(own, height, p);
         if (verify_side(own->corner[0], own->corner[1], own->corner[2], p) <= 0)
-            continue; /* by rounding */
+            continue; /* because of rounding */
         if (!sees_whole(own, p) || !in_range(own, p))
             return false;
         if (keeps_clearance(own, height) && is_clear_of_near(own, height) && in_view(own, height))
@@ -174,7 +175,7 @@ static void begin(prover *own) {
     own->least = fmax(own->least, own->known->guards->options.clearance);
 }
 
-/* Does the face hold something that is to be seen, that no guard sees and that is not proven? */
+/* Does the face have a target element that no guard sees and that is not proven yet? */
 static bool is_open(const verify_facts *known, const uint8_t *proven, size_t face) {
     const uint32_t *corner = known->surface->faces + 3 * face;
     if (!verify_targets_vertices(known))

@@ -64,6 +64,15 @@ struct starg_certificate {
 starg_status verify_check_cells(const starg_certificate *certificate, const verify_facts *known,
                                 size_t *cell, size_t *reason);
 
+/* Called with a leaf of the tree and the witnesses that it may see (none where no guard may stand);
+ * false ends the visit. */
+typedef bool everywhere_visit(void *user, size_t cell, const uint64_t *open);
+
+/* Visits the leaves in the order of the file; *all: none of them ended it. Errors: MEMORY,
+ * CANCELLED. */
+starg_status verify_visit_leaves(const starg_certificate *certificate, everywhere_visit *visit,
+                                 void *user, bool *all);
+
 /* Does the bound follow if all reasons hold? `why` says what is wrong if it does not. Errors:
  * MEMORY, CANCELLED. */
 typedef struct everywhere_words {

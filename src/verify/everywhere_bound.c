@@ -4,8 +4,8 @@
  *
  * A leaf may see all witnesses but those for which it, or a cell around it, gives a reason. Without
  * rows, prices prove the bound: those of a leaf's witnesses sum to less than a share of all, each
- * as often as it is to be seen. With
- * rows, each leaf is within one, and the nodes prove that so many rows do not hold all witnesses.
+ * as often as it is to be seen. With rows, each leaf is within one, and the nodes prove that so
+ * many rows do not hold all witnesses.
  *
  * Cost: the witnesses of all leaves; for each node those of all rows. */
 #include <stdio.h>
@@ -44,12 +44,9 @@ static uint64_t sum_of(const uint64_t *row, size_t words, const uint64_t *price)
 
 /* ---- leaves ---- */
 
-typedef bool visit_leaf(proving *p, size_t cell, const uint64_t *open);
-
-/* Calls `visit` with what each leaf may see; false when it was. */
-static starg_status visit_leaves(proving *p, visit_leaf *visit, bool *all) {
+starg_status verify_visit_leaves(const starg_certificate *own, everywhere_visit *visit, void *user,
+                                 bool *all) {
     starg_status status = STARG_OK;
-    const starg_certificate *own = p->own;
     starg_context *context = own->context;
     uint64_t *open = NULL; /* rows of cells that are still to come, the next one on top */
     size_t words = own->words, top = 0;
@@ -69,7 +66,7 @@ static starg_status visit_leaves(proving *p, visit_leaf *visit, bool *all) {
         }
         if (cell->kind > EVERYWHERE_LEAF)
             memset(row, 0, words * sizeof *row);
-        *all = visit(p, i, row);
+        *all = visit(user, i, row);
         top -= top > 0;
         if (i % 4096 == 0)
             STARG_TRY(starg_check_cancel(context, STAGE));
@@ -79,7 +76,8 @@ done:
     return status;
 }
 
-static bool is_in_row(proving *p, size_t cell, const uint64_t *open) {
+static bool is_in_row(void *user, size_t cell, const uint64_t *open) {
+    proving *p = user;
     const starg_certificate *own = p->own;
     uint32_t row = own->cells[cell].row;
     if (own->cells[cell].kind > EVERYWHERE_LEAF)
@@ -116,13 +114,14 @@ static bool exceeds(uint64_t sum, size_t times, size_t most, uint64_t largest) {
 }
 
 typedef struct leaf_prices {
-    proving proving; /* first: visit_leaf gets it */
+    proving *proving;
     uint64_t all;
     size_t most;
 } leaf_prices;
 
-static bool is_cheap(proving *p, size_t cell, const uint64_t *open) {
-    const leaf_prices *own = (const leaf_prices *)p;
+static bool is_cheap(void *user, size_t cell, const uint64_t *open) {
+    const leaf_prices *own = user;
+    proving *p = own->proving;
     bool cheap =
         exceeds(own->all, p->own->redundancy, own->most, sum_of(open, p->own->words, p->price));
     if (!cheap)
@@ -133,7 +132,7 @@ static bool is_cheap(proving *p, size_t cell, const uint64_t *open) {
 
 /* Without rows: prices for the leaves themselves. */
 static starg_status prove_by_leaves(proving *p, size_t most, bool *follows) {
-    leaf_prices own = {.proving = *p, .most = most};
+    leaf_prices own = {.proving = p, .most = most};
     const starg_certificate *c = p->own;
     *follows = c->node_count == 1 && c->nodes[0].witness == UINT32_MAX;
     if (!*follows) {
@@ -141,7 +140,7 @@ static starg_status prove_by_leaves(proving *p, size_t most, bool *follows) {
         return STARG_OK;
     }
     *follows = set_prices(p, &c->nodes[0], NULL, &own.all);
-    return *follows ? visit_leaves(&own.proving, is_cheap, follows) : STARG_OK;
+    return *follows ? verify_visit_leaves(c, is_cheap, &own, follows) : STARG_OK;
 }
 
 /* ---- branches ---- */
@@ -261,7 +260,7 @@ static starg_status prove_by_rows(proving *p, size_t most, bool *follows) {
     }
     for (size_t j = 0; j < own->witness_count; j++)
         starg_bit_set(all, j);
-    STARG_TRY(visit_leaves(p, is_in_row, follows));
+    STARG_TRY(verify_visit_leaves(own, is_in_row, p, follows));
     if (*follows)
         STARG_TRY(prove(p, all, most, follows));
     if (*follows && p->next != own->node_count) {

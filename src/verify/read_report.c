@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* PIECES.json, read for the verifier (docs/formats.md). Types and shapes are checked here; whether
- * the numbers are true is checked by verification. Unknown keys are skipped.
+/* PIECES.json, read for the verifier (docs/formats.md). Checks types and shapes here; verification
+ * checks the numbers. Skips unknown keys.
  *
- * The reader of starg_decomposition_read is another one, by the table that also writes the file.
- * This one shares no more with it than the parser of JSON: a mistake in the table shows here. */
+ * Independent of starg_decomposition_read, which uses the same field table as the writer. The two
+ * share only the JSON parser, so a mistake in the table shows here. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 
 static const char STAGE[] = "pieces file";
 
-/* A reader in the middle of a file: the first thing that does not fit ends it. */
+/* State of the reader: the first error ends it. */
 typedef struct reader {
     starg_context *context;
     const char *name;
@@ -125,7 +125,7 @@ done:
         r->status = status;
 }
 
-/* How the boundary relates to the model; files without the keys keep the surface. */
+/* Relation of the boundary to the model; files without the keys keep the surface. */
 static void read_surface(reader *r, const json_t *root, starg_pieces_report *report) {
     if (json_object_get(root, "surface") != NULL)
         report->approximated = read_word(r, root, "surface", "kept", "approximated") == 1;
@@ -150,6 +150,17 @@ done:
         r->status = status;
 }
 
+static void read_balls(reader *r, const json_t *balls, starg_pieces_report *report) {
+    report->balls = balls != NULL;
+    if (!report->balls)
+        return;
+    read_word(r, balls, "kind", "rays", "even");
+    report->ball_worst = read_real(r, balls, "worst");
+    report->ball_mean = read_real(r, balls, "mean");
+    if (json_object_get(balls, "above_10") != NULL)
+        report->ball_above_10 = read_real(r, balls, "above_10");
+}
+
 static void read_document(reader *r, const json_t *root, starg_pieces_report *report) {
     const char *format = json_string_value(json_object_get(root, "format"));
     if (format == NULL || strcmp(format, "starguard-pieces") != 0)
@@ -167,6 +178,7 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     if (json_object_get(root, "flattest") != NULL)
         report->flattest = read_real(r, root, "flattest");
     read_surface(r, root, report);
+    read_balls(r, json_object_get(root, "balls"), report);
 }
 
 starg_status starg_pieces_report_read_memory(starg_context *context, const void *bytes, size_t size,

@@ -11,7 +11,7 @@
 #include "visibility/adjacency.h"
 #include "visibility/sides.h"
 
-/* Vertices get their slots in the order in which the faces, taken leaf by leaf, name them. */
+/* Numbers the vertices in the order in which the faces use them, leaf by leaf. */
 static void order_vertices(visibility_scene *scene) {
     const starg_mesh *mesh = scene->mesh;
     for (size_t v = 0; v < mesh->vertex_count; v++)

@@ -13,7 +13,7 @@ static const char STAGE[] = "visibility";
 
 typedef visibility_job job;
 
-/* What one thread needs to work on a point. */
+/* Per-thread data. */
 typedef struct worker {
     void *engine_scratch;
     const job *job;
@@ -65,7 +65,7 @@ static void drop_out_of_reach(const worker *w, const double p[3]) {
     }
 }
 
-static void look_all_around(const job *all, worker *w, const double p[3]) {
+static void find_visible(const job *all, worker *w, const double p[3]) {
     scene_sides(all->scene, p, w->side);
     all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
     drop_out_of_reach(w, p);
@@ -118,9 +118,9 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     (void)context;
     const uint8_t *visible = w->visible;
     if (starg_solid_contains(all->scene->solid, p)) {
-        /* points that look several ways stand one after the other */
+        /* directions at the same point are consecutive */
         if (w->last == NULL || !vec3_equal(w->last, p))
-            look_all_around(all, w, p);
+            find_visible(all, w, p);
         w->last = p;
         if (sensor_is_directed(all->options)) {
             narrow(all, w, p, item);
@@ -149,7 +149,8 @@ static starg_status check_arguments(starg_context *context, const double *points
     return status;
 }
 
-/* Of those that suit every point only contours tell plainly which faces are wholly visible. */
+/* Of the engines for all points, only contours can tell quickly which faces are entirely
+ * visible. */
 static const visibility_engine *choose_engine(const starg_visibility_options *options) {
     static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
                                                        &visibility_sweep, &visibility_contours,
@@ -166,7 +167,7 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
     if (status == STARG_OK)
         status = scene_limit(*out, options->range);
     if (status == STARG_OK && options->engine >= STARG_VISIBILITY_CONTOURS &&
-        count > 1) /* one does not pay for it */
+        count > 1) /* does not pay for a single point */
         status = scene_add_adjacency(*out);
     return status;
 }
@@ -185,7 +186,7 @@ starg_status visibility_fill(starg_context *context, const visibility_job *of,
     return starg_parallel_in_time(context, &loop);
 }
 
-/* With the help of other processes where there are any, and enough to do for them. */
+/* With other processes, if there are any and enough work. */
 static starg_status fill_shared(starg_context *context, const job *all) {
     starg_status status = STARG_OK;
     starg_bytes packed = {0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory that fails at every place of the calls about tetrahedra, star decompositions and what
- * verifies them. */
+/* Memory failures at every place in calls about tetrahedra, star decompositions and their
+ * verification. */
 #include "failing.h"
 #include "failing_inputs.h"
 
@@ -49,7 +49,7 @@ static starg_status tetrahedra(starg_context *context) {
             starg_tetmesh_count(in.tetmesh), NULL);
     FAILING_BY(starg_tetmesh_surface, "", surface(context));
     FILL(starg_tetmesh_from_solid, "stuffing", STUFFING, NULL);
-    /* a program that is not there: files are written, then stuffing takes over */
+    /* a missing program: files are written, then stuffing takes over */
     FILL(starg_tetmesh_from_solid, "no tetgen, stuffing", AUTO, "/nowhere/tetgen");
     TETMESH(starg_tetmesh_from_open_mesh, "", in.open, filling(STARG_TETRA_AUTO, NULL), NULL);
     TETMESH(starg_tetmesh_read, "medit", failing_input("tets.mesh"));
@@ -110,7 +110,9 @@ static starg_status decompositions(starg_context *context) {
     FAILING_BY(starg_decompose, "strict, self-intersecting", decompose_crossed(context, &strict));
     DECOMPOSE(starg_decompose, "paper", in.solid, &paper);
     DECOMPOSE(starg_decompose, "paper, given guards", in.solid, &given);
-    DECOMPOSE(starg_decompose_tetmesh, "strict", in.tetmesh, &strict);
+    starg_decompose_options even = strict;
+    even.balls = STARG_BALLS_EVEN;
+    DECOMPOSE(starg_decompose_tetmesh, "strict, balls", in.tetmesh, &even);
     DECOMPOSE(starg_decompose_open_mesh, "strict", in.open, &strict);
     FAILING_BY(starg_decomposition_surfaces, "", surfaces(context));
     FAILING(starg_decomposition_write_groups, "", in.decomposition, failing_output("p.obj"));

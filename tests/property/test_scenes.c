@@ -33,7 +33,7 @@ typedef struct scene {
     size_t point_count;
 } scene;
 
-/* ---- making them ---- */
+/* ---- construction ---- */
 
 static shape block(int nx, int ny, int nz) {
     char cells[SIDE * SIDE * SIDE + 1];
@@ -164,7 +164,7 @@ static bool blocks(const shape *s, const double p[3], const double q[3]) {
         const double *a = corner(s, f, 0), *b = corner(s, f, 1), *c = corner(s, f, 2);
         if (is_beside(p, q, a, b, c))
             continue;
-        /* off its plane, what ends on the triangle meets it at the end alone */
+        /* off its plane, a segment that ends on the triangle meets it only at the end */
         if (oracle_orient3d(a, b, c, p) != 0 && oracle_point_on_triangle(q, a, b, c))
             continue;
         if (oracle_segment_meets_triangle(p, q, a, b, c))
@@ -270,7 +270,7 @@ static bool sees_face(const scene *s, const view *v, size_t i, const bool *verte
     return seen;
 }
 
-/* Of vertices at one position the first stands for all. */
+/* Of coincident vertices the first one represents all. */
 static bool is_wanted_vertex(const scene *s, uint32_t v) {
     const double *at = s->model.vertices, *q = at + 3 * (size_t)v;
     bool wanted = false;
@@ -285,7 +285,7 @@ static bool is_wanted_vertex(const scene *s, uint32_t v) {
 
 /* ---- comparing ---- */
 
-/* Anywhere, on the half-lattice, and an ulp beside it. */
+/* Anywhere, on the half-lattice, and an ulp off it. */
 static void pick_points(scene *s, uint64_t seed) {
     for (uint64_t attempt = 0; attempt < 300 && s->point_count < POINTS; attempt++) {
         starg_rng rng = starg_rng_make(seed, 42, attempt);
@@ -348,7 +348,7 @@ static size_t check_engines(const scene *s, view *v, bool vertices) {
     return seen;
 }
 
-/* What a point sees is seen from every box that holds it. */
+/* What a point sees must be visible from every box that contains it. */
 static void check_boxes(const scene *s, uint64_t seed) {
     double boxes[6 * POINTS];
     starg_bits *point = NULL, *box = NULL;

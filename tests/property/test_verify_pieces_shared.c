@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verifier of star decompositions on real models. Every tetrahedron a piece of its own, all of
- * them proven by rationals, is a strict decomposition that must pass, with each way to make
- * tetrahedra; with something wrong somewhere it must not. A whole solid as one piece is star-shaped
- * exactly if the library's own proof, by other means, says so of the same guard. */
+/* The verifier of star decompositions on real models. Every tetrahedron as a separate piece, with
+ * guards proven by rationals, is a strict decomposition that must pass, for each generator of
+ * tetrahedra; with an error anywhere it must fail. A whole solid as one piece is star-shaped
+ * exactly if the library's own, independent proof says so for the same guard. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 
 static const uint8_t SIDES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-/* A decomposition of a tetrahedral mesh in arrays of its own. */
+/* A decomposition of a tetrahedral mesh in separate arrays. */
 typedef struct result {
     starg_pieces_mesh mesh;
     starg_pieces_report report;
@@ -55,7 +55,7 @@ static double area_of(const result *r, size_t t, int side) {
     return (double)(sqrtl(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2);
 }
 
-/* The centre as guard, and whether it is strictly inside after rounding. */
+/* Places the guard at the centroid; is it strictly inside after rounding? */
 static void place_guard(const result *r, size_t t, starg_piece *piece) {
     piece->star = true;
     piece->radius = NAN;
@@ -73,15 +73,17 @@ static void place_guard(const result *r, size_t t, starg_piece *piece) {
 static result make_result(const starg_tetmesh *tetmesh) {
     size_t count = starg_tetmesh_count(tetmesh), vertices = starg_tetmesh_vertex_count(tetmesh);
     const uint32_t *neighbours = starg_tetmesh_neighbours(tetmesh);
-    result r = {{vertices, count,
-                 copy(starg_tetmesh_vertices(tetmesh), 3 * vertices * sizeof(double)),
-                 copy(starg_tetmesh_tetrahedra(tetmesh), 4 * count * sizeof(uint32_t)),
-                 calloc(count, sizeof(int32_t))},
-                {.tetrahedra = count,
-                 .piece_count = count,
-                 .pieces = calloc(count, sizeof(starg_piece)),
-                 .contacts = calloc(4 * count, sizeof(starg_piece_contact)),
-                 .visible_vertices = 1}};
+    result r = {
+        {.vertex_count = vertices,
+         .count = count,
+         .vertices = copy(starg_tetmesh_vertices(tetmesh), 3 * vertices * sizeof(double)),
+         .tetrahedra = copy(starg_tetmesh_tetrahedra(tetmesh), 4 * count * sizeof(uint32_t)),
+         .labels = calloc(count, sizeof(int32_t))},
+        {.tetrahedra = count,
+         .piece_count = count,
+         .pieces = calloc(count, sizeof(starg_piece)),
+         .contacts = calloc(4 * count, sizeof(starg_piece_contact)),
+         .visible_vertices = 1}};
     for (size_t t = 0; t < count; t++) {
         starg_piece *piece = &r.report.pieces[t];
         r.mesh.labels[t] = (int32_t)t;
@@ -107,7 +109,7 @@ static void free_result(result *r) {
     free(r->report.contacts);
 }
 
-/* ---- what must pass, and what must not ---- */
+/* ---- verdicts ---- */
 
 static bool passes(starg_context *context, const starg_mesh *model, const result *r, bool tell) {
     starg_verdict *verdict = NULL;
@@ -122,7 +124,7 @@ static bool passes(starg_context *context, const starg_mesh *model, const result
 
 enum { SPOILINGS = 7 };
 
-/* Spoils a copy somewhere at random. */
+/* Corrupts a copy at a random place. */
 static result spoil(const result *truth, int kind, starg_rng *rng) {
     result r = *truth;
     size_t n = r.mesh.count, t = (size_t)starg_rng_below(rng, n), k = starg_rng_below(rng, 3);
@@ -163,7 +165,7 @@ static result spoil(const result *truth, int kind, starg_rng *rng) {
     return r;
 }
 
-/* Moving a coordinate to where it was already changes nothing. */
+/* Moving a coordinate to its old value changes nothing. */
 static bool same_vertices(const result *a, const result *b) {
     return memcmp(a->mesh.vertices, b->mesh.vertices, 3 * a->mesh.vertex_count * sizeof(double)) ==
            0;

@@ -51,6 +51,21 @@ class Views(Case):
         self.fails(starguard.ArgumentError, "no content", starguard.write_page, "b.html")
         self.assertFalse(os.path.exists("b.html"))
 
+    def test_a_page_with_a_proof(self):
+        if not starguard.page_available():
+            self.skipTest("this build has no viewer")
+        room = starguard.sample("gallery", vertices=500)
+        guards = starguard.guard(room, prove=True, prove_work=20000, certificate="why")
+        room.write("room.off")
+        guards.write("g.json")
+        certificate = starguard.read_result("why")
+        starguard.write_page("a.html", room, guards=guards, certificate=certificate)
+        self.cli("view", "g.json", "why", "--model", "room.off", "-o", "b.html", "--quiet")
+        self.assertIn(b'id="proof-cells"', self.read("a.html"))
+        self.assertIn(b'id="proof-cells"', self.read("b.html"))
+        self.fails(starguard.ArgumentError, "needs its guards", starguard.write_page, "c.html", room,
+                   certificate=certificate)
+
     def test_what_does_not_fit(self):
         self.fails(starguard.ArgumentError, "nothing", starguard.write_scene, "a.glb")
         self.fails(starguard.ArgumentError, "format",

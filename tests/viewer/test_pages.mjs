@@ -460,6 +460,24 @@ test("guards with a cone of view point to where they look", async () => {
     });
 });
 
+test("a proof shows its witnesses and the boxes of guards", async () => {
+    starguard("sample", "gallery", "--vertices", "500", "-o", "room.off");
+    starguard("guard", "room.off", "--prove", "--certificate", "why.txt", "-o", "proven.json");
+    starguard("view", "proven.json", "why.txt", "-o", "proof.html");
+    const lines = readFileSync(fileOf("why.txt"), "utf8").split("\n");
+    const witnesses = Number(lines.find((line) => line.startsWith("witnesses ")).slice(10));
+    await look("proof.html", {}, async (page) => {
+        const shown = () =>
+            page.evaluate(() => window.starguard.views[0].proof.object.visible);
+        assert.equal(await shown(), false);
+        await page.check("#proof");
+        assert.equal(await shown(), true);
+        assert.equal(await paintedFaces(page), witnesses);
+        await page.uncheck("#proof");
+        assert.equal(await paintedFaces(page), 0);
+    });
+});
+
 test("a model alone, and a skeleton alone, are shown", async () => {
     starguard("view", "horse.off", "-o", "model.html");
     starguard("view", "skeleton.obj", "-o", "skeleton.html");
