@@ -294,7 +294,7 @@ done:
 
 const cli_command cli_command_visible = {
     .name = "visible",
-    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1|--unseen [-o FILE.ply] [...]",
+    .usage = "MODEL --from X,Y,Z|--box X0,Y0,Z0,X1,Y1,Z1|--unseen [...]",
     .summary = "compute which faces are visible from points or boxes",
     .description =
         "Computes exactly which faces (or vertices) of a solid each point sees. A vertex is "

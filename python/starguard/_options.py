@@ -20,7 +20,6 @@ _TYPES = {lib.STARG_FIELD_FLAG: "bool", lib.STARG_FIELD_COUNT: "int", lib.STARG_
           lib.STARG_FIELD_CHOICE: "str", lib.STARG_FIELD_TEXT: "PathLike",
           lib.STARG_FIELD_NUMBERS: "Sequence[float]"}
 _TEXT_SIZE = 512
-_ABOVE = 16  # STARG_FIELD_ABOVE
 
 
 class Field:
@@ -50,7 +49,7 @@ class Field:
         return self._at(struct, "double *")[0:self._row.length]
 
     def _fits(self, number: float) -> bool:
-        above = number > self._row.low if self._row.flags & _ABOVE else number >= self._row.low
+        above = number > self._row.low if self._row.flags & lib.STARG_FIELD_ABOVE else number >= self._row.low
         return above and number <= self._row.high
 
     def _expectation(self) -> str:
@@ -92,10 +91,10 @@ class Field:
                 self._at(struct, "char **")[0] = keep
                 fits = True
             elif self.kind == lib.STARG_FIELD_NUMBERS:
-                numbers = [float(number) for number in value]
+                numbers = [] if isinstance(value, (str, bytes)) else [float(number) for number in value]
                 fits = len(numbers) == self._row.length and all(map(self._fits, numbers))
                 if fits:
-                    self._numbers(struct)[:] = numbers
+                    ffi.memmove(self._at(struct, "double *"), ffi.new("double[]", numbers), 8 * len(numbers))
             elif self.kind == lib.STARG_FIELD_CHOICE:
                 fits = lib.starg_field_set_count(self._row, struct, self.words.index(value))
             elif self.kind == lib.STARG_FIELD_FLAG:

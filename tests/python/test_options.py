@@ -38,12 +38,17 @@ def random_value(field):
         return random.uniform(low, min(row.high, 1e6))
     if field.kind == lib.STARG_FIELD_TEXT:
         return random.choice(["a", "b/c"])
+    if field.kind == lib.STARG_FIELD_NUMBERS:
+        return tuple(random.uniform(1, 100) for _ in range(row.length))
     return random.randint(row.least, row.most)
 
 
 def wrong_values(field):
     """What the table does not take."""
     row = field._row
+    if field.kind == lib.STARG_FIELD_NUMBERS:
+        yield from ([1.0] * (row.length + 1), [2e100] * row.length, 5, "1")
+        return
     yield [1, 2]
     if field.kind == lib.STARG_FIELD_TEXT:
         return
