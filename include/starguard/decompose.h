@@ -66,6 +66,8 @@ typedef struct starg_decomposition {
         flattest; /* smallest ratio of height to longest edge of a tetrahedron (regular: 0.816) */
     double flattest_given; /* the same for the initial tetrahedra; -1: there were none */
     bool time_limited;     /* the time limit stopped the search: another run may differ */
+    size_t lower_bound;    /* no fewer star-shaped pieces make up the model; 0: not sought */
+    bool optimal;          /* as many pieces as lower_bound */
 } starg_decomposition;
 
 /* Default density of initial tetrahedra: that of [YL11] for PAPER, and low for STRICT, which needs
@@ -86,6 +88,11 @@ typedef struct starg_decompose_options {
     uint64_t effort;
     /* starg_decompose_open_mesh: fill the surface even if the filled volume is far from it */
     bool fill;
+    /* STRICT, embedded surfaces: prove first how few star-shaped pieces can make up the solid,
+     * however it is cut (lower_bound), in half of the time that the context allows; the search then
+     * ends as soon as there are no more */
+    bool prove;
+    uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
 } starg_decompose_options;
 
 /* STRICT, as few pieces as possible. */
@@ -99,11 +106,21 @@ STARG_API const starg_fields *starg_decompose_options_fields(void);
  * search returns its best result; without any, the first one is finished in a hurry. A surface that
  * intersects itself is first replaced by the boundary of what it encloses
  * (starg_repair_options.unite). PAPER, and a surface of which that cannot be made, is
- * tetrahedralized first. `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization
- * failed), MEMORY, CANCELLED, TIME (not yet tetrahedralized). */
+ * tetrahedralized first. `options` may be NULL. Errors: ARGUMENT, MESH (`prove`: the surface is not
+ * embedded), SOLVER (tetrahedralization failed), MEMORY, CANCELLED, TIME (not yet tetrahedralized).
+ */
 STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out);
+
+/* The same with `prove`, and the certificate of lower_bound: a text (docs/formats.md) of `size`
+ * bytes, followed by a zero byte, that starg_verify_pieces_with checks. Free it with
+ * starg_text_free. Errors: those of starg_decompose, ARGUMENT (without `prove`), TIME (no bound
+ * yet). */
+STARG_API starg_status starg_decompose_certified(starg_context *context, const starg_solid *solid,
+                                                 const starg_decompose_options *options,
+                                                 starg_decomposition **out, char **certificate,
+                                                 size_t *size);
 
 /* Cuts a tetrahedral mesh. STRICT returns new tetrahedra with the boundary of the mesh, possibly
  * subdivided; PAPER labels a copy of the mesh. Errors: as for starg_decompose, and MESH (STRICT: a

@@ -7,6 +7,7 @@
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/decomposition.h"
+#include "star/lower_bound.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
 #include "star/touching.h"
@@ -61,6 +62,20 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_decompose_options, fill),
      .help = "Fill a surface with holes even if the filled volume is farther from it than a fifth "
              "of its diagonal."},
+    {.option = "prove",
+     .kind = STARG_FIELD_FLAG,
+     FIELD_MEMBER(starg_decompose_options, prove),
+     .help =
+         "strict: prove first how few star-shaped pieces there can be, however the solid is cut; "
+         "the search ends as soon as there are no more."},
+    {.option = "prove-work",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_decompose_options, prove_work),
+     .most = UINT64_MAX >> 1,
+     .initial = 90000000,
+     .value = "N",
+     .help = "--prove: budget, counted in tests of a vertex against a box (about a microsecond "
+             "each)."},
     TETRA_FIELDS(starg_decompose_options, tetra.),
 };
 static const starg_fields OPTIONS_TABLE = {
@@ -97,6 +112,9 @@ static starg_status check_options(starg_context *context, const starg_decompose_
                                  "1e100 in magnitude",
                                  i / 3, o->guards[i]);
         }
+    if (o->prove && o->mode == STARG_DECOMPOSE_PAPER)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a bound for star-shaped pieces is proven in strict mode only");
     return STARG_OK;
 }
 
@@ -120,6 +138,10 @@ starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh
         options = &defaults;
     *out = NULL;
     STARG_TRY(check_options(context, options));
+    if (options->prove)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a bound for pieces is proven for surfaces only; give the boundary of "
+                          "the tetrahedra as a surface");
     STARG_TRY(run_mode(context, mesh, options, out));
     (*out)->model_vertices = mesh->vertex_count;
     (*out)->model_tetrahedra = mesh->count;
@@ -214,12 +236,7 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
                                     const starg_decompose_options *options,
                                     starg_decomposition **out) {
     starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    starg_decompose_options_default(&defaults);
-    if (options == NULL)
-        options = &defaults;
     *out = NULL;
-    STARG_TRY(check_options(context, options));
     if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
         STARG_TRY(decompose_surface(context, solid, options, out));
     if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && *out == NULL)
@@ -239,13 +256,100 @@ done:
     return status;
 }
 
+/* Half of the time that is left is for the proof. */
+static starg_status find_bound(starg_context *context, const starg_solid *solid,
+                               const starg_decompose_options *options, bool certified,
+                               piece_bound *out) {
+    const starg_deadline all = context->deadline;
+    if (all.at > 0)
+        context->deadline.at -= fmax(starg_seconds_left(context), 0) / 2;
+    starg_status status = piece_bound_find(context, solid, options->prove_work, certified, out);
+    context->deadline.at = all.at;
+    return status;
+}
+
+/* No fewer pieces are looked for than there can be; what sees all vertices may see pieces. */
+static starg_status decompose_proven(starg_context *context, const starg_solid *solid,
+                                     const starg_decompose_options *options, bool certified,
+                                     piece_bound *bound, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options own = *options;
+    STARG_TRY(find_bound(context, solid, options, certified, bound));
+    if (own.max_pieces < bound->bound)
+        own.max_pieces = bound->bound;
+    if (own.guards == NULL && bound->guards != NULL) {
+        own.guards = bound->guards->positions;
+        own.guard_count = bound->guards->count;
+    }
+    STARG_TRY(decompose_model(context, solid, NULL, &own, out));
+    (*out)->lower_bound = bound->bound;
+    (*out)->optimal = bound->bound == (*out)->piece_count;
+done:
+    return status;
+}
+
 starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                              const starg_decompose_options *options, starg_decomposition **out) {
-    return decompose_model(context, solid, NULL, options, out);
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    piece_bound bound = {0};
+    starg_decompose_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    if (options->prove)
+        STARG_TRY(decompose_proven(context, solid, options, false, &bound, out));
+    else
+        STARG_TRY(decompose_model(context, solid, NULL, options, out));
+done:
+    piece_bound_free(context, &bound);
+    return status;
+}
+
+starg_status starg_decompose_certified(starg_context *context, const starg_solid *solid,
+                                       const starg_decompose_options *options,
+                                       starg_decomposition **out, char **text, size_t *size) {
+    starg_status status = STARG_OK;
+    piece_bound bound = {0};
+    *out = NULL;
+    *text = NULL;
+    *size = 0;
+    if (options == NULL || !options->prove)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate says why a bound for pieces holds, which is not asked "
+                          "for; ask for a proof (prove)");
+    STARG_TRY(check_options(context, options));
+    STARG_TRY(decompose_proven(context, solid, options, true, &bound, out));
+    if (bound.certificate == NULL) {
+        starg_decomposition_free(context, *out);
+        *out = NULL;
+        status = starg_fail_time(context, STAGE);
+        goto done;
+    }
+    *text = bound.certificate;
+    *size = bound.size;
+    bound.certificate = NULL;
+done:
+    piece_bound_free(context, &bound);
+    return status;
 }
 
 starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out) {
-    return decompose_model(context, NULL, surface, options, out);
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    starg_decompose_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    if (options->prove)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "a bound for pieces is proven for closed surfaces only; close it with "
+                          "'starguard repair', or leave out the proof");
+    STARG_TRY(decompose_model(context, NULL, surface, options, out));
+done:
+    return status;
 }

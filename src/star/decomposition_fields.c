@@ -30,6 +30,10 @@ static bool is_approximated(const void *record) {
     return !of(record)->tetra.surface_kept;
 }
 
+static bool is_bounded(const void *record) {
+    return of(record)->lower_bound > 0;
+}
+
 static const starg_field MODEL[] = {
     {.key = "file",
      .kind = STARG_FIELD_TEXT,
@@ -169,6 +173,20 @@ static const starg_field FILE_ROWS[] = {
      .of = &CONTACTS_TABLE,
      LENGTH(contact_count),
      .help = "Pairs of pieces that share faces, with the shared area; ascending."},
+    {.key = "lower_bound",
+     .kind = STARG_FIELD_COUNT,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(lower_bound),
+     .least = 1,
+     .most = UINT32_MAX,
+     .help = "No fewer star-shaped pieces make up the model, however it is cut; absent if this was "
+             "not sought."},
+    {.key = "optimal",
+     .kind = STARG_FIELD_FLAG,
+     .flags = STARG_FIELD_OPTIONAL,
+     RESULT(optimal),
+     .applies = is_bounded,
+     .help = "The number of pieces equals lower_bound."},
     {.key = "time_limited",
      .kind = STARG_FIELD_FLAG,
      .flags = STARG_FIELD_OPTIONAL,

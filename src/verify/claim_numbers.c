@@ -175,8 +175,7 @@ static void claim_flattest(const verify_context *own) {
     } else {
         verify_leave(own->verdict, "the flattest tetrahedron: the report does not tell it");
     }
-    verify_leave(own->verdict, "how flat tetrahedra were to begin with, and whether fewer pieces "
-                               "would do");
+    verify_leave(own->verdict, "how flat tetrahedra were to begin with");
 }
 
 starg_status verify_claim_numbers(const verify_context *own) {

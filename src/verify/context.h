@@ -13,6 +13,7 @@ typedef struct verify_context {
     const starg_pieces_mesh *mesh;
     const starg_pieces_report *report; /* or NULL */
     const verify_surface *model;
+    const starg_certificate *certificate; /* of the report's lower bound, or NULL */
     verify_pieces *pieces;
     starg_verdict *verdict;
 } verify_context;
@@ -30,6 +31,9 @@ starg_status verify_claim_numbers(const verify_context *own);
 
 /* Star-shapedness, and what guards see; only with good labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_stars(const verify_context *own);
+
+/* No fewer star-shaped pieces are possible. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_fewest(const verify_context *own);
 
 /* ---- words for elements ---- */
 

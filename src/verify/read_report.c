@@ -167,6 +167,10 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     if (json_object_get(root, "flattest") != NULL)
         report->flattest = read_real(r, root, "flattest");
     read_surface(r, root, report);
+    if (json_object_get(root, "lower_bound") != NULL) {
+        report->lower_bound = read_count(r, root, "lower_bound");
+        report->optimal = read_bool(r, root, "optimal");
+    }
 }
 
 starg_status starg_pieces_report_read_memory(starg_context *context, const void *bytes, size_t size,
