@@ -259,7 +259,7 @@ done:
 /* Half of the time that is left is for the proof. */
 static starg_status find_bound(starg_context *context, const starg_solid *solid,
                                const starg_decompose_options *options, bool certified,
-                               piece_bound *out) {
+                               corner_guards *out) {
     const starg_deadline all = context->deadline;
     if (all.at > 0)
         context->deadline.at -= fmax(starg_seconds_left(context), 0) / 2;
@@ -268,18 +268,18 @@ static starg_status find_bound(starg_context *context, const starg_solid *solid,
     return status;
 }
 
-/* No fewer pieces are looked for than there can be; what sees all vertices may see pieces. */
+/* No fewer pieces are looked for than there can be; what sees all corners may see pieces. */
 static starg_status decompose_proven(starg_context *context, const starg_solid *solid,
                                      const starg_decompose_options *options, bool certified,
-                                     piece_bound *bound, starg_decomposition **out) {
+                                     corner_guards *bound, starg_decomposition **out) {
     starg_status status = STARG_OK;
     starg_decompose_options own = *options;
     STARG_TRY(find_bound(context, solid, options, certified, bound));
     if (own.max_pieces < bound->bound)
         own.max_pieces = bound->bound;
-    if (own.guards == NULL && bound->guards != NULL) {
-        own.guards = bound->guards->positions;
-        own.guard_count = bound->guards->count;
+    if (own.guards == NULL) {
+        own.guards = bound->positions;
+        own.guard_count = bound->count;
     }
     STARG_TRY(decompose_model(context, solid, NULL, &own, out));
     (*out)->lower_bound = bound->bound;
@@ -292,7 +292,7 @@ starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                              const starg_decompose_options *options, starg_decomposition **out) {
     starg_status status = STARG_OK;
     starg_decompose_options defaults;
-    piece_bound bound = {0};
+    corner_guards bound = {0};
     starg_decompose_options_default(&defaults);
     if (options == NULL)
         options = &defaults;
@@ -303,7 +303,7 @@ starg_status starg_decompose(starg_context *context, const starg_solid *solid,
     else
         STARG_TRY(decompose_model(context, solid, NULL, options, out));
 done:
-    piece_bound_free(context, &bound);
+    corner_guards_free(context, &bound);
     return status;
 }
 
@@ -311,7 +311,7 @@ starg_status starg_decompose_certified(starg_context *context, const starg_solid
                                        const starg_decompose_options *options,
                                        starg_decomposition **out, char **text, size_t *size) {
     starg_status status = STARG_OK;
-    piece_bound bound = {0};
+    corner_guards bound = {0};
     *out = NULL;
     *text = NULL;
     *size = 0;
@@ -331,7 +331,7 @@ starg_status starg_decompose_certified(starg_context *context, const starg_solid
     *size = bound.size;
     bound.certificate = NULL;
 done:
-    piece_bound_free(context, &bound);
+    corner_guards_free(context, &bound);
     return status;
 }
 

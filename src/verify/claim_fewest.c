@@ -1,44 +1,38 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The claim that no fewer star-shaped pieces are possible, against the certificate of a bound for
- * points that see vertices (verify/everywhere.h).
+ * points that see corners of faces (verify/everywhere.h). A point sees corner v of face f if it is
+ * strictly on the inner side of f and the segment to v meets the surface in v only.
  *
- * Why such a bound holds for pieces: pieces are closed and fill the model, so that each vertex v of
- * its surface is in some piece. The guard g of the piece is strictly on the inner side of all of
- * its walls, and so is a ball about g; the piece holds all segments between the ball and v, and
- * they hold a neighbourhood of each point between g and v. So none of these points is on the
- * surface, which is embedded: g sees v, by the rule that the certificate speaks of. Hence the
- * guards of any partition into star-shaped pieces see all witnesses, and are as many as the bound
- * says.
+ * Why such a bound holds for pieces: pieces are closed and fill the model, so one of them, P, holds
+ * v and points of f as near to v as you like. Its guard g is strictly on the inner side of all of
+ * its walls, and so is a ball about g; P holds all segments between the ball and any point x of it,
+ * and these hold a neighbourhood of each point between g and x. So none of these points is on the
+ * surface, which is embedded. With x = v: the segment to v meets the surface in v only. With x
+ * inside f: the segment reaches f from the inner side. Hence the guards of any partition into
+ * star-shaped pieces see all corners, and are as many as the bound says.
  *
  * Cost: that of the certificate (verify/everywhere.c), and of pairs of faces near each other. */
 #include <math.h>
 #include <stdio.h>
 
-#include "core/memory.h"
 #include "verify/context.h"
 #include "verify/everywhere.h"
 
-static const char STAGE[] = "verify";
-
 static bool is_answered_by_pieces(const starg_certificate *c) {
-    return c->target == STARG_TARGET_VERTICES && isinf(c->range) && c->clearance == 0 &&
+    return c->target == STARG_TARGET_CORNERS && isinf(c->range) && c->clearance == 0 &&
            c->redundancy == 1;
 }
 
-/* What else than vertices of faces a file numbers is no witness. */
-static starg_status find_stray(const verify_context *own, size_t *stray) {
-    starg_status status = STARG_OK;
-    const starg_certificate *c = own->certificate;
-    uint8_t *used = NULL;
-    STARG_NEW_ZERO(own->context, STAGE, used, own->model->vertex_count);
-    for (size_t i = 0; i < 3 * own->model->face_count; i++)
-        used[own->model->faces[i]] = 1;
-    *stray = 0;
+static bool has_corner(const verify_surface *surface, uint32_t face, uint32_t vertex) {
+    const uint32_t *c = surface->faces + 3 * (size_t)face;
+    return c[0] == vertex || c[1] == vertex || c[2] == vertex;
+}
+
+static bool has_corners(const starg_certificate *c, const verify_surface *surface) {
     for (size_t i = 0; i < c->witness_count; i++)
-        *stray += !used[c->witnesses[i]];
-done:
-    starg_release(own->context, used);
-    return status;
+        if (!has_corner(surface, c->witnesses[i], c->corners[i]))
+            return false;
+    return true;
 }
 
 /* Is the certificate of the model, and of a question that pieces answer? */
@@ -47,20 +41,18 @@ static starg_status claim_question(const verify_context *own, const verify_facts
     starg_status status = STARG_OK;
     const starg_certificate *c = own->certificate;
     verify_scene scene = {0};
-    size_t stray = 0;
     const char *difference = NULL;
     if (own->report->approximated)
         difference = ": pieces that approximate the model say nothing about it";
     else if (!verify_certificate_is_of(c, own->model))
         difference = ": it is of another model";
     else if (!is_answered_by_pieces(c))
-        difference = ": it is not about all vertices, seen once, from anywhere";
-    if (difference == NULL) {
-        STARG_TRY(find_stray(own, &stray));
+        difference = ": it is not about corners of faces, seen once, from anywhere";
+    else if (!has_corners(c, own->model))
+        difference = ": some of its witnesses are no corners of the faces that they name";
+    else {
         STARG_TRY(verify_scene_create(own->model, known->tree, true, &scene));
-        if (stray > 0)
-            difference = ": some of its witnesses are no corners of faces";
-        else if (!scene.embedded)
+        if (!scene.embedded)
             difference = ": the surface touches or intersects itself";
     }
     *good = difference == NULL;

@@ -55,6 +55,19 @@ static bool is_barred(const checking *own, const verify_box *box) {
                clearance * (0.9995 - sqrt(squared));
 }
 
+/* A corner is seen from the inner side of its face, past what hides its vertex: as a face is, but
+ * for the other two vertices. */
+static bool is_hidden(const starg_certificate *c, verify_watch *watch,
+                      const verify_reason *reason) {
+    starg_target target = c->target;
+    if (target == STARG_TARGET_CORNERS) {
+        target = STARG_TARGET_FACES;
+        if (reason->kind != 'n' && reason->vertex != c->corners[reason->witness])
+            return false;
+    }
+    return verify_box_hides(watch, target, c->witnesses[reason->witness], c->range, reason);
+}
+
 static starg_status check_cell(starg_context *context, void *shared, void *scratch, size_t item) {
     const checking *own = shared;
     const starg_certificate *c = own->certificate;
@@ -66,8 +79,7 @@ static starg_status check_cell(starg_context *context, void *shared, void *scrat
         (cell->kind == EVERYWHERE_BARRED && !is_barred(own, &cell->box)))
         own->wrong[item] = SIZE_MAX;
     for (size_t k = cell->first; k < cell->first + cell->count; k++)
-        if (!verify_box_hides(scratch, c->target, c->witnesses[c->reasons.data[k].witness],
-                              c->range, &c->reasons.data[k])) {
+        if (!is_hidden(c, scratch, &c->reasons.data[k])) {
             own->wrong[item] = k;
             break;
         }
@@ -223,7 +235,10 @@ starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *know
         verify_claim(verdict, false,
                      "reasons of the certificate are right: the cell on line %zu may see %s %u in "
                      "spite of reason %zu there (%s)",
-                     c->cell_line + cell, c->target == STARG_TARGET_VERTICES ? "vertex" : "face",
+                     c->cell_line + cell,
+                     c->target == STARG_TARGET_VERTICES  ? "vertex"
+                     : c->target == STARG_TARGET_CORNERS ? "a corner of face"
+                                                         : "face",
                      c->witnesses[r->witness], reason - c->cells[cell].first + 1, word_of(r->kind));
     }
     return STARG_OK;

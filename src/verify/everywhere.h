@@ -45,7 +45,8 @@ struct starg_certificate {
     starg_target target;
     double range, clearance;
     size_t redundancy, bound;
-    uint32_t *witnesses;
+    uint32_t *witnesses; /* faces or vertices; of corners the faces */
+    uint32_t *corners;   /* by witness: the vertex of a corner; NULL where none are the target */
     size_t witness_count, words; /* words of a row of bits over the witnesses */
     uint64_t *rows;
     size_t row_count;

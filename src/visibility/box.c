@@ -368,7 +368,9 @@ static box_reason hidden_by(const box_scene *scene, box_reason_kind kind, uint32
                         clipped};
 }
 
-static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, bool recorded) {
+/* About the corners of the face from number `first` on, before `end`: hidden if one of them is. */
+static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, int first, int end,
+                           bool recorded) {
     const box_scene *scene = w->scene;
     const box_triangle *t = &scene->triangles[scene->rank_of[face]];
     bvh_box left;
@@ -376,7 +378,7 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
     clip_result inner = clip(scene, t, &w->box, &left);
     if (inner == CLIP_NOTHING_LEFT)
         return (box_reason){BOX_PLANE, BOX_NONE, BOX_NONE, false};
-    for (int k = 0; k < 3; k++) {
+    for (int k = first; k < end; k++) {
         box_reason_kind kind = ask_vertex_once(w, q, t->corner[k], recorded, &seed);
         if (kind != BOX_OPEN)
             return hidden_by(scene, kind, t->corner[k], seed, false);
@@ -385,7 +387,7 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
     if (inner == CLIP_ALL_LEFT)
         return reason;
     set_current(w, &left);
-    for (int k = 0; k < 3 && reason.kind == BOX_OPEN; k++) {
+    for (int k = first; k < end && reason.kind == BOX_OPEN; k++) {
         box_reason_kind kind = ask_vertex(w, q, t->corner[k], recorded, &seed);
         if (kind != BOX_OPEN)
             reason = hidden_by(scene, kind, t->corner[k], seed, true);
@@ -397,7 +399,9 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
 static box_reason ask(box_worker *w, const box_question *q, uint32_t target, bool recorded) {
     uint32_t seed;
     if (q->target == STARG_TARGET_FACES)
-        return ask_face(w, q, target, recorded);
+        return ask_face(w, q, target, 0, 3, recorded);
+    if (q->target == STARG_TARGET_CORNERS)
+        return ask_face(w, q, target / 3, (int)(target % 3), (int)(target % 3) + 1, recorded);
     box_reason_kind kind = ask_vertex_once(w, q, target, recorded, &seed);
     return hidden_by(w->scene, kind, target, seed, false);
 }
