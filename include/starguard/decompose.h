@@ -28,6 +28,7 @@ typedef struct starg_piece {
     double guard[3];
     double radius; /* distance from the guard to the nearest plane of a boundary face, negative
                       behind it; rounded */
+    double margin; /* the same by the diagonal of the piece's bounding box; -DBL_MAX: not told */
     size_t tetrahedra;
     double volume;
     bool star;
@@ -65,9 +66,15 @@ typedef struct starg_decomposition {
     double
         flattest; /* smallest ratio of height to longest edge of a tetrahedron (regular: 0.816) */
     double flattest_given; /* the same for the initial tetrahedra; -1: there were none */
-    bool time_limited;     /* the time limit stopped the search: another run may differ */
-    size_t lower_bound;    /* no fewer star-shaped pieces make up the model; 0: not sought */
-    bool optimal;          /* as many pieces as lower_bound */
+    /* Of the smallest dihedral angle of each tetrahedron, in degrees: the least and the median; -1:
+     * not told */
+    double smallest_angle, median_angle;
+    /* The least without tetrahedra over whole faces of the model that have an angle as small; -1:
+     * the surface was not kept, or the model has tetrahedra */
+    double smallest_angle_made;
+    bool time_limited;  /* the time limit stopped the search: another run may differ */
+    size_t lower_bound; /* no fewer star-shaped pieces make up the model; 0: not sought */
+    bool optimal;       /* as many pieces as lower_bound */
 } starg_decomposition;
 
 /* Default density of initial tetrahedra: that of [YL11] for PAPER, and low for STRICT, which needs
@@ -88,6 +95,9 @@ typedef struct starg_decompose_options {
     uint64_t effort;
     /* starg_decompose_open_mesh: fill the surface even if the filled volume is far from it */
     bool fill;
+    /* STRICT: spend more on guards away from the planes of their pieces' faces, and so on the
+     * angles of tetrahedra */
+    bool quality;
     /* STRICT, embedded surfaces: prove first how few star-shaped pieces can make up the solid,
      * however it is cut (lower_bound), in half of the time that the context allows; the search then
      * ends as soon as there are no more */

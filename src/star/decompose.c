@@ -6,6 +6,7 @@
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
+#include "star/angles.h"
 #include "star/decomposition.h"
 #include "star/lower_bound.h"
 #include "star/paper/paper.h"
@@ -62,6 +63,10 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_decompose_options, fill),
      .help = "Fill a surface with holes even if the filled volume is farther from it than a fifth "
              "of its diagonal."},
+    {.option = "quality",
+     .kind = STARG_FIELD_FLAG,
+     FIELD_MEMBER(starg_decompose_options, quality),
+     .help = "strict: spend more on room for the guards, which makes better tetrahedra."},
     {.option = "prove",
      .kind = STARG_FIELD_FLAG,
      FIELD_MEMBER(starg_decompose_options, prove),
@@ -248,6 +253,8 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     (*out)->model_faces = model->face_count;
     (*out)->model_tetrahedra = 0;
     (*out)->flattest = tetmesh_flattest((*out)->mesh);
+    if (solid != NULL && (*out)->tetra.surface_kept)
+        STARG_TRY(angles_tell_apart(context, model, *out));
 done:
     if (status != STARG_OK) {
         starg_decomposition_free(context, *out);

@@ -14,6 +14,7 @@
 #include "star/strict/strict.h"
 
 #include "star/decomposition.h"
+#include "star/strict/finish/widen.h"
 #include "star/strict/partition/cone.h"
 #include "star/strict/search/improve.h"
 #include "star/strict/start/bsp_start.h"
@@ -30,6 +31,9 @@ enum {
 /* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
  * are counted the same at any number of threads. About 4e8 take a second. */
 static const uint64_t WORK_MOST = 6000000000;
+
+/* The same for the room of guards at the end. */
+static const uint64_t WIDEN_USUAL = 600000000, WIDEN_MOST = 6000000000;
 
 static starg_status collect_guards(const partition *p, double **guards) {
     starg_status status = STARG_OK;
@@ -228,6 +232,7 @@ static starg_status decompose(starg_context *context, model of,
     STARG_TRY(run_search(&s, &p));
     while (may_search_again(&s, &p))
         STARG_TRY(search_again(&s, &p));
+    STARG_TRY(widen(&p, options->quality ? WIDEN_MOST : WIDEN_USUAL));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
 done:
