@@ -129,12 +129,31 @@ static void say_count(cli_session *session, const starg_decomposition *d) {
     cli_say(session, "\n");
 }
 
+/* By rank; the quadratic count is nothing beside the search. */
+static double margin_at(const starg_decomposition *d, size_t rank) {
+    for (size_t i = 0; i < d->piece_count; i++) {
+        size_t below = 0, same = 0;
+        for (size_t k = 0; k < d->piece_count; k++) {
+            below += d->pieces[k].margin < d->pieces[i].margin;
+            same += d->pieces[k].margin == d->pieces[i].margin;
+        }
+        if (below <= rank && rank < below + same)
+            return d->pieces[i].margin;
+    }
+    return 0;
+}
+
 static void say_pieces(cli_session *session, const starg_decomposition *d) {
     say_count(session, d);
     cli_say(session, "star-shaped   %zu (proven)\n", d->strictly_star);
     cli_say(session, "visible       %g %% of the vertices, from their guards\n",
             cli_percent(d->visible_vertices));
     cli_say(session, "tetrahedra    %zu\n", starg_tetmesh_count(d->mesh));
+    cli_say(session, "angles        %.3g degrees at least, median %.3g\n", d->smallest_angle,
+            d->median_angle);
+    if (d->strictly_star == d->piece_count)
+        cli_say(session, "margins       %.3g of a piece's size at least, median %.3g\n",
+                margin_at(d, 0), margin_at(d, d->piece_count / 2));
     if (d->tetra.surface_kept)
         cli_say(session, "surface       kept\n");
     else

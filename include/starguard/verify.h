@@ -110,7 +110,7 @@ typedef struct starg_pieces_report {
     starg_decompose_mode mode;
     size_t tetrahedra;
     size_t piece_count;
-    starg_piece *pieces; /* a radius that is no number: not told */
+    starg_piece *pieces; /* a radius or margin that is no number: not told */
     size_t contact_count;
     starg_piece_contact *contacts;
     size_t strictly_star;
@@ -119,8 +119,9 @@ typedef struct starg_pieces_report {
     double distance;      /* largest distance from the boundary to the model's surface */
     double distance_back; /* and back; infinite if not given */
     double flattest;      /* least height over longest edge of a tetrahedron; 0: not given */
-    size_t lower_bound;   /* no fewer star-shaped pieces make up the model; 0: not given   */
-    bool optimal;         /* as many pieces as lower_bound; only with it                   */
+    double smallest_angle, median_angle, smallest_angle_made; /* degrees; 0: not given */
+    size_t lower_bound; /* no fewer star-shaped pieces make up the model; 0: not given   */
+    bool optimal;       /* as many pieces as lower_bound; only with it                   */
 } starg_pieces_report;
 
 /* Reads PIECES.vtk with a separate reader: a legacy VTK unstructured grid of tetrahedra with the

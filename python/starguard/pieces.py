@@ -44,7 +44,7 @@ class Decomposition:
     mesh: TetMesh
     #: The piece of each tetrahedron, (m,).
     labels: Array
-    #: Structured: `guard` (k, 3), `radius`, `tetrahedra`, `volume`, `star`.
+    #: Structured: `guard` (k, 3), `radius`, `margin`, `tetrahedra`, `volume`, `star`.
     pieces: Array
     #: Pieces that share faces, structured: `first`, `second`, `area`.
     contacts: Array
@@ -54,6 +54,10 @@ class Decomposition:
     visible_vertices: float
     flattest: float
     flattest_given: float
+    #: Dihedral angles in degrees; -1: not told.
+    smallest_angle: float
+    median_angle: float
+    smallest_angle_made: float
     time_limited: bool
     #: No fewer star-shaped pieces make up the model, however it is cut; 0: not sought.
     lower_bound: int

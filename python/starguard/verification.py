@@ -82,6 +82,10 @@ class PiecesReport:
     distance_back: float
     #: 0 where it is not told.
     flattest: float
+    #: Degrees; 0 where they are not told.
+    smallest_angle: float
+    median_angle: float
+    smallest_angle_made: float
     #: 0 where it is not told.
     lower_bound: int
     optimal: bool
@@ -254,5 +258,7 @@ def pieces_report_of(d: Decomposition) -> Any:
     report.distance = own.tetra.to_surface + own.tetra.step
     report.distance_back = own.tetra.from_surface + own.tetra.step
     report.flattest = own.flattest
+    for name in ("smallest_angle", "median_angle", "smallest_angle_made"):
+        setattr(report, name, max(getattr(own, name), 0))
     report.lower_bound, report.optimal = own.lower_bound, own.optimal
     return report

@@ -32,6 +32,9 @@ starg_status verify_claim_numbers(const verify_context *own);
 /* Star-shapedness, and what guards see; only with good labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_stars(const verify_context *own);
 
+/* Dihedral angles. Errors: MEMORY. */
+starg_status verify_claim_angles(const verify_context *own);
+
 /* No fewer star-shaped pieces are possible. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_fewest(const verify_context *own);
 

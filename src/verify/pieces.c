@@ -81,6 +81,7 @@ static starg_status verify_against(starg_context *context, const verify_surface 
     STARG_TRY(verify_claim_boundary(&own));
     if (report != NULL) {
         STARG_TRY(verify_claim_numbers(&own));
+        STARG_TRY(verify_claim_angles(&own));
         STARG_TRY(verify_claim_stars(&own));
         STARG_TRY(verify_claim_fewest(&own));
     } else {
