@@ -3,8 +3,8 @@
  *
  *     bench_cover [ROWS [COLUMNS [SMALLEST [LARGEST [TARGET [REDUNDANCY [SECONDS]]]]]]]
  *
- * SMALLEST and LARGEST are the shares of the sphere that a cap covers, TARGET the share of the
- * weight that is to be covered. Prints one line for each method. */
+ * SMALLEST and LARGEST are the fractions of the sphere covered by a cap, TARGET the fraction of the
+ * weight to cover. Prints a line per method. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -27,7 +27,7 @@ static void run(const char *name, int rounds) {
     printf("%-34s %8.1f ns (sum %d)\n", name, 1e9 * seconds / ((double)rounds * SETS), sum);
 }
 
-/* Fills the sets with coordinates of `make`; the fourth point is the mean of two edges' ends, so
+/* Fills the sets with coordinates from `make`; the fourth point is the mean of two edges' ends, so
  * that it lies in the plane of the others if `coplanar` (and `make` gives short numbers). */
 static void fill(double (*make)(starg_rng *), int coplanar) {
     starg_rng rng = starg_rng_make(3, 1, 4);

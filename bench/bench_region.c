@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Visibility from boxes: how many (box, vertex) tests a second and core, and how much of what is
- * hidden is found, by the size of the boxes: a line of a table for each model and number of
- * halvings of the bounding box.
+/* Visibility from boxes: (box, vertex) tests per second and core, and the fraction of hidden
+ * targets found, by box size: a table line for each model and number of halvings of the bounding
+ * box.
  *
- * Boxes are cells about random inside points. "vertices" asks about all vertices, "faces" about all
- * faces (up to three vertices each, every vertex once). "found" is the number of faces (vertices)
- * that are said to be hidden over the number that none of SAMPLES inside points of the box sees: a
- * lower bound of the share, since more samples would see more.
+ * Boxes are cells around random inside points. "vertices" tests all vertices, "faces" all faces (up
+ * to three vertices each, every vertex once). "found" is the number of faces (vertices) reported as
+ * hidden over the number that none of SAMPLES inside points of the box sees: a lower bound of the
+ * fraction, since more samples would see more.
  *
  * Usage: bench_region BOXES SAMPLES MODEL... */
 #include <math.h>

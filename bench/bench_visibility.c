@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How many segment queries a second and core, engine by engine, beside Embree in the same run: a
- * line of a table for each model.
+/* Segment queries per second and core for each engine, with Embree in the same run: a table line
+ * per model.
  *
- * A query is one segment from an inside point to one vertex. Embree (single precision, and so not
+ * A query is one segment from an inside point to one vertex. Embree (single precision, hence not
  * exact) answers the same queries with the segment's end drawn back a little, in four modes: one
- * call for each segment or one for all of a point (rtcOccluded1, rtcOccluded1M), the segments in
- * the order of the mesh or of cells of their directions; sorting is not counted. "times" is the
- * first engine over Embree's best mode; "differ" are answers that are not those of the exact
- * engines, which must agree among themselves.
+ * call per segment or one for all segments of a point (rtcOccluded1, rtcOccluded1M), in the order
+ * of the mesh or of cells of their directions; sorting is not timed. "times" is the first engine
+ * over Embree's best mode; "differ" counts answers that differ from those of the exact engines,
+ * which must agree with one another.
  *
  * Usage: bench_visibility POINTS REPEATS MODEL... */
 #include <math.h>
@@ -46,7 +46,7 @@ static void stop_unless(starg_context *context, starg_status status) {
     exit(1);
 }
 
-/* Inside points, uniform in the box, by a small generator of their own. */
+/* Inside points, uniform in the box, by a small separate generator. */
 static void make_points(setting *s) {
     double lower[3], upper[3];
     uint64_t state = 1;
@@ -113,7 +113,7 @@ static RTCScene make_scene(RTCDevice device, const setting *s) {
     return scene;
 }
 
-/* A ray and where its direction lies. */
+/* A ray and the cell of its direction. */
 typedef struct order {
     uint32_t cell, vertex;
 } order;
@@ -124,7 +124,7 @@ static int compare_orders(const void *left, const void *right) {
                               : (a->vertex > b->vertex) - (a->vertex < b->vertex);
 }
 
-/* Cells of 64 x 64 on each face of a cube about the point, along a Morton curve. */
+/* Cells of 64 x 64 on each face of a cube around the point, along a Morton curve. */
 static uint32_t cell_of(const double d[3]) {
     int k = fabs(d[0]) >= fabs(d[1]) && fabs(d[0]) >= fabs(d[2]) ? 0
             : fabs(d[1]) >= fabs(d[2])                           ? 1
@@ -225,8 +225,8 @@ static void print_embree(const setting *s, embree *e, double fastest) {
 }
 #endif
 
-/* Points are fewer on large meshes, and for slow engines. The best of the repeats counts, which
- * take turns: what the machine can do when nobody else uses it. */
+/* Large meshes and slow engines get fewer points. Reports the best of the repeats, which alternate:
+ * this approximates an idle machine. */
 static void run_model(starg_context *context, const char *path, size_t points, int repeats) {
     setting s = {.context = context};
     starg_mesh *mesh = NULL;

@@ -4,7 +4,7 @@
 
 usage: bounds.py STARGUARD FOLDER [--largest N] [--threads N]
 
-For the N largest OFF files of a folder, by bytes: guards / bound at coverage 0.95 and 0.99; the area seen
+For the N largest OFF files of a folder, by bytes: guards / bound at coverage 0.95 and 0.99; area seen
 and its bound, in per cent, with --max-guards 3, 6 and 12; processor seconds of all five runs. The table
 is Markdown; below it, how many gaps are at most one guard or a tenth, and how many areas are within 2 %.
 """

@@ -7,11 +7,11 @@ usage: decompose.py STARGUARD DATA [MODEL ...] [--results FILE] [--seeds N] [--l
 
 DATA is the folder of models (those of its folder `solids` are cut), MODEL the names of some of them.
 For each: tetrahedra; guards of the best cover; pieces in paper mode and how many of them are
-star-shaped; pieces in strict mode over the seeds, median and spread; seconds and megabytes; and
-whether the results are verified. Beside it what open peers reach.
+star-shaped; pieces in strict mode over the seeds, median and spread; seconds and megabytes; whether
+the results are verified; and results of other open programs.
 
-Every run is written to FILE when it is done, and not run again: an interrupted table goes on where it
-was. The table is Markdown.
+Finished runs are stored in FILE and not repeated, so an interrupted table can be continued. The table
+is Markdown.
 """
 import argparse
 import json
@@ -22,16 +22,16 @@ import sys
 import tempfile
 import time
 
-# Pieces and seconds of open peers: breadth-first growth from random tetrahedra, a linear program
-# each; a quarter of their pieces are single tetrahedra.
+# Pieces and seconds of other open programs: breadth-first growth from random tetrahedra, one linear
+# program each; a quarter of their pieces are single tetrahedra.
 PEERS = {"hand_1197": (72, 7.8), "elephant_g3": (51, 20), "knot1": (25, 22), "homer": (133, 157),
          "femur_g2": (299, 261)}
-# Named apart where ratios are averaged: their shapes ask for more pieces than guards.
+# Excluded from mean ratios: their shapes need more pieces than guards.
 APART = ("homer", "octopus_124")
 
 
 class Results:
-    """Finished runs by (model, what, seed), kept in a file of one JSON object a line."""
+    """Finished runs by (model, what, seed), stored in a file with one JSON object per line."""
 
     def __init__(self, path):
         self.path = path
@@ -53,7 +53,7 @@ class Results:
 
 
 def call(words):
-    """Runs the program with --json: what it told, or why it failed."""
+    """Runs the program with --json: its report, or why it failed."""
     start = time.monotonic()
     done = subprocess.run(words + ["--json"], capture_output=True, text=True, check=False)
     seconds = time.monotonic() - start

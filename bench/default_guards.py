@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Guards by default options of two programs, one of which is older: how many, and seconds of
-processor time.
+"""Guards with default options, by two versions of the program: their number, and processor seconds.
 
     bench/default_guards.py OLD [NEW] [--each] [--every N] [GROUP...]
 
-Groups are folders of ../shared/data; of the retrieval sets every tenth model is taken (--every)."""
+Groups are folders of ../shared/data; of the retrieval sets every tenth model is used (--every)."""
 import argparse
 import json
 import pathlib

@@ -5,11 +5,11 @@
 usage: morph.py STARGUARD [--shared FOLDER] [--frames N] [--samples-only] [--only WORD]
                 [--methods star,arap,...]
 
-Pairs are the samples in two poses, and where the shared data is there poses of it, and different
-animals by the landmarks in bench/landmarks; for these the map's time and distortion come first on
-standard error. Told are pairs of faces that intersect at both ends, which are no fault of a method, on
-the way (summed over the frames between) and at t = 0.5, flipped faces, and the largest and mean drift
-of the volume.
+Pairs are the samples in two poses and, if the shared data is available, poses from it, and different
+animals with the landmarks in bench/landmarks; for these the map's time and distortion are first printed
+to standard error. Columns: pairs of intersecting faces at both ends (independent of the method), on the
+way (summed over the frames between) and at t = 0.5, flipped faces, and the largest and mean drift of
+the volume.
 """
 import argparse
 import json
@@ -36,7 +36,7 @@ def run(program, *words):
 
 
 def seconds(program, *words):
-    """Of the processor, in the child alone."""
+    """Processor time of the child alone."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     report = run(program, *words)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -44,7 +44,7 @@ def seconds(program, *words):
 
 
 def make_map(arguments, folder, a, b):
-    """Maps one animal to another, tells how well, and gives the map's file."""
+    """Maps one animal to another, prints statistics, and returns the map's file."""
     models = os.path.join(arguments.shared, "data", "tosca_paper")
     files = [os.path.join(models, f + ".off") for f in (a, b)]
     out = os.path.join(folder, f"{a}_{b}.json")
@@ -57,7 +57,7 @@ def make_map(arguments, folder, a, b):
 
 
 def pairs(arguments, folder):
-    """Names, and the words of the command line that stand for them."""
+    """Names, and their command-line arguments."""
     for name in SAMPLES:
         files = [os.path.join(folder, f"{name}_{pose}.off") for pose in (0, 1)]
         for pose, file in enumerate(files):

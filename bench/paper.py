@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The paper's tables and figures, done again [YL11].
+"""Reproduces the paper's tables and figures [YL11].
 
 usage: paper.py COMMAND STARGUARD DATA [options]
 
   table1     guards and seconds of ILP, greedy, PILP and PILP with refinement; --coverage 0.99
   table2     skeletal against tetrahedral candidates and a lattice, proven optima
-  figure1    stability: what happens to the guards when the boundary is moved by noise
+  figure1    stability of the guards under noise on the boundary
   figure2    greedy against PILP over many models; --svg FILE draws it
   figure3    pictures of guarded models into the folder --pictures FOLDER
   growth     cost of a point's visibility against the number of vertices, engine by engine
@@ -48,7 +48,7 @@ METHODS = {
 
 
 class Guards:
-    """One run of the program: what it wrote and what it said."""
+    """One run of the program: its file and its report."""
 
     def __init__(self, program, model, words, keep=None):
         with tempfile.TemporaryDirectory() as folder:
@@ -100,7 +100,7 @@ def paper_row(name):
 
 
 def table1(options):
-    """Partial coverage is not refined, and its integer program does not end: 20 seconds of it."""
+    """Partial coverage is not refined, and its integer program does not finish: limited to 20 seconds."""
     whole = options.coverage == "1"
     methods = ["ilp", "greedy", "pilp"] + (["refined"] if whole else [])
     head = [f"{m} | s" for m in methods]
@@ -131,7 +131,7 @@ def table1(options):
 
 
 def tetrahedral_vertices(options, model, wanted):
-    """Vertices inside of a tetrahedral mesh that has about `wanted` vertices in all."""
+    """Interior vertices of a tetrahedral mesh with about `wanted` vertices in total."""
     with open(model, encoding="utf-8") as file:
         surface = int(file.read().split()[1])
     density = 12.0
@@ -165,7 +165,7 @@ def guards_at(options, model, points):
 
 
 def inside_of(model, points):
-    """Those that are no vertices of the surface."""
+    """The points that are not vertices of the surface."""
     with open(model, encoding="utf-8") as file:
         words = file.read().split()
     surface = {tuple(map(float, words[4 + 3 * i:7 + 3 * i])) for i in range(int(words[1]))}
@@ -202,7 +202,7 @@ def read_off(path):
 
 
 def write_noisy(path, vertices, rest, size, seed):
-    """Moves every vertex by a random vector of a ball of the given radius."""
+    """Moves every vertex by a random vector in a ball of the given radius."""
     draw = random.Random(seed)
     with open(path, "w", encoding="utf-8") as file:
         file.write(f"OFF\n{len(vertices)} {len(rest) // 4} 0\n")
@@ -217,7 +217,7 @@ def write_noisy(path, vertices, rest, size, seed):
 
 
 def same(first, second, near):
-    """How many of the first points have one of the second within `near`."""
+    """Number of the first points with one of the second within `near`."""
     return sum(any(sum((a - b) ** 2 for a, b in zip(p, q)) <= near * near for q in second)
                for p in first)
 
@@ -257,7 +257,7 @@ def figure1(options):
 
 
 def draw_bars(path, rows):
-    """Figure 2 as SVG: a pair of bars for each model."""
+    """Figure 2 as SVG: a pair of bars per model."""
     width, height, left, bottom = 12 * len(rows) + 60, 260, 40, 90
     top = max(r[1] for r in rows)
     scale = (height - 20) / top
@@ -309,7 +309,7 @@ def figure3(options):
 
 
 def growth(options):
-    """Seconds for each point, on samples of one shape at several sizes."""
+    """Seconds per point, on samples of one shape at several sizes."""
     print("| vertices | grid us | tree us | sweep us | sweep us / (N log2 N) x 1e3 |")
     print("|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:

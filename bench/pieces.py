@@ -5,13 +5,13 @@
 usage: pieces.py STARGUARD DATA [--than OTHER] [--groups cad,solids,table2] [--effort N]
        pieces.py STARGUARD DATA --quality [--prove] [--models solids/spot,...] [--effort N]
 
-A row for each model where the programs differ, or the surface is not kept, or `verify` fails; then
-the sums: pieces, surfaces kept, seconds of processor time. OTHER is another build of the program.
+A row for each model where the programs differ, the surface is not kept, or `verify` fails; then the
+sums: pieces, surfaces kept, seconds of processor time. OTHER is another build of the program.
 
 With --quality a row for each model: pieces, with --prove the lower bound for all partitions and
 whether it is met, the smallest dihedral angle that the model does not force and the median, the
-smallest margin, the share of pieces whose margin is a thousandth of their size, and seconds.
-The tables are Markdown.
+smallest margin, the share of pieces whose margin is at least a thousandth, and seconds. The tables are
+Markdown.
 """
 import argparse
 import glob

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Guards at every point of a solid, and how few could do: guards and bounds of `guard --prove`, with
-cells, witnesses and seconds of processor time; and certificates of the bounds: their size, reasons, and
-seconds to check them.
+"""Guards at any point of a solid, and lower bounds: guards and bounds of `guard --prove`, with cells,
+witnesses and processor seconds; and certificates of the bounds: their size, reasons, and seconds to
+check them.
 
     bench/prove.py [--work N] [MODEL...]
 
-Without models: those of docs/BENCHMARKS.md, as far as they are in ../shared/data."""
+Without models: those of docs/BENCHMARKS.md that are available in ../shared/data."""
 import argparse
 import json
 import pathlib
@@ -48,7 +48,7 @@ def verify(program: str, *files: pathlib.Path) -> float:
 
 
 def reasons(certificate: pathlib.Path) -> int:
-    """Of the lines of cells, all words but the first."""
+    """All words but the first of the cell lines."""
     lines = certificate.read_text().splitlines()
     first = next(i for i, line in enumerate(lines) if line.startswith("cells "))
     return sum(line.count(" ") for line in lines[first + 1:first + 1 + int(lines[first][6:])])

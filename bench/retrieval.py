@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""How well each distance retrieves: the tables of docs/retrieval.md.
+"""Retrieval quality of each distance: the tables of docs/retrieval.md.
 
 usage: retrieval.py COMMAND STARGUARD FOLDER... [--distances star,paper,shape-dna,d2]
 
   table    every measure for each folder of models, classes by prefix, and the paper's groups
-  copies   is a model's own original the nearest, when it has been turned, scaled, moved and
-           renumbered, has half the vertices, or every coordinate moved at random, by a Gaussian of
-           1 % of the mean edge, or by up to 0.5 % or 1 % of the diagonal either way?
-  growth   processor seconds of a query against the folder, which are those of describing the
-           query, and against 1,000 to 100,000 signatures made of its own by random factors
-  points   how close the points of a descriptor come to the surface, by their number
+  copies   is the original the nearest model to its copy, rotated, scaled, translated and
+           renumbered, with half the vertices, or with noise on every coordinate: Gaussian with
+           1 % of the mean edge, or uniform up to 0.5 % or 1 % of the diagonal?
+  growth   processor seconds of a query against the folder, mainly for describing the query, and
+           against 1,000 to 100,000 signatures derived from it by random factors
+  points   distance of a descriptor's points from the surface, by their number
 
 Tables are Markdown.
 """
@@ -115,7 +115,7 @@ def write_off(name, vertices, faces):
 
 
 def moved(vertices, faces, chance):
-    """Turned about a random axis, scaled, moved, vertices and faces in another order."""
+    """Rotated about a random axis, scaled, translated, with vertices and faces reordered."""
     axis = [chance.gauss(0, 1) for _ in range(3)]
     length = math.sqrt(sum(x * x for x in axis))
     x, y, z = (c / length for c in axis)
@@ -135,7 +135,7 @@ def moved(vertices, faces, chance):
 
 
 def plane_quadric(a, b, c):
-    """The square of the distance from the plane of a triangle, by its area: the upper half of a
+    """The squared distance from a triangle's plane, weighted by its area: the upper half of a
     symmetric 4 x 4 matrix [Garland, Heckbert 1997]."""
     u, v = [b[k] - a[k] for k in range(3)], [c[k] - a[k] for k in range(3)]
     n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
@@ -152,8 +152,8 @@ def quadric_error(q, p):
 
 
 def halved(vertices, faces, _):
-    """Half the vertices: the edges of the least quadric error collapse, to an end or the middle,
-    where that keeps the topology."""
+    """Half the vertices: collapses the edges of least quadric error to an end or the midpoint where
+    that preserves the topology."""
     points, live = [list(v) for v in vertices], dict(enumerate(map(tuple, faces)))
     around, quadrics, changes = [set() for _ in points], [[0] * 10 for _ in points], [0] * len(points)
     for f, corners in live.items():
@@ -235,7 +235,7 @@ def copies(program, folders, distances):
 # ---- growth ----
 
 def growth(program, folders, distances):
-    distances = [d for d in distances if d != "paper"]  # its numbers cannot be changed at will
+    distances = [d for d in distances if d != "paper"]  # its numbers cannot be scaled freely
     head("models", *(f"`{d}`" for d in distances))
     with tempfile.TemporaryDirectory() as scratch:
         name = database(program, folders[0], scratch)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # The figures of docs/BENCHMARKS.md. Usage: run.sh BUILD [DATA]
-# DATA holds models; without it the bundled samples stand in for them.
+# DATA is the folder of models; without it the bundled samples are used.
 set -eu
 build=$1
 data=${2:-../shared/data}
@@ -34,7 +34,7 @@ done
 echo "== guarding"
 for method in greedy ilp "pilp --no-refine" pilp; do
     for m in $models; do
-        # shellcheck disable=SC2086 # the method may bring an option
+        # shellcheck disable=SC2086 # the method may contain an option
         /usr/bin/time -f '%e s elapsed, %U s user, %M KB' \
             "$build/starguard" guard "$m" -o "$work/g.json" --method $method --quiet 2>"$work/time"
         printf '%-16s %-30s %s: ' "$method" "$(basename "$m")" "$(tail -n 1 "$work/time")"
@@ -46,7 +46,7 @@ done
 if [ -d "$data" ]; then
     for part in table1 "table1 --coverage 0.99" table2 figure1 figure2 growth; do
         echo "== the paper's $part"
-        # shellcheck disable=SC2086 # the part may bring an option
+        # shellcheck disable=SC2086 # the part may contain an option
         set -- $part
         command=$1
         shift

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Seconds of each stage against the size of a model and against threads.
+"""Seconds of each stage against model size and number of threads.
 
 usage: scale.py STARGUARD [--commands NAME,...] [--sample NAME] [--sizes N,N,...]
                 [--threads N,N,...] [--at N] [--results FILE] [--svg FOLDER]
 
 For samples of the given sizes: seconds of each stage of `check`, `guard` (99 % of the area) and
 `decompose` (tetrahedra, the starts, and no search), their peak memory, and the slope of log seconds
-over log size between the largest sizes. Then, at one size, all of it at each number of threads.
-Tables are Markdown; FOLDER gets a log-log plot of each command. Finished runs are kept in FILE and
-not run again.
+over log size between the largest sizes. Then, at one size, the same for each number of threads.
+Tables are Markdown; FOLDER gets a log-log plot for each command. Finished runs are stored in FILE and
+not repeated.
 """
 import argparse
 import json
@@ -25,7 +25,7 @@ COMMANDS = {
     "decompose": ["-o", "pieces.vtk", "--report", "pieces.json", "--binary", "--effort", "1",
                   "--time-limit", "3600"],
 }
-LEAST = 0.01  # seconds below which a stage is not told
+LEAST = 0.01  # seconds below which a stage is not listed
 COLOURS = ("#1f6feb", "#d1495b", "#2e9e6b", "#b07d12", "#7b4bb3", "#0f8b8d", "#c2571a", "#66707f",
            "#a03e99", "#5a7d2a", "#8a5a44")
 
@@ -73,13 +73,13 @@ class Results:
 
 
 def stages_of(runs):
-    """Those that take time in the largest run, in their order; the total last."""
+    """Stages that take time in the largest run, in order; the total last."""
     names = [n for n in runs[-1]["seconds"] if n != "total" and runs[-1]["seconds"][n] >= LEAST]
     return names + ["total"]
 
 
 def slope(sizes, seconds):
-    """Of the last factor of ten in size."""
+    """Over the last factor of ten in size."""
     known = [(math.log(n), math.log(s)) for n, s in zip(sizes, seconds)
              if s >= LEAST and n >= sizes[-1] / 10]
     if len(known) < 2:
@@ -115,7 +115,7 @@ def print_table(head, columns, runs, last, sizes=None):
 
 
 def draw(path, title, sizes, runs):
-    """Log-log: a line for each stage, labelled where it ends."""
+    """Log-log plot: a line for each stage, labelled at its end."""
     width, height, left, right, top, bottom = 860, 520, 60, 190, 46, 44
     low, high = math.log10(LEAST), math.log10(max(r["seconds"]["total"] for r in runs)) + 0.1
     first, last = math.log10(sizes[0]), math.log10(sizes[-1])
@@ -148,7 +148,7 @@ def draw(path, title, sizes, runs):
             3 if stage == "total" else 1.8, colour, " ".join(f"{x:.1f},{y:.1f}" for x, y in line)))
         ends.append([line[-1][1], stage, colour])
     ends.sort()
-    for i in range(1, len(ends)):  # labels keep off one another
+    for i in range(1, len(ends)):  # keep labels apart
         ends[i][0] = max(ends[i][0], ends[i - 1][0] + 15)
     for y, stage, colour in ends:
         out.append(f'<text x="{width - right + 8}" y="{y + 4:.1f}" fill="{colour}">{stage}</text>')
@@ -164,7 +164,7 @@ def numbers(text):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("starguard", type=os.path.abspath)  # runs in folders of their own
+    parser.add_argument("starguard", type=os.path.abspath)  # commands run in other folders
     parser.add_argument("--commands", type=lambda text: text.split(","), default=list(COMMANDS))
     parser.add_argument("--sample", default="horse")
     parser.add_argument("--sizes", type=numbers, default=numbers("1e3,3e3,1e4,3e4,1e5,3e5,1e6"))

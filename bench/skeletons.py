@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the skeleton of every .off model of a folder but nasty/, and checks each by other means.
+"""Computes the skeleton of every .off model of a folder except nasty/, and checks each independently.
 
 usage: skeletons.py STARGUARD FOLDER [--only SUBFOLDER]
 
-Parts and loops are counted in the written graph, and held against those that the model's surface
-asks for; nodes must be inside, by the number of times that the surface winds about them. Listed is
-every model where something differs, or where the program itself says that its skeleton is not
-homotopic; at the end the counts. The exit status is 1 when the skeleton of a handlebody (embedded,
-without cavities, and nothing had to be cut open) has wrong parts or loops, or any has a node
-outside.
+Components and loops are counted in the written graph and compared with those of the model's surface;
+nodes must be inside, by the winding number of the surface about them. Lists every model with a
+difference, or whose skeleton the program itself reports as not homotopic; at the end the counts. The
+exit status is 1 if the skeleton of a handlebody (embedded, without cavities, and nothing was cut) has
+wrong components or loops, or if any skeleton has a node outside.
 """
 import argparse
 import json
@@ -20,8 +19,8 @@ import sys
 import tempfile
 from fractions import Fraction
 
-CELLS = 64  # a side, of the cells that faces are sorted into
-# Any linear map with a positive determinant keeps windings; this one leaves no ray along an axis.
+CELLS = 64  # per side of the grid that stores faces
+# Any linear map with positive determinant preserves winding numbers; this one makes no ray axis-parallel.
 TURN = (0.80123, -0.47131, 0.36871, 0.59317, 0.65197, -0.47269, -0.01811, 0.59743, 0.80181)
 
 
@@ -37,7 +36,7 @@ def turned(v, number=float):
 
 
 def read_off(path):
-    """A vertex or a face in each line; what follows them, colours perhaps, is left out."""
+    """One vertex or face per line; further values, such as colours, are ignored."""
     with open(path, encoding="utf-8") as file:
         lines = [line.split("#")[0].split() for line in file]
     lines = [line for line in lines if line and line != ["OFF"]]
@@ -76,7 +75,7 @@ def count_parts(count, pairs):
 
 
 class Windings:
-    """How often a surface winds about a point: crossings of the ray to greater x, with signs."""
+    """Winding number of a surface about a point: signed crossings of the ray towards +x."""
 
     def __init__(self, vertices, corners):
         self.given, self.corners = vertices, corners
@@ -98,7 +97,7 @@ class Windings:
         return min(max(math.floor((value - self.low[k]) * self.scale[k]), 0), CELLS - 1)
 
     def holds(self, node):
-        """Is the node inside? Next to a wall that takes exact numbers."""
+        """Is the node inside? Next to a wall this needs exact numbers."""
         p = turned(node)
         near = self.cells.get((self.cell(p[1], 0), self.cell(p[2], 1)), ())
         if self.count(p, [[self.vertices[i] for i in face] for face in near]) > 0:
@@ -120,7 +119,7 @@ class Windings:
 
 
 def describe(told, graph, surface):
-    """What is wrong or worth a line; and is it wrong?"""
+    """What is wrong or noteworthy; and is it wrong?"""
     nodes, edges = graph
     parts = count_parts(len(nodes), edges)
     loops = len(edges) - len(nodes) + parts
@@ -147,7 +146,7 @@ def main():
     options = parser.parse_args()
     paths = []
     for base, _, names in os.walk(os.path.join(options.folder, options.only)):
-        if os.path.basename(base) != "nasty":  # files for readers, in every dialect
+        if os.path.basename(base) != "nasty":  # files for testing readers
             paths += [os.path.join(base, n) for n in names if n.endswith(".off")]
     counts = dict.fromkeys(("solids", "handlebodies", "right", "homotopic", "outside", "refused"),
                            0)

@@ -4,14 +4,14 @@
 
 usage: survey.py STARGUARD FOLDER [--results FILE] [--only SUBFOLDER] [--limit S] [--threads N]
 
-For each surface or tetrahedral file: its size; guards, proven bound, and what `verify` says of them;
-strict pieces, and what `verify` says of them; seconds (elapsed) and peak megabytes of both. Files
-that a command refuses are told with its status and message. Runs are kept in FILE as they are done
-and not run again. The table is Markdown.
+For each surface or tetrahedral file: its size; guards, proven bound, and the verdict of `verify`;
+strict pieces, and the verdict of `verify`; seconds (elapsed) and peak megabytes of both. Files that a
+command rejects are listed with status and message. Finished runs are stored in FILE and not repeated.
+The table is Markdown.
 
-The exit status is 1 when a result was not verified, when a file outside nasty/ was not guarded (it
-may be refused only for what it is: see docs/formats.md), or when a command ended in anything but
-success or a message with status 2 or 3.
+The exit status is 1 if a result was not verified, if a file outside nasty/ was not guarded (it may
+only be rejected as unusable: see docs/formats.md), or if a command ended with anything but success or
+a message with status 2 or 3.
 """
 import argparse
 import json
@@ -23,11 +23,11 @@ import time
 
 SURFACES = (".off", ".obj", ".ply", ".stl")
 SOLIDS = (".mesh", ".vtk", ".msh", ".node")
-PATIENCE = 900  # seconds after which a command hangs
+PATIENCE = 900  # seconds after which a command counts as hanging
 
 
 def call(words):
-    """Runs a command of the program: status, seconds, what it told with --json."""
+    """Runs a command of the program: status, seconds, and the --json report."""
     start = time.monotonic()
     try:
         done = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE, check=False)
@@ -79,7 +79,7 @@ def cut(options, model, folder):
 
 
 def survey(options, path):
-    """Both results of a file; tetrahedra are cut only."""
+    """Both results of a file; tetrahedra are only cut."""
     with tempfile.TemporaryDirectory() as folder:
         solid = path.lower().endswith(SOLIDS)
         return {"guard": None if solid else guard(options, path, folder),

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Unions of the models of a folder, and of its subfolders, that intersect themselves.
+"""Unions of the self-intersecting models of a folder and its subfolders.
 
 usage: unions.py STARGUARD FOLDER
 
-A row of Markdown for each closed surface whose faces intersect or touch, or that repair makes one: pairs
-before, faces in, of them kept and cut, faces out, pairs of faces that touch after, rounds, rounding, processor
-seconds (reading, checks and writing included). Fails when pairs are left.
+A Markdown row for each closed surface whose faces intersect or touch, also if only repair closes it: pairs
+before, faces in, of them kept and cut, faces out, pairs of touching faces after, rounds, rounding, processor
+seconds (including reading, checks and writing). Fails if pairs are left.
 """
 import argparse
 import json

@@ -4,11 +4,11 @@
 //   STARGUARD=build/starguard STARGUARD_CHROMIUM=/usr/bin/chromium STARGUARD_MODULES=build/viewer \
 //       node bench/viewer.mjs [VERTICES]
 //
-// The plain page is what a first three.js program is: MeshStandardMaterial under two lights, vertex
-// normals, the same canvas, antialiasing and camera. Both turn the model by a degree a frame; a frame
-// ends when a pixel has been read back. Frames of both pages alternate in pairs of two, so that load
-// from elsewhere strikes both; the ratio is the median over the pairs. Here the graphics card is a
-// program (SwiftShader): only the ratio says something about other machines.
+// The plain page is a typical first three.js program: MeshStandardMaterial under two lights, vertex
+// normals, the same canvas, antialiasing and camera. Both rotate the model by one degree per frame; a
+// frame ends when a pixel has been read back. Frames of both pages alternate in pairs, so that other
+// load affects both; the ratio is the median over the pairs. The graphics card here is software
+// (SwiftShader): only the ratio applies to other machines.
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -23,7 +23,7 @@ if (missing !== null) {
 }
 const vertices = process.argv[2] ?? "100000";
 const PAIRS = 25;
-const FRAMES = 2; // on each page of a pair; the faster one counts
+const FRAMES = 2; // per page and pair; the faster one counts
 const SIZE = { width: 1280, height: 800 };
 const folder = mkdtempSync(path.join(os.tmpdir(), "starguard-bench-"));
 const fileOf = (name) => path.join(folder, name);
@@ -33,7 +33,7 @@ function starguard(...words) {
     execFileSync(process.env.STARGUARD, [...words, "--quiet"], { cwd: folder });
 }
 
-/** The plain page: a canvas of the same size, and `frame(opacity)` that draws one more. */
+/** The plain page: a canvas of the same size, and `frame(opacity)`, which draws one more. */
 async function writePlainPage() {
     writeFileSync(
         fileOf("plain.js"),
@@ -94,7 +94,7 @@ document.documentElement.dataset.ready = "true";`,
     return f;
 }
 
-/** Milliseconds of a block of frames, each. */
+/** Milliseconds per frame in a block. */
 const drawPlain = (page, opacity) =>
     page.evaluate(
         ([frames, clear]) => {

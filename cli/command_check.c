@@ -19,7 +19,7 @@ static const cli_option options[] = {
         "Write the model with one colour per kind of finding, also for unusable models."),
 };
 
-/* Elements one by one ("3, 8, 9") or in pairs ("3-7, 8-9"). */
+/* Elements are listed one by one ("3, 8, 9") or in pairs ("3-7, 8-9"). */
 static bool is_paired(starg_finding_kind kind, const starg_finding *finding) {
     return finding->element == STARG_ELEMENT_EDGE || kind == STARG_FINDING_SELF_INTERSECTION ||
            kind == STARG_FINDING_SELF_CONTACT;
@@ -77,7 +77,7 @@ static void print_check(cli_session *session, const starg_check *check) {
 
 /* ---- JSON ---- */
 
-/* The keys of the findings, in the order of their kinds. */
+/* JSON keys of the findings, in the order of their kinds. */
 static const char *const keys[STARG_FINDING_KINDS] = {
     "open_edges",         "nonmanifold_edges", "nonmanifold_vertices", "inconsistent_edges",
     "repeated_corners",   "inward_components", "degenerate_faces",     "duplicate_faces",
@@ -168,7 +168,7 @@ static starg_status write_marks(cli_session *session, const starg_mesh *mesh,
 
 /* ---- verdict ---- */
 
-/* One line for standard error: why the model is no solid, or what to beware of. */
+/* One line for standard error: why the model is not a solid, or a warning. */
 static void judge(cli_session *session, const starg_check *check) {
     static const starg_finding_kind serious[] = {
         STARG_FINDING_OPEN_EDGE, STARG_FINDING_NONMANIFOLD_EDGE, STARG_FINDING_NONMANIFOLD_VERTEX,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard completion: what shells need to complete command lines. */
+/* starguard completion: prints shell completion scripts. */
 #include <stdlib.h>
 #include <string.h>
 

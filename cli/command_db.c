@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard db: the group of the commands about a retrieval database. */
+/* starguard db: the group of database commands. */
 #include "commands.h"
 
 static const cli_command *const members[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard db matrix, evaluate: all stored models with one another. */
+/* starguard db matrix, evaluate: compare all stored models with one another. */
 #include <stdlib.h>
 #include <string.h>
 

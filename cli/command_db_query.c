@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard db query: which stored models are most like this one? */
+/* starguard db query: finds the stored models most similar to a given one. */
 #include "commands.h"
 #include "database.h"
 #include "report.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard db create, add, remove, list: what is stored. */
+/* starguard db create, add, remove, list: manage the stored models. */
 #include "commands.h"
 #include "database.h"
 #include "model.h"
@@ -54,7 +54,7 @@ static json_t *result_json(cli_session *session, const char *file,
     return object;
 }
 
-/* What became of the files; those that were refused last, where they are seen. */
+/* Reports what happened to the files; rejected ones last, where they are noticed. */
 static void tell_added(cli_session *session, const starg_database_report *r) {
     for (size_t i = 0; i < r->count; i++)
         if (r->results[i].outcome == STARG_DATABASE_KNOWN)

@@ -13,7 +13,7 @@
 #include "starguard/guard.h"
 #include "starguard/picture.h"
 
-static const double APART = 0.18; /* pictures: how far pieces are moved from the middle of all */
+static const double APART = 0.18; /* pictures: displacement of the pieces from the common centre */
 
 typedef struct values {
     const char *output, *report, *guards, *tets, *surfaces, *picture, *certificate;
@@ -50,7 +50,7 @@ static const cli_option options[] = {
 
 /* ---- the model ---- */
 
-/* What is to be cut: one of the two. */
+/* The input: one of the two. */
 typedef struct subject {
     const char *file;
     starg_mesh *surface; /* as read */
@@ -96,7 +96,8 @@ static starg_status cut(cli_session *session, const subject *s,
     if (s->tets != NULL)
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
     starg_status status = starg_solid_create(session->context, s->surface, &solid);
-    /* a surface with holes is filled with what it winds around; faults without a place have none */
+    /* a surface with holes is filled where its winding number exceeds 1/2; errors without a place
+     * are not about holes */
     if (status == STARG_ERROR_MESH && starg_context_error(session->context)->index_count > 0) {
         cli_log(session, STARG_LOG_WARNING,
                 "%s; isosurface stuffing fills the region whose winding number exceeds 1/2 and "
@@ -110,7 +111,7 @@ static starg_status cut(cli_session *session, const subject *s,
     return status;
 }
 
-/* ---- what was found ---- */
+/* ---- report ---- */
 
 static size_t count_single(const starg_decomposition *d) {
     size_t count = 0;
@@ -166,7 +167,7 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
         cli_say(session, "time limit    reached; this is the best result found\n");
 }
 
-/* What the file holds, and what is of the run. */
+/* Reports the file's contents and data about the run. */
 static starg_status report_pieces(cli_session *session, const starg_decomposition *d,
                                   const char *file, const values *v) {
     starg_status status = STARG_OK;
@@ -185,7 +186,7 @@ done:
 
 /* ---- surfaces ---- */
 
-/* The surfaces of all pieces, and where each begins. */
+/* The surfaces of all pieces, and where each starts. */
 typedef struct shells {
     starg_mesh *mesh;
     uint32_t *first;
@@ -196,8 +197,8 @@ static void shells_free(cli_session *session, shells *s) {
     starg_tetmesh_map_free(session->context, s->first);
 }
 
-/* The surface of one piece as a mesh of its own: its vertices are a range, which begins where that
- * of the piece before has ended. */
+/* The surface of one piece as a separate mesh: its vertices are a contiguous range that starts
+ * where the previous piece's range ends. */
 static starg_status extract(cli_session *session, const shells *s, size_t piece,
                             uint32_t *next_vertex, starg_mesh **out) {
     size_t count = s->first[piece + 1] - s->first[piece];
@@ -277,7 +278,7 @@ static void middle_of(const double *vertices, size_t count, double out[3]) {
         out[k] = 0.5 * lower[k] + 0.5 * upper[k];
 }
 
-/* Moves the vertices of each piece away from the middle of all, and colours its faces. */
+/* Moves the vertices of each piece away from the common centre, and colours its faces. */
 static void spread(const shells *s, size_t piece_count, double *vertices, uint8_t *colors) {
     double middle[3];
     size_t next = 0;
@@ -343,7 +344,7 @@ done:
     return status;
 }
 
-/* Standard output comes last: what has gone there cannot be taken back. */
+/* Standard output comes last: output to it cannot be undone. */
 static starg_status write_results(cli_session *session, const values *v, const char *file,
                                   const starg_decomposition *d) {
     starg_status status = STARG_OK;
@@ -386,7 +387,7 @@ static starg_status make_options(cli_session *session, const values *v, double *
     starg_tetra_options usual;
     starg_tetra_options_default(&usual);
     *wanted = v->wanted;
-    /* half of the time is left for the pieces */
+    /* leaves half of the time for the pieces */
     wanted->tetra.tetgen_limit = fmax(usual.tetgen_limit, session->common.time_limit / 2);
     if (v->guards != NULL)
         CLI_TRY(starg_points_read(session->context, v->guards, points, &wanted->guard_count));

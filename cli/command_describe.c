@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard describe: a shape by its guards and what they see. */
+/* starguard describe: computes a shape descriptor from guards and what they see. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,7 +38,7 @@ done:
     return status;
 }
 
-/* ---- what was found ---- */
+/* ---- report ---- */
 
 static void tell(cli_session *session, const starg_descriptor *d, const starg_reconstruction *r) {
     cli_say(session, "guards        %zu, joined by %zu edges\n", d->guard_count, d->edge_count);
@@ -53,7 +53,7 @@ static void tell(cli_session *session, const starg_descriptor *d, const starg_re
         cli_say(session, "time limit    reached; other runs may differ\n");
 }
 
-/* What the file holds, and what is of the run. */
+/* Reports the file's contents and data about the run. */
 static starg_status report(cli_session *session, const starg_descriptor *d,
                            const starg_reconstruction *r, const values *v) {
     starg_status status = STARG_OK;
@@ -113,7 +113,7 @@ static int compare_reals(const void *left, const void *right) {
     return (a > b) - (a < b);
 }
 
-/* The guards of the largest pieces, the largest first, equal ones by their number. */
+/* The guards of the largest pieces, largest first, ties by number. */
 static size_t choose_guards(const starg_descriptor *d, size_t chosen[CURVES]) {
     size_t count = 0;
     for (size_t i = 0; i < d->guard_count; i++) {
@@ -130,7 +130,7 @@ static size_t choose_guards(const starg_descriptor *d, size_t chosen[CURVES]) {
     return count;
 }
 
-/* Sorted distances by the largest of all, and the fraction of directions up to each. */
+/* Sorted distances relative to the largest, and the cumulative fraction of directions. */
 static void make_curve(const starg_descriptor *d, size_t guard, double largest, double *x,
                        double *y) {
     memcpy(x, d->distances + guard * d->direction_count, d->direction_count * sizeof *x);

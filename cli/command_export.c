@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard export: a model with its results in one file for other programs. */
+/* starguard export: writes a model with its results to one file for other programs. */
 
 #include "commands.h"
 #include "extensions.h"
@@ -9,7 +9,7 @@
 
 typedef struct values {
     const char *output, *model;
-    starg_scene_format format; /* by the name of the output */
+    starg_scene_format format; /* from the name of the output */
 } values;
 
 static const cli_option options[] = {
@@ -55,7 +55,7 @@ static starg_status check_kinds(cli_session *session, const starg_page *page) {
     return STARG_OK;
 }
 
-/* What the file holds. */
+/* Reports the contents of the file. */
 static void tell(cli_session *session, const values *v, const cli_show *show) {
     const starg_page *page = &show->page;
     const struct {

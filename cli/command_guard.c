@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard guard: places guards, the main job. */
+/* starguard guard: places guards. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -50,10 +50,10 @@ static const cli_option options[] = {
     CLI_PLACE_OPTIONS,
 };
 
-/* ---- what was asked for ---- */
+/* ---- options ---- */
 
-/* A known source, or a file with points, which is read here. A bare word that names no file is a
- * slip of the command line. */
+/* Recognizes a known source, or reads a file of points. A bare word that names no file is an error
+ * in the command line. */
 static starg_status take_candidates(cli_session *session, const char *word,
                                     starg_guard_options *wanted, double **points,
                                     double **directions) {
@@ -87,7 +87,7 @@ static starg_status take_candidates(cli_session *session, const char *word,
     return status;
 }
 
-/* ---- what was found ---- */
+/* ---- report ---- */
 
 static void say_bound(cli_session *session, const starg_guards *g) {
     size_t gap = g->count - g->lower_bound;
@@ -98,7 +98,7 @@ static void say_bound(cli_session *session, const starg_guards *g) {
         cli_say(session, " (gap %zu, %.1f %%)\n", gap, 100.0 * (double)gap / (double)g->count);
 }
 
-/* A number of guards was given: what counts is what they see. */
+/* With a given number of guards, the result is the area that they see. */
 static void say_area_bound(cli_session *session, const starg_guards *g) {
     bool anywhere = g->area_bound_everywhere > 0;
     cli_say(session, "area          %g %% seen, at most %g %% possible with %s%s\n",
@@ -142,7 +142,7 @@ static void say_guards(cli_session *session, const starg_guards *g) {
         cli_say(session, "time limit    reached; this is the best result found\n");
 }
 
-/* What the file holds, and what is of the run. */
+/* Reports the file's contents and data about the run. */
 static starg_status report_guards(cli_session *session, const starg_guards *g, const char *output) {
     starg_status status = STARG_OK;
     char *text;
@@ -204,7 +204,7 @@ static starg_status write_picture(cli_session *session, const starg_solid *solid
     return status;
 }
 
-/* Standard output comes last: what has gone there cannot be taken back. */
+/* Standard output comes last: output to it cannot be undone. */
 static starg_status write_files(cli_session *session, const values *v, const starg_solid *solid,
                                 const starg_guards *g, const char *why, size_t size) {
     starg_status status = STARG_OK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard kernel: is a solid star-shaped, and where is its kernel? */
+/* starguard kernel: decides whether a solid is star-shaped, and finds its kernel. */
 #include "commands.h"
 #include "model.h"
 #include "report.h"

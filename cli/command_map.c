@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard map: where each vertex of one surface lies on another one. */
+/* starguard map: maps each vertex of one surface to another surface. */
 #include "commands.h"
 #include "model.h"
 #include "report.h"
@@ -32,7 +32,7 @@ static void say_map(cli_session *session, const starg_map *map) {
     cli_say(session, "areas         %.4g (1 is best)\n", map->mean_area_distortion);
 }
 
-/* What the file holds, and what is of the run. */
+/* Reports the file's contents and data about the run. */
 static starg_status report_map(cli_session *session, const starg_map *map, const values *v) {
     starg_status status = STARG_OK;
     json_t *report = session->report;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard match: how unlike are two models? */
+/* starguard match: computes the distance between two models. */
 #include "commands.h"
 #include "database.h"
 #include "model.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard morph: the shapes between two surfaces. */
+/* starguard morph: interpolates between two surfaces. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,7 +53,7 @@ static const char *method_word(const values *v) {
 
 /* ---- files in the folder ---- */
 
-/* A file in the folder of the frames; NULL when memory is out. */
+/* Path of a file in the frames' folder; NULL when out of memory. */
 static char *in_folder(const values *v, const char *name) {
     size_t size = strlen(v->output) + strlen(name) + 2;
     char *path = malloc(size);
@@ -91,7 +91,7 @@ done:
     return status;
 }
 
-/* ---- what was asked for ---- */
+/* ---- options ---- */
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
@@ -120,7 +120,7 @@ done:
 
 /* ---- both ends ---- */
 
-/* What is morphed. */
+/* Both ends of the morph. */
 typedef struct subject {
     starg_mesh *target;
     starg_map *map;
@@ -164,7 +164,7 @@ done:
 
 /* ---- frames ---- */
 
-/* Sums over the frames for the text. */
+/* Sums over the frames, for the text report. */
 typedef struct totals {
     size_t intersections, most_intersections, inverted;
     double drift;
@@ -253,7 +253,7 @@ done:
 
 /* ---- results of both ends ---- */
 
-/* A map that keeps vertices may still be one of surfaces whose faces differ here and there. */
+/* A map that keeps vertices may still connect surfaces with some different faces. */
 static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
     size_t count = starg_mesh_face_count(a);
     return starg_mesh_face_count(b) == count &&
@@ -261,7 +261,8 @@ static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
            memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
 }
 
-/* B is the model itself where it is the last frame, else that frame. NULL when memory is out. */
+/* B is the model itself if it equals the last frame, otherwise that frame. NULL when out of
+ * memory. */
 static char *model_of(const cli_session *session, const values *v, const subject *s, int end) {
     bool given = s->map->kind == STARG_MAP_SAME && has_same_faces(session->mesh, s->target);
     return end == 1 && !given ? frame_in_folder(v, v->frames - 1) : strdup(session->operands[end]);
@@ -269,12 +270,12 @@ static char *model_of(const cli_session *session, const values *v, const subject
 
 /* ---- guards ---- */
 
-/* How many guards each end would need alone, with the proven bounds. */
+/* The number of guards that each end would need alone, with proven bounds. */
 typedef struct separate {
     size_t count[2], bound[2];
 } separate;
 
-/* What --guards and --pieces have found; nothing without. */
+/* Results of --guards and --pieces; otherwise empty. */
 typedef struct extras {
     separate alone;
     starg_decomposition *pieces[2];
@@ -414,7 +415,7 @@ done:
     return status;
 }
 
-/* ---- what was made ---- */
+/* ---- report ---- */
 
 static json_t *guards_json(cli_session *session, const starg_morph *morph, int end) {
     json_t *list = json_array();

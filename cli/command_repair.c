@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard repair: makes a solid of a mesh that is nearly one. */
+/* starguard repair: turns a nearly closed mesh into a solid. */
 #include "commands.h"
 #include "model.h"
 #include "report.h"
@@ -8,7 +8,7 @@
 typedef struct values {
     const char *output;
     starg_repair_options wanted;
-    starg_mesh_format format; /* by the name of the output */
+    starg_mesh_format format; /* from the name of the output */
 } values;
 
 static const cli_option options[] = {
@@ -16,7 +16,7 @@ static const cli_option options[] = {
         "FILE", "Repaired mesh: .off, .obj, .ply or .stl; '-' writes OFF to standard output."),
 };
 
-/* What was done, for people and for programs. */
+/* Reports what was done, as text and JSON. */
 static void tell(cli_session *session, const starg_repair_report *r) {
     const struct {
         const char *key, *text;

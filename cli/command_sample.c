@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard sample: procedural solids. */
+/* starguard sample: generates procedural solids. */
 #include "commands.h"
 #include "model.h"
 #include "report.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard skeleton: the curve skeleton of a solid. */
+/* starguard skeleton: computes the curve skeleton of a solid. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@
 typedef struct values {
     const char *output, *picture;
     starg_skeleton_options wanted;
-    starg_skeleton_format format; /* by the name of the output */
+    starg_skeleton_format format; /* from the name of the output */
 } values;
 
 static const cli_option options[] = {
@@ -45,7 +45,7 @@ done:
     return status;
 }
 
-/* Nodes as small balls, ends and joints in colours of their own. */
+/* Draws nodes as small balls, ends and joints in their own colours. */
 static starg_status write_picture(cli_session *session, const starg_solid *solid,
                                   const starg_skeleton *s, const char *name) {
     static const uint8_t curve[3] = {200, 30, 30}, joint[3] = {20, 60, 200}, end[3] = {0, 130, 60};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard verify: checks results by other means than those that made them. */
+/* starguard verify: checks results independently of the code that made them. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,8 +23,8 @@ static void tell_claims(cli_session *session, const starg_verdict *verdict) {
         cli_say(session, "  not checked: %s\n", verdict->not_checked[i].text);
 }
 
-/* Tells a verdict and adds it to the results; `result` holds the keys that only its kind has, and
- * is taken over. */
+/* Reports a verdict and adds it to the results; takes over `result`, the keys specific to its
+ * kind. */
 static void tell_verdict(cli_session *session, const char *file, const starg_verdict *verdict,
                          json_t *result, json_t *results) {
     cli_say(session, "%s\n", file);
@@ -51,7 +51,7 @@ static void tell_verdict(cli_session *session, const char *file, const starg_ver
 
 /* The model: a surface, or a tetrahedral mesh. */
 typedef struct model {
-    starg_mesh *mesh; /* of a tetrahedral mesh its boundary */
+    starg_mesh *mesh; /* of a tetrahedral mesh: its boundary */
     starg_tetmesh *tetmesh;
 } model;
 
@@ -62,7 +62,7 @@ static starg_status read_model(cli_session *session, model *out) {
     return status;
 }
 
-/* All results are read before the first is verified: a bad name shows at once. */
+/* Reads all results before verifying the first, so that a bad name is reported at once. */
 static starg_status read_results(cli_session *session, starg_result **results) {
     starg_status status = STARG_OK;
     for (size_t i = 1; i < session->operand_count && status == STARG_OK; i++)
@@ -70,7 +70,7 @@ static starg_status read_results(cli_session *session, starg_result **results) {
     return status;
 }
 
-/* What a certificate is of stands before it. */
+/* A certificate must follow the guards or pieces that it belongs to. */
 static starg_status check_certificates(cli_session *session, starg_result *const *results) {
     for (size_t i = 1; i < session->operand_count; i++)
         if (results[i]->certificate != NULL && (i == 1 || results[i - 1]->certificate != NULL))
@@ -89,7 +89,7 @@ static size_t certificate_behind(const cli_session *session, starg_result *const
     return certified ? operand + 1 : 0;
 }
 
-/* The files of a decomposition: operands, 0 where there is none. */
+/* The files of a decomposition: operand numbers, 0 if missing. */
 typedef struct decomposition {
     size_t pieces, report, certificate;
 } decomposition;
@@ -131,7 +131,7 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
 
 /* ---- verification ---- */
 
-/* A certificate stands directly behind its guards. */
+/* A certificate directly follows its guards. */
 static starg_status verify_guards(cli_session *session, const model *given, size_t operand,
                                   starg_result *const *results, json_t *list) {
     starg_status status = STARG_OK;

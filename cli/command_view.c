@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard view: a page to look at results. */
+/* starguard view: writes a page that shows results. */
 #include "commands.h"
 #include "database.h"
 #include "model.h"
@@ -29,7 +29,7 @@ done:
     return status;
 }
 
-/* What there is to see, as the page's tabs name it. */
+/* Lists the contents, named like the page's tabs. */
 static void tell(cli_session *session, const values *v, const starg_page *page) {
     const struct {
         const char *name, *key;

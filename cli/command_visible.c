@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* starguard visible: what do points inside a solid, or boxes in it, see? */
+/* starguard visible: computes what points inside a solid, or boxes in it, see. */
 #include <stdlib.h>
 
 #include "commands.h"
@@ -31,16 +31,16 @@ static const cli_option options[] = {
     CLI_SCENE_OPTIONS,
 };
 
-/* Everything about one call. */
+/* Data of one call. */
 typedef struct look {
     const values *wanted;
     const starg_solid *solid;
     const starg_bits *seen;
-    const double *fractions; /* of the area; by face */
+    const double *fractions; /* area fractions by face */
     json_t *places;
 } look;
 
-/* Exactly 1 when all is seen, never more. */
+/* Exactly 1 if everything is seen, never more. */
 static double area_seen(const look *l, size_t row) {
     double seen = 0, hidden = 0;
     for (size_t face = 0; face < starg_bits_columns(l->seen); face++)
@@ -48,7 +48,7 @@ static double area_seen(const look *l, size_t row) {
     return seen / (seen + hidden);
 }
 
-/* What the point or box of the row sees; `place` says where it is. */
+/* Reports what the point or box of the row sees; `place` describes its position. */
 static void tell_seen(cli_session *session, const look *l, size_t row, const char *sees,
                       json_t *place) {
     bool faces = l->wanted->view.target == STARG_TARGET_FACES;
@@ -109,7 +109,7 @@ static starg_status tell(cli_session *session, look *l) {
     return STARG_OK;
 }
 
-/* Paints the faces whose vertices a point sees, the first point last. */
+/* Colours the faces whose vertices a point sees; the first point is painted last. */
 static void paint_by_vertices(uint8_t *colors, const starg_mesh *mesh, const starg_bits *seen) {
     const uint32_t *faces = starg_mesh_faces(mesh);
     for (size_t row = starg_bits_rows(seen); row-- > 0;)
@@ -149,7 +149,7 @@ static starg_status prepare(cli_session *session, void *data) {
                               : cli_announce_with_extension(session, "-o", v->output, ".ply");
 }
 
-/* Boxes by opposite corners become boxes by lower and upper ones. */
+/* Converts boxes given by opposite corners to lower and upper corners. */
 static void order_corners(starg_places *boxes) {
     for (size_t i = 0; i < boxes->count; i++)
         for (size_t k = 6 * i; k < 6 * i + 3; k++) {

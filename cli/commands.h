@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The commands as a table: all that main, the help and the suggestions know about them. */
+/* The table of commands, used by main, the help and the suggestions. */
 #ifndef STARGUARD_CLI_COMMANDS_H
 #define STARGUARD_CLI_COMMANDS_H
 
@@ -8,37 +8,38 @@
 #include "options.h"
 #include "session.h"
 
-/* What the first operand names; read before the command runs. */
+/* Meaning of the first operand, which is read before the command runs. */
 typedef enum cli_input {
     CLI_INPUT_NONE,
-    CLI_INPUT_MESH, /* session->mesh                 */
+    CLI_INPUT_MESH, /* session->mesh */
     CLI_INPUT_SOLID /* session->solid, a usable mesh */
 } cli_input;
 
 struct cli_command {
     const char *name;
-    const char *usage;                 /* what follows the name: "MODEL -o FILE [options]" */
-    const char *summary;               /* one line, no full stop                           */
-    const char *description;           /* paragraphs, parted by newlines                   */
-    const char *examples;              /* lines: "# what it does", then the command        */
-    const cli_command *const *members; /* a group ("db") has commands ("db add") and nothing below;
-                                          ends with NULL */
+    const char *usage;       /* after the name: "MODEL -o FILE [options]" */
+    const char *summary;     /* one line, no full stop */
+    const char *description; /* paragraphs separated by newlines */
+    const char *examples;    /* lines: "# what it does", then the command */
+    const cli_command *const
+        *members; /* a group ("db") has commands ("db add") and nothing below; ends with NULL */
     const cli_option *options;
     size_t option_count;
     size_t least_operands, most_operands;
-    /* Words that the first operand may be, for completion: NULL behind the last. Else: files. */
+    /* Words allowed as first operand, for completion, ended by NULL. If absent: files. */
     const char *(*operand_word)(size_t index);
     size_t values_size; /* of the struct that the options fill */
-    /* The library's options that the command takes, and where they are in that struct. */
+    /* The library's options of the command, and their place in that struct. */
     const starg_fields *(*library)(void);
     size_t library_offset;
     cli_input input;
-    bool in_place; /* an output may be the input */
-    /* In this order; all but `run` may be NULL. The struct comes with the defaults of its tables.
-     */
-    starg_status (*prepare)(cli_session *session, void *values); /* options, names of outputs   */
-    starg_status (*run)(cli_session *session, void *values);     /* the work, with its input    */
-    void (*release)(cli_session *session, void *values);         /* what `prepare` has taken    */
+    bool in_place; /* an output may replace an input */
+    /* Called in this order; all but `run` may be NULL. The struct is initialized with the tables'
+     * defaults. */
+    starg_status (*prepare)(cli_session *session,
+                            void *values);                   /* checks options and output names */
+    starg_status (*run)(cli_session *session, void *values); /* does the work, with its input */
+    void (*release)(cli_session *session, void *values);     /* frees what `prepare` allocated */
 };
 
 /* Parts of the table's rows. */
@@ -47,11 +48,11 @@ struct cli_command {
     .options = TABLE, .option_count = sizeof TABLE / sizeof *TABLE, .values_size = sizeof(values)
 #define CLI_LIBRARY(FIELDS, MEMBER) .library = FIELDS, .library_offset = offsetof(values, MEMBER)
 
-/* Option number `index` of those that a command has beside the common ones, or (NULL) of the common
- * ones; NULL behind the last. */
+/* Option number `index` of a command besides the common ones, or (NULL) of the common ones; NULL
+ * after the last. */
 const cli_option *cli_command_option(const cli_command *command, size_t index);
 
-/* The options of a command with what they fill: its own, the library's, the common ones. */
+/* The option groups of a command and their values: its own, the library's, the common ones. */
 enum { CLI_OWN, CLI_FROM_LIBRARY, CLI_COMMON, CLI_GROUPS };
 void cli_command_groups(const cli_command *command, void *values, void *common,
                         cli_group groups[CLI_GROUPS]);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Each script is a table in the shell's own words: for every command its options, what each of them
- * takes, and what the operands are. What an option takes is known by its kind: a choice has its
- * words, text is a file or one of the lower-case words of its form ("skeleton|medial|FILE"), and
- * for a number nothing can be offered. */
+/* Each script is a table in the shell's own syntax: for every command its options, their values,
+ * and its operands. Values follow from the option's kind: a choice has its words, a text is a file
+ * or one of the lower-case words of its form ("skeleton|medial|FILE"), and numbers have no
+ * suggestions. */
 #include "completion.h"
 
 #include <string.h>
 
 #include "completion_parts.h"
 
-/* ---- what can be offered ---- */
+/* ---- values of options ---- */
 
 void completion_visit_words(FILE *stream, const cli_option *o, completion_word_fn *visit) {
     if (o->kind == STARG_FIELD_CHOICE)
@@ -41,7 +41,7 @@ void completion_put_brief(FILE *stream, const char *text, const char *special) {
     }
 }
 
-/* ---- all commands, the members of groups too ---- */
+/* ---- all commands, including members of groups ---- */
 
 void completion_visit_commands(FILE *stream, const cli_command *const *table,
                                completion_command_fn *visit) {

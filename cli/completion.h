@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Completion for shells, made of the table of commands and their options. */
+/* Shell completion, generated from the table of commands and their options. */
 #ifndef STARGUARD_CLI_COMPLETION_H
 #define STARGUARD_CLI_COMPLETION_H
 
@@ -7,7 +7,7 @@
 
 typedef enum cli_shell { CLI_BASH, CLI_ZSH, CLI_FISH } cli_shell;
 
-/* Writes the script that a shell reads to complete `starguard ...`. */
+/* Writes the completion script of a shell. */
 void cli_completion_write(FILE *stream, cli_shell shell);
 
 #endif

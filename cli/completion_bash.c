@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bash: one function that looks at the words before the cursor. */
+/* bash: a function that examines the words before the cursor. */
 #include "completion_parts.h"
 
 static void bash_names(FILE *stream, const cli_option *o, const char *separator) {
@@ -8,7 +8,7 @@ static void bash_names(FILE *stream, const cli_option *o, const char *separator)
     fprintf(stream, "--%s", o->option);
 }
 
-/* Of a command, or the common ones. */
+/* For a command, or the common options. */
 static void bash_list(FILE *stream, const cli_command *command) {
     const cli_option *o;
     for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++) {
@@ -17,7 +17,7 @@ static void bash_list(FILE *stream, const cli_command *command) {
     }
 }
 
-/* What follows an option: words, files, or nothing that could be offered. */
+/* Values of an option: words, files, or nothing. */
 static void bash_values(FILE *stream, const cli_command *command) {
     const cli_option *o;
     for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++) {

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* fish: one line for each thing that can be offered, and the condition under which it is. */
+/* fish: one line per suggestion, with its condition. */
 #include "completion_parts.h"
 
-/* A line that applies behind these words. */
+/* Starts a line that applies after these words. */
 static void fish_begin(FILE *stream, const char *words) {
     fprintf(stream, "complete -c starguard -n '__starguard_behind %s'", words);
 }
 
-/* The options of `of`, or (NULL) the common ones, behind a command. */
+/* The options of `of`, or (NULL) the common ones, after a command. */
 static void fish_options(FILE *stream, const cli_command *command, const cli_command *of) {
     const cli_option *o;
     for (size_t i = 0; (o = cli_command_option(of, i)) != NULL; i++) {
@@ -33,7 +33,7 @@ static void fish_word(FILE *stream, const char *word, const char *summary) {
     fputs("'\n", stream);
 }
 
-/* The commands of a table as what comes next behind some words. */
+/* Suggests the commands of a table after some words. */
 static void fish_table(FILE *stream, const char *words, const cli_command *const *table) {
     for (size_t i = 0; table[i] != NULL; i++) {
         fprintf(stream, "complete -c starguard -n '__starguard_behind --next %s'", words);

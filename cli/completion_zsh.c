@@ -28,7 +28,7 @@ static void zsh_option(FILE *stream, const cli_option *o, const char *name) {
     fputs("' \\\n", stream);
 }
 
-/* Of a command, or the common ones. */
+/* For a command, or the common options. */
 static void zsh_options(FILE *stream, const cli_command *command) {
     const cli_option *o;
     for (size_t i = 0; (o = cli_command_option(command, i)) != NULL; i++) {

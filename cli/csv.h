@@ -7,7 +7,7 @@
 
 typedef struct cli_csv {
     cli_session *session;
-    const char *name; /* as it was announced */
+    const char *name; /* as announced */
     FILE *stream;
     bool line_begun;
 } cli_csv;
@@ -19,12 +19,12 @@ void cli_csv_text(cli_csv *csv, const char *text);
 void cli_csv_real(cli_csv *csv, double value);
 void cli_csv_end_line(cli_csv *csv);
 
-/* Closes the table; finds the errors of all writes. Errors: WRITE. */
+/* Closes the table and reports write errors. Errors: WRITE. */
 starg_status cli_csv_close(cli_csv *csv);
 
-/* Takes the next field of a line (without its end), in place and without its quotes; `*at` begins
- * at the line and is NULL behind the last field, which then gives NULL. Fields do not go over
- * lines. */
+/* Returns the next field of a line (without its end), in place and unquoted; `*at` starts at the
+ * line and is NULL after the last field, and then the result is NULL. Fields cannot contain line
+ * breaks. */
 char *cli_csv_field(char **at);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the commands about a database share. */
+/* Shared by the database commands. */
 #ifndef STARGUARD_CLI_DATABASE_H
 #define STARGUARD_CLI_DATABASE_H
 
@@ -19,7 +19,7 @@ extern const char *const cli_distance_words[];
         "surface; paper, the deformation of one guarding graph into the other; or d2, the "        \
         "distances between points of the surface.")
 
-/* Opens the database that the first operand names. */
+/* Opens the database given by the first operand. */
 starg_status cli_database_open(cli_session *session, starg_database **out);
 
 /* The models of a database with all their distances (models->count squared). */
@@ -29,8 +29,8 @@ typedef struct cli_table {
     double *distances;
 } cli_table;
 
-/* `kind` is an index of cli_distance_words; `t` is all zero, and to be freed on failure as well. A
- * database without models is an error. */
+/* `kind` is an index of cli_distance_words; `t` must be zero, and must be freed on failure as well.
+ * An empty database is an error. */
 starg_status cli_table_make(cli_session *session, const char *file, int kind, cli_table *t);
 void cli_table_free(cli_session *session, cli_table *t);
 

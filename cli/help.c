@@ -35,7 +35,7 @@ static void heading(FILE *stream, const char *text) {
     fprintf(stream, "\n%s%s%s\n", cli_style_on(stream, CLI_BOLD), text, cli_style_off(stream));
 }
 
-/* Writes paragraphs (parted by newlines) with every line indented; the first line begins at
+/* Writes paragraphs (separated by newlines) with every line indented; the first line starts at
  * `column`. Bytes are columns: the texts are ASCII. */
 static void wrap(FILE *stream, const char *text, int indent, int column) {
     while (*text != '\0') {
@@ -73,7 +73,7 @@ static void print_option(FILE *stream, const cli_option *o) {
     wrap(stream, text, OPTION_INDENT, column);
 }
 
-/* Of a command, or the common ones. */
+/* For a command, or the common options. */
 static void print_options(FILE *stream, const char *title, const cli_command *command) {
     const cli_option *o;
     if (cli_command_option(command, 0) != NULL)
@@ -94,7 +94,7 @@ void cli_help_short(FILE *stream) {
                     "'starguard help' explains more, 'starguard help COMMAND' one command.\n");
 }
 
-/* Lines that begin with '#' say what the next one does. */
+/* Lines that start with '#' describe the next one. */
 static void print_examples(FILE *stream, const char *examples) {
     while (*examples != '\0') {
         int size = (int)strcspn(examples, "\n");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The help, made of the table of commands and their options. */
+/* The help, generated from the table of commands and their options. */
 #ifndef STARGUARD_CLI_HELP_H
 #define STARGUARD_CLI_HELP_H
 
@@ -19,16 +19,16 @@ typedef struct cli_exit_text {
 extern const cli_exit_text cli_exit_texts[];
 extern const size_t cli_exit_text_count;
 
-/* A few lines for somebody who typed too little. */
+/* A few lines for an incomplete command line. */
 void cli_help_short(FILE *stream);
 
-/* What the program does and which commands there are. */
+/* Describes the program and lists the commands. */
 void cli_help_program(FILE *stream);
 
-/* All about one command. */
+/* Complete help of one command. */
 void cli_help_command(FILE *stream, const cli_command *command);
 
-/* All commands and options as one JSON object (docs/formats.md). False when memory is out. */
+/* All commands and options as one JSON object (docs/formats.md). False when out of memory. */
 bool cli_help_json(FILE *stream);
 
 #endif

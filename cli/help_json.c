@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The table of commands as JSON, for whoever makes something of it: manual pages, documentation, a
- * graphical front. */
+/* The table of commands as JSON, for generators of manual pages, documentation and graphical front
+ * ends. */
 #include <jansson.h>
 
 #include "help.h"
@@ -16,7 +16,7 @@ static const char *kind_name(starg_field_kind kind) {
     return names[kind];
 }
 
-/* A list without all of its members is none: NULL. */
+/* An incomplete list becomes NULL. */
 static void append(json_t **list, json_t *value) {
     if (json_array_append_new(*list, value) == 0)
         return;
@@ -45,7 +45,7 @@ static json_t *option_json(const cli_option *o) {
     return NULL;
 }
 
-/* Of a command, or the common ones. */
+/* For a command, or the common options. */
 static json_t *options_json(const cli_command *command) {
     json_t *list = json_array();
     const cli_option *o;

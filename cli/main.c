@@ -12,7 +12,7 @@
 #include "starguard/version.h"
 #include "suggest.h"
 
-/* Ends a run that only had to print. */
+/* Ends a run that only printed text. */
 static int finish_text(void) {
     if (fflush(stdout) == 0 && ferror(stdout) == 0)
         return CLI_EXIT_DONE;
@@ -43,7 +43,7 @@ static int reject_command(const cli_command *const *table, const char *word) {
     return reject("command", word, near.best);
 }
 
-/* Options in front of a command: only those that need none. */
+/* Before a command only options without a command are allowed. */
 static int reject_option(const char *word) {
     cli_suggestion near;
     cli_suggest_begin(&near, word);
@@ -59,7 +59,7 @@ static int reject_option(const char *word) {
     return reject("option", word, near.best);
 }
 
-/* The command that the words of `help` name; NULL for the program. False with an error. */
+/* The command named by the words of `help`; NULL for the program. False with an error. */
 static bool find_topic(int argc, char **argv, const cli_command **command, int *result) {
     *command = argc > 0 ? cli_command_find(cli_commands, argv[0]) : NULL;
     if (argc == 2 && *command != NULL && (*command)->members != NULL) {
@@ -144,7 +144,7 @@ static starg_status parse(cli_session *session, const cli_group *groups, int arg
     return STARG_OK;
 }
 
-/* --help and --version, which need neither operands nor a run. */
+/* --help and --version, which need no operands and no run. */
 static int print_about(const cli_session *session) {
     if (session->common.help)
         cli_help_command(stdout, session->command);
@@ -161,7 +161,7 @@ static bool is_word(const cli_option *o, const char *value) {
     return false;
 }
 
-/* All files that the command line names for reading. */
+/* Registers all files that the command line names for reading. */
 static starg_status name_inputs(cli_session *session, const char *values) {
     const cli_command *command = session->command;
     starg_status status = STARG_OK;
@@ -178,7 +178,8 @@ done:
     return status;
 }
 
-/* The frame of every command: slips show before the model is read, and that before the work. */
+/* The frame of every command: mistakes are reported before the model is read, and the model's
+ * before the work. */
 static starg_status perform(cli_session *session, void *values) {
     const cli_command *command = session->command;
     starg_status status = STARG_OK;

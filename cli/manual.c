@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Plain man(7): what every man program can show. Dashes, quotes and the like are escaped, or they
- * would be set as typographic ones, which cannot be copied into a shell; a line must not begin with
- * a control character. */
+/* Plain man(7), which every man program can show. Dashes, quotes and the like are escaped:
+ * otherwise they are set as typographic characters, which cannot be copied into a shell; a line
+ * must not start with a control character. */
 #include "manual.h"
 
 #include <string.h>
@@ -13,7 +13,7 @@ enum { LONGEST = 78 };
 
 /* ---- text ---- */
 
-/* Characters that would be set as others. */
+/* Escapes characters that would be set as others. */
 static void put_escaped(FILE *stream, char c) {
     static const char plain[] = "\\-'`^~";
     static const char *const escaped[] = {"\\e", "\\-", "\\(aq", "\\(ga", "\\(ha", "\\(ti"};
@@ -24,7 +24,7 @@ static void put_escaped(FILE *stream, char c) {
         fputc(c, stream);
 }
 
-/* `size` characters of text that begin a line. */
+/* `size` characters of text at the start of a line. */
 static void put_line(FILE *stream, const char *text, size_t size) {
     if (size > 0 && *text == '.')
         fputs("\\&", stream);
@@ -33,7 +33,7 @@ static void put_line(FILE *stream, const char *text, size_t size) {
     fputc('\n', stream);
 }
 
-/* The same, with line breaks between words where lines would get long. */
+/* Same, with long lines broken between words. */
 static void put_filled(FILE *stream, const char *text, size_t size) {
     while (size > LONGEST) {
         size_t cut = LONGEST;
@@ -52,7 +52,7 @@ static void put_text(FILE *stream, const char *text) {
     put_filled(stream, text, strlen(text));
 }
 
-/* Paragraphs, parted by newlines. */
+/* Paragraphs, separated by newlines. */
 static void put_paragraphs(FILE *stream, const char *text) {
     for (bool first = true; *text != '\0'; first = false) {
         size_t size = strcspn(text, "\n");
@@ -68,7 +68,7 @@ static void put_section(FILE *stream, const char *name) {
     fprintf(stream, ".SH %s\n", name);
 }
 
-/* Lines that begin with '#' say what the ones after them do. */
+/* Lines that start with '#' describe the ones after them. */
 static void put_examples(FILE *stream, const char *examples) {
     bool in_command = false;
     for (const char *line = examples; *line != '\0';) {
@@ -90,7 +90,7 @@ static void put_examples(FILE *stream, const char *examples) {
 
 /* ---- parts of pages ---- */
 
-/* "db add" is called starguard-db-add. */
+/* "db add" becomes starguard-db-add. */
 static void put_page_name(FILE *stream, const cli_command *command, bool upper) {
     fputs(upper ? "STARGUARD" : "starguard", stream);
     if (command == NULL)
@@ -115,7 +115,7 @@ static void put_head(FILE *stream, const cli_command *command, const char *summa
     put_section(stream, "SYNOPSIS");
 }
 
-/* Of a command, or the common ones. */
+/* For a command, or the common options. */
 static void put_options(FILE *stream, const cli_command *command) {
     const cli_option *o;
     char help[CLI_HELP_SIZE];
@@ -139,7 +139,7 @@ static void put_options(FILE *stream, const cli_command *command) {
     }
 }
 
-/* A list of commands, each with the page that tells all about it. */
+/* A list of commands, each with its manual page. */
 static void put_commands(FILE *stream, const cli_command *const *table) {
     for (size_t i = 0; table[i] != NULL; i++) {
         fputs(".TP\n\\fB", stream);

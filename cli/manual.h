@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Manual pages, made of the table of commands and their options. */
+/* Manual pages, generated from the table of commands and their options. */
 #ifndef STARGUARD_CLI_MANUAL_H
 #define STARGUARD_CLI_MANUAL_H
 

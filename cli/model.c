@@ -14,8 +14,8 @@
 
 static const uint8_t NEUTRAL[3] = {190, 195, 200};
 
-enum { HEAD = 1 << 16 };                    /* bytes of a file that tell what it holds */
-static const size_t MOST = (size_t)2 << 30; /* bytes that are read, as in the library  */
+enum { HEAD = 1 << 16 };                    /* bytes used to recognize a file */
+static const size_t MOST = (size_t)2 << 30; /* largest input in bytes, as in the library */
 
 starg_status cli_input_read(cli_session *session) {
     const cli_command *command = session->command;
@@ -43,13 +43,13 @@ static const char *shown_name(const char *name) {
     return is_standard(name) ? "standard input" : name;
 }
 
-/* Standard input and pipes can be read once only. */
+/* Standard input and pipes can be read only once. */
 static bool is_read_once(const char *name) {
     struct stat info;
     return is_standard(name) || (stat(name, &info) == 0 && S_ISFIFO(info.st_mode));
 }
 
-/* What a file begins with; all of it where it can be read once only. */
+/* The beginning of a file; all of it if it can be read only once. */
 typedef struct input_head {
     char *bytes;
     size_t size;
@@ -89,7 +89,7 @@ done:
     return status;
 }
 
-/* What cannot be opened has nothing in its head: it is left to the reader, which says why. */
+/* A file that cannot be opened has an empty head: the reader reports why. */
 static starg_status read_head(cli_session *session, const char *name, input_head *head) {
     starg_status status = STARG_OK;
     FILE *file = is_standard(name) ? stdin : fopen(name, "rb");
@@ -194,7 +194,7 @@ void cli_colors_by_viewer(uint8_t *colors, const starg_bits *seen) {
     }
 }
 
-/* Twice the area, with lengths measured in `unit` so that no square overflows or vanishes. */
+/* Twice the area, in units of `unit` so that squares neither overflow nor underflow. */
 static double doubled_area(const double *vertices, const uint32_t *corners, double unit) {
     double u[3], v[3];
     for (int k = 0; k < 3; k++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Models and coloured models, as several commands read and write them. */
+/* Reads and writes models and coloured models for several commands. */
 #ifndef STARGUARD_CLI_MODEL_H
 #define STARGUARD_CLI_MODEL_H
 
@@ -10,34 +10,34 @@
 #include "starguard/solid.h"
 #include "starguard/tetra.h"
 
-/* Reads what the first operand names into the session, and begins the report with it. */
+/* Reads the first operand into the session, and starts the report with it. */
 starg_status cli_input_read(cli_session *session);
 
-/* Reads a surface or a tetrahedral mesh, told apart by the content; the other one is NULL. */
+/* Reads a surface or a tetrahedral mesh, recognized by content; the other one is NULL. */
 starg_status cli_shape_read(cli_session *session, const char *file, starg_mesh **mesh,
                             starg_tetmesh **tetmesh);
 
-/* Reads a model or a descriptor of one, told apart by the content; the other one is NULL. */
+/* Reads a model or its descriptor, recognized by content; the other one is NULL. */
 starg_status cli_described_read(cli_session *session, const char *file, starg_mesh **mesh,
                                 starg_descriptor **descriptor);
 
-/* The format for an output mesh by its file extension; OFF for "-". Errors: ARGUMENT. */
+/* The format of an output mesh by its file extension; OFF for "-". Errors: ARGUMENT. */
 starg_status cli_mesh_format(cli_session *session, const char *name, starg_mesh_format *format);
 
 /* Writes a mesh with face colours (or NULL) to an announced output. */
 starg_status cli_mesh_write(cli_session *session, const starg_mesh *mesh, starg_mesh_format format,
                             const uint8_t *colors, const char *name);
 
-/* Colours for the faces of a mesh, all of them neutral to begin with; NULL when memory is out. */
+/* Neutral colours for the faces of a mesh; NULL when out of memory. */
 uint8_t *cli_colors_create(const starg_mesh *mesh);
 
-/* Each face in the colour of the first row of `seen` that has it; others as they are. */
+/* Gives each face the colour of the first row of `seen` that contains it; leaves the others. */
 void cli_colors_by_viewer(uint8_t *colors, const starg_bits *seen);
 
-/* Areas of all faces as fractions of their sum; NULL when memory is out. */
+/* Areas of all faces as fractions of their sum; NULL when out of memory. */
 double *cli_area_fractions(const starg_mesh *mesh);
 
-/* An array of the columns that a row holds. */
+/* An array of the set columns of a row. */
 json_t *cli_json_row(cli_session *session, const starg_bits *bits, size_t row);
 
 /* An array of `count` indices. */

@@ -21,7 +21,7 @@ bool cli_number_count(const char *word, uint64_t *value) {
     return true;
 }
 
-/* The program never leaves the "C" locale, so strtod reads a point. */
+/* The program stays in the "C" locale, so strtod expects a decimal point. */
 static bool read_real(const char *word, size_t size, double *value) {
     if (size == 0 || strspn(word, "+-.0123456789eE") < size)
         return false;
@@ -45,7 +45,7 @@ bool cli_number_list(const char *word, double *values, int count) {
 }
 
 double cli_percent(double fraction) {
-    double hundredths = floor(1e4 * fraction); /* the product is rounded: one too few or too many */
+    double hundredths = floor(1e4 * fraction); /* the product is rounded and may be one off */
     if ((hundredths + 1) / 1e4 <= fraction)
         hundredths++;
     else if (hundredths / 1e4 > fraction)

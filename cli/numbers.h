@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Strict numbers: the whole word or nothing. */
+/* Strict number parsing: the whole word or nothing. */
 #ifndef STARGUARD_CLI_NUMBERS_H
 #define STARGUARD_CLI_NUMBERS_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Decimal digits only; false for anything else and for what does not fit. */
+/* Decimal digits only; false for anything else and on overflow. */
 bool cli_number_count(const char *word, uint64_t *value);
 
 /* A finite decimal number; no spaces, hexadecimal, "inf" or "nan". */
 bool cli_number_real(const char *word, double *value);
 
-/* `count` reals with commas between them. */
+/* `count` reals separated by commas. */
 bool cli_number_list(const char *word, double *values, int count);
 
-/* A fraction in percent with two digits, rounded down, so that only what is whole is called 100;
- * what is a hundredth of a percent as exactly as a double can be stays it. */
+/* A fraction in percent with two digits, rounded down, so that only 1 becomes 100; exact hundredths
+ * of a percent (within a double) keep their value. */
 double cli_percent(double fraction);
 
 #endif

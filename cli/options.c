@@ -10,7 +10,7 @@
 #include "numbers.h"
 #include "suggest.h"
 
-/* Where parsing stands. */
+/* State of the parser. */
 typedef struct parser {
     const cli_group *groups;
     size_t group_count;
@@ -19,7 +19,7 @@ typedef struct parser {
     cli_parse_error *error;
 } parser;
 
-/* An option as the user wrote it. */
+/* An option as given by the user. */
 typedef struct match {
     const cli_option *option;
     const cli_group *group;
@@ -112,7 +112,7 @@ static bool add_text(parser *p, const match *m, const char *word, starg_texts *t
     return true;
 }
 
-/* A flag that is called "no-X" clears X. */
+/* A flag named "no-X" clears X. */
 static bool set_flag(const match *m) {
     return starg_field_set_count(m->option, m->group->values,
                                  strncmp(m->option->option, "no-", 3) != 0);
@@ -179,8 +179,8 @@ static bool find_short(parser *p, char letter, match *m) {
     return fail_parse(p, "unknown option '-%c'", letter);
 }
 
-/* The next word as a value. One that looks like an option is more likely a value forgotten;
- * "--name=--value" says that it is meant. */
+/* The next word as a value. If it looks like an option, the value was probably forgotten;
+ * "--name=--value" states that it is meant. */
 static bool next_value(parser *p, const match *m, const char **word) {
     if (p->next == p->argc || strncmp(p->argv[p->next], "--", 2) == 0)
         return fail_parse(p, "%s needs a value: %s %s", m->shown, m->shown, m->option->value);
@@ -204,7 +204,7 @@ static bool parse_long(parser *p, const char *text) {
     return set_value(p, &m, word);
 }
 
-/* "-o FILE" or "-oFILE"; letters do not bundle. */
+/* "-o FILE" or "-oFILE"; letters cannot be combined. */
 static bool parse_short(parser *p, const char *text) {
     match m;
     const char *word = NULL;

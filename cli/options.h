@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Options as tables: rows of the library's field tables (starguard/fields.h), and rows of the same
- * kind for what only a command knows. The parser, the help, the manual, completion and the messages
- * all live on them.
+ * type for options of a command. The parser, the help, the manual, completion and messages all use
+ * them.
  *
- * Why not argp: it takes abbreviations of option names (so that a new option can break an old
- * script), cannot suggest the name that was meant, and hides its tables from whatever else needs
- * them (help in our order, manual pages, completion). */
+ * Why not argp: it accepts abbreviated option names (so that a new option can break an old script),
+ * cannot suggest the intended name, and hides its tables from other users (help in our order,
+ * manual pages, completion). */
 #ifndef STARGUARD_CLI_OPTIONS_H
 #define STARGUARD_CLI_OPTIONS_H
 
 #include "starguard/fields.h"
 
-/* Rows with a NULL `option` are no options. */
+/* Rows with a NULL `option` are not options. */
 typedef starg_field cli_option;
 
-/* Entries of the table of a command, whose struct is called `values`. */
+/* Entries of a command's table, whose struct type is `values`. */
 #define CLI_OPTION(NAME, KIND, MEMBER, VALUE, HELP)                                                \
     .option = NAME, .kind = KIND, .offset = offsetof(values, MEMBER),                              \
     .size = sizeof(((values *)0)->MEMBER), .value = VALUE, .help = HELP
@@ -22,7 +22,7 @@ typedef starg_field cli_option;
     { CLI_OPTION(NAME, STARG_FIELD_FLAG, MEMBER, NULL, HELP) }
 #define CLI_TEXT_OPTION(NAME, MEMBER, VALUE, HELP)                                                 \
     { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP) }
-/* The same for a file that is read. */
+/* Same for an input file. */
 #define CLI_INPUT_OPTION(NAME, MEMBER, VALUE, HELP)                                                \
     { CLI_OPTION(NAME, STARG_FIELD_TEXT, MEMBER, VALUE, HELP), .flags = STARG_FIELD_INPUT }
 #define CLI_POINTS_OPTION(NAME, MEMBER, VALUE, HELP)                                               \
@@ -53,7 +53,7 @@ typedef starg_field cli_option;
 #define CLI_OUTPUT_OPTION(VALUE, HELP)                                                             \
     { CLI_OPTION("output", STARG_FIELD_TEXT, output, VALUE, HELP), .letter = 'o' }
 
-/* A table and the struct that it fills; for help `values` is NULL. */
+/* A table and the struct that it fills; `values` is NULL for help. */
 typedef struct cli_group {
     const cli_option *options;
     size_t count;
@@ -65,8 +65,8 @@ typedef struct cli_parse_error {
     char text[512];
 } cli_parse_error;
 
-/* Parses `argc` words. Options and operands may mix; "--" ends the options. Options are taken by
- * their whole name. Operands are moved to the front of argv, their number is returned; -1 with a
+/* Parses `argc` words. Options and operands may be mixed; "--" ends the options. Option names
+ * cannot be abbreviated. Moves operands to the front of argv and returns their number; -1 with a
  * message on the first error. Later occurrences of an option replace earlier ones. */
 int cli_options_parse(const cli_group *groups, size_t group_count, int argc, char **argv,
                       cli_parse_error *error);
@@ -74,14 +74,14 @@ int cli_options_parse(const cli_group *groups, size_t group_count, int argc, cha
 /* Sets the defaults of a group. */
 void cli_options_default(const cli_group *group);
 
-/* The next of the lower-case words in what help calls the value of a TEXT option, from *at on,
- * which begins as `value`; NULL behind the last. */
+/* The next lower-case word in the value form of a TEXT option, searching from *at, which starts as
+ * `value`; NULL after the last. */
 const char *cli_option_next_word(const char **at, size_t *size);
 
-/* Frees what parsing has allocated. */
+/* Frees what parsing allocated. */
 void cli_options_free(const cli_group *group);
 
-/* The help of an option, its default too; cut off at `size` bytes. */
+/* Help text of an option, with its default; truncated to `size` bytes. */
 void cli_option_help(const cli_option *option, char *text, size_t size);
 enum { CLI_HELP_SIZE = 1024 };
 

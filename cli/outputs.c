@@ -16,13 +16,13 @@ static bool fail(cli_outputs *outputs, const char *name, const char *reason) {
     return false;
 }
 
-/* Length of the folder part of a path, with the last slash. */
+/* Length of the folder part of a path, including the last slash. */
 static size_t folder_size(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash != NULL ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* A short name of our own: one that is made longer could be longer than the system allows. */
+/* A short new name: extending the old one could exceed the system's limit. */
 static char *staged_name(const char *folder, size_t size, size_t index) {
     char *name = malloc(size + SUFFIX);
     if (name != NULL) {
@@ -32,7 +32,7 @@ static char *staged_name(const char *folder, size_t size, size_t index) {
     return name;
 }
 
-/* Any two of the known files that are one. */
+/* Do two known files coincide? */
 static bool is_same(cli_file_id a, cli_file_id b) {
     return a.known && b.known && a.device == b.device && a.inode == b.inode;
 }
@@ -46,7 +46,7 @@ static bool fail_clash(cli_outputs *outputs, const char *name) {
     return fail(outputs, name, "it is also an input; choose another file");
 }
 
-/* What a new file would be called with the links in its folder's name followed. */
+/* Name of a new file with the links in its folder's name resolved. */
 static char *new_target(const char *name) {
     size_t size = folder_size(name);
     char *folder = size > 0 ? strndup(name, size) : strdup(".");
@@ -69,7 +69,7 @@ static bool is_writable(const char *path, size_t size) {
     return writable;
 }
 
-/* Follows links and finds out what stands there now. */
+/* Resolves links and records what exists there. */
 static bool inspect(cli_outputs *outputs, cli_output *output) {
     struct stat info;
     bool exists = stat(output->name, &info) == 0;
@@ -105,7 +105,7 @@ static bool is_input(const cli_outputs *outputs, const cli_output *output) {
     return false;
 }
 
-/* Room for one more; its name is copied. */
+/* Appends an output; copies its name. */
 static cli_output *append(cli_outputs *outputs, const char *name) {
     if (outputs->count == outputs->capacity) {
         size_t capacity = outputs->capacity > 0 ? 2 * outputs->capacity : 4;
@@ -229,7 +229,7 @@ static bool copy_to_device(const cli_output *output) {
     return copied;
 }
 
-/* Moves those outputs that are devices, or those that are not. */
+/* Commits those outputs that are devices, or those that are not. */
 static bool commit_kind(cli_outputs *outputs, bool device) {
     for (size_t i = 0; i < outputs->count; i++) {
         cli_output *output = &outputs->items[i];
@@ -242,7 +242,7 @@ static bool commit_kind(cli_outputs *outputs, bool device) {
     return true;
 }
 
-/* Devices first: they may be full, and then no file has changed. */
+/* Devices first: if they are full, no file has changed yet. */
 bool cli_outputs_commit(cli_outputs *outputs) {
     if (!commit_kind(outputs, true) || !commit_kind(outputs, false))
         return false;

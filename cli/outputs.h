@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Output files of a run. Each is written beside its place under another name first; all take
- * their places together at the very end, so that a run that fails leaves everything as it was. */
+/* Output files of a run. Each is first written under another name beside its target; all are
+ * renamed together at the very end, so that a failing run changes nothing. */
 #ifndef STARGUARD_CLI_OUTPUTS_H
 #define STARGUARD_CLI_OUTPUTS_H
 
@@ -10,7 +10,7 @@
 
 enum { CLI_OUTPUT_MESSAGE = 512 };
 
-/* Which file it is, whatever it is called. */
+/* Identity of a file, independent of its name. */
 typedef struct cli_file_id {
     dev_t device;
     ino_t inode;
@@ -18,40 +18,40 @@ typedef struct cli_file_id {
 } cli_file_id;
 
 typedef struct cli_output {
-    char *name;     /* as the user gave it                                       */
-    char *target;   /* the same with symbolic links followed                     */
-    char *staged;   /* where it is written first                                 */
-    cli_file_id id; /* of what stands there now                                */
-    bool device;    /* the target is a device or a pipe: copied, not renamed     */
+    char *name;     /* as given by the user */
+    char *target;   /* the same with symbolic links followed */
+    char *staged;   /* where it is written first */
+    cli_file_id id; /* of the current target */
+    bool device;    /* the target is a device or a pipe: copied, not renamed */
 } cli_output;
 
 typedef struct cli_outputs {
     cli_output *items;
     size_t count, capacity;
-    char *folder;        /* made for outputs, and empty so far; NULL if there is none */
-    cli_file_id *inputs; /* which no output may replace */
+    char *folder;        /* created for outputs, and still empty; NULL if there is none */
+    cli_file_id *inputs; /* no output may replace these */
     size_t input_count;
-    char message[CLI_OUTPUT_MESSAGE]; /* why the last call failed         */
-    bool clash;                       /* because an output is an input    */
+    char message[CLI_OUTPUT_MESSAGE]; /* why the last call failed */
+    bool clash;                       /* the failure is an output that is an input */
 } cli_outputs;
 
-/* Announces an output before the work begins: can it be written at all? Not for "-". */
+/* Announces an output before the work starts; fails if it cannot be written. Not for "-". */
 bool cli_outputs_add(cli_outputs *outputs, const char *name);
 
-/* A folder for outputs: it is made if it is not there, and taken away again when the run fails. At
- * most one in a run. */
+/* Announces a folder for outputs: creates it if missing, and removes it if the run fails. At most
+ * one per run. */
 bool cli_outputs_add_folder(cli_outputs *outputs, const char *name);
 
-/* Names a file that the run reads ("-": standard input); fails if it is an output. */
+/* Registers a file that the run reads ("-": standard input); fails if it is an output. */
 bool cli_outputs_add_input(cli_outputs *outputs, const char *name);
 
-/* Where to write what was announced as `name`; "-" and unknown names are returned as they are. */
+/* Where to write the output announced as `name`; returns "-" and unknown names unchanged. */
 const char *cli_outputs_place(const cli_outputs *outputs, const char *name);
 
-/* Puts the names that the user knows into a message about a staged file. */
+/* Replaces names of staged files in a message by the user's names. */
 void cli_outputs_translate(const cli_outputs *outputs, char *message, size_t size);
 
-/* Moves all staged files to their places. */
+/* Moves all staged files to their targets. */
 bool cli_outputs_commit(cli_outputs *outputs);
 
 /* Removes what is staged and frees everything; also after commit. */

@@ -16,7 +16,7 @@ double cli_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* NULL when there are more stages than places: those are not timed and have no bar. */
+/* NULL if there are too many stages: the excess is not timed and has no bar. */
 static cli_stage *find_stage(cli_progress *progress, const char *name) {
     for (size_t i = 0; i < progress->count; i++)
         if (strcmp(progress->stages[i].name, name) == 0)

@@ -11,25 +11,25 @@ enum { CLI_STAGES = 32 };
 typedef struct cli_stage {
     const char *name;
     double seconds; /* of all its finished runs */
-    double began;   /* the run under way        */
+    double began;   /* start of the current run */
     bool running;
 } cli_stage;
 
 typedef struct cli_progress {
-    bool bar;   /* draw one on stderr      */
-    bool drawn; /* and there is one now    */
+    bool bar;   /* draw a bar on stderr */
+    bool drawn; /* a bar is visible now */
     double drawn_at;
     cli_stage stages[CLI_STAGES]; /* in the order of their first run */
     size_t count;
 } cli_progress;
 
-/* Seconds of a clock that never jumps. */
+/* Monotonic clock in seconds. */
 double cli_clock(void);
 
 /* A starg_progress_fn; `user` is a cli_progress. Never cancels: signals do. */
 bool cli_progress_report(void *user, const char *stage, double fraction);
 
-/* Takes the bar away, so that a line can be written. */
+/* Erases the bar, so that a line can be written. */
 void cli_progress_erase(cli_progress *progress);
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Several processes that mpirun has started for one command (starguard/ranks.h): rank 0 runs it,
- * the others help. In a build without MPI, and when nobody has started several, there is this one
- * alone. */
+/* Processes started by mpirun for one command (starguard/ranks.h): rank 0 runs it, the others help.
+ * Without MPI, or if started directly, there is only this process. */
 #ifndef STARGUARD_CLI_RANKS_H
 #define STARGUARD_CLI_RANKS_H
 
@@ -9,20 +8,19 @@
 
 #include "starguard/ranks.h"
 
-/* Finds the others, before anything else is done. */
+/* Connects to the other processes; call it first. */
 void cli_ranks_begin(int *argc, char ***argv);
 
-/* The way to them; NULL where there are none. */
+/* The connection; NULL without other processes. */
 const starg_ranks *cli_ranks(void);
 
-/* How many threads this process should use if nobody says: the processors that it has for itself.
- */
+/* Default number of threads: the processors available to this process. */
 int cli_ranks_threads(void);
 
-/* A helper's run: its exit status. */
+/* Runs a helper and returns its exit status. */
 int cli_ranks_serve(void);
 
-/* Ends the run of rank 0, which has the given exit status; returns it. */
+/* Ends the run of rank 0 with the given exit status, and returns it. */
 int cli_ranks_end(int result);
 
 #endif

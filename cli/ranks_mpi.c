@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Messages by MPI.
  *
- * A message is its size, then its bytes in parts that MPI can count. Whoever waits sleeps between
- * two looks: MPI's own waiting takes a whole processor, which may be the one that others work on.
+ * A message is its size, then its bytes in parts within MPI's count limit. Waiting processes sleep
+ * between polls: MPI's own waiting occupies a whole processor, which others may need.
  *
- * MPI is begun only where a launcher has started several processes; so the program starts as fast,
- * and runs where MPI cannot, like any other build. */
+ * MPI is initialized only if a launcher has started several processes; otherwise the program starts
+ * as fast as any other build, and runs where MPI cannot. */
 #include "ranks.h"
 
 #include <mpi.h>
@@ -22,7 +22,7 @@ enum { TAG_SIZE = 1, TAG_BYTES = 2, PART = 1 << 30 };
 
 static const struct timespec NAP = {.tv_nsec = 300000};
 
-static starg_ranks ranks; /* count 0: MPI has not been begun */
+static starg_ranks ranks; /* count 0: MPI is not initialized */
 static int own_threads;
 
 static bool send_message(void *user, int to, const void *bytes, size_t size) {
@@ -74,14 +74,14 @@ static bool receive_message(void *user, int from, void *bytes, size_t size) {
     return true;
 }
 
-/* Open MPI, those that follow PMIx (Slurm), MPICH and its kin. */
+/* Open MPI, PMIx (Slurm), MPICH and derivatives. */
 static bool was_launched(void) {
     return getenv("OMPI_COMM_WORLD_SIZE") != NULL || getenv("PMIX_RANK") != NULL ||
            getenv("PMI_SIZE") != NULL;
 }
 
-/* The processors that the launcher has bound this process to, or its share of the machine's. All
- * processes have to ask at once. */
+/* The processors to which the launcher has bound this process, or its share of the machine's.
+ * Collective: all processes must call it. */
 static int count_own_threads(void) {
     MPI_Comm machine;
     cpu_set_t bound;
@@ -147,7 +147,7 @@ int cli_ranks_end(int result) {
         starg_context_free(context);
     }
     fflush(NULL);
-    if (status != STARG_OK) /* the others may be at work for long, or cannot be reached */
+    if (status != STARG_OK) /* the others may be busy for long, or unreachable */
         MPI_Abort(MPI_COMM_WORLD, result != CLI_EXIT_DONE ? result : CLI_EXIT_UNFINISHED);
     MPI_Finalize();
     return result;

@@ -32,8 +32,8 @@ void cli_append(cli_session *session, json_t *array, json_t *value) {
         session->report_broken = true;
 }
 
-/* Length of the UTF-8 sequence that begins at `text`; 0 if there is none. jansson decides what is
- * valid, so that overlong forms and surrogates are judged once. */
+/* Length of the UTF-8 sequence at `text`; 0 if invalid. jansson decides what is valid, so that
+ * overlong forms and surrogates are treated in one place. */
 static size_t sequence_length(const char *text) {
     for (size_t size = 1; size <= 4 && text[size - 1] != '\0'; size++) {
         json_t *probe = json_stringn(text, size);
@@ -135,7 +135,7 @@ static json_t *memory(cli_session *session) {
     return object;
 }
 
-/* What the processes of an MPI run have shared; the rest of the time only rank 0 has worked. */
+/* Work shared by the processes of an MPI run; the rest of the time only rank 0 worked. */
 static json_t *shared(cli_session *session) {
     json_t *object = json_object();
     cli_put(session, object, "count", json_integer(cli_ranks()->count));
@@ -146,7 +146,7 @@ static json_t *shared(cli_session *session) {
     return object;
 }
 
-/* Prints an object and gives it up. */
+/* Prints an object and releases it. */
 static bool print(json_t *object) {
     bool printed = object != NULL && json_dumpf(object, stdout, LAYOUT) == 0;
     if (printed)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* --json: the one object on standard output. Keys are documented in docs/formats.md. */
+/* --json: one object on standard output. docs/formats.md describes the keys. */
 #ifndef STARGUARD_CLI_REPORT_H
 #define STARGUARD_CLI_REPORT_H
 
@@ -7,15 +7,15 @@
 #include "starguard/fields.h"
 #include "starguard/mesh.h"
 
-/* Begins the report; every function below does nothing for a NULL report. */
+/* Starts the report; all functions below do nothing without a report. */
 void cli_report_begin(cli_session *session);
 void cli_report_free(cli_session *session);
 
-/* Adds a key; takes `value`, of which NULL means that memory is out. */
+/* Adds a key and takes over `value`; NULL means out of memory. */
 void cli_put(cli_session *session, json_t *object, const char *key, json_t *value);
 void cli_append(cli_session *session, json_t *array, json_t *value);
 
-/* Values. Text that is not UTF-8 has its odd bytes replaced; a real that is not finite is null. */
+/* Values. Invalid UTF-8 bytes in text are replaced; a real that is not finite becomes null. */
 json_t *cli_json_text(const char *text);
 json_t *cli_json_real(double value);
 json_t *cli_json_point(const double point[3]);
@@ -24,13 +24,13 @@ json_t *cli_json_point(const double point[3]);
 void cli_report_head(cli_session *session, const char *format, const char *file,
                      const starg_mesh *mesh);
 
-/* Takes the members of the object that stands in a text of the library, which is freed. */
+/* Takes over the members of the object in a text of the library; frees the text. */
 void cli_report_take(cli_session *session, char *text, size_t size);
 
-/* The members of a record that have keys, as an object; NULL when memory is out. */
+/* The members of a record that have keys, as an object; NULL when out of memory. */
 json_t *cli_json_record(cli_session *session, const starg_fields *fields, const void *record);
 
-/* Collects a line of the library for "log". */
+/* Collects a log line of the library for "log". */
 void cli_report_log(cli_session *session, starg_log_level level, const char *message);
 
 /* Adds log, seconds and memory, and prints. Errors: WRITE, MEMORY. */

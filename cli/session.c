@@ -32,11 +32,11 @@ const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_c
 
 /* ---- signals ---- */
 
-/* The handler's view of the run; a handler has no other way to it. */
+/* The context for the signal handler, which has no other access to it. */
 static starg_context *volatile signal_context;
 static volatile sig_atomic_t signal_count;
 
-/* The first two ask politely; a user who insists is obeyed. */
+/* The first two signals request cancellation; the third one kills. */
 static void on_signal(int number) {
     signal_count = signal_count + 1;
     if (signal_context != NULL)
@@ -102,13 +102,13 @@ starg_status cli_session_start(cli_session *session) {
     return STARG_OK;
 }
 
-/* Why the outputs do not take a name. */
+/* Reports why a name is not accepted as an output. */
 static starg_status fail_output(cli_session *session) {
     return cli_fail(session, session->outputs.clash ? STARG_ERROR_ARGUMENT : STARG_ERROR_WRITE,
                     "%s", session->outputs.message);
 }
 
-/* TetGen's tetrahedra are read from two files, of which either may be named. */
+/* TetGen's tetrahedra are read from two files, either of which may be named. */
 static bool add_pair(cli_session *session, const char *name) {
     const char *other = cli_has_extension(name, ".node")  ? ".ele"
                         : cli_has_extension(name, ".ele") ? ".node"
@@ -226,7 +226,7 @@ static cli_exit exit_status(starg_status status) {
     return CLI_EXIT_UNFINISHED;
 }
 
-/* A reader that has gone away has read enough of a text, but not of a result. */
+/* A closed pipe is fine for text, but not for a result. */
 static starg_status flush_stdout(cli_session *session) {
     errno = 0;
     bool broken = fflush(stdout) != 0 || ferror(stdout) != 0;
@@ -251,7 +251,7 @@ done:
     return status;
 }
 
-/* The detail of a failure: our own, else the library's. */
+/* Detail of a failure: the command line's own, otherwise the library's. */
 static starg_error find_error(cli_session *session, starg_status status) {
     if (session->error.status == status)
         return session->error;
@@ -278,7 +278,7 @@ int cli_session_finish(cli_session *session, starg_status status) {
     if (status == STARG_OK)
         status = deliver(session);
     if (status != STARG_OK && signal_count > 0)
-        status = STARG_ERROR_CANCELLED; /* whatever the interruption made fail */
+        status = STARG_ERROR_CANCELLED; /* whatever failure the interruption caused */
     int result = (int)session->outcome;
     if (status != STARG_OK) {
         tell_error(session, status);

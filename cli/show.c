@@ -9,7 +9,7 @@
 #include "model.h"
 #include "starguard/animation.h"
 
-enum { HEAD = 4096 }; /* bytes of a file that tell what it holds */
+enum { HEAD = 4096 }; /* bytes used to recognize a file */
 
 /* ---- kinds of files ---- */
 
@@ -23,7 +23,7 @@ typedef enum kind {
     KIND_TABLE
 } kind;
 
-/* Does an OBJ file have no face, or edges before the first one? */
+/* Does an OBJ file have no faces, or edges before the first one? */
 static bool is_curve(FILE *file) {
     char *line = NULL;
     size_t capacity = 0;
@@ -56,7 +56,7 @@ static kind kind_of_content(const char *name, const char *head, size_t size, FIL
     return cli_has_extension(name, ".obj") && is_curve(file) ? KIND_SKELETON : KIND_MODEL;
 }
 
-/* What cannot be opened is left to a reader, which says why. */
+/* A file that cannot be opened is left to a reader, which reports why. */
 static kind kind_of(const char *name) {
     char head[HEAD + 1] = {0};
     struct stat info;
@@ -164,7 +164,8 @@ static starg_status take_operands(cli_session *session, int distance, const char
 
 /* ---- the model ---- */
 
-/* The model that a result names: from where we stand, or beside the result. To be freed. */
+/* The model named by a result: relative to the current folder, or beside the result. The caller
+ * frees it. */
 static char *find_model(const char *named, const char *result) {
     struct stat info;
     if (named == NULL || strcmp(named, "-") == 0)
@@ -185,7 +186,7 @@ static char *find_model(const char *named, const char *result) {
     return NULL;
 }
 
-/* What the results call their model, and which of them does; NULL if none does. */
+/* The model name in the results, and the result that contains it; NULL if none does. */
 static const char *named_model(const cli_show *show, const char **result) {
     const starg_page *page = &show->page;
     *result = page->guards != NULL ? show->guards_file : show->report_file;
@@ -209,7 +210,7 @@ done:
     return status;
 }
 
-/* Guards cannot do without their model; a skeleton is glad of one; pieces show themselves. */
+/* Guards require their model, skeletons can use one, pieces do not need it. */
 static starg_status take_model(cli_session *session, const char *model, cli_show *show) {
     starg_status status = STARG_OK;
     const char *result, *named = named_model(show, &result);
@@ -228,7 +229,7 @@ static starg_status take_model(cli_session *session, const char *model, cli_show
     return status;
 }
 
-/* ---- what is computed ---- */
+/* ---- computed contents ---- */
 
 static starg_status check_model(cli_session *session, const cli_show *show) {
     const starg_guards *g = show->page.guards;
@@ -242,7 +243,7 @@ static starg_status check_model(cli_session *session, const cli_show *show) {
                     show->guards_file, g->vertex_count, g->face_count, vertices, faces);
 }
 
-/* What every guard sees, and whether the file says the same. */
+/* Computes what every guard sees, and compares it with the file. */
 static starg_status see(cli_session *session, cli_show *show) {
     starg_status status = STARG_OK;
     const starg_guards *g = show->page.guards;
@@ -266,7 +267,7 @@ done:
     return status;
 }
 
-/* The skeleton as it is shown: where its file has no radii, the solid tells them. */
+/* The skeleton to show: computes radii from the solid if the file has none. */
 static starg_status measure(cli_session *session, cli_show *show) {
     const starg_skeleton *s = show->skeleton;
     show->measured = *s;
@@ -295,9 +296,9 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
-/* The page is called by the model, or by the first file. */
+/* The page's title is the model, or the first file. */
 static void fill_page(const cli_session *session, const char *model, cli_show *show) {
     starg_page *page = &show->page;
     page->frames = (const starg_mesh *const *)show->frames;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a page shows, read from result files of any kind: the content of each tells what it is. */
+/* Contents of a page, read from result files of any kind, which are recognized by content. */
 #ifndef STARGUARD_CLI_SHOW_H
 #define STARGUARD_CLI_SHOW_H
 
@@ -9,32 +9,32 @@
 #include "starguard/tetra.h"
 
 typedef struct cli_show {
-    starg_page page; /* refers to what follows */
+    starg_page page; /* refers to the members below */
     const char *guards_file, *report_file;
     starg_tetmesh *tetmesh;
     starg_mesh *model, **frames;
     starg_solid *solid;
     starg_bits *seen;
     starg_certificate_outline *proof;
-    starg_result **results;             /* one for each operand, or NULL */
+    starg_result **results;             /* one per operand, or NULL */
     starg_skeleton *skeleton, measured; /* as read; with radii */
     double *radii;
-    bool from_animation; /* frames are of starg_animation_read */
+    bool from_animation; /* frames come from starg_animation_read */
     size_t frame_count;
     cli_table table; /* of a database */
     double *distances;
     starg_page_shape *shapes;
-    uint8_t **pictures; /* of shapes, where there are any */
-    char **names;       /* of shapes, as a table of text names them */
+    uint8_t **pictures; /* of shapes, where available */
+    char **names;       /* of shapes, as in a table of text */
     size_t shape_count;
 } cli_show;
 
-/* Reads all operands, and the model: `model`, or the operand that is one, or the one that results
- * name. `distance` is an index of cli_distance_words, for databases. To be freed on failure too. */
+/* Reads all operands and the model: `model`, the operand that is one, or the one that results name.
+ * `distance` is an index of cli_distance_words, for databases. Must be freed on failure too. */
 starg_status cli_show_read(cli_session *session, const char *model, int distance, cli_show *show);
 void cli_show_free(cli_session *session, cli_show *show);
 
-/* The parts of it. */
+/* Parts of cli_show_read. */
 starg_status cli_show_frames(cli_session *session, const char *folder, cli_show *show);
 starg_status cli_show_table(cli_session *session, const char *file, cli_show *show);
 starg_status cli_show_database(cli_session *session, const char *file, int distance,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The frames of a morph in a folder, as 'starguard morph' leaves them. */
+/* The frames of a morph in a folder written by 'starguard morph'. */
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static bool is_frame(const char *name) {
            strspn(name + head, "0123456789") == size - head - tail;
 }
 
-/* Numbers of more digits come later. */
+/* Longer numbers come later. */
 static int compare_names(const void *a, const void *b) {
     const char *left = *(char *const *)a, *right = *(char *const *)b;
     size_t m = strlen(left), n = strlen(right);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tables of distances: a database, or what 'starguard db matrix -o' has written; with small
- * pictures of the models that can be found. */
+/* Distance tables, from a database or written by 'starguard db matrix -o', with small pictures of
+ * the models that can be found. */
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -21,7 +21,7 @@ static starg_status make_room(cli_session *session, size_t count, cli_show *show
 
 /* ---- pictures ---- */
 
-/* A picture of a model that cannot be read is missing, no failure: the table is what counts. */
+/* If a model cannot be read, its picture is missing; this is not an error. */
 static starg_status draw_shape(cli_session *session, const char *file, size_t index,
                                cli_show *show) {
     starg_status status = STARG_OK;
@@ -79,7 +79,8 @@ done:
 
 /* ---- tables of text ---- */
 
-/* A table as it is read: its first line names the models, each other line one and its distances. */
+/* A table while it is read: its first line names the models, each other line has a model and its
+ * distances. */
 typedef struct reading {
     cli_session *session;
     const char *file;
@@ -159,7 +160,7 @@ static starg_status read_lines(reading *r, FILE *stream) {
     return status;
 }
 
-/* Models are looked for beside the table. */
+/* Searches for models beside the table. */
 static starg_status draw_shapes(cli_session *session, const char *file, cli_show *show) {
     starg_status status = STARG_OK;
     const char *slash = strrchr(file, '/');

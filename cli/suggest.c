@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Nearness is the optimal string alignment distance: insertions, deletions, substitutions and
- * swaps of neighbours count one each. A name is near enough when at most a third of it (at least
- * one letter) differs, or when the word is its beginning. */
+/* Similarity is the optimal string alignment distance: insertions, deletions, substitutions and
+ * swaps of neighbours count one each. A name is similar enough if at most a third of it (at least
+ * one letter) differs, or if the word is its prefix. */
 #include "suggest.h"
 
 #include <stdint.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Did you mean ...? The name nearest to a mistyped word. */
+/* Did you mean ...? Finds the name most similar to a mistyped word. */
 #ifndef STARGUARD_CLI_SUGGEST_H
 #define STARGUARD_CLI_SUGGEST_H
 
@@ -7,13 +7,13 @@
 
 typedef struct cli_suggestion {
     const char *word;
-    const char *best; /* NULL until a name is near enough */
-    size_t distance;  /* of the best                      */
+    const char *best; /* NULL until a name is similar enough */
+    size_t distance;  /* of the best */
 } cli_suggestion;
 
 void cli_suggest_begin(cli_suggestion *suggestion, const char *word);
 
-/* Takes `name` if it is nearer than what was tried before; the first of equals stays. */
+/* Takes `name` if it is more similar than earlier ones; ties keep the first. */
 void cli_suggest_try(cli_suggestion *suggestion, const char *name);
 
 #endif

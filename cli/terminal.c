@@ -10,7 +10,7 @@ bool cli_terminal(FILE *stream) {
     return isatty(fileno(stream)) == 1 && type != NULL && strcmp(type, "dumb") != 0;
 }
 
-/* NO_COLOR counts when it is set and not empty (no-color.org). */
+/* NO_COLOR counts if it is set and not empty (no-color.org). */
 static bool has_colors(FILE *stream) {
     const char *refused = getenv("NO_COLOR");
     return (refused == NULL || *refused == '\0') && cli_terminal(stream);

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the C reference from the comments of the public headers. Usage: c-api.py OUTPUT.md
+"""Generates the C reference from the comments of the public headers. Usage: c-api.py OUTPUT.md
 
-A header is a comment about it, then blocks parted by empty lines: a comment, if there is one, and the
-declarations that it is about. "/* ---- name ---- */" begins a section."""
+A header is a comment about itself, then blocks separated by empty lines: an optional comment and the
+declarations that it describes. "/* ---- name ---- */" starts a section."""
 import pathlib
 import re
 import sys
@@ -38,7 +38,7 @@ def plain(comment):
 
 
 def without_frame(text):
-    """What stands between the includes and the end of the include guard."""
+    """The text between the includes and the end of the include guard."""
     text = re.sub(r"#ifdef __cplusplus\n.*?#endif\n", "", text, flags=re.S)
     text = re.sub(r"^#(ifndef STARGUARD_|define STARGUARD_\w+_H|include).*\n", "", text, flags=re.M)
     return re.sub(r"#endif\s*$", "", text)

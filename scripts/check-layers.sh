@@ -1,10 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# A folder of src/ includes only itself and the folders above it in this list, and the public headers
-# that these implement; cover includes core only. verify includes core, and of the public headers
-# those that declare what it checks: their structs and readers are all it shares with the solvers
-# (docs/verification.md). cli sees public headers only; the library starguard-shapes is the last
-# two folders.
+# A folder of src/ includes only itself, the folders above it in this list, and the public headers that
+# these implement; cover includes core only. verify includes core and the public headers that declare
+# what it checks: their structs and readers are all it shares with the solvers (docs/verification.md).
+# cli includes public headers only; the library starguard-shapes is the last two folders.
 set -eu
 cd "$(dirname "$0")/.."
 

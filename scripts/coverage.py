@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which lines the tests have reached, folder by folder.
+"""Line coverage of the tests by folder.
 
 Usage: coverage.py BUILD
 
-BUILD is one with STARGUARD_COVERAGE in which tests have run. Prints a table and, of the files, those
-with the most lines that nothing reached. Status 1 where a folder has less than it should: 95 % of the
-lines of geometry, cover and star, 90 % of all."""
+BUILD is a build with STARGUARD_COVERAGE in which tests have run. Prints a table, and the files with the
+most lines not reached. Status 1 if coverage is too low: below 95 % of the lines of geometry, cover and
+star, or below 90 % of all lines."""
 import collections
 import json
 import os
@@ -15,7 +15,7 @@ import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 LEAST = {"src/geometry": 95, "src/cover": 95, "src/star": 95, "all": 90}
-WORST = 10  # files to name
+WORST = 10  # files to list
 
 
 def files_of(build):

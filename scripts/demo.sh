@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# The main jobs on a bundled sample: makes the solid, guards it, cuts it into pieces, checks both, and
-# leaves a picture and a page to look at.
+# The main commands on a bundled sample: generates a solid, places guards, cuts it into pieces, verifies
+# both, and writes a picture and a page.
 # Usage: demo.sh BUILD
 set -eu
 starguard=$1/starguard

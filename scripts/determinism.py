@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds every result file against itself: made with 1, 2, 7 and 32 threads, by programs of different
-compilers at different levels of optimisation, its bytes have to be the same.
+"""Compares every result file made with 1, 2, 7 and 32 threads, by programs of different compilers at
+different optimization levels: the bytes must be the same.
 
 Usage: determinism.py [--threads N,...] PROGRAM...      (default: 1,2,7,32)
        determinism.py --matrix FOLDER [--threads N,...]
 
 The second form builds the programs itself, below FOLDER: gcc and clang, each at -O0, -O2 and
--O3 -march=native. A table tells each file's hash; status 1 where a file differs, and its name.
+-O3 -march=native. Prints a table of hashes; status 1 if a file differs, with its name.
 
-What is compared: all files that the commands below leave, whole; databases as the text that SQLite
-dumps; and what --json prints, but for the keys in which docs/formats.md lets a run tell of itself."""
+Compared are all files that the commands below write; databases as the text that SQLite dumps; and the
+output of --json, except for the keys that docs/formats.md reserves for data about the run."""
 import argparse
 import hashlib
 import json
@@ -22,13 +22,13 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
-JOBS = int(os.environ.get("JOBS", os.cpu_count()))  # builds and runs at a time
+JOBS = int(os.environ.get("JOBS", os.cpu_count()))  # concurrent builds and runs
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
-# Of a run, not of its result (docs/formats.md).
+# Data about the run (docs/formats.md).
 OF_THE_RUN = ("seconds", "memory", "ranks")
 
-# Every command writes into one folder, in this order.
+# All commands write into one folder, in this order.
 COMMANDS = [
     "sample horse --vertices 600 -o horse.off",
     "sample horse --vertices 600 --pose 2 -o pose.off",
@@ -84,11 +84,11 @@ BUILDS = [(compiler, flags) for compiler in ("gcc", "clang")
 
 
 class Failure(Exception):
-    """A command or a build that did not do what it was asked to."""
+    """A command or a build that failed."""
 
 
 def of_the_result(text):
-    """What --json printed, without what is of the run."""
+    """The output of --json without data about the run."""
     report = json.loads(text)
     for key in OF_THE_RUN:
         report.pop(key, None)
@@ -132,7 +132,7 @@ def results(program, threads):
 
 
 def first_difference(a, b):
-    """Where two texts part, for the message."""
+    """Where two texts start to differ, for the message."""
     at = next((i for i, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
     return f"byte {at}: {a[at:at + 60]!r} and {b[at:at + 60]!r}"
 
@@ -151,7 +151,7 @@ def print_table(names, columns):
 
 
 def compare(programs, threads):
-    """All results of all programs at all numbers of threads; what differs, as lines of text."""
+    """All results of all programs at all numbers of threads; returns the differences as lines of text."""
     runs = [(title, program, count) for title, program in programs for count in threads]
     with ThreadPoolExecutor(JOBS) as pool:
         found = pool.map(lambda run: results(*run[1:]), runs)
@@ -173,7 +173,7 @@ def compare(programs, threads):
 def build(folder, compiler, flags):
     """The program of one compiler and its flags."""
     place = os.path.abspath(os.path.join(folder, (compiler + flags).replace(" ", "")))
-    debug = flags == "-O0"  # else some files, which matter most, are compiled at -O3 of their own
+    debug = flags == "-O0"  # otherwise some files, the most important ones, are always compiled at -O3
     commands = [
         ["cmake", "-G", "Ninja", "-S", ROOT, "-B", place, f"-DCMAKE_C_COMPILER={compiler}",
          "-DSTARGUARD_TESTS=OFF", f"-DCMAKE_BUILD_TYPE={'Debug' if debug else 'None'}",

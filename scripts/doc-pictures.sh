@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Draws the pictures of docs/ that show single results: what one guard sees, a morph by three methods,
-# distances of shapes. All of samples. Needs ImageMagick. Usage: doc-pictures.sh STARGUARD
+# distances of shapes. All from samples. Needs ImageMagick. Usage: doc-pictures.sh STARGUARD
 set -eu
 starguard=$(readlink -f "$1")
 pictures=$(cd "$(dirname "$0")/../docs/pictures" && pwd)
@@ -9,7 +9,7 @@ scratch=$(mktemp -d "${TMPDIR:-/tmp}/starguard-pictures.XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-# Few colours are enough, and half the size.
+# A few colours are enough and halve the size.
 keep() {
     convert "$1" -trim +repage -bordercolor white -border 12 -resize "$2" -colors 64 "PNG8:$pictures/$1"
 }

@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Runs all libFuzzer targets in a row, each for its share of some seconds, from its seeds and what
-# earlier runs have found, and prints what they did. Fails when one of them crashed.
+# Runs all libFuzzer targets one after the other, each for its share of SECONDS, from its seeds and the
+# inputs found by earlier runs, and prints statistics. Fails if one of them crashed.
 # Usage: fuzz.sh BUILD SECONDS
 #
-# Columns: inputs tried and how many of them a second; edges of the control flow that were reached
-# in the whole library; lines reached of the files that the target is for, by its seeds and all that
-# was found. The corpora that grow are kept in BUILD/found, crashes as BUILD/found/TARGET/crash-*.
+# Columns: inputs tried, total and per second; edges of the control flow reached in the whole library;
+# lines reached in the target's own files, by its seeds and all found inputs. Growing corpora are kept
+# in BUILD/found, crashes as BUILD/found/TARGET/crash-*.
 set -eu
 build=$1
 seconds=$2
@@ -26,7 +26,7 @@ edges() { # LOG
     echo "${value:-0}"
 }
 
-# The part of the lines that the profile holds, of the files that match.
+# The fraction of lines that the profile covers in the matching files.
 lines() { # LIVE PROFILE FILES
     llvm-profdata merge -sparse "$2" -o "$2.merged"
     llvm-cov export -summary-only -instr-profile "$2.merged" "$1" |

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian packages that are missing, as root or with sudo.
+# Installs missing Debian packages, as root or with sudo.
 # Usage: install-deps.sh build|check|coverage|memory|mpi|bench ...
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 
-# Node.js bundles the viewer; one that is not Debian's brings its own npm and is as good.
+# Node.js bundles the viewer; other distributions of it include npm and work as well.
 viewer_packages() {
     command -v node >/dev/null || echo nodejs
     command -v npm >/dev/null || echo npm
@@ -26,7 +26,7 @@ done
 
 missing=""
 for package in $packages; do
-    # A line for each architecture that has it.
+    # A line for each available architecture.
     dpkg-query -W -f '${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed ||
         missing="$missing $package"
 done

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Format, layers, and public headers that stand alone.
+# Checks format, layers, and that public headers compile alone.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -10,7 +10,7 @@ clang-format --dry-run -Werror $sources
 
 scripts/check-layers.sh
 
-# The licence of each source in one line.
+# The licence line of each source.
 unmarked=$(git ls-files '*.c' '*.h' '*.cpp' '*.py' '*.sh' '*.js' '*.mjs' '*.cmake' '*CMakeLists.txt' |
     xargs grep -L 'SPDX-License-Identifier' || true)
 if [ -n "$unmarked" ]; then
@@ -26,7 +26,7 @@ for header in include/starguard/*.h; do
         printf '%s\n' "$unit" | $language -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only -
     done
 done
-# The lock file of the viewer names no registry: npm asks the one that it is set to.
+# The lock file of the viewer must not name a registry: npm uses the configured one.
 if grep -nE '"resolved"|https?://' viewer/package-lock.json viewer/package.json >&2; then
     echo "lint: viewer/package-lock.json names a registry; make it anew with" >&2
     echo "  npm install --package-lock-only --omit-lockfile-registry-resolved" >&2

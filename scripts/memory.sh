@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Runs every kind of command under valgrind, which finds memory that is read before it is written.
-# What it does not know, AVX-512, the program does not choose there; so the results, which have to
-# be those of the program as it is, also hold one vector width against another.
+# Runs every kind of command under valgrind, which detects reads of uninitialized memory. valgrind does
+# not support AVX-512, and the program does not use it there; results must equal those of a normal run,
+# so this also compares vector widths.
 # Usage: memory.sh BUILD
 set -eu
 cd "$(dirname "$0")/.."

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the Debian packages, installs them on a clean root and uses them there: the program, and a C
+# Builds the Debian packages, installs them on a clean root and tests them there: the program, and a C
 # program compiled with pkg-config. Usage: package-test.sh BUILD
 #
-# With root and debootstrap the clean root is a minimal Debian of the suite that runs here, in which
-# apt finds what the package depends on. Without, the package is unpacked into an empty folder and
-# runs on this machine's libraries.
+# As root with debootstrap, the clean root is a minimal Debian of the running suite, where apt installs
+# the dependencies. Otherwise the package is unpacked into an empty folder and uses this machine's
+# libraries.
 set -eu
 cd "$(dirname "$0")/.."
 mkdir -p "$1/package"
@@ -13,7 +13,7 @@ build=$(cd "$1/package" && pwd)
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/starguard-package.XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 
-# Runs a command; what it says is shown only if it fails.
+# Runs a command; shows its output only if it fails.
 quietly() {
     "$@" >"$scratch/log" 2>&1 || {
         tail -n 20 "$scratch/log" >&2
@@ -41,7 +41,7 @@ make_package() {
     done
 }
 
-# What somebody does who has just installed it; also for a shell that knows nothing of this one.
+# The steps of a new user; also for a shell without this script's environment.
 cat >"$scratch/use.sh" <<'USE'
 set -eu
 starguard --version
@@ -56,7 +56,7 @@ gcc match.c -o match $(pkg-config --cflags --libs starguard-shapes)
 ./match gallery.off gallery.off
 USE
 
-# The mirror that apt uses for what is not security.
+# The mirror that apt uses for packages other than security updates.
 mirror() {
     apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' | grep -v security | head -n 1
 }

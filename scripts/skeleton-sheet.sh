@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Draws the skeletons of starguard's own samples on one contact sheet (needs ImageMagick's montage).
+# Draws the skeletons of the bundled samples on one contact sheet (needs ImageMagick's montage).
 #   scripts/skeleton-sheet.sh [STARGUARD] [SHEET.png]
 set -eu
 starguard=${1:-build/starguard}

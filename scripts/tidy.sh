@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# clang-tidy over what a build compiles of the library and the command line. Usage: tidy.sh BUILD
-# But for the visibility stages for instruction sets, which are one source: the plain variant stands for all.
+# clang-tidy over the compiled sources of the library and the command line. Usage: tidy.sh BUILD
+# Of the visibility stages, one source for all instruction sets, it checks only the plain variant.
 set -eu
 cd "$(dirname "$0")/.."
 log="$1/tidy.log"

@@ -11,7 +11,7 @@
 #include "shape/descriptor_fields.h"
 #include "starguard/starguard.h"
 
-/* ---- what there is: a new table is a new row here ---- */
+/* ---- all tables: a new table is a new row here ---- */
 
 #define SEARCHED(KEY, HELP)                                                                        \
     {                                                                                              \
@@ -78,8 +78,8 @@ const call calls[] = {
 const size_t call_count = sizeof calls / sizeof *calls;
 
 bool is_required(const starg_field *f) {
-    /* A list as long as another is there with it; any other may never have been made. A number
-     * whose default is below its range is not there by default. */
+    /* A list is present together with the list whose length it has; any other may be missing. So is
+     * a number whose default is below its range. */
     bool part = f->kind == STARG_FIELD_LIST || f->kind == STARG_FIELD_RECORD;
     bool unset = f->kind == STARG_FIELD_COUNT && f->initial < f->least;
     bool may_lack =

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is made from the field tables (starguard/fields.h) when the project is built: JSON Schemas,
- * the page fields.md, and the types of Python's keyword arguments. */
+/* Outputs generated from the field tables (starguard/fields.h) at build time: JSON Schemas, the
+ * page fields.md, and the types of Python's keyword arguments. */
 #ifndef STARGUARD_TOOLS_FIELDS_H
 #define STARGUARD_TOOLS_FIELDS_H
 
@@ -9,7 +9,7 @@
 
 #include "starguard/fields.h"
 
-/* A JSON file, and the report that has its keys and some of its own. */
+/* A JSON file, and the report that contains its keys and some others. */
 typedef struct document {
     const char *name, *title; /* "guards", "GUARDS.json" */
     const char *command;      /* writes the file, and the report with --json */
@@ -23,7 +23,7 @@ extern const size_t document_count;
 typedef struct call {
     const char *title, *keywords; /* "guard", "GuardOptions" */
     const starg_fields *(*fields)(void);
-    const char *without; /* a name whose argument has a type that no table knows */
+    const char *without; /* an argument with a type that no table describes */
 } call;
 extern const call calls[];
 extern const size_t call_count;
@@ -33,10 +33,10 @@ enum { NAME_SIZE = 64 };
 /* The name of an option in Python: "max_guards". */
 void keyword_name(const starg_field *field, char name[NAME_SIZE]);
 
-/* Has every record the member? */
+/* Does every record have the member? */
 bool is_required(const starg_field *field);
 
-/* Is it a flag whose option, and help, are about clearing it? */
+/* Is it a flag whose option and help describe clearing it? */
 bool is_cleared(const starg_field *field);
 
 /* False when a file cannot be written. */

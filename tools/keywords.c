@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* _keywords.pyi: the types of the keyword arguments of the Python package, for type checkers and
- * editors. At run time the package reads the tables themselves. */
+/* _keywords.pyi: the types of the Python package's keyword arguments, for type checkers and
+ * editors. At run time the package reads the tables directly. */
 #include <string.h>
 
 #include "fields.h"

@@ -4,7 +4,7 @@
 
 #include "fields.h"
 
-/* A text in a cell. */
+/* Escapes text for a table cell. */
 static void put_cell(FILE *page, const char *text) {
     for (; *text != '\0'; text++)
         fprintf(page, *text == '|' ? "\\|" : "%c", *text);

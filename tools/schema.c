@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* JSON Schemas (2020-12) of the documents.
  *
- * A schema says what is written, strictly: types, ranges, and that every key is there but those
- * that not every record has. It leaves room for keys of later versions. */
+ * A schema describes what is written, strictly: types, ranges, and required keys. It leaves room
+ * for keys of later versions. */
 #include <errno.h>
 #include <jansson.h>
 #include <math.h>

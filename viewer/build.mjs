@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bundles the viewer: node build.mjs MODULES OUT.c
 //
-// page.html, page.css and the modules under main.js become one text, cut in two where a page's data
-// goes, and written as two arrays of C. The page's content security policy names the hashes of its
-// style and its script: nothing else may run, and nothing may be fetched.
+// page.html, page.css and the modules under main.js become one text, split where a page's data goes,
+// and written as two C arrays. The page's content security policy contains the hashes of its style
+// and its script: nothing else may run, and nothing may be fetched.
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -38,7 +38,7 @@ async function bundleStyle() {
     return (await transform(text, { loader: "css", minify: true, charset: "ascii" })).code;
 }
 
-/** Puts a text where its mark stands; the mark stands once. */
+/** Replaces a mark, which must occur once, by a text. */
 function fill(page, mark, text) {
     const parts = page.split(mark);
     if (parts.length !== 2) throw new Error(`page.html must hold ${mark} once`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all 3D views share: how clear the model is, the cut, which way is up.
+// Controls shared by all 3D views: opacity of the model, the cut, the up direction.
 import { shared } from "./materials.js";
 import { choice, element, heading, say, slider } from "./panel.js";
 import { percent } from "./text.js";
@@ -9,7 +9,7 @@ const AXES = ["Off", "X", "Y", "Z"];
 export class Controls {
     constructor(stage, surface, openCut) {
         this.stage = stage;
-        this.openCut = openCut; // called with true or false when inner sides begin or cease to show
+        this.openCut = openCut; // called with true or false when inner sides become visible or hidden
         this.flipped = false;
         this.open = false;
         this.opacity =
@@ -69,7 +69,7 @@ export class Controls {
         say("The other side is cut off");
     }
 
-    /** From off to x, y, z and off again. */
+    /** Cycles through off, x, y, z. */
     nextCut() {
         this.axis.set((this.axis.value + 1) % AXES.length);
         say(this.axis.value === 0 ? "No cut" : `Cut across ${AXES[this.axis.value]}`);
@@ -89,7 +89,7 @@ export class Controls {
         this.stage.request();
     }
 
-    /** The view has another model, or none. */
+    /** The view has changed its model, or has none. */
     suit(view) {
         this.surfacePart.hidden = !view.withSurface;
     }

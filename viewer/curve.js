@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coverage curve: how much the first 1, 2, ... guards see, with a mark that moves.
+// The coverage curve: what the first 1, 2, ... guards see, with a movable mark.
 import { drawn } from "./panel.js";
 import { percent } from "./text.js";
 
@@ -10,7 +10,7 @@ const WIDTH = 300,
     TOP = 8,
     BOTTOM = 22;
 
-/** Grid counts along the axis of guards: a few round numbers. */
+/** Grid lines along the axis of guards: a few round numbers. */
 function ticks(count) {
     const step =
         [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => count / s <= 6) ?? count;
@@ -19,7 +19,7 @@ function ticks(count) {
     return list;
 }
 
-/** `fractions` are those of 0, 1, 2, ... guards; `choose` is called with a number of guards. */
+/** `fractions` are for 0, 1, 2, ... guards; `choose` is called with a number of guards. */
 export function coverageCurve(fractions, choose) {
     const count = fractions.length - 1;
     const x = (k) => LEFT + ((WIDTH - LEFT - RIGHT) * k) / Math.max(count, 1);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page's data: a block of JSON, and arrays in base64 in blocks of their own.
+// The page's data: a block of JSON, and arrays in separate base64 blocks.
 
 const page = JSON.parse(document.getElementById("data").textContent);
 
-/** What the page shows, as starg_page_write describes it. */
+/** The contents of the page, as described by starg_page_write. */
 export default page;
 
 function decode(text) {
@@ -14,7 +14,7 @@ function decode(text) {
     return bytes;
 }
 
-/** The bytes of a block, which is then dropped from the document; null if there is none. */
+/** The bytes of a block, which is then removed from the document; null if there is none. */
 export function bytes(name) {
     const block = document.getElementById(name);
     if (block === null) return null;
@@ -38,7 +38,7 @@ export function indices(name) {
     return found && new Uint32Array(found.buffer);
 }
 
-/** A picture as the address of an image: the base64 text itself. */
+/** A picture as an image address: the base64 text itself. */
 export function pictureAddress(name) {
     const block = document.getElementById(name);
     return block && `data:image/png;base64,${block.textContent}`;

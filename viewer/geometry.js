@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces as the graphics card wants them: vertices with normals.
+// Surfaces in the form of the graphics card: vertices with normals.
 
 const CREASE = Math.cos((38 * Math.PI) / 180);
 
@@ -43,8 +43,8 @@ function cornersByVertex(vertexCount, faces) {
 }
 
 /**
- * A surface that is smooth but for its creases: a vertex is split where faces around it differ much
- * in direction. `source` tells for each new vertex which one it was.
+ * A surface that is smooth except at creases: a vertex is split where the directions of its faces
+ * differ much. `source` maps each new vertex to its original.
  */
 export function shadedSurface(points, faces) {
     const { normals, areas } = faceNormals(points, faces);
@@ -94,7 +94,7 @@ function gather(points, source, sums) {
     return { position, normal };
 }
 
-/** Normals of the vertices of one moment of a surface that moves, smooth everywhere. */
+/** Vertex normals of one frame of a moving surface, smooth everywhere. */
 export function smoothNormals(points, faces) {
     const { normals, areas } = faceNormals(points, faces);
     const sums = new Float32Array(points.length);
@@ -111,7 +111,7 @@ export function smoothNormals(points, faces) {
     return packed;
 }
 
-/** Middle of the box of points, and how far they reach from it; of one array or several. */
+/** Centre of the bounding box of points, and their largest distance from it; one array or several. */
 export function ballOf(...arrays) {
     const lower = [Infinity, Infinity, Infinity],
         upper = [-Infinity, -Infinity, -Infinity];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Guards: points inside the glass model; what one sees is painted when it is picked, and what the
-// first few see when the slider moves.
+// Guards: points inside the glass model; paints what a picked guard sees, or what the first few see
+// when the slider moves.
 import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";
 import page, { bytes, floats, indices } from "./data.js";
 import { coverageCurve } from "./curve.js";
@@ -11,7 +11,7 @@ import { amount, count, percent, point } from "./text.js";
 import { themeColor } from "./theme.js";
 import { following, View } from "./view.js";
 
-const POINTER = 0.14; // length of the line that shows where a guard looks
+const POINTER = 0.14; // length of the line in a guard's viewing direction
 const NONE = new Set();
 const METHODS = { pilp: "progressive", ilp: "integer program", greedy: "greedy" };
 
@@ -45,7 +45,7 @@ export class GuardsView extends View {
         return (this.seen[i * this.rowBytes + (face >> 3)] >> (face & 7)) & 1;
     }
 
-    /** By face the first guard that sees it, -1 where none does. */
+    /** By face the first guard that sees it, -1 for none. */
     firstViewers() {
         if (this.viewers) return this.viewers;
         this.viewers = new Int32Array(this.told.faces).fill(-1);
@@ -59,7 +59,7 @@ export class GuardsView extends View {
         return `Guard ${i} sees ${amount(faces, "face", "faces")} of ${count(this.told.faces)} (${percent(faces / this.told.faces)})`;
     }
 
-    /** Lines that show where guards look that do not see all around. */
+    /** Lines in the viewing directions of guards with a limited view. */
     makePointers() {
         const { points } = this.points;
         const ends = this.told.list.flatMap(({ direction }, i) => {
@@ -123,7 +123,7 @@ export class GuardsView extends View {
         ]);
     }
 
-    /** "Needed" holds for guards anywhere. With a given number of guards the area is what counts. */
+    /** "Needed" holds for guards anywhere. With a given number of guards the area counts. */
     makeBounds() {
         const { told } = this;
         if (told.max_guards > 0)
@@ -161,7 +161,7 @@ export class GuardsView extends View {
         return [...parts, this.firstSlider.node];
     }
 
-    // ---- what is shown ----
+    // ---- what is visible ----
 
     /** Picks one guard, or none for -1. */
     pick(i) {
@@ -224,7 +224,7 @@ export class GuardsView extends View {
         else if (this.picked >= 0) this.clear();
     }
 
-    /** What the tag under the pointer says, and where it points; null for nothing. */
+    /** Text and position of the tag under the pointer; null for none. */
     tag(at) {
         const i = at === null ? -1 : this.points.under(this.stage, at);
         if (i >= 0)

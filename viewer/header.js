@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands above the tabs: the model's name and size, and two buttons.
+// The header above the tabs: the model's name and size, and two buttons.
 import page from "./data.js";
 import { showHelp } from "./help.js";
 import { drawn, element } from "./panel.js";

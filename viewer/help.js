@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys, as a table: what they do and what the help says about them.
+// The keys, as a table of actions and help texts.
 import { element } from "./panel.js";
 
 const dialog = document.getElementById("help");
 
-/** `keys` are [[key...], text, action]; an action gets the key. */
+/** `keys` are [[key...], text, action]; an action receives the key. */
 export function listenToKeys(keys) {
     document.addEventListener("keydown", (event) => {
         if (event.ctrlKey || event.metaKey || event.altKey || dialog.open) return;
         const onControl =
             event.target.closest("input, select, textarea, button, [role=radio]") !== null;
-        if (onControl && /^(Arrow|Home|End| |Enter)/.test(event.key)) return; // those are the control's
+        if (onControl && /^(Arrow|Home|End| |Enter)/.test(event.key)) return; // handled by the control itself
         const entry = keys.find(
             ([names]) => names.includes(event.key) || names.includes(event.key.toLowerCase()),
         );

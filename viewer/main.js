@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page: makes the views that there are results for, and joins them with stage, panel and keys.
+// A page: creates the views for which there are results, and connects them with stage, panel and keys.
 import page from "./data.js";
 import { Controls } from "./controls.js";
 import { GuardsView } from "./guards.js";
@@ -18,8 +18,8 @@ import { onTheme, toggleTheme } from "./theme.js";
 
 const at = (id) => document.getElementById(id);
 
-const EVERYTHING = { center: [0, 0, 0], radius: 1 }; // about all positions of a page
-const TURN = 6; // degrees that an arrow key turns by
+const EVERYTHING = { center: [0, 0, 0], radius: 1 }; // bounds all positions of a page
+const TURN = 6; // degrees per press of an arrow key
 
 class App {
     constructor(stage) {
@@ -59,7 +59,7 @@ class App {
         const { scene } = this.stage;
         for (const view of this.views) view.objects.forEach((object) => scene.add(object));
         if (this.surface === null) return;
-        this.surface.object.renderOrder = 5; // glass comes after what stands in it
+        this.surface.object.renderOrder = 5; // glass is drawn after what is inside
         scene.add(this.surface.object);
     }
 
@@ -82,7 +82,7 @@ class App {
         if (before !== null) say(this.view.name);
     }
 
-    /** Objects of other views are on a layer that the camera does not see. */
+    /** Objects of other views are on a layer hidden from the camera. */
     showObjects() {
         const { view, surface } = this;
         for (const each of this.views)
@@ -97,7 +97,7 @@ class App {
         at("hint").textContent = view.flat ? "" : "Drag to turn, scroll to zoom, ? for keys";
     }
 
-    /** Looks at what the view shows, unless that is what is looked at already. */
+    /** Fits the camera to the view's contents, unless it already is. */
     aim(first) {
         const ball = this.view.ball ?? this.surface?.ball ?? EVERYTHING;
         if (!this.view.flat && (first || ball !== this.stage.ball)) this.stage.fit(ball, !first);
@@ -126,7 +126,7 @@ class App {
         });
     }
 
-    /** The text beside what is under the pointer, or picked; within the stage. */
+    /** The text next to what is under the pointer or picked, kept within the stage. */
     showTag() {
         const tag = at("tag"),
             { place } = this.stage;
@@ -192,7 +192,7 @@ class App {
 function start() {
     fillHeader();
     try {
-        window.starguard = new App(new Stage(at("canvas"), at("stage"))); // there for tests and benchmarks
+        window.starguard = new App(new Stage(at("canvas"), at("stage"))); // for tests and benchmarks
     } catch (error) {
         at("panel").hidden = true;
         at("hint").textContent = /webgl/i.test(error.message)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How things look: one shader for surfaces, one for points. Colours are those of the style sheet, as
-// they are; light comes from the viewer's left shoulder.
+// Appearance: one shader for surfaces, one for points. Uses the style sheet's colours unchanged; light
+// comes from over the viewer's left shoulder.
 import { Color, DoubleSide, FrontSide, ShaderMaterial, Vector4 } from "three";
 
-/** Uniforms that all materials share: the cut, which hides where dot(p, cut.xyz) > cut.w. */
+/** Uniforms shared by all materials: the cut, which hides points with dot(p, cut.xyz) > cut.w. */
 export const shared = {
     cut: { value: new Vector4(0, 0, 0, 1) },
     explode: { value: 0 },
@@ -90,7 +90,7 @@ void main() {
     gl_FragColor = vec4(c, a);
 }`;
 
-/** A lit surface; `defines` may hold PIECES, MOVING, SOLID (closed: cuts look filled) or STRIPED. */
+/** A lit surface; `defines` may contain PIECES, MOVING, SOLID (closed: cuts look filled) or STRIPED. */
 export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defines = {} } = {}) {
     const material = new ShaderMaterial({
         vertexShader: SURFACE_VERTEX,
@@ -109,7 +109,7 @@ export function surfaceMaterial({ color = "#ffffff", opacity = 1, rim = 0, defin
     return material;
 }
 
-/** Half transparent surfaces leave the depth alone, so that nothing behind them is lost. */
+/** Half transparent surfaces do not write depth, so that they hide nothing behind them. */
 export function setOpacity(material, opacity) {
     const solid = opacity > 0.995;
     material.uniforms.opacity.value = opacity;
@@ -118,7 +118,7 @@ export function setOpacity(material, opacity) {
     material.visible = opacity > 0.005;
 }
 
-/** A cut shows the inner side. */
+/** A cut reveals inner sides. */
 export function setCutOpen(material, open) {
     material.side = open ? DoubleSide : FrontSide;
     material.needsUpdate = true;
@@ -152,7 +152,7 @@ void main() {
     gl_FragColor = vec4(mix(tint, edge, smoothstep(inner - 0.75, inner + 0.75, r)), a * kept);
 }`;
 
-/** Discs of a size in pixels that nothing hides; pale where they are cut off. */
+/** Discs with a size in pixels that nothing hides; pale where they are cut off. */
 export function pointMaterial() {
     return new ShaderMaterial({
         vertexShader: POINT_VERTEX,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model alone, when there is no result to show with it.
+// The model alone, without results.
 import page from "./data.js";
 import { facts } from "./panel.js";
 import { count } from "./text.js";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A morph: frames of one surface, and the moments between them on straight lines.
+// A morph: frames of one surface, linearly interpolated.
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, smoothNormals } from "./geometry.js";
@@ -11,7 +11,7 @@ import { count } from "./text.js";
 import { View } from "./view.js";
 
 const SECONDS = 2.4,
-    REST = 0.35; // of one way, and of the halt at each end
+    REST = 0.35; // seconds of one pass, and of the pause at each end
 
 export class MorphView extends View {
     name = "Morph";

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of the panel. Whatever comes from a file is set as text, never as markup.
+// Parts of the panel. Anything from a file is set as text, never as markup.
 
-/** An element with properties and children; strings become text. */
+/** An element with properties and children; strings become text nodes. */
 export function element(tag, properties = {}, ...children) {
     const made = document.createElement(tag);
     for (const [name, value] of Object.entries(properties)) {
@@ -13,7 +13,7 @@ export function element(tag, properties = {}, ...children) {
     return made;
 }
 
-/** An element of SVG. */
+/** An SVG element. */
 export function drawn(tag, attributes = {}, ...children) {
     const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
     for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
@@ -23,12 +23,12 @@ export function drawn(tag, attributes = {}, ...children) {
 
 const said = document.getElementById("said");
 
-/** Tells those who cannot see the change. */
+/** Announces a change to screen readers. */
 export function say(text) {
     said.textContent = text;
 }
 
-/** A slider with its name and value. `show` makes the text of a value, `change` is called with it. */
+/** A slider with its name and value. `show` formats a value, `change` is called with it. */
 export function slider({ name, min = 0, max = 1, step = 0.01, value, show, change, id }) {
     const output = element("output", {}, show(value));
     const input = element("input", { type: "range", id, min, max, step, value });
@@ -54,12 +54,12 @@ export function slider({ name, min = 0, max = 1, step = 0.01, value, show, chang
         get value() {
             return input.valueAsNumber;
         },
-        /** Shows a value without a call of `change`. */
+        /** Shows a value without calling `change`. */
         set value(x) {
             input.value = x;
             update();
         },
-        /** As if the slider had been moved. */
+        /** Acts as if the slider had been moved. */
         move(x) {
             input.value = x;
             update();
@@ -74,7 +74,7 @@ export function check({ name, value, change, id }) {
     return element("label", { className: "check" }, input, name);
 }
 
-/** One of a few words; arrow keys go from one to the next. */
+/** A choice between a few words; arrow keys move to the next. */
 export function choice({ name, words, value, change }) {
     const group = element("div", { className: "choice" });
     group.setAttribute("role", "radiogroup");
@@ -114,7 +114,7 @@ export function choice({ name, words, value, change }) {
     };
 }
 
-/** Numbers that matter: rows of [name, value, remark, kind of remark]. */
+/** Key figures: rows of [name, value, remark, kind of remark]. */
 export function facts(rows) {
     const list = element("dl", { className: "facts" });
     for (const [name, value, remark, kind] of rows) {
@@ -133,7 +133,7 @@ export function note(text) {
     return element("p", { className: "note" }, text);
 }
 
-/** A list of buttons of which one may be pressed. `rows` make the children of each. */
+/** A list of buttons, at most one of them pressed. `rows` are the children of each. */
 export function pickList({ name, rows, pick }) {
     const list = element("div", { className: "list" });
     list.setAttribute("role", "group");
@@ -147,7 +147,7 @@ export function pickList({ name, rows, pick }) {
     let pressed = -1;
     return {
         node: list,
-        /** Presses one, or none for -1, and brings it into sight. */
+        /** Presses one, or none for -1, and scrolls to it. */
         press(i) {
             buttons[pressed]?.setAttribute("aria-pressed", "false");
             buttons[i]?.setAttribute("aria-pressed", "true");

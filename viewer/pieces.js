@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Star-shaped pieces in colours of their own, which can be moved apart; each with its guard.
+// Star-shaped pieces in different colours, which can be moved apart; each with its guard.
 import { BufferAttribute, BufferGeometry, Color, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
@@ -29,7 +29,7 @@ export class PiecesView extends View {
 
     build() {
         this.away = new Float32Array(3 * this.told.list.length);
-        this.radii = []; // of the balls about pieces
+        this.radii = []; // of the bounding balls of pieces
         this.firstFace = [0];
         const geometry = this.join(this.makeParts());
         this.position = geometry.attributes.position.array;
@@ -39,11 +39,11 @@ export class PiecesView extends View {
         this.object.frustumCulled = false;
     }
 
-    /** The surfaces of all pieces, each with vertices of its own. */
+    /** The surfaces of all pieces, each with its own vertices. */
     makeParts() {
         const points = floats("piece-points");
         const faces = indices("piece-faces");
-        this.rest = ballOf(points); // about the pieces in their places
+        this.rest = ballOf(points); // around the pieces at their original places
         this.ball = this.rest;
         return this.told.list.map((piece, i) => {
             const first = this.firstFace[i];
@@ -52,7 +52,7 @@ export class PiecesView extends View {
         });
     }
 
-    /** The surface of a piece, and the way that it goes: from the middle of all to its own. */
+    /** The surface of a piece, and its direction: from the common centre to its own. */
     makePart(points, faces, i) {
         const numbers = new Map();
         const own = new Uint32Array(faces.length);
@@ -72,7 +72,7 @@ export class PiecesView extends View {
         return shadedSurface(local, own);
     }
 
-    /** One mesh of all: each vertex knows its piece, its colour and where that goes. */
+    /** One mesh for all pieces: vertices store the piece, its colour and its direction. */
     join(parts) {
         const total = parts.reduce((sum, part) => sum + part.position.length / 3, 0);
         const position = new Float32Array(3 * total);
@@ -185,9 +185,9 @@ export class PiecesView extends View {
         return `Piece ${i}: volume ${real(piece.volume)}, ${amount(piece.tetrahedra, "tetrahedron", "tetrahedra")}, ${piece.star ? "star-shaped, proven" : "not star-shaped"}`;
     }
 
-    // ---- what is shown ----
+    // ---- what is visible ----
 
-    /** The camera steps back as the pieces move, so that all stay in sight. */
+    /** The camera moves back with the pieces, so that all stay visible. */
     setExplode(x) {
         const before = this.ball.radius;
         shared.explode.value = x;
@@ -200,7 +200,7 @@ export class PiecesView extends View {
         this.explode.move(this.explode.value > 0 ? 0 : 0.5);
     }
 
-    /** How far from the middle pieces are that have been moved apart. */
+    /** Distance from the common centre to the displaced pieces. */
     reach(x) {
         let most = this.rest.radius;
         this.radii.forEach((radius, i) => {
@@ -229,7 +229,7 @@ export class PiecesView extends View {
 
     // ---- pointer ----
 
-    /** The first piece that a ray meets, -1 if none: every triangle is tried. */
+    /** The first piece that a ray meets, -1 for none: tests every triangle. */
     hit({ origin, direction }) {
         const { position, index, firstFace } = this;
         const cut = shared.cut.value,
@@ -284,7 +284,7 @@ export class PiecesView extends View {
     }
 }
 
-/** How far along a ray a triangle is; NaN where they do not meet. */
+/** Distance along a ray to a triangle; NaN if they do not meet. */
 function meet(o, d, p, a, b, c) {
     const ux = p[b] - p[a],
         uy = p[b + 1] - p[a + 1],

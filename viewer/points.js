@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points that can be picked: guards of the solid or of its pieces, as discs that nothing hides.
+// Pickable points: guards of the solid or of its pieces, as discs that nothing hides.
 import { BufferAttribute, BufferGeometry, Color, Points } from "three";
 import { pointMaterial, shared } from "./materials.js";
 
@@ -8,7 +8,7 @@ const SIZE = 15,
 const REACH = { mouse: 12, touch: 24 };
 
 export class PickPoints {
-    /** `away` is where each goes when pieces are moved apart, or null. */
+    /** `away` is the direction of each when pieces are moved apart, or null. */
     constructor(points, colors, away = null) {
         const count = points.length / 3;
         this.points = points;
@@ -31,7 +31,7 @@ export class PickPoints {
         return this.sizes.length;
     }
 
-    /** Where a point is now. */
+    /** Current position of a point. */
     place(i) {
         const by = shared.explode.value;
         return [0, 1, 2].map((k) => this.points[3 * i + k] + by * this.away[3 * i + k]);
@@ -43,12 +43,12 @@ export class PickPoints {
         this.geometry.attributes.size.needsUpdate = true;
     }
 
-    /** Draws the first `count` only. */
+    /** Draws only the first `count`. */
     showFirst(count) {
         this.geometry.setDrawRange(0, count);
     }
 
-    /** The point nearest to a place on the stage, -1 if none is near. */
+    /** The point nearest to a place on the stage, -1 if none is close. */
     under(stage, at) {
         let best = -1,
             nearest = at.touch ? REACH.touch : REACH.mouse;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Retrieval: the table of distances as shades, darkest for the most alike of each shape, and for a
-// picked shape the others by distance, with their pictures.
+// Retrieval: the distance table as shades, darkest for the most similar of each shape, and for a picked
+// shape the others by distance, with their pictures.
 import page, { doubles, pictureAddress } from "./data.js";
 import { element, facts, heading, say } from "./panel.js";
 import { themeColor } from "./theme.js";
 import { amount, count, real } from "./text.js";
 import { following, View } from "./view.js";
 
-const EDGE = 2; // pixels around the table, for the frame of what is picked
-const LIST_MOST = 60; // neighbours that are listed
+const EDGE = 2; // pixels around the table, for the frame of the picked cell
+const LIST_MOST = 60; // largest number of neighbours in the list
 
 export class RetrievalView extends View {
     name = "Retrieval";
@@ -57,7 +57,7 @@ export class RetrievalView extends View {
         return ranks;
     }
 
-    /** The other shapes, the most alike first. */
+    /** The other shapes, most similar first. */
     neighbours(i) {
         const others = this.shapes.map((_, k) => k).filter((k) => k !== i);
         return others.sort((a, b) => this.distance(i, a) - this.distance(i, b) || a - b);
@@ -136,7 +136,7 @@ export class RetrievalView extends View {
         return inside ? { row, column } : null;
     }
 
-    /** Names stand beside and above the cells where these are large enough. */
+    /** Names are shown beside and above the cells if these are large enough. */
     measure(width, height) {
         const n = this.count;
         const context = this.canvas.getContext("2d");
@@ -181,7 +181,7 @@ export class RetrievalView extends View {
         this.drawPicked(context);
     }
 
-    /** A pixel for each cell, in the colours of the theme. */
+    /** One pixel per cell, in the colours of the theme. */
     makeShades() {
         const near = parse(themeColor("cell-near")),
             far = parse(themeColor("cell-far"));
@@ -235,7 +235,7 @@ export class RetrievalView extends View {
         );
     }
 
-    // ---- what is shown ----
+    // ---- what is visible ----
 
     update() {
         const i = this.picked;
@@ -282,7 +282,7 @@ export class RetrievalView extends View {
     }
 }
 
-/** What the shades of a row mean. */
+/** The meaning of the shades in a row. */
 function legend() {
     return element("p", { className: "legend" }, "alike", element("span"), "unlike");
 }

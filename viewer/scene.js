@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stage: canvas, camera, turning and zooming, drawing when something has changed.
+// The stage: canvas, camera, rotation and zoom; draws when something has changed.
 import {
     ColorManagement,
     LinearSRGBColorSpace,
@@ -26,7 +26,7 @@ export class Stage {
         this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
         this.renderer.outputColorSpace = LinearSRGBColorSpace;
         this.controls = this.makeControls();
-        this.ball = { center: [0, 0, 0], radius: 1 }; // what is looked at lies in it
+        this.ball = { center: [0, 0, 0], radius: 1 }; // contains everything shown
         this.onBall = () => {};
         this.frames = 0; // drawn so far
         this.waiting = false;
@@ -55,7 +55,7 @@ export class Stage {
         this.draw(); // at once: a resized canvas is empty
     }
 
-    /** Draws in the next frame, however often it is asked. */
+    /** Draws in the next frame, once for any number of requests. */
     request() {
         if (this.waiting) return;
         this.waiting = true;
@@ -71,7 +71,7 @@ export class Stage {
         this.frames++;
     }
 
-    /** Looks at all of a ball, from where one looks first. */
+    /** Shows all of a ball from the initial direction. */
     fit(ball, keepDirection = false) {
         const aspect = Math.min(this.camera.aspect, 1);
         const half = Math.atan(Math.tan((VIEW_ANGLE * Math.PI) / 360) * aspect);
@@ -91,19 +91,19 @@ export class Stage {
         this.request();
     }
 
-    /** What is looked at has grown or shrunk. */
+    /** The contents have grown or shrunk. */
     setBall(ball) {
         this.ball = ball;
         this.onBall();
     }
 
-    /** The turn from y up to what is up now. */
+    /** The rotation from y up to the current up direction. */
     turnOfUp() {
         const turn = this.camera.quaternion.clone();
         return turn.setFromUnitVectors(new Vector3(0, 1, 0), this.camera.up);
     }
 
-    /** Axis 1 (y) or 2 (z) points up. OrbitControls take the axis when they are made. */
+    /** Axis 1 (y) or 2 (z) points up. OrbitControls read the axis when they are created. */
     setUp(axis) {
         this.camera.up.set(0, axis === 1 ? 1 : 0, axis === 2 ? 1 : 0);
         this.controls.dispose();
@@ -111,7 +111,7 @@ export class Stage {
         this.fit(this.ball);
     }
 
-    /** Turns about the target by angles in degrees, right and up. */
+    /** Rotates about the target by angles in degrees, right and up. */
     turn(right, upward) {
         const offset = this.camera.position.clone().sub(this.controls.target);
         const axis = this.camera.up;
@@ -137,7 +137,7 @@ export class Stage {
         this.request();
     }
 
-    /** Where a point lands, in pixels of the place; null behind the camera. */
+    /** Projection of a point, in pixels of the place; null behind the camera. */
     project(x, y, z) {
         const p = new Vector3(x, y, z).project(this.camera);
         if (p.z > 1) return null;
@@ -158,7 +158,7 @@ export class Stage {
         return { origin, direction: near.sub(origin).normalize() };
     }
 
-    /** Calls `click` for presses that do not drag, `hover` for moves with no button down. */
+    /** Calls `click` for presses without a drag, `hover` for moves with no button down. */
     listen(click, hover) {
         let pressed = null;
         const at = (event) => {

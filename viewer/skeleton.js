@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The curve skeleton: rods along its edges, and balls of the nodes' radii, which the slider grows.
+// The curve skeleton: rods along its edges, and balls with the nodes' radii, scaled by the slider.
 import {
     Color,
     CylinderGeometry,
@@ -18,8 +18,8 @@ import { count, percent } from "./text.js";
 import { View } from "./view.js";
 
 const ROD = 0.0045,
-    KNOB = 0.011; // of the radius of what is shown
-const MANY = 3000; // nodes from which on balls have fewer faces
+    KNOB = 0.011; // relative to the radius of the contents
+const MANY = 3000; // nodes above which balls have fewer faces
 
 export class SkeletonView extends View {
     name = "Skeleton";
@@ -80,7 +80,7 @@ export class SkeletonView extends View {
             if (object) object.frustumCulled = false;
     }
 
-    /** Joints and ends are knobs, other nodes as thick as the rods that they join. */
+    /** Joints and ends are knobs, other nodes as thick as their rods. */
     knobSize(i) {
         return (this.degrees[i] === 2 ? ROD : KNOB) * this.ball.radius;
     }

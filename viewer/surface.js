@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model: glass, with faces painted that are seen, that nothing sees, or that prove a bound.
+// The model: glass, with painted faces for what is seen, what nothing sees, or what proves a bound.
 import { BufferAttribute, BufferGeometry, Mesh } from "three";
 import page, { floats, indices } from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
@@ -10,7 +10,7 @@ const GLASS = 0,
     UNSEEN = 1,
     WITNESS = 2,
     PAINTED = 3; // kinds of faces; PAINTED + i has colour i
-const MOST_COLORS = 200; // of which each is drawn by itself; then they begin again
+const MOST_COLORS = 200; // colours with a draw call each; then they repeat
 
 export class Surface {
     constructor() {
@@ -52,8 +52,8 @@ export class Surface {
     }
 
     /**
-     * Paints faces: `colorOf` tells the index of a face's colour, -1 for glass (null: all glass);
-     * what has no colour is marked if it is in `unseen` or `witnesses`.
+     * Paints faces: `colorOf` returns the index of a face's colour, -1 for glass (null: all glass);
+     * faces in `unseen` or `witnesses` without a colour are marked.
      */
     paint(colorOf, unseen, witnesses = new Set()) {
         const { kinds } = this;
@@ -87,7 +87,7 @@ export class Surface {
     }
 }
 
-/** Normals as bytes, four each so that they stay aligned. */
+/** Normals as bytes, four each for alignment. */
 export function normalAttribute(packed) {
     return new BufferAttribute(packed, 4, true);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tabs, one for each view, with their panels. Arrow keys go from one to the next.
+// The tabs, one for each view, with their panels. Arrow keys move to the next.
 import { element } from "./panel.js";
 
 function makeTab(view, i, open) {
@@ -16,7 +16,7 @@ function makeTab(view, i, open) {
     return { tab, panel };
 }
 
-/** Fills the list of tabs; `open` is called with the number of one. What marks one as open. */
+/** Fills the list of tabs; `open` is called with a tab's number. Returns what marks a tab as open. */
 export function makeTabs(views, open) {
     const tabs = views.map((view, i) => makeTab(view, i, open));
     const list = document.getElementById("tabs");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and amounts as people read them.
+// Numbers and amounts in readable form.
 
 const whole = new Intl.NumberFormat("en");
 

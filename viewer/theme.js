@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light or dark: as the system has it, until the switch says otherwise.
+// Light or dark: the system's setting, until the switch changes it.
 
 const system = window.matchMedia("(prefers-color-scheme: dark)");
 const listeners = [];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of the public bit matrix, and word-wise helpers for bit rows. */
+/* Internals of the public bit matrix, and word-wise helpers for bit rows. */
 #ifndef STARG_CORE_BITS_H
 #define STARG_CORE_BITS_H
 
@@ -43,7 +43,7 @@ static inline size_t starg_bit_count(const uint64_t *row, size_t words) {
     return count;
 }
 
-/* Loops BIT over the ones of WORD, a copy of which is consumed. */
+/* Runs the body with BIT = index of each set bit of WORD (evaluated once). */
 #define STARG_FOR_BITS(BIT, WORD)                                                                  \
     for (uint64_t starg_word_ = (WORD), BIT = 0;                                                   \
          starg_word_ != 0 && (BIT = (uint64_t)starg_bit_lowest(starg_word_), 1);                   \

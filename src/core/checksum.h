@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Recognizes a surface again, however its faces are turned and whether or not coincident vertices
- * are one: FNV-1a with 64 bits over the positions of all corners. Says "another model" early and
- * clearly; proves nothing. */
+/* Fingerprint of a surface: FNV-1a (64 bits) over the positions of all corners. It does not depend
+ * on where a face starts or on whether coincident vertices are merged. It detects a wrong model
+ * early; equal sums prove nothing. */
 #ifndef STARG_CORE_CHECKSUM_H
 #define STARG_CORE_CHECKSUM_H
 
@@ -12,7 +12,7 @@
 
 static inline uint64_t starg_checksum_double(uint64_t sum, double x) {
     uint64_t bits;
-    x += 0.0; /* -0 is 0 */
+    x += 0.0; /* -0 becomes 0 */
     memcpy(&bits, &x, sizeof bits);
     for (int k = 0; k < 8; k++)
         sum = (sum ^ (bits >> 8 * k & 0xff)) * UINT64_C(0x100000001b3);
@@ -26,7 +26,7 @@ static inline int starg_checksum_compare(const double *a, const double *b) {
     return 0;
 }
 
-/* Adds a face: its corners in the order of their coordinates. */
+/* Adds a face, its corners sorted by coordinates. */
 static inline uint64_t starg_checksum_face(uint64_t sum, const double *points,
                                            const uint32_t *corners) {
     const double *corner[3];

@@ -224,9 +224,9 @@ void starg_log(starg_context *context, starg_log_level level, const char *format
 
 /* ---- progress ---- */
 
-static const double ALMOST = 1 - 0x1p-20; /* 1 itself says that a stage is over */
+static const double ALMOST = 1 - 0x1p-20; /* only the end of a stage reports 1 */
 
-/* The stage reported to the callback: of nested stages with one name, the outermost. */
+/* The stage to report: among nested stages of one name, the outermost. */
 static size_t shown_stage(const starg_progress *p) {
     size_t shown = p->depth - 1;
     while (shown > 0 && strcmp(p->stages[shown].name, p->stages[shown - 1].name) == 0)
@@ -241,7 +241,7 @@ static void report(starg_context *context, const char *stage, double fraction) {
     p->next = starg_clock() + p->pause;
 }
 
-/* Brings a stage forward to a fraction, and those that it is a part of by its share of them. */
+/* Sets a stage's fraction and adds its share to the stages around it. */
 static void advance(starg_progress *p, size_t stage, double fraction) {
     double gained = fraction - p->stages[stage].fraction;
     if (!(gained > 0))

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Distribution of a parallel loop: its items are shared with other processes.
+/* Distributed parallel loop: items are shared with other processes.
  *
- * The calling thread of rank 0 hands out blocks of items and takes what comes back; threads of this
- * process take items one by one from the same counter. So whoever is faster does more, and where an
- * item is worked on does not show in the result. Blocks get smaller towards the end (guided
- * self-scheduling: Polychronopoulos, Kuck 1987), so that all end at nearly the same time. A helper
- * has PREFETCH blocks at once: while a reply is under way it works on the next.
+ * The calling thread of rank 0 hands out blocks of items and collects replies; threads of this
+ * process take single items from the same counter. Faster workers do more, and the result does not
+ * depend on who computed an item. Blocks shrink towards the end (guided self-scheduling:
+ * Polychronopoulos, Kuck 1987), so that all workers finish at nearly the same time. A helper holds
+ * PREFETCH blocks: it works on the next one while a reply travels.
  *
- * The calling thread sleeps between messages, for it has no processor of its own: a message is seen
- * up to PATIENCE seconds late, which the second block hides.
+ * The calling thread has no core of its own and sleeps between messages: it sees a message up to
+ * PATIENCE seconds late, which prefetching hides.
  *
- * At the end nothing is under way: replies that nobody needs any more, after a failure, are waited
- * for and dropped, so that no process is stuck with an answer while it is sent the next job. Only
- * where this process is cancelled or cannot go on at all they are left. */
+ * At the end no message is in flight: replies made useless by a failure are received and dropped,
+ * so that no helper blocks on an answer while it gets the next job. They are left only when this
+ * process is cancelled or cannot continue. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -37,7 +37,7 @@ static starg_status send_jobs(const distribution *s) {
         .kind = RANKS_JOB, .loop = s->number, .seed = context->seed, .work = remote->work};
     for (int to = 1; to < s->ranks->count; to++) {
         double left = starg_seconds_left(context);
-        if (left < INFINITY) /* 0 is no limit */
+        if (left < INFINITY) /* 0 means no limit */
             head.seconds = fmax(left, 1e-9);
         STARG_TRY(ranks_send(context, s->ranks, to, &head, remote->job->data, remote->job->count));
     }
@@ -45,8 +45,7 @@ done:
     return status;
 }
 
-/* As much as leaves SHARES blocks for every process, unless that is too much; but an item for each
- * of its threads. */
+/* Leaves SHARES blocks per process, within limits; at least one item per thread of the helper. */
 static size_t block_size(const distribution *s) {
     const worker_group *group = s->group;
     size_t count = group->loop->count, taken = atomic_load(&group->next);
@@ -87,7 +86,7 @@ static bool is_sound(const distribution *s, const ranks_message *head) {
     return head->kind == RANKS_REPLY && head->count <= count && head->first <= count - head->count;
 }
 
-/* A reply whose time was over may hold what was finished by then. */
+/* A reply with ERROR_TIME may hold the items finished in time. */
 static starg_status take_reply(distribution *s, const ranks_message *head,
                                starg_bytes_reader *rest) {
     worker_group *group = s->group;
@@ -108,7 +107,7 @@ static starg_status take_reply(distribution *s, const ranks_message *head,
     return STARG_OK;
 }
 
-/* Waits a moment for a reply; whoever sent it gets the next block. */
+/* Waits briefly for a reply; its sender gets the next block. */
 static starg_status serve_one(distribution *s) {
     starg_status status = STARG_OK;
     starg_context *context = s->group->context;
@@ -149,7 +148,7 @@ void worker_group_distribute(worker_group *group) {
         STARG_TRY(serve_one(&s));
         worker_group_report(group);
     }
-    if (atomic_load(&group->finished) < group->loop->count) /* by us, or cancelled? */
+    if (atomic_load(&group->finished) < group->loop->count) /* cancelled */
         worker_group_must_stop(group, group->loop->count);
 done:
     context->shared_seconds += starg_clock() - began;

@@ -121,7 +121,7 @@ void starg_field_expectation(const starg_field *field, char *text, size_t size) 
         snprintf(text, size, "%g to %g", f->low, f->high);
 }
 
-/* What a member is called in sentences: "face_rule" is "face rule". */
+/* Name of a member in messages: "face_rule" becomes "face rule". */
 static void spell_name(const starg_field *f, char *text, size_t size) {
     snprintf(text, size, "%s", f->key != NULL ? f->key : f->option);
     for (char *c = text; *c != '\0'; c++)
@@ -187,7 +187,7 @@ void starg_fields_default(const starg_fields *fields, void *record) {
     }
 }
 
-/* A whole number with commas. */
+/* Integer with thousands separators. */
 static void put_count(char *text, size_t size, uint64_t value) {
     char digits[32];
     size_t length = (size_t)snprintf(digits, sizeof digits, "%llu", (unsigned long long)value);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rows of field tables, and what the library does with a table: range checks. */
+/* Rows of field tables, and range checks by them. */
 #ifndef STARG_CORE_FIELDS_H
 #define STARG_CORE_FIELDS_H
 
@@ -7,16 +7,16 @@
 #include "core/private.h"
 #include "starguard/fields.h"
 
-/* Where a member of struct T is. */
+/* Offset and size of a member of struct T. */
 #define FIELD_MEMBER(T, MEMBER) .offset = offsetof(T, MEMBER), .size = sizeof(((T *)0)->MEMBER)
 
-/* The rows of a table and their number. */
+/* Rows of a table and their count. */
 #define FIELD_ROWS(ROWS) .fields = (ROWS), .count = sizeof(ROWS) / sizeof *(ROWS)
 
-/* Is a COUNT, CHOICE, FLAG or REAL within its range, or what null stands for? */
+/* Is a COUNT, CHOICE, FLAG or REAL within its range or at the value that stands for null? */
 bool field_fits(const starg_field *field, const void *record);
 
-/* Are all members that the record has within their ranges? Errors: ARGUMENT. */
+/* Checks the ranges of all applicable members. Errors: ARGUMENT. */
 starg_status fields_check(starg_context *context, const char *stage, const starg_fields *fields,
                           const void *record) STARG_PRIVATE(fields_check);
 

@@ -20,9 +20,9 @@ static bool is_standard(const char *path) {
     return strcmp(path, "-") == 0;
 }
 
-/* Reads the stream to its end into a growing block; the files that matter are read in one go. */
-static starg_status slurp(starg_context *context, const char *stage, const char *path, FILE *file,
-                          size_t expected, char **bytes, size_t *size) {
+/* Reads a stream to its end into a growing block; typical files take one read. */
+static starg_status read_stream(starg_context *context, const char *stage, const char *path,
+                                FILE *file, size_t expected, char **bytes, size_t *size) {
     starg_status status = STARG_OK;
     char *block = NULL;
     size_t count = 0, capacity = expected + 2;
@@ -63,7 +63,7 @@ starg_status starg_file_read(starg_context *context, const char *stage, const ch
     *bytes = NULL;
     *size = 0;
     if (is_standard(path))
-        return slurp(context, stage, "standard input", stdin, 1 << 16, bytes, size);
+        return read_stream(context, stage, "standard input", stdin, 1 << 16, bytes, size);
 
     FILE *file = fopen(path, "rb");
     if (file == NULL)
@@ -83,7 +83,7 @@ starg_status starg_file_read(starg_context *context, const char *stage, const ch
                                 "'%s' is larger than 2 GiB, the limit for input files", path);
     }
     if (status == STARG_OK)
-        status = slurp(context, stage, path, file, expected, bytes, size);
+        status = read_stream(context, stage, path, file, expected, bytes, size);
     fclose(file);
     return status;
 }
@@ -136,15 +136,14 @@ done:
     return status;
 }
 
-static void forget(starg_output *output) {
+static void reset_output(starg_output *output) {
     starg_release(output->context, output->path);
     starg_release(output->context, output->temporary);
     *output = (starg_output){.context = output->context, .stage = output->stage};
 }
 
-/* A write has failed and its errno is lost: another write, which nobody will read, sets it again.
- */
-static int ask_for_reason(FILE *stream) {
+/* The errno of an earlier failed write is lost; writing once more sets it again. */
+static int recover_errno(FILE *stream) {
     static const char block[1 << 14];
     clearerr(stream);
     errno = 0;
@@ -157,7 +156,7 @@ starg_status starg_output_commit(starg_output *output) {
     starg_status status = STARG_OK;
     const char *shown = output->path ? output->path : "standard output";
     bool failed = ferror(output->stream) != 0;
-    errno = failed && output->path != NULL ? ask_for_reason(output->stream) : 0;
+    errno = failed && output->path != NULL ? recover_errno(output->stream) : 0;
     if (fflush(output->stream) != 0)
         failed = true;
     if (output->path != NULL && !failed && fsync(fileno(output->stream)) != 0)
@@ -177,7 +176,7 @@ starg_status starg_output_commit(starg_output *output) {
         if (output->temporary != NULL)
             unlink(output->temporary);
     }
-    forget(output);
+    reset_output(output);
     return status;
 }
 
@@ -188,5 +187,5 @@ void starg_output_discard(starg_output *output) {
         fclose(output->stream);
         unlink(output->temporary);
     }
-    forget(output);
+    reset_output(output);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* 128-bit integers: an extension that gcc and clang share. */
+/* 128-bit integers: an extension of gcc and clang. */
 #ifndef STARG_CORE_INT128_H
 #define STARG_CORE_INT128_H
 

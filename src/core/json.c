@@ -8,7 +8,8 @@
 
 enum { DUMP = JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17) };
 
-/* jansson reports it, or fails silently: it always reports a malformed text. */
+/* jansson either reports an allocation failure or fails silently; it never fails silently on
+ * malformed text. */
 static bool is_out_of_memory(const json_error_t *error) {
     return json_error_code(error) == json_error_out_of_memory || error->text[0] == '\0';
 }

@@ -3,7 +3,7 @@
 
 #include <stdint.h>
 
-/* Stands before every block. Its size keeps the block aligned for any type. */
+/* Precedes every block. Its size keeps the block aligned for any type. */
 typedef union block_header {
     size_t bytes;
     max_align_t align;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory from the context's allocator. Blocks remember their size, so that the context can tell
- * what is in use. All of it may be called from worker threads. */
+/* Memory from the context's allocator. Blocks store their size, so that the context knows what is
+ * in use. Thread-safe. */
 #ifndef STARG_CORE_MEMORY_H
 #define STARG_CORE_MEMORY_H
 
@@ -10,22 +10,22 @@
 #include "core/context.h"
 #include "core/private.h"
 
-/* count x size bytes, or NULL when memory is out or the product does not fit. A count of 0 gives
- * a valid block. The contents are undefined (allocate) or zero (allocate_zero). */
+/* count x size bytes, undefined (starg_allocate) or zero (starg_allocate_zero); NULL when out of
+ * memory or on overflow. A count of 0 gives a valid block. */
 void *starg_allocate(starg_context *context, size_t count, size_t size)
     STARG_PRIVATE(starg_allocate);
 void *starg_allocate_zero(starg_context *context, size_t count, size_t size)
     STARG_PRIVATE(starg_allocate_zero);
 
-/* A block of `capacity` x size bytes that starts with the `count` elements of `block`, which is
- * freed; NULL (and `block` untouched) when memory is out. `block` may be NULL. */
+/* Moves the first `count` elements of `block` (may be NULL) into a block of `capacity` elements and
+ * frees the old one; returns NULL and leaves `block` alone when out of memory. */
 void *starg_reallocate(starg_context *context, void *block, size_t count, size_t capacity,
                        size_t size) STARG_PRIVATE(starg_reallocate);
 
-/* Frees a block; NULL is fine. */
+/* Frees a block; NULL is allowed. */
 void starg_release(starg_context *context, void *block) STARG_PRIVATE(starg_release);
 
-/* POINTER = count elements of its own type, or leave by `done` with STARG_ERROR_MEMORY. */
+/* POINTER = COUNT elements of its type; jumps to `done` with STARG_ERROR_MEMORY on failure. */
 #define STARG_NEW(CONTEXT, STAGE, POINTER, COUNT)                                                  \
     do {                                                                                           \
         (POINTER) = starg_allocate((CONTEXT), (COUNT), sizeof *(POINTER));                         \
@@ -44,14 +44,14 @@ void starg_release(starg_context *context, void *block) STARG_PRIVATE(starg_rele
         }                                                                                          \
     } while (0)
 
-/* Growable arrays: a struct { T *data; size_t count, capacity; }, all zero when empty. */
+/* Growable array: struct { T *data; size_t count, capacity; }, all zero when empty. */
 #define STARG_ARRAY(T)                                                                             \
     struct {                                                                                       \
         T *data;                                                                                   \
         size_t count, capacity;                                                                    \
     }
 
-/* Appends VALUE, or leaves by `done` with STARG_ERROR_MEMORY. */
+/* Appends VALUE; jumps to `done` with STARG_ERROR_MEMORY on failure. */
 #define STARG_PUSH(CONTEXT, STAGE, ARRAY, VALUE)                                                   \
     do {                                                                                           \
         if ((ARRAY)->count == (ARRAY)->capacity) {                                                 \

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A loop hands out its items one by one from an atomic counter: items here are whole visibility
- * rows or the like, so that the counter never dominates. The calling thread works like the others,
- * unless it has to deal with other processes (core/distribute.c). */
+/* Threads take items one by one from an atomic counter: an item is a visibility row or similar, so
+ * the counter is never the bottleneck. The calling thread works too, unless it serves other
+ * processes (core/distribute.c). */
 #include "core/parallel.h"
 
 #include "core/worker_group.h"
@@ -99,7 +99,7 @@ static starg_status explain(starg_context *context, const char *stage, starg_sta
     }
 }
 
-/* How many threads to start besides the calling one. */
+/* Number of threads to start besides the calling one. */
 static size_t count_threads(const worker_group *group, bool shared) {
     size_t threads = (size_t)group->context->threads - !shared, count = group->loop->count;
     size_t most = shared || count == 0 ? count : count - 1;
@@ -130,7 +130,7 @@ starg_status starg_parallel_for(starg_context *context, const starg_parallel_loo
         starg_progress_begin_part(context, loop->stage, loop->share);
     STARG_TRY(prepare(&group, helpers, &threads));
 
-    /* A thread that cannot be started is no failure: the others do its share. */
+    /* If a thread cannot be started, the others do its share. */
     while (started < helpers && thrd_create(&threads[started], helper_main, &group) == thrd_success)
         started++;
     if (shared)

@@ -1,50 +1,50 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Parallel loops whose result does not depend on the number of threads: each item writes only to
- * outputs of its own index. */
+/* Parallel loops whose result does not depend on the number of threads: an item writes only to
+ * outputs addressed by its index. */
 #ifndef STARG_CORE_PARALLEL_H
 #define STARG_CORE_PARALLEL_H
 
 #include "core/private.h"
 #include "core/ranks.h"
 
-/* Works on one item. `scratch` belongs to the running thread. Allocation is allowed; logging,
- * progress and error detail are not (the calling thread does that). */
+/* Computes one item. `scratch` belongs to the running thread. It may allocate, but not log, report
+ * progress or set error detail (the calling thread does). */
 typedef starg_status starg_parallel_item(starg_context *context, void *shared, void *scratch,
                                          size_t item);
 
-/* How other processes work on items of a loop (core/distribute.c). */
+/* How other processes compute items of a loop (core/distribute.c). */
 typedef struct starg_parallel_remote {
     ranks_work_kind work;
-    const starg_bytes *job; /* what they have to know of all items                         */
-    size_t most;            /* items that they get at once; 0: the more, the more are left */
-    /* Takes what a helper appended to its reply for these items, on the calling thread. */
+    const starg_bytes *job; /* data common to all items */
+    size_t most;            /* items per block; 0: proportional to what is left */
+    /* Stores a helper's results for these items, on the calling thread. */
     starg_status (*take)(starg_context *context, void *shared, size_t first, size_t count,
                          starg_bytes_reader *reply);
 } starg_parallel_remote;
 
 typedef struct starg_parallel_loop {
-    const char *stage; /* static; named in progress and errors */
+    const char *stage; /* static; name in progress and errors */
     size_t count;
     void *shared;
     starg_parallel_item *item;
-    /* Scratch memory of each thread; both may be NULL. make sets *scratch or fails. */
+    /* Scratch memory per thread; both may be NULL. make sets *scratch or fails. */
     starg_status (*make_scratch)(starg_context *context, void *shared, void **scratch);
     void (*free_scratch)(starg_context *context, void *scratch);
-    double share; /* of the stage around it, for its progress                             */
-    bool silent;  /* one of many short loops: the caller reports the progress of them all */
-    /* Called on the calling thread, now and then and at the end, when the items below `finished`
-     * are. It may set error detail. NULL: not wanted. */
+    double share; /* part of the enclosing stage, for progress */
+    bool silent;  /* one of many short loops, whose caller reports progress */
+    /* Called on the calling thread from time to time and at the end, when all items below
+     * `finished` are done. May set error detail. May be NULL. */
     starg_status (*advance)(starg_context *context, void *shared, size_t finished);
-    const starg_parallel_remote *remote; /* used where the context has helpers; NULL: not shared */
+    const starg_parallel_remote *remote; /* used if the context has helpers; NULL: not shared */
 } starg_parallel_loop;
 
-/* Runs the items 0 to count - 1 on up to the context's threads, the calling one among them.
- * Fails with the status of the lowest item that failed, or when cancelled; then some items have
- * not been run. */
+/* Runs the items 0 to count - 1 on up to the context's threads, including the calling one. On
+ * failure returns the status of the lowest failed item, or CANCELLED; some items have then not
+ * run. */
 starg_status starg_parallel_for(starg_context *context, const starg_parallel_loop *loop)
     STARG_PRIVATE(starg_parallel_for);
 
-/* The same, and gives up with STARG_ERROR_TIME when the time limit passes. */
+/* Same, but fails with STARG_ERROR_TIME at the time limit. */
 starg_status starg_parallel_in_time(starg_context *context, const starg_parallel_loop *loop)
     STARG_PRIVATE(starg_parallel_in_time);
 

@@ -57,8 +57,7 @@ done:
     return status;
 }
 
-/* What else a helper has sent, which nobody waits for any more, is taken, lest it waits for that.
- */
+/* Receives whatever else the helper sent, so that it does not block on sending. */
 starg_status starg_ranks_release(starg_context *context, const starg_ranks *ranks) {
     starg_status status = STARG_OK;
     const ranks_message end = {.kind = RANKS_END};

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A struct and its field table (starguard/fields.h) as JSON, and back.
+/* Converts a struct to JSON and back by its field table (starguard/fields.h).
  *
- * Written values are exact: reals have 17 significant digits. Reading is strict: every key is held
- * against its type and range, so that reading what was written gives the same struct, and writing
- * that the same bytes. Members come in the order of the table; whether one applies may depend on
- * those before it. */
+ * Writing is lossless: reals have 17 significant digits. Reading is strict: every key is checked
+ * against its type and range, so that reading a written file gives the same struct, and writing
+ * that the same bytes. Members follow the order of the table; whether one applies may depend on
+ * earlier ones. */
 #include "core/record.h"
 
 #include <math.h>
@@ -36,7 +36,7 @@ static bool applies(const starg_field *f, const void *record) {
     return f->applies == NULL || f->applies(record);
 }
 
-/* A field of columns as a member of one of the rows. */
+/* A field of columns as a member of a single row. */
 static starg_field in_column(const starg_field *f, const void *record) {
     starg_field own = *f;
     own.offset = f->within;
@@ -174,7 +174,7 @@ static bool is_default(const starg_field *f, const void *record) {
     }
 }
 
-/* A list that was never filled is no part of the record, nor is a default that no file can hold. */
+/* Absent: a list that was never filled, or a default that a file cannot represent. */
 static bool is_absent(const starg_field *f, const void *record) {
     if (!(f->flags & STARG_FIELD_OPTIONAL))
         return false;
@@ -198,7 +198,7 @@ static bool add(json_t *to, const starg_fields *fields, const starg_field *f, js
                                             : json_object_set_new(to, f->key, value) == 0;
 }
 
-/* A record; of columns row i. NULL when memory is out. */
+/* A record, or row i of columns. NULL when out of memory. */
 static json_t *fields_json(const starg_fields *fields, const void *record, size_t i) {
     bool columns = fields->columns, done = true;
     json_t *result = fields->form == STARG_FORM_TUPLE ? json_array() : json_object();
@@ -272,8 +272,8 @@ starg_status starg_fields_json(starg_context *context, const starg_fields *field
 typedef struct reader {
     starg_context *context;
     const char *name;
-    const starg_fields *file; /* of the whole, for messages */
-    const char *list;         /* in whose entry `item` the reader is; NULL: in none */
+    const starg_fields *file; /* of the whole file, for messages */
+    const char *list;         /* the list whose entry `item` is being read; NULL: none */
     size_t item;
 } reader;
 
@@ -287,7 +287,7 @@ starg_status record_reject(starg_context *context, const char *name, const starg
                       expected);
 }
 
-/* Where the reader is, for messages. */
+/* Position of the reader, for messages. */
 typedef struct place {
     char text[128];
 } place;
@@ -415,12 +415,12 @@ done:
     return status;
 }
 
-/* Is that column in a block that the column before it has made? Members of structs are. */
+/* Does column k share the block of the column before it? Members of structs do. */
 static bool shares_block(const starg_fields *columns, size_t k) {
     return k > 0 && columns->fields[k].offset == columns->fields[k - 1].offset;
 }
 
-/* Zeroed blocks for `count` items: one of structs, or one for each column that applies. */
+/* Zeroed blocks for `count` items: one block of structs, or one per applicable column. */
 static starg_status make_items(const reader *r, const starg_field *f, void *record, size_t count) {
     bool columns = f->of->columns;
     for (size_t k = 0; k < (columns ? f->of->count : 1); k++) {
@@ -450,7 +450,7 @@ static json_t *value_in(json_t *item, const starg_fields *fields, size_t k) {
     }
 }
 
-/* Is the value, which is called `what`, of the form that is asked for? */
+/* Checks the JSON type of the value called `what`. */
 static starg_status check_form(const reader *r, json_t *value, const starg_fields *fields,
                                const char *what) {
     if (fields->form == STARG_FORM_BARE ||
@@ -465,8 +465,8 @@ static starg_status check_form(const reader *r, json_t *value, const starg_field
                       place_of(r).text, expected);
 }
 
-/* Have the items as many numbers as they must? Asked before there is room for them, of which there
- * is then no more than the file is long. */
+/* Checks how many numbers each item has, before allocating: the allocation is then bounded by the
+ * length of the file. */
 static starg_status check_numbers(const reader *r, json_t *items, const starg_fields *fields,
                                   const void *record) {
     for (size_t k = 0; k < fields->count; k++) {

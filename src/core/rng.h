@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Random numbers that depend on (seed, stage, item) only, never on the order of calls or threads:
+/* Random numbers that depend only on (seed, stage, item), never on the order of calls or threads:
  * the splitmix64 finaliser over a counter. */
 #ifndef STARG_CORE_RNG_H
 #define STARG_CORE_RNG_H

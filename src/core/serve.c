@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A helper's life: it takes jobs, works on blocks of them and answers, until it is sent home
- * (core/ranks.h). The work itself is done where it is done without helpers: each kind has a table
- * of functions in its own folder. */
+/* Main loop of a helper: receives jobs, computes their blocks and replies, until END
+ * (core/ranks.h). Each kind of work has a table of functions in its own folder and shares its code
+ * with runs without helpers. */
 #include "core/ranks.h"
 
 #include "core/memory.h"
 
-static const double PATIENCE = 0.05; /* until a cancellation is seen */
+static const double PATIENCE = 0.05; /* seconds between checks for cancellation */
 
 typedef struct helper {
     starg_context *context;
     const starg_ranks *ranks;
     const ranks_work *const *works;
-    const ranks_work *work; /* of the job at hand, NULL before the first */
+    const ranks_work *work; /* of the current job, NULL before the first */
     void *state;
-    starg_status begun; /* the job's own status */
+    starg_status begun; /* status of its `begin` */
     uint64_t loop;
     bool released;
 } helper;
@@ -54,7 +54,7 @@ static starg_status work_on_block(helper *h, const ranks_message *head) {
     return status;
 }
 
-static starg_status leave(helper *h, const ranks_message *head) {
+static starg_status release_helper(helper *h, const ranks_message *head) {
     h->released = true;
     if (head->kind != RANKS_END)
         return STARG_ERROR_RANK;
@@ -75,7 +75,7 @@ static starg_status take_message(helper *h) {
     else if (head.kind == RANKS_BLOCK)
         status = work_on_block(h, &head);
     else
-        status = leave(h, &head);
+        status = release_helper(h, &head);
 done:
     starg_release(h->context, bytes);
     return status;

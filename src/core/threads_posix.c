@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* C11 threads by POSIX threads, in place of the C library's: only in builds with the thread
- * sanitizer, which watches POSIX threads and crashes in others. That the types are the same is so
- * in glibc. Source: ISO/IEC 9899:2018, 7.26. */
+/* C11 threads on top of POSIX threads, in place of the C library's. Only for builds with the thread
+ * sanitizer, which crashes in C11 threads. Relies on both having the same types, as in glibc.
+ * Source: ISO/IEC 9899:2018, 7.26. */
 #include <errno.h>
 #include <pthread.h>
 #include <stdint.h>

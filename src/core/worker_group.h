@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Worker group of a parallel loop: what the threads that work on it share. */
+/* State that the threads of a parallel loop share. */
 #ifndef STARG_CORE_WORKER_GROUP_H
 #define STARG_CORE_WORKER_GROUP_H
 
@@ -12,23 +12,23 @@ typedef struct worker_group {
     const starg_parallel_loop *loop;
     atomic_size_t next, finished;
     atomic_bool stop;
-    atomic_uchar *is_finished; /* by item; NULL unless somebody wants to know */
-    size_t advanced;           /* items reported to `advance`       */
-    mtx_t lock;                /* guards the two below                        */
+    atomic_uchar *is_finished; /* by item; NULL if unused */
+    size_t advanced;           /* items reported to `advance` */
+    mtx_t lock;                /* guards the two below */
     size_t failed_item;
     starg_status failed_status;
-    starg_status calling_status; /* failure of the calling thread's own, with its detail set */
+    starg_status calling_status; /* failure of the calling thread itself, with detail set */
 } worker_group;
 
 void worker_group_fail(worker_group *group, size_t item, starg_status status);
 
-/* Whether there is no point in beginning the item; records the reason. */
+/* True if the item should not be started; records the reason. */
 bool worker_group_must_stop(worker_group *group, size_t item);
 
 /* Counts items as finished. */
 void worker_group_finish(worker_group *group, size_t first, size_t count);
 
-/* Reports the progress of the loop, on the calling thread between items. */
+/* Reports progress of the loop, on the calling thread between items. */
 void worker_group_report(worker_group *group);
 
 /* The calling thread's part in a loop that is shared with other processes (core/distribute.c). */

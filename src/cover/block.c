@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Covering everything: reductions, blocks, and for each block
+/* Full covers: reductions, blocks, and for each block
  *   1. a greedy cover, improved by swaps;
- *   2. rounds of: Lagrangian bound (with covers from its costs), local search down to that bound,
- *      the linear relaxation's bound if that is not enough, rows fixed by their reduced costs,
+ *   2. rounds of: Lagrangian bound (with covers from its reduced costs), local search down to that
+ *      bound, the bound of the linear relaxation if that is not enough, reduced-cost fixing,
  *      reductions of the rest;
- *   3. branch and bound on what is left.
- * Each ends as soon as the bound meets the cover. A relaxed run takes the linear relaxation's
- * bound at once, and ends there.
+ *   3. branch and bound on the rest.
+ * Each step ends as soon as the bound meets the cover. A relaxed run computes the bound of the
+ * linear relaxation at once and stops there.
  *
  * Invariant of a block: every cover with fewer rows than the best one consists of the forced rows
  * and a cover of the rest. */
@@ -19,24 +19,24 @@
 #include "cover/reduce.h"
 #include "cover/relax.h"
 
-/* Programs of many entries take long for each node, and even for their relaxation: a run that may
- * use few nodes leaves them to the Lagrangian bound and the local search. */
+/* Large programs are slow per node and even in their relaxation: runs with few nodes leave them to
+ * the Lagrangian bound and the local search. */
 enum { RELAXATION_ENTRIES = 2000000, NODE_ENTRIES = 3000 };
 
 typedef struct block_solve {
     cover_run *run;
     cover_instance rest;
-    cover_names forced; /* rows that every better cover holds    */
-    cover_names best;   /* the best cover of the block           */
+    cover_names forced; /* rows of every better cover */
+    cover_names best;   /* best cover of the block */
     size_t lower_bound;
-    bool priced; /* the run's prices have those of the block */
+    bool priced; /* the run's prices include the block's */
 } block_solve;
 
 static bool is_closed(const block_solve *block) {
     return block->lower_bound >= block->best.count;
 }
 
-/* No cover has fewer than `rows` rows besides the forced ones, unless the best one is as good. */
+/* No cover has fewer than `rows` rows besides the forced ones, unless the best cover is optimal. */
 static void raise_bound(block_solve *block, size_t rows) {
     size_t bound = block->forced.count + rows;
     if (bound > block->best.count)
@@ -45,7 +45,7 @@ static void raise_bound(block_solve *block, size_t rows) {
         block->lower_bound = bound;
 }
 
-/* Takes the forced rows and a cover of the rest as the best cover if that is smaller. */
+/* Makes the forced rows and a cover of the rest the best cover if that is smaller. */
 static starg_status offer_cover(block_solve *block, const cover_state *cover) {
     starg_status status = STARG_OK;
     if (block->forced.count + cover->count >= block->best.count)
@@ -77,7 +77,7 @@ static bool is_too_large(const block_solve *block, size_t allowance) {
     return entries > allowance && (entries - allowance) / NODE_ENTRIES > nodes;
 }
 
-/* The linear relaxation's multipliers, where the subgradient method has not been enough. */
+/* Improves the multipliers by the linear relaxation where the subgradient method was not enough. */
 static starg_status bound_by_lp(block_solve *block, cover_dual *dual, bool *found) {
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
@@ -120,8 +120,8 @@ done:
     return status;
 }
 
-/* Fixes rows by reduced costs and reduces the rest; *again tells whether another round pays: one
- * row in twenty has gone, or all of them. */
+/* Fixes rows by reduced costs and reduces the rest; *again tells whether another round pays: at
+ * least one row in twenty is gone. */
 static starg_status fix_rest(block_solve *block, const cover_dual *dual, bool *again) {
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
@@ -146,8 +146,8 @@ done:
     return status;
 }
 
-/* The multipliers before any row was fixed are good for the whole block. */
-static void tell_prices(block_solve *block, const cover_dual *dual) {
+/* Multipliers from before any row was fixed are valid for the whole block. */
+static void export_prices(block_solve *block, const cover_dual *dual) {
     double *prices = block->run->prices;
     if (prices == NULL || block->priced)
         return;
@@ -166,7 +166,7 @@ static starg_status run_round(block_solve *block, bool *again) {
     STARG_TRY(offer_cover(block, &cover));
     STARG_TRY(cover_dual_create(&block->rest, &dual));
     STARG_TRY(bound_rest(block, &dual, &cover));
-    tell_prices(block, &dual);
+    export_prices(block, &dual);
     if (is_closed(block) || block->run->relaxed || cover_time_is_over(block->run))
         goto done;
     cover_state_free(&cover); /* the rest is about to change */
@@ -177,7 +177,8 @@ done:
     return status;
 }
 
-/* A cover of the rest for the search to start from, as small as the best one if that is found. */
+/* A cover of the rest to start the search from, as small as the best one if such a cover is
+ * found. */
 static starg_status find_start(block_solve *block, cover_state *cover) {
     starg_status status = STARG_OK;
     STARG_TRY(find_first_cover(block->run, &block->rest, cover));
@@ -216,7 +217,7 @@ done:
     return status;
 }
 
-/* `block->rest` holds the block; `block->best` ends as its cover. */
+/* Takes the block in `block->rest`; returns its cover in `block->best`. */
 static starg_status solve_block(block_solve *block) {
     starg_status status = STARG_OK;
     starg_context *context = block->run->context;
@@ -241,7 +242,7 @@ done:
     return status;
 }
 
-/* Cuts block number `number` out of the instance. */
+/* Extracts one block from the instance. */
 static starg_status cut_block(const cover_instance *instance, const uint32_t *block,
                               uint32_t number, cover_instance *out) {
     starg_status status = STARG_OK;
@@ -282,7 +283,7 @@ starg_status cover_solve_full(cover_run *run, cover_instance *instance, cover_an
     starg_status status = STARG_OK;
     uint32_t *blocks = NULL;
     size_t count;
-    bool feasible; /* always: the problem leaves out what cannot be covered */
+    bool feasible; /* always true: the problem omits columns that cannot be covered */
     STARG_TRY(cover_reduce_full(run, instance, &answer->rows, run->prices, &feasible));
     answer->lower_bound = answer->rows.count;
     STARG_NEW(run->context, "reduce", blocks, instance->rows);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The public call: the problem is checked, brought into its working form, solved for its target,
- * and, where max_rows rows cannot reach that, solved for the most weight. */
+/* Public function: checks the problem, builds its working form, solves it for its target and, if
+ * max_rows rows cannot reach that, for the most weight. */
 #include "starguard/cover.h"
 
 #include "cover/greedy.h"
@@ -11,9 +11,9 @@ static const uint64_t WEIGHT_LIMIT = (uint64_t)1 << 62;
 
 enum { MOST_REDUNDANCY = 1000 };
 
-/* What the caller gets, and the context that its memory goes back to. */
+/* The result and the context that owns its memory. */
 typedef struct owned_cover {
-    starg_cover cover; /* first: a pointer to it is a pointer to the whole */
+    starg_cover cover; /* first, so that pointers to it can be cast back */
     starg_context *context;
 } owned_cover;
 
@@ -73,7 +73,7 @@ done:
     return status;
 }
 
-/* The instance without needless rows, for a partial target or a limit. */
+/* The instance without dominated rows, for a partial target or a limit. */
 static starg_status reduce_rows(cover_run *run, const cover_instance *instance,
                                 cover_instance *rest) {
     starg_status status = STARG_OK;
@@ -94,7 +94,7 @@ done:
     return status;
 }
 
-/* The fewest rows for the goal, whatever max_rows says. */
+/* The fewest rows for the goal, ignoring max_rows. */
 static starg_status solve_goal(cover_run *run, const cover_instance *instance, uint64_t goal,
                                bool exact, cover_answer *answer) {
     if (goal == 0)
@@ -104,7 +104,7 @@ static starg_status solve_goal(cover_run *run, const cover_instance *instance, u
     return solve_part(run, instance, goal, exact, answer);
 }
 
-/* The most weight with `limit` rows, when the answer for the goal has more. */
+/* The most weight with `limit` rows, if the goal takes more. */
 static starg_status solve_limit(cover_run *run, const cover_instance *instance, size_t limit,
                                 uint64_t goal, bool exact, cover_answer *answer, uint64_t *most) {
     starg_status status = STARG_OK;
@@ -126,7 +126,7 @@ done:
     return status;
 }
 
-/* The chosen rows in the order of what each adds; rows that add nothing are left out. */
+/* Sorts the chosen rows by what each adds; drops rows that add nothing. */
 static starg_status order_rows(cover_run *run, const cover_instance *instance,
                                const cover_names *names, starg_cover *cover) {
     starg_status status = STARG_OK;

@@ -4,11 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rows are gone through in strips of a cache line, and of those only the columns that have a
- * multiplier at all: once the method has run for a while most have none. */
+/* Rows are scanned in strips of a cache line, restricted to columns with a nonzero multiplier:
+ * after some steps most are zero. */
 enum { STRIP = 8 };
 
-/* Bits of the columns of a strip whose multiplier is not zero. */
+/* Bits of a strip's columns with nonzero multipliers. */
 static void mark_strip(const cover_instance *instance, const int64_t *multipliers, size_t first,
                        size_t count, uint64_t *marks) {
     for (size_t k = 0; k < count; k++) {
@@ -49,7 +49,7 @@ int64_t cover_dual_value(const cover_instance *instance, const int64_t *multipli
     return value;
 }
 
-/* The multiplier of one column that uses up the smallest reduced cost among its rows. */
+/* Raises the multiplier of one column until the smallest reduced cost among its rows is zero. */
 static int64_t raise_column(const cover_instance *instance, size_t column, int64_t *left) {
     int64_t least = COVER_ONE;
     const uint64_t *rows = cover_column(instance, column);
@@ -79,7 +79,9 @@ static int compare_rare(const void *a, const void *b) {
     return (x->column > y->column) - (x->column < y->column);
 }
 
-starg_status cover_dual_ascent(const cover_instance *instance, int64_t *multipliers) {
+/* Dual ascent: raises multipliers one by one, rare columns first, while all reduced costs stay at
+ * least 0. Fast and weak. */
+static starg_status ascend(const cover_instance *instance, int64_t *multipliers) {
     starg_status status = STARG_OK;
     starg_context *context = instance->context;
     int64_t *left = NULL;
@@ -106,7 +108,7 @@ starg_status cover_dual_create(const cover_instance *instance, cover_dual *out) 
     *out = (cover_dual){0};
     STARG_NEW(context, "bound", out->multipliers, instance->columns);
     STARG_NEW(context, "bound", out->reduced, instance->rows);
-    STARG_TRY(cover_dual_ascent(instance, out->multipliers));
+    STARG_TRY(ascend(instance, out->multipliers));
     out->value = cover_dual_value(instance, out->multipliers, out->reduced);
 done:
     if (status != STARG_OK)

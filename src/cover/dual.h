@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Lower bound on the rows that cover everything: the Lagrangian dual, in whole numbers.
+/* Lower bound on the size of full covers: the Lagrangian dual, in integers.
  *
  * For any multipliers u >= 0, one per column,
  *     L(u) = sum_j demand(j) u(j) + sum_i min(0, 1 - sum of u over the columns of row i)
  * is at most the size of every cover: a cover pays at least demand(j) u(j) for each column j.
- * Multipliers are stored as whole multiples of 2^-20, so L is evaluated exactly in integers
- * whatever floating point found u, and rounding L up to a whole number of rows is a proof. */
+ * Multipliers are stored as integer multiples of 2^-20, so L is evaluated exactly however u was
+ * found, and L rounded up to a whole number of rows is a proven bound. */
 #ifndef STARG_COVER_DUAL_H
 #define STARG_COVER_DUAL_H
 
 #include "cover/state.h"
 
-/* 1 and the largest multiplier. With 2^32 columns, demands to 1,000 and multipliers of 16 rows
- * the terms stay below 2^32 x 2^10 x 2^24; instances of that size do not fit into memory, those
- * that do (below 2^28 columns) stay below 2^62. */
+/* 1 and the largest multiplier. With 2^32 columns, demands to 1,000 and multipliers of 16 rows the
+ * terms stay below 2^32 x 2^10 x 2^24; instances that fit into memory (below 2^28 columns) stay
+ * below 2^62. */
 #define COVER_ONE  ((int64_t)1 << 20)
 #define COVER_MOST (16 * COVER_ONE)
 
-/* L(u) in units of COVER_ONE; `reduced` gets 1 - sum of u for each row, in the same units. */
+/* L(u) in units of COVER_ONE; `reduced` receives 1 - sum of u for each row, in the same units. */
 int64_t cover_dual_value(const cover_instance *instance, const int64_t *multipliers,
                          int64_t *reduced);
 
@@ -26,33 +26,29 @@ static inline size_t cover_dual_rows(int64_t value) {
     return value <= 0 ? 0 : (size_t)((value + COVER_ONE - 1) / COVER_ONE);
 }
 
-/* Dual ascent: raises the multipliers one by one, those of rare columns first, as far as every
- * reduced cost stays at least 0. Fast and weak. Errors: MEMORY. */
-starg_status cover_dual_ascent(const cover_instance *instance, int64_t *multipliers);
-
-/* The best bound known, and what proves it. */
+/* The best known bound and its proof. */
 typedef struct cover_dual {
     int64_t *multipliers;
     int64_t *reduced; /* of `multipliers` */
     int64_t value;    /* of `multipliers` */
 } cover_dual;
 
-/* Dual ascent's multipliers. Errors: MEMORY. */
+/* Starts from the multipliers of dual ascent. Errors: MEMORY. */
 starg_status cover_dual_create(const cover_instance *instance, cover_dual *out);
 void cover_dual_free(const cover_instance *instance, cover_dual *dual);
 
-/* Takes other multipliers over, with their reduced costs and value as from cover_dual_value, when
- * the value is larger. */
+/* Replaces the multipliers by others, with their reduced costs and value as from cover_dual_value,
+ * if the value is larger. */
 void cover_dual_offer(const cover_instance *instance, cover_dual *dual, const int64_t *multipliers,
                       const int64_t *reduced, int64_t value);
 
-/* Improves the dual by the subgradient method and `best`, a cover of everything, on the way; stops
- * when they meet. Errors: MEMORY, CANCELLED. */
+/* Improves the dual by the subgradient method, and `best`, a full cover, on the way; stops when
+ * they meet. Errors: MEMORY, CANCELLED. */
 starg_status cover_lagrange(cover_run *run, const cover_instance *instance, cover_dual *dual,
                             cover_state *best);
 
-/* Reduced-cost fixing, when only covers of at most `most` rows matter: clears rows that no such
- * cover holds in `keep`, sets rows that each of them holds in `take`; true if there are any. */
+/* Reduced-cost fixing for covers of at most `most` rows: clears in `keep` the rows that no such
+ * cover holds, sets in `take` the rows that all of them hold; true if there are any. */
 bool cover_dual_fix(const cover_instance *instance, const cover_dual *dual, size_t most,
                     uint64_t *keep, uint64_t *take);
 

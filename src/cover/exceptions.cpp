@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The one file in C++: C has no way to catch.
+/* The only C++ file: C cannot catch exceptions.
  *
- * When memory is out, operator new calls a handler, again and again until it finds some. The first
- * time it gets a reserve, and the solver is asked to stop. Where the reserve does not last until it
- * does, the handler of the process has its turn, if it has one; else the process ends with
- * status 3. A jump out of the handler would be undefined, and an exception runs the destructors of
- * half-made objects, some of which read in CBC what was never written. */
+ * When memory is out, operator new calls a handler repeatedly until it finds some. The first call
+ * releases a reserve and asks the solver to stop. If the reserve runs out before it does, the
+ * process's own handler runs if there is one; otherwise the process ends with status 3. Jumping out
+ * of the handler would be undefined, and an exception would run destructors of partly constructed
+ * objects, some of which read uninitialized memory in CBC. */
 #include "cover/exceptions.h"
 
 #include <atomic>
@@ -14,12 +14,11 @@
 #include <new>
 
 static const std::size_t RESERVE = std::size_t(32) << 20;
-static const int OUT_OF_MEMORY =
-    3; /* exit status, that of the command line for what could not finish */
+static const int OUT_OF_MEMORY = 3; /* exit status, as of the command line for unfinished work */
 
-static thread_local bool is_inside;           /* this thread is in a call            */
-static thread_local void *reserve;            /* NULL: used up                       */
-static std::atomic<std::new_handler> process; /* the handler of the process          */
+static thread_local bool is_inside;           /* this thread is in a call */
+static thread_local void *reserve;            /* NULL: used up */
+static std::atomic<std::new_handler> process; /* the handler of the process */
 
 static void find_memory() {
     std::new_handler own = process;

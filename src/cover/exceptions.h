@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* CBC and Clp are C++: what they throw must not get into C, where nobody catches it and the process
- * ends, and their memory may be out. */
+/* Calls into CBC and Clp, which are C++: their exceptions must not pass through C code, and they
+ * may run out of memory. */
 #ifndef STARG_COVER_EXCEPTIONS_H
 #define STARG_COVER_EXCEPTIONS_H
 
@@ -10,12 +10,12 @@
 extern "C" {
 #endif
 
-/* Makes the call; false when it ended somewhere in the middle for an exception, or did not begin
- * for want of memory. One call at a time in the process (cover/solver.h). Where memory is out
- * within it and a reserve is used up as well, the process ends with status 3 and a message. */
+/* Makes the call; false if an exception ended it, or if memory was too low to begin. One call at a
+ * time in the process (cover/solver.h). If memory runs out during the call and the reserve is used
+ * up too, the process ends with status 3 and a message. */
 bool cover_call_safely(void (*call)(void *argument), void *argument);
 
-/* Within the call: the reserve is in use, so that the call had better come to an end. */
+/* Within the call: the reserve is in use, so the call should end soon. */
 bool cover_memory_is_low(void);
 
 #ifdef __cplusplus

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Greedy set cover [Joh74] with lazy evaluation: a row's need never grows while rows are added, so
- * a heap of stale needs suffices: the row on top is evaluated afresh and stays on top, or sinks.
- * Cost: one pass over the ones of the matrix, then a few rows per choice. */
+/* Greedy set cover [Joh74] with lazy evaluation: needs never grow while rows are added, so a heap
+ * of stale needs is enough: the top row is re-evaluated and either stays on top or sinks. Cost: one
+ * pass over the ones of the matrix, then a few rows per choice. */
 #include "cover/greedy.h"
 
 typedef struct heap_entry {
@@ -60,7 +60,7 @@ done:
     return status;
 }
 
-/* Position of the chosen row of least loss; of equals the one with the highest index. */
+/* Position of the chosen row of least loss; ties go to the highest index. */
 static size_t least_loss(const cover_state *state, uint64_t *loss) {
     size_t best = 0;
     *loss = UINT64_MAX;

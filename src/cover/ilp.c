@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Branch and bound by CBC on a part of the columns, which grows until the best cover of the part
- * covers everything:
- *   1. the columns that the linear relaxation leaves tight are the first part;
- *   2. CBC solves the part, starting from a cover that is known;
- *   3. if its answer leaves columns out, these join the part, and it goes on with 2.
- * A cover of everything covers the part, so what is proven of the part holds for everything. Each
- * turn takes in a column, so there is an end; a few turns are usual.
+/* Branch and bound by CBC on a subset of the columns, which grows until its best cover covers
+ * everything:
+ *   1. start with the columns that are tight in the linear relaxation;
+ *   2. CBC solves the subset, starting from a known cover;
+ *   3. if its answer leaves columns uncovered, add them and repeat 2.
+ * A full cover covers the subset, so bounds for the subset hold for everything. Every round adds a
+ * column, so the loop ends, usually after a few rounds.
  *
- * What one has to know of CBC's C interface:
- *   - Two solves at once in one process fail silently: a lock (solver.h).
- *   - It has no way to stop a solve. A cut callback runs at every node: when we want to stop it
- * adds the cut x0 >= 2, which makes every open node infeasible. CBC then ends at once, with claims
- *     that are worth nothing; its covers are still looked at.
- *   - A known cover has to be given as a start. A mere cutoff makes CBC believe that it has no
- *     solution yet: it then looks for one all the way, in trees that are ten times as large.
- *   - Its heuristics find nothing that our local search has not found: off. Its preprocessing can
- *     crash on infeasible models and gains nothing after our reductions: off. Limits are by elapsed
- *     time. All printing is off.
- *   - When memory is out it cannot go on: it lives on a reserve until the next node, where it is
+ * Properties of CBC's C interface:
+ *   - Two simultaneous solves in one process fail silently: a lock (solver.h).
+ *   - A solve cannot be stopped from outside. A cut callback runs at every node: to stop, it adds
+ *     the cut x0 >= 2, which makes every open node infeasible. CBC then ends at once; its claims
+ *     are worthless then, but its covers are still examined.
+ *   - A known cover must be given as a start. With a mere cutoff CBC believes that it has no
+ *     solution and searches for one throughout, in trees ten times as large.
+ *   - Off: its heuristics, which find nothing beyond our local search; its preprocessing, which can
+ *     crash on infeasible models and gains nothing after our reductions; all printing. Limits are
+ *     by elapsed time.
+ *   - It cannot continue without memory: it lives on a reserve until the next node, where it is
  *     stopped (exceptions.h). After an exception its model is lost, and it is not called again.
  *
- * Trust: coefficients and costs are 1, demands at most 1,000, so the model is exact in doubles. A
- * cover from CBC is checked on the bits. Gaps are closed by our exact dual bound first (dual.h);
- * where that is not enough, CBC's word "no better cover exists" is accepted. A bound that it gives
- * without having finished is rounded up only where it exceeds a whole number by more than
- * BOUND_MARGIN, far above its tolerance of 1e-6. */
+ * Correctness: coefficients and costs are 1, demands at most 1,000, so the model is exact in
+ * doubles. Covers from CBC are checked on the bits. Gaps are first closed by our exact dual bound
+ * (dual.h); otherwise CBC's statement that no better cover exists is accepted. If CBC did not
+ * finish, its bound is rounded up only where it exceeds an integer by more than BOUND_MARGIN, far
+ * above its tolerance of 1e-6. */
 #include "cover/ilp.h"
 
 #include <limits.h>
@@ -38,8 +38,8 @@
 
 static const double BOUND_MARGIN = 1e-3;
 
-/* Columns of the first part: those whose surplus in the relaxation is at most this: the tight ones.
- * More of them save turns, but each node takes longer and cuts are found less easily. */
+/* The first subset: columns whose surplus in the relaxation is at most this, so the tight ones. A
+ * larger subset saves rounds, but nodes take longer and cuts are harder to find. */
 static const double FIRST_SURPLUS = 0.01;
 
 /* The model min sum x, sum over R(j) of x >= demand(j), 0 <= x <= 1, by variables. */
@@ -79,7 +79,7 @@ static void fill_model(const cover_instance *instance, model_data *data) {
         data->demand[j] = instance->demands[j];
 }
 
-/* *fits is false when the model has more entries than the library's index type can count. */
+/* *fits is false if the model has more entries than the library's index type can count. */
 static starg_status make_model(const cover_instance *instance, model_data *data, bool *fits) {
     starg_status status = STARG_OK;
     starg_context *context = instance->context;
@@ -106,10 +106,10 @@ done:
     return status;
 }
 
-/* What the cut callback sees. */
+/* Argument of the cut callback. */
 typedef struct stop_request {
     cover_run *run;
-    size_t nodes; /* of the searches before, and calls since: about as many */
+    size_t nodes; /* nodes of earlier searches plus calls since: about as many */
     bool stopped;
 } stop_request;
 
@@ -127,16 +127,16 @@ static void stop_if_asked(void *solver, void *cuts, void *user) {
     }
 }
 
-/* A search on a growing part of the columns. */
+/* A search on a growing subset of the columns. */
 typedef struct part_search {
     cover_run *run;
     const cover_instance *instance;
-    uint64_t *columns; /* mask of the part                                       */
-    cover_state *best; /* the best cover of everything                           */
-    cover_state trial; /* what CBC chose last, as a choice for everything        */
-    size_t bound;      /* no cover has fewer rows                                */
-    size_t nodes;      /* used so far                                            */
-    bool answered;     /* the trial is an optimal cover of the part              */
+    uint64_t *columns; /* mask of the subset */
+    cover_state *best; /* the best full cover */
+    cover_state trial; /* CBC's last choice, as a choice for everything */
+    size_t bound;      /* no cover has fewer rows */
+    size_t nodes;      /* used so far */
+    bool answered;     /* the trial is an optimal cover of the subset */
 } part_search;
 
 static void set_limits(const part_search *search, Cbc_Model *model) {
@@ -151,7 +151,7 @@ static void set_limits(const part_search *search, Cbc_Model *model) {
         Cbc_setMaximumSeconds(model, cover_seconds_left(search->run));
 }
 
-/* The best cover as CBC's first solution: `index` and `value` have room for all rows. */
+/* The best cover as CBC's first solution; `index` and `value` have room for all rows. */
 static void set_start(const cover_state *best, Cbc_Model *model, int *index, double *value) {
     for (size_t c = 0; c < best->count; c++) {
         index[c] = (int)best->rows[c];
@@ -177,18 +177,19 @@ static bool covers_part(const part_search *search) {
     return true;
 }
 
-/* What CBC has proven about the covers of the part; `count` is the size of the one it found. */
+/* The bound that CBC has proven for covers of the subset; `count` is the size of the cover
+ * found. */
 static size_t proven_bound(const part_search *search, Cbc_Model *model, size_t count) {
     if (search->answered)
         return count;
     double best = Cbc_getBestPossibleObjValue(model);
     if (Cbc_status(model) != 1 || !(best > 0))
         return 0;
-    /* It has not finished: a bound that claims the end is not believed. */
+    /* it has not finished: a bound that would close the gap is not trusted */
     return best < (double)count - 0.5 ? (size_t)ceil(best - BOUND_MARGIN) : 0;
 }
 
-/* Takes over CBC's choice, if it covers the part, and its bound. */
+/* Accepts CBC's choice, if it covers the subset, and its bound. */
 static void take_answer(part_search *search, Cbc_Model *model, bool stopped) {
     cover_run *run = search->run;
     const double *solution = Cbc_bestSolution(model);
@@ -218,7 +219,7 @@ typedef struct cbc_call {
     model_data *data;
 } cbc_call;
 
-/* May be left by an exception at each call of CBC: what it has found counts only at the end. */
+/* An exception may leave this at any call of CBC: results count only at the end. */
 static void run_cbc(void *argument) {
     part_search *search = ((cbc_call *)argument)->search;
     const model_data *data = ((cbc_call *)argument)->data;
@@ -260,7 +261,7 @@ done:
     return status;
 }
 
-/* Takes in the columns that the trial leaves open; false when there are none. */
+/* Adds the columns that the trial leaves open; false if there are none. */
 static bool grow_part(part_search *search) {
     bool any = false;
     for (size_t w = 0; w < search->instance->row_words; w++) {

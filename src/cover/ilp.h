@@ -5,8 +5,8 @@
 
 #include "cover/state.h"
 
-/* Improves `best`, a cover of everything, by branch and bound; what it takes over is checked on the
- * bits. *bound: no cover has fewer rows; 0 when nothing was proven. Errors: MEMORY, CANCELLED. */
+/* Improves `best`, a full cover, by branch and bound; new covers are checked on the bits. *bound:
+ * no cover has fewer rows; 0 if nothing was proven. Errors: MEMORY, CANCELLED. */
 starg_status cover_ilp_solve(cover_run *run, const cover_instance *instance, cover_state *best,
                              size_t *bound);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Swap search: each chosen row in turn is exchanged for the row that covers most in its place, as
- * long as that gains. Every exchange raises the covered weight, so the search ends; rounds are
- * limited all the same. Cost of a round: chosen rows x the whole matrix, by words. */
+/* Swap search: each chosen row in turn is replaced by the row that covers most in its place, if
+ * that gains. Every swap raises the covered weight, so the search terminates; rounds are limited
+ * too. Cost of a round: chosen rows x the whole matrix, by words. */
 #include "cover/greedy.h"
 
 enum { MOST_ROUNDS = 20 };
@@ -21,7 +21,7 @@ static size_t best_to_add(const cover_state *state, uint64_t *gain) {
     return best;
 }
 
-/* Puts the best row in the place of the one at a position; true if that covers more. */
+/* Puts the best row at a position; true if that covers more. */
 static bool swap_at(cover_state *state, size_t position) {
     uint32_t out = state->rows[position];
     uint64_t before = state->weight, gain;
@@ -29,7 +29,7 @@ static bool swap_at(cover_state *state, size_t position) {
     size_t in = best_to_add(state, &gain);
     bool better = in != SIZE_MAX && state->weight + gain > before;
     cover_state_add(state, better ? in : out);
-    /* The new row stands last, and what stood last at the position: exchange them. */
+    /* the new row is last, and the former last is at the position: exchange them */
     size_t last = state->count - 1;
     uint32_t moved = state->rows[position];
     state->rows[position] = state->rows[last];

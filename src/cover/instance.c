@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-/* The rows of a 64 x 64 block of bits become its columns: halves swapped, then quarters, ... */
+/* Transposes a 64 x 64 block of bits: swaps halves, then quarters, ... */
 static void transpose_block(uint64_t block[64]) {
     uint64_t mask = UINT64_C(0x00000000ffffffff);
     for (unsigned step = 32; step != 0; step >>= 1, mask ^= mask << step) {
@@ -50,7 +50,7 @@ void cover_instance_free(cover_instance *instance) {
     *instance = (cover_instance){.context = instance->context};
 }
 
-/* Sets the sizes and allocates everything; the contents are undefined. */
+/* Sets the sizes and allocates; the contents are undefined. */
 static starg_status shape(starg_context *context, size_t rows, size_t columns,
                           cover_instance *out) {
     starg_status status = STARG_OK;
@@ -74,7 +74,7 @@ done:
     return status;
 }
 
-/* The indices of the ones of a mask (NULL: of all) of `count` bits. */
+/* Indices of the set bits of a mask of `count` bits (NULL: all). */
 static starg_status list_kept(starg_context *context, const uint64_t *mask, size_t count,
                               uint32_t **list, size_t *kept) {
     starg_status status = STARG_OK;
@@ -130,7 +130,7 @@ done:
     return status;
 }
 
-/* The caller's matrix as it is, seen as an instance. */
+/* The caller's matrix as an instance, unchanged. */
 static starg_status import(starg_context *context, const starg_cover_problem *problem,
                            cover_instance *out) {
     const starg_bits *bits = problem->rows;
@@ -161,7 +161,7 @@ static void empty_row(cover_instance *instance, size_t row) {
     }
 }
 
-/* Takes the given rows; *covered sums the weights of the columns that need no more. */
+/* Applies the given rows; *covered sums the weights of the columns they satisfy. */
 static void take_given(const starg_cover_problem *problem, cover_instance *instance,
                        uint64_t *covered) {
     *covered = 0;
@@ -205,7 +205,7 @@ static bool same_column(const cover_instance *instance, size_t a, size_t b) {
                   instance->column_words * sizeof(uint64_t)) == 0;
 }
 
-/* Adds the weight of each column in a run of equal hashes to the first one equal to it. */
+/* In a run of equal hashes, adds the weight of each column to the first equal column. */
 static void merge_run(cover_instance *instance, const hashed_column *run, size_t count,
                       uint64_t *keep) {
     for (size_t a = 0; a < count; a++) {
@@ -222,7 +222,7 @@ static void merge_run(cover_instance *instance, const hashed_column *run, size_t
     }
 }
 
-/* Marks the columns that count, one for each set of identical ones, and sums their weights. */
+/* Marks one column of each set of identical ones, and sums their weights. */
 static starg_status merge_columns(cover_instance *instance, uint64_t *keep) {
     starg_status status = STARG_OK;
     starg_context *context = instance->context;

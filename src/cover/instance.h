@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The working form of a cover problem: only columns that count, identical ones merged, with the
- * bits by rows and by columns.
+/* Working form of a cover problem: only relevant columns, identical ones merged, with the bits by
+ * rows and by columns.
  *
- * Columns of weight 0 and columns that no row holds never count, so they are left out. Columns
- * that the same rows hold, with the same demand, are covered together or not at all, so one column
- * with the sum of their weights stands for all of them.
- * Both hold in every mode. Given rows lower the demands of what they hold and are then left without
+ * Columns of weight 0 and columns in no row never count and are removed. Columns in the same rows
+ * with the same demand are covered together, so one column carries the sum of their weights. Both
+ * hold in every mode. Given rows lower the demands of their columns and are then left without
  * columns. Cost: O(rows x columns / 64 + columns log columns). */
 #ifndef STARG_COVER_INSTANCE_H
 #define STARG_COVER_INSTANCE_H
@@ -20,25 +19,24 @@ __extension__ typedef __int128 cover_wide;
 typedef struct cover_instance {
     starg_context *context;
     size_t rows, columns;
-    size_t row_words;    /* words of one row: one bit per column */
-    size_t column_words; /* words of one column: one bit per row */
+    size_t row_words;    /* words per row: one bit per column */
+    size_t column_words; /* words per column: one bit per row */
     uint64_t *row_bits, *column_bits;
-    uint64_t *weights;      /* per column, positive; their sum is below 2^62  */
-    uint32_t *demands;      /* per column, 1 to the number of rows that hold it,
-                               unless rows have been dropped since            */
-    uint32_t *row_names;    /* per row: its index in the caller's matrix      */
-    uint32_t *column_names; /* per column: the first of those it stands for */
-    uint64_t total;         /* sum of the weights                             */
+    uint64_t *weights;      /* per column, positive; their sum is below 2^62 */
+    uint32_t *demands;      /* per column, 1 to the number of its rows (before rows are dropped) */
+    uint32_t *row_names;    /* per row: its index in the caller's matrix */
+    uint32_t *column_names; /* per column: the first column it represents */
+    uint64_t total;         /* sum of the weights */
 } cover_instance;
 
-/* What the stages of one call share. */
+/* Shared by the stages of one call. */
 typedef struct cover_run {
     starg_context *context;
     size_t max_nodes;
-    size_t nodes;      /* branch-and-bound nodes used so far          */
-    bool time_limited; /* some stage was cut short by the time limit  */
-    bool relaxed;      /* everything: no more than the linear relaxation */
-    double *prices;    /* per column of the caller's matrix, or NULL  */
+    size_t nodes;      /* branch-and-bound nodes used so far */
+    bool time_limited; /* the time limit cut some stage short */
+    bool relaxed;      /* full covers: nothing beyond the linear relaxation */
+    double *prices;    /* per column of the caller's matrix, or NULL */
 } cover_run;
 
 /* A list of row names. */
@@ -52,24 +50,24 @@ static inline const uint64_t *cover_column(const cover_instance *instance, size_
     return instance->column_bits + column * instance->column_words;
 }
 
-/* True when the time limit has passed; remembers that it cut something short. */
+/* True after the time limit; records that it cut something short. */
 static inline bool cover_time_is_over(cover_run *run) {
     if (starg_time_is_over(run->context))
         run->time_limited = true;
     return run->time_limited;
 }
 
-/* Builds the working form of a checked problem; *given gets the weight that the given rows cover,
- * which is not part of the instance. Errors: MEMORY. */
+/* Builds the working form of a checked problem; *given receives the weight covered by the given
+ * rows, which is not part of the instance. Errors: MEMORY. */
 starg_status cover_instance_build(starg_context *context, const starg_cover_problem *problem,
                                   cover_instance *out, uint64_t *given);
 
-/* Builds the part of `from` whose rows and columns are set in the masks (NULL: all of them).
- * Weights, demands and names are carried over unchanged. Errors: MEMORY. */
+/* Extracts the rows and columns set in the masks (NULL: all). Weights, demands and names stay the
+ * same. Errors: MEMORY. */
 starg_status cover_instance_select(const cover_instance *from, const uint64_t *rows,
                                    const uint64_t *columns, cover_instance *out);
 
-/* Frees the arrays and empties the instance; harmless on a zeroed one. */
+/* Frees the arrays and empties the instance; a zeroed one is allowed. */
 void cover_instance_free(cover_instance *instance);
 
 /* Sets the first `count` bits of a mask and clears the rest of its last word. */

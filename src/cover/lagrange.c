@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The subgradient method for the Lagrangian dual, with covers built from its reduced costs, after
- * [CFT99] with Held and Karp's control of the step length. Floating point only steers: every step's
- * multipliers are rounded to whole numbers and evaluated exactly. Cost of a step: the ones of the
- * matrix, twice. */
+/* Subgradient method for the Lagrangian dual, with covers built from its reduced costs, after
+ * [CFT99] with Held and Karp's step length control. Floating point only steers: the multipliers of
+ * every step are rounded to integers and evaluated exactly. Cost of a step: the ones of the matrix,
+ * twice. */
 #include <stdlib.h>
 
 #include "cover/dual.h"
@@ -10,8 +10,8 @@
 
 enum {
     MOST_STEPS = 400,
-    STEPS_PER_REVIEW = 20, /* the step factor is reviewed this often          */
-    STEPS_PER_COVER = 10   /* and a cover is built from the reduced costs     */
+    STEPS_PER_REVIEW = 20, /* steps between adjustments of the step factor */
+    STEPS_PER_COVER = 10   /* steps between covers from the reduced costs */
 };
 
 typedef struct priced_row {
@@ -23,13 +23,13 @@ typedef struct lagrange {
     const cover_instance *instance;
     cover_dual *dual;
     cover_state *best, *trial;
-    double *point;              /* multipliers, in rows                        */
-    double *slope;              /* subgradient per column                      */
-    int64_t *rounded, *reduced; /* multipliers of this step, and their costs   */
+    double *point;              /* multipliers, in rows */
+    double *slope;              /* subgradient per column */
+    int64_t *rounded, *reduced; /* multipliers of this step, and their reduced costs */
     priced_row *order;
-    int64_t value;    /* exact value of this step                     */
-    int64_t reached;  /* best value of the steps so far               */
-    int64_t reviewed; /* `reached` at the last review                 */
+    int64_t value;    /* exact value of this step */
+    int64_t reached;  /* best value of the steps so far */
+    int64_t reviewed; /* `reached` at the last review */
     double factor;
 } lagrange;
 
@@ -54,8 +54,8 @@ static void evaluate(lagrange *search) {
         search->reached = search->value;
 }
 
-/* The subgradient: what each column lacks when the rows of negative cost are chosen. Returns its
- * squared length; components that would push a zero multiplier below zero do not count. */
+/* The subgradient: what each column lacks if the rows of negative cost are chosen. Returns its
+ * squared length; ignores components that would make a zero multiplier negative. */
 static double find_slope(lagrange *search) {
     const cover_instance *instance = search->instance;
     double square = 0;
@@ -87,14 +87,14 @@ static void take_step(lagrange *search, double square) {
     }
 }
 
-/* Shorter steps when the last ones have brought nothing. */
+/* Shortens steps if the last ones did not improve the value. */
 static void review(lagrange *search) {
     if (search->reached <= search->reviewed)
         search->factor *= 0.5;
     search->reviewed = search->reached;
 }
 
-/* A cover from the cheapest rows, needless ones dropped. */
+/* Builds a cover from the cheapest rows and drops redundant ones. */
 static void build_cover(lagrange *search) {
     const cover_instance *instance = search->instance;
     cover_state *trial = search->trial;
@@ -130,8 +130,8 @@ static starg_status iterate(cover_run *run, lagrange *search) {
     return STARG_OK;
 }
 
-/* Each column pays as much as the largest of its rows asks of each of its columns: dual feasible,
- * and spread out, which suits the method better than the corner that dual ascent ends in. */
+/* Each column pays 1 / n for its largest row, of n columns: dual feasible and spread out, which
+ * suits the method better than the vertex where dual ascent ends. */
 static void set_start(lagrange *search) {
     const cover_instance *instance = search->instance;
     for (size_t j = 0; j < instance->columns; j++)

@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Local search with weights on the columns, after Gao, Weise and Li (An efficient local search
- * heuristic with row weighting for the unicost set covering problem, EJOR 246, 2015), stated for
- * demands. Whenever everything is covered that is the best cover, and the chosen row of least loss
- * goes. Then each step
+/* Local search with column weights, after Gao, Weise and Li (An efficient local search heuristic
+ * with row weighting for the unicost set covering problem, EJOR 246, 2015), generalized to demands.
+ * Whenever everything is covered, that is the new best cover, and the chosen row of least loss is
+ * removed. Each step then
  *   1. removes the chosen row of least loss;
- *   2. lets a random column that lacks rows choose the row of largest gain among those that hold
- *      it;
- *   3. makes every column that still lacks rows heavier by one, which drives the search to cover
- *      what it keeps missing.
- * Ties go to the row that has not moved for longest. A row that comes in stays for the next step;
- * one that goes does not come back in the same step.
+ *   2. picks a random column that lacks rows and adds the row of largest gain among its rows;
+ *   3. increments the weight of every column that still lacks rows, which drives the search to
+ *      columns that it keeps missing.
+ * Ties go to the row that has not moved for longest. A row just added stays for the next step; one
+ * just removed does not return in the same step.
  *
- * score(i) is the gain of a row that is not chosen, the loss of one that is: the sum of the weights
- * of its columns with held < demand, or with held <= demand. A move changes the scores only of the
- * rows of columns whose count crosses their demand.
+ * score(i) is the gain of an unchosen row and the loss of a chosen one: the sum of the weights of
+ * its columns with held < demand, or with held <= demand. A move changes only the scores of rows of
+ * columns whose count crosses their demand.
  *
- * Cost of a step: the ones of two rows, and the ones of the columns that change. The search is
- * limited by counts, so that the result is the same on every machine. */
+ * Cost of a step: the ones of two rows, and the ones of the columns that change. The limits are
+ * counts, so that the result is the same on every machine. */
 #include "cover/local.h"
 
 #include "core/rng.h"
@@ -24,20 +23,19 @@
 /* Without a better cover the search ends after this many steps per row, or this much work. */
 static const uint64_t PATIENT_STEPS = 50;
 static const uint64_t PATIENT_WORK = 100000000; /* some tenths of a second */
-static const uint64_t WORK_PER_CHECK = 2000000; /* between looks at the clock */
+static const uint64_t WORK_PER_CHECK = 2000000; /* between checks of the clock */
 
 typedef struct local_search {
     const cover_instance *instance;
     cover_state at;
-    uint64_t *score;  /* per row    */
+    uint64_t *score;  /* per row */
     uint64_t *weight; /* per column */
-    uint64_t *moved;  /* per row: the step of its last move, 0: none */
+    uint64_t *moved;  /* per row: step of its last move, 0: none */
     uint64_t step, work;
     starg_rng rng;
 } local_search;
 
-/* Adds `change`, modulo 2^64, to the scores of the column's rows that are chosen or that are not.
- */
+/* Adds `change`, modulo 2^64, to the scores of a column's chosen or unchosen rows. */
 static void shift_scores(local_search *search, size_t column, bool chosen, uint64_t change) {
     const uint64_t *holders = cover_column(search->instance, column);
     for (size_t w = 0; w < search->instance->column_words; w++) {
@@ -50,9 +48,10 @@ static void shift_scores(local_search *search, size_t column, bool chosen, uint6
     search->work += search->instance->column_words;
 }
 
-/* The scores when `row`, not chosen, is about to be added (direction -1: what the others lose) or
- * has just been removed (+1: what they get back). Its own score is its loss or gain in both cases:
- * it loses nothing where held <= demand after the addition, which is held < demand before it. */
+/* Updates the scores just before an unchosen `row` is added (direction -1: the others' losses) or
+ * just after it was removed (+1: they get them back). Its own score is its loss or gain in both
+ * cases: it loses nothing where held <= demand after the addition, which is held < demand before
+ * it. */
 static void update_scores(local_search *search, size_t row, uint64_t direction) {
     const cover_instance *instance = search->instance;
     uint64_t own = search->score[row];
@@ -89,7 +88,7 @@ static bool moved_earlier(const local_search *search, size_t a, size_t b) {
 }
 
 /* Position of the chosen row to remove: least loss, then longest unmoved, then lowest index; rows
- * that came in after step `since` stay. SIZE_MAX when all of them do. */
+ * added after step `since` stay. SIZE_MAX if all of them do. */
 static size_t choose_to_remove(local_search *search, uint64_t since) {
     const uint32_t *rows = search->at.rows;
     const uint64_t *score = search->score;
@@ -105,7 +104,7 @@ static size_t choose_to_remove(local_search *search, uint64_t since) {
     return best;
 }
 
-/* The row of a column to add, by the same order from the largest gain; SIZE_MAX when none may. */
+/* The row of a column to add: largest gain, same tie-breaking; SIZE_MAX if none is allowed. */
 static size_t choose_to_add(local_search *search, size_t column) {
     const uint64_t *holders = cover_column(search->instance, column);
     size_t best = SIZE_MAX;
@@ -141,8 +140,8 @@ static size_t choose_open(local_search *search) {
     return 64 * w + (size_t)starg_bit_lowest(word);
 }
 
-/* Makes the open columns heavier, for their gains and losses too. */
-static void weigh_open(local_search *search) {
+/* Increments the weights of open columns, and updates scores. */
+static void raise_weights(local_search *search) {
     for (size_t w = 0; w < search->instance->row_words; w++) {
         STARG_FOR_BITS (bit, search->at.open[w]) {
             size_t column = 64 * w + bit;
@@ -161,11 +160,11 @@ static void take_step(local_search *search) {
     size_t in = choose_to_add(search, choose_open(search));
     if (in != SIZE_MAX)
         add_row(search, in);
-    weigh_open(search);
+    raise_weights(search);
 }
 
-/* Drops rows of least loss from what covers everything until it does so no more. */
-static void note_cover(local_search *search, cover_state *best) {
+/* Records a full cover; drops rows of least loss until it is no longer full. */
+static void record_cover(local_search *search, cover_state *best) {
     while (search->at.weight == search->instance->total && search->at.count != 0) {
         cover_state_copy(best, &search->at);
         remove_at(search, choose_to_remove(search, UINT64_MAX));
@@ -194,7 +193,7 @@ done:
 static starg_status iterate(cover_run *run, local_search *search, size_t enough,
                             cover_state *best) {
     uint64_t check = 0, last_work = search->work, last_step = search->step;
-    note_cover(search, best);
+    record_cover(search, best);
     while (best->count > enough && search->work - last_work < PATIENT_WORK &&
            search->step - last_step < PATIENT_STEPS * search->instance->rows) {
         if (search->work >= check) {
@@ -205,7 +204,7 @@ static starg_status iterate(cover_run *run, local_search *search, size_t enough,
         }
         size_t before = best->count;
         take_step(search);
-        note_cover(search, best);
+        record_cover(search, best);
         if (best->count < before) {
             last_work = search->work;
             last_step = search->step;

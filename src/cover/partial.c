@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A partial target, or a limit on the rows: bounds by weight_bound.h, from the linear relaxation
- * (weight_relax.c), exact search by search.h. The fewest rows for a target are found by asking for
- * each number of rows from the bound upwards whether so many can reach it. */
+/* A partial target, or a limit on the rows: bounds by weight_bound.h and the linear relaxation
+ * (weight_relax.c), exact search by search.h. The fewest rows for a target are found by testing
+ * each number of rows from the bound upwards. */
 #include "cover/solve.h"
 
 #include "cover/greedy.h"
 #include "cover/search.h"
 
-/* A good choice of the fewest rows that reach the goal, by greedy, dropping and swaps. */
+/* A good choice of few rows that reach the goal, by greedy, removal and swaps. */
 static starg_status find_first_choice(cover_run *run, cover_state *choice, uint64_t goal) {
     starg_status status = STARG_OK;
     STARG_TRY(cover_greedy(run, choice, goal, choice->instance->rows));
@@ -17,7 +17,7 @@ done:
     return status;
 }
 
-/* Asks for `rows` rows; leaves `best` alone unless they reach the goal. */
+/* Searches for `rows` rows that reach the goal; leaves `best` alone if there are none. */
 static starg_status try_rows(cover_run *run, const cover_instance *instance, size_t rows,
                              cover_weight_bound *bound, cover_state *best, bool *decided) {
     starg_status status = STARG_OK;
@@ -75,7 +75,7 @@ done:
     return status;
 }
 
-/* Raises the weight of the choice, or lowers the bound on it, until they meet. */
+/* Raises the weight of the choice or lowers its upper bound until they meet. */
 static starg_status close_weight_gap(cover_run *run, const cover_instance *instance, uint64_t goal,
                                      cover_weight_bound *bound, cover_state *choice) {
     starg_status status = STARG_OK;
@@ -89,7 +89,7 @@ done:
     return status;
 }
 
-/* The bound on the rows for the weight that has been reached, the goal at most. */
+/* Lower bound on the rows for the weight reached, at most the goal. */
 static starg_status bound_rows(cover_run *run, const cover_instance *instance,
                                const cover_state *choice, uint64_t goal, size_t *least) {
     starg_status status = STARG_OK;

@@ -23,7 +23,7 @@ size_t cover_mark_essential(const cover_instance *instance, uint64_t *rows) {
     return starg_bit_count(rows, instance->column_words);
 }
 
-/* Largest demand and rarest column of a row; false when it holds none. */
+/* Largest demand and rarest column of a row; false if it is empty. */
 static bool survey_row(const cover_instance *instance, const size_t *supplies, size_t row,
                        size_t *demand, size_t *rarest) {
     bool any = false;
@@ -41,8 +41,8 @@ static bool survey_row(const cover_instance *instance, const size_t *supplies, s
     return any;
 }
 
-/* True when at least `demand` other rows of the mask hold all columns of `row`. All of them hold
- * its rarest column, so only the rows of that are looked at. */
+/* True if at least `demand` other rows of the mask hold all columns of `row`. All of them hold its
+ * rarest column, so only that column's rows are tested. */
 static bool is_needless(const cover_instance *instance, const uint64_t *rows, size_t row,
                         size_t demand, size_t rarest) {
     const uint64_t *bits = cover_row(instance, row), *holders = cover_column(instance, rarest);
@@ -67,7 +67,7 @@ starg_status cover_drop_dominated_rows(cover_run *run, const cover_instance *ins
     STARG_NEW(run->context, "reduce", supplies, instance->columns);
     for (size_t j = 0; j < instance->columns; j++)
         supplies[j] = supply(instance, j);
-    /* From the last row on, so that of identical rows the first stays. */
+    /* backward, so that the first of identical rows stays */
     for (size_t i = instance->rows; i-- > 0;) {
         STARG_TRY(starg_check_cancel(run->context, "reduce"));
         if (i % 64 == 0 && cover_time_is_over(run))
@@ -84,12 +84,12 @@ done:
     return status;
 }
 
-/* What column dominance looks at before it touches the bits of a column. */
+/* Data that column dominance tests before the bits of a column. */
 typedef struct column_order {
-    uint32_t *by_supply; /* columns, those with few rows first      */
-    uint32_t *supply;    /* per column                              */
-    uint64_t *signature; /* per column: its bits of 64 spread rows  */
-    size_t *row_size;    /* per row: columns it holds               */
+    uint32_t *by_supply; /* columns, those with few rows first */
+    uint32_t *supply;    /* per column */
+    uint64_t *signature; /* per column: its bits of 64 sampled rows */
+    size_t *row_size;    /* per row: number of its columns */
 } column_order;
 
 static void column_order_free(starg_context *context, column_order *order) {
@@ -108,7 +108,7 @@ static uint64_t sign_column(const cover_instance *instance, size_t column) {
     return signature;
 }
 
-/* Counting sort by supply keeps the order of the columns among equals. */
+/* Counting sort by supply; stable. */
 static starg_status sort_by_supply(const cover_instance *instance, column_order *order) {
     starg_status status = STARG_OK;
     starg_context *context = instance->context;
@@ -157,8 +157,8 @@ static size_t smallest_row_of(const cover_instance *instance, const column_order
     return best;
 }
 
-/* Clears the columns that hold all rows of `column` and demand no more. They all lie in any row
- * of `column`: its smallest one is scanned. */
+/* Clears the columns that contain all rows of `column` and do not demand more. Every row of
+ * `column` contains them: scans its smallest row. */
 static size_t drop_supersets(const cover_instance *instance, const column_order *order,
                              size_t column, uint64_t *columns) {
     size_t row = smallest_row_of(instance, order, column), dropped = 0;
@@ -203,7 +203,7 @@ done:
     return status;
 }
 
-/* Lowers the demands by what the taken rows give; clears the columns that are covered by that. */
+/* Lowers the demands by the taken rows; clears the columns that are then covered. */
 static void serve_columns(cover_instance *instance, const uint64_t *taken, uint64_t *columns) {
     for (size_t j = 0; j < instance->columns; j++) {
         uint32_t given = 0;
@@ -249,7 +249,7 @@ done:
     return status;
 }
 
-/* Every essential row is paid by one of the columns that hold it essential. */
+/* Every essential row is paid by one of the columns that make it essential. */
 static starg_status price_essentials(const cover_instance *instance, double *prices) {
     starg_status status = STARG_OK;
     uint64_t *paid = NULL;
@@ -353,10 +353,10 @@ starg_status cover_reduce_partial(cover_run *run, cover_instance *instance) {
     return status;
 }
 
-/* A walk over the rows and columns of one block. */
+/* Traversal of the rows and columns of one block. */
 typedef struct block_walk {
     const cover_instance *instance;
-    uint64_t *unseen; /* columns whose rows have not been gathered */
+    uint64_t *unseen; /* columns whose rows are not yet collected */
     uint32_t *block, *queue;
     uint32_t number;
     size_t tail;

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The linear relaxation min sum x, sum over R(j) of x >= demand(j), 0 <= x <= 1, by Clp's dual
- * simplex method. Most columns are never tight, so the model starts with some columns, spread
- * evenly, and takes in the most violated others, round by round, from the last basis. Rounds end
- * when nothing is violated.
+/* Linear relaxation min sum x, sum over R(j) of x >= demand(j), 0 <= x <= 1, by Clp's dual simplex
+ * method. Most columns are never tight, so the model starts with an even selection and adds the
+ * most violated columns round by round, warm-started from the last basis, until none is violated.
  *
- * Columns outside the model have the multiplier 0, so the multipliers of any round are valid ones
- * for all columns; what they prove is found out in whole numbers (dual.h). */
+ * Columns outside the model have multiplier 0, so the multipliers of any round are valid for all
+ * columns; integer arithmetic determines what they prove (dual.h). */
 #include "cover/relax.h"
 
 #include <limits.h>
@@ -17,11 +16,11 @@
 
 enum {
     FIRST_COLUMNS = 200,
-    MOST_ADDED = 200, /* in a round */
+    MOST_ADDED = 200, /* per round */
     MOST_ENTRIES = INT_MAX / 2
 };
 
-static const double TOLERANCE = 1e-6; /* of a violation */
+static const double TOLERANCE = 1e-6; /* for violations */
 
 typedef struct scored_column {
     double surplus;
@@ -32,9 +31,9 @@ typedef struct relaxing {
     const cover_instance *instance;
     cover_relaxation *out;
     Clp_Simplex *model;
-    uint64_t *inside;      /* mask of the columns in the model      */
-    uint32_t *columns;     /* those, in the order of the model      */
-    size_t count, entries; /* columns and ones in the model         */
+    uint64_t *inside;      /* mask of the columns in the model */
+    uint32_t *columns;     /* those, in model order */
+    size_t count, entries; /* columns and ones in the model */
     scored_column *short_columns;
     int *index; /* one column at a time */
     double *ones, *zeros;
@@ -85,7 +84,7 @@ static void add_column(relaxing *relax, size_t column) {
     relax->entries += (size_t)count;
 }
 
-/* The model with the first columns; false when there is none. */
+/* The model with the first columns; false if it cannot be created. */
 static bool start_model(relaxing *relax) {
     const cover_instance *instance = relax->instance;
     if (instance->rows >= MOST_ENTRIES || (relax->model = Clp_newModel()) == NULL)
@@ -138,7 +137,7 @@ static int compare_scored(const void *a, const void *b) {
     return (x->column > y->column) - (x->column < y->column);
 }
 
-/* Takes in the most violated columns; false when there are none. */
+/* Adds the most violated columns; false if there are none. */
 static bool add_violated(relaxing *relax) {
     size_t count = 0, before = relax->count;
     for (size_t j = 0; j < relax->instance->columns; j++) {
@@ -171,14 +170,14 @@ typedef struct clp_call {
     starg_status status;
 } clp_call;
 
-/* May be left by an exception at each call of Clp: what the rounds before have found stands. */
+/* An exception may leave this at any call of Clp: results of earlier rounds remain valid. */
 static void run_clp(void *argument) {
     clp_call *call = argument;
     if (start_model(call->relax))
         call->status = run_rounds(call->run, call->relax, call->found);
 }
 
-/* A model that an exception has come out of is not touched again. */
+/* After an exception the model is not used again. */
 static starg_status run_clp_safely(cover_run *run, relaxing *relax, bool *found) {
     clp_call call = {run, relax, found, STARG_OK};
     if (!cover_call_safely(run_clp, &call)) {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Depth first. A node has some rows chosen and some excluded; its candidates are scored in two
- * ways, each of which bounds what any further rows can add:
- *   - need: the weight of the open columns of the row (a column that becomes covered is open and
- *     held by an added row);
- *   - price: the sum of the root's multipliers over the row's open columns; then the open columns
+/* Depth-first branch and bound. A node has chosen and excluded rows; its candidates are scored in
+ * two ways, each of which bounds what further rows can add:
+ *   - need: the weight of the open columns of the row (a column that becomes covered is open and in
+ *     an added row);
+ *   - price: the sum of the root's multipliers over the row's open columns; the open columns then
  *     keep what they do not pay (see weight_bound.h, with demands lowered by the chosen rows).
- * The tighter one orders the candidates by falling score. Child t takes candidate t and excludes
- * those before it, so its bound is the node's base plus the scores t to t + left - 1: it falls
+ * The tighter one sorts the candidates by decreasing score. Child t takes candidate t and excludes
+ * those before it, so its bound is the node's base plus the scores t to t + left - 1: it decreases
  * with t, and the first child that cannot beat the incumbent ends the node. */
 #include "cover/search.h"
 
@@ -26,7 +26,7 @@ typedef struct search {
 typedef struct branching {
     cover_score *candidates;
     size_t count;
-    cover_wide base; /* scaled bound without any further row */
+    cover_wide base; /* scaled bound without further rows */
 } branching;
 
 static bool is_over(search *seek) {
@@ -50,7 +50,7 @@ static void note_incumbent(search *seek) {
     cover_state_copy(seek->best, seek->at);
 }
 
-/* The scaled bound of a branching when `left` rows from candidate `first` on may be added. */
+/* The scaled bound of a branching if `left` rows may be added from candidate `first` on. */
 static cover_wide bound_from(const branching *branch, size_t first, size_t left) {
     cover_wide sum = branch->base;
     for (size_t t = first; t < branch->count && t < first + left; t++)
@@ -97,7 +97,7 @@ static void score_by_price(const search *seek, branching *branch) {
     cover_sort_scores(branch->candidates, branch->count);
 }
 
-/* Scores the candidates in the way that bounds the node better. */
+/* Scores the candidates by the measure with the tighter bound. */
 static void score(const search *seek, branching *branch, size_t left) {
     score_by_price(seek, branch);
     cover_wide by_price = bound_from(branch, 0, left);

@@ -6,11 +6,11 @@
 
 #include "cover/weight_bound.h"
 
-/* Looks for at most `bound->rows` rows that cover more than `best` does, or than `floor` if that
- * is more, and stores the heaviest in `best`; stops once one covers `goal`. *exhausted tells that
- * the search has ended by itself: if it stored nothing there is no such choice, and if it did not
- * reach the goal nothing is heavier. Nodes are limited by the run's max_nodes, and the steps on
- * matrix words to 4,096 for each of them. Errors: MEMORY, CANCELLED. */
+/* Finds at most `bound->rows` rows that cover more than `best` does and more than `floor`, and
+ * stores the heaviest in `best`; stops once one covers `goal`. *exhausted tells that the search
+ * finished: if it stored nothing there is no such choice, and if it did not reach the goal nothing
+ * is heavier. Limits: max_nodes of the run, and 4,096 steps on matrix words per node. Errors:
+ * MEMORY, CANCELLED. */
 starg_status cover_search(cover_run *run, const cover_instance *instance,
                           const cover_weight_bound *bound, uint64_t floor, uint64_t goal,
                           cover_state *best, bool *exhausted);

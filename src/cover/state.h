@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A choice of rows under change, and what each row would add or take away.
+/* A changing choice of rows, and what each row would add or remove.
  *
- * Invariants: held[j] is the number of chosen rows that hold column j; the masks say open:
- * held < demand, last: held == demand - 1 (one more row covers it), exact: held == demand (one
- * row less uncovers it). Adding or removing a row costs O(ones of the row). */
+ * Invariants: held[j] is the number of chosen rows that hold column j; the masks say open: held <
+ * demand, last: held == demand - 1 (one more row covers it), exact: held == demand (one row less
+ * uncovers it). Adding or removing a row costs O(ones of the row). */
 #ifndef STARG_COVER_STATE_H
 #define STARG_COVER_STATE_H
 
@@ -12,23 +12,24 @@
 typedef struct cover_state {
     const cover_instance *instance;
     uint32_t *held;
-    uint64_t *open, *last, *exact; /* masks of columns            */
-    uint64_t *taken;               /* mask of rows                */
-    uint32_t *rows;                /* the chosen rows, unordered  */
+    uint64_t *open, *last, *exact; /* masks of columns */
+    uint64_t *taken;               /* mask of rows */
+    uint32_t *rows;                /* the chosen rows, unordered */
     size_t count;
     uint64_t weight; /* of the covered columns */
 } cover_state;
 
-/* No row chosen. Errors: MEMORY. */
+/* Creates a state without rows. Errors: MEMORY. */
 starg_status cover_state_create(const cover_instance *instance, cover_state *out);
 void cover_state_free(cover_state *state);
 
 void cover_state_clear(cover_state *state);
 void cover_state_copy(cover_state *to, const cover_state *from); /* of the same instance */
 void cover_state_add(cover_state *state, size_t row);
-void cover_state_remove(cover_state *state, size_t position); /* of `rows`; the last moves there */
+void cover_state_remove(cover_state *state,
+                        size_t position); /* index into `rows`; the last one moves there */
 
-/* Sum of the weights of the columns that are in both. */
+/* Sum of the weights of the columns in both. */
 uint64_t cover_weight_of(const cover_instance *instance, const uint64_t *row, const uint64_t *mask);
 
 /* Weight of the columns of a row that still lack rows: never grows while rows are added. */

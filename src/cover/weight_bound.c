@@ -17,8 +17,8 @@ void cover_sort_scores(cover_score *scores, size_t count) {
     qsort(scores, count, sizeof *scores, compare_scores);
 }
 
-/* The sum of the multipliers of a row's columns. What a point sees lies together, so that most
- * words are empty or full; of a word that is nearly full, what is missing is taken off. */
+/* Sum of the multipliers of a row's columns. Columns seen from one point are contiguous, so most
+ * words are empty or full; for a nearly full word, the missing columns are subtracted. */
 static uint64_t row_sum(const cover_instance *instance, const cover_weight_bound *bound,
                         const uint64_t *row) {
     uint64_t sum = 0;
@@ -39,7 +39,7 @@ static uint64_t row_sum(const cover_instance *instance, const cover_weight_bound
     return sum;
 }
 
-/* What the columns keep, and the rows' scores in falling order. */
+/* What the columns keep; sorts the rows' scores in decreasing order. */
 static cover_wide evaluate(const cover_instance *instance, cover_weight_bound *bound) {
     cover_wide kept = 0;
     memset(bound->word_sums, 0, instance->row_words * sizeof *bound->word_sums);

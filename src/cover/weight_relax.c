@@ -1,32 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The linear relaxation of a limit K on the rows, for its multipliers: with y(j) the part of column
- * j that counts and h(j) the sum of x over R(j),
+/* Linear relaxation with a limit K on the rows, for its multipliers: with y(j) the fraction of
+ * column j that counts and h(j) the sum of x over R(j),
  *
  *     max sum w y,  sum x <= K,  demand(j) y(j) <= h(j),  0 <= x <= 1,  0 <= y <= 1.
  *
- * Its value grows with K and is concave. The fewest rows for a goal are, in the relaxation, the K
- * where it reaches the goal: K starts at the bound known and follows it, as each K's multipliers
- * bound the weight of every other number of rows, too (Newton's method, from below).
+ * Its value grows with K and is concave. In the relaxation, the fewest rows for a goal is the K
+ * where it reaches the goal: K starts at the known bound and follows it, since the multipliers of
+ * each K bound the weight of every other number of rows too (Newton's method from below).
  *
- * Most columns are on one side of their bend w min(1, h / demand): surely seen, with the multiplier
- * 0 and all of their weight kept, or short of it, with the full multiplier w / demand and a weight
+ * Most columns lie on one side of their bend w min(1, h / demand): clearly covered, with multiplier
+ * 0 and all their weight kept, or short of it, with the full multiplier w / demand and a weight
  * that is linear in x. So the model starts with rows only: each column is replaced by one of its
- * sides, which can only raise what x seems to cover. The columns whose replacement overstates most
- * join the model, round by round, as
+ * sides, which can only raise the covered weight. The columns with the largest overestimates are
+ * added round by round, as
  *
  *     h + demand s >= demand   (kept:   s >= 0 takes w s away)   or
  *     h - demand e <= demand   (linear: e >= 0 takes w e away).
  *
- * The last basis stays dual feasible with them, for Clp's dual simplex. It ends when nothing is
- * overstated: then the relaxation of all columns is solved. The first sides are those of an average
- * of subgradient steps, which tends to the relaxation's solution.
+ * The last basis stays dual feasible, for Clp's dual simplex. When nothing is overestimated, the
+ * relaxation of all columns is solved. The first sides come from an average of subgradient steps,
+ * which tends to the relaxation's solution.
  *
- * Invariant: to replace a column is to fix its multiplier, and any multipliers within their box
- * prove something (weight_bound.h). So each round's are rounded to whole numbers and evaluated
- * there in integers; nothing that Clp says is believed.
+ * Invariant: replacing a column fixes its multiplier, and any multipliers within their bounds prove
+ * something (weight_bound.h). The multipliers of each round are rounded to integers and evaluated
+ * there exactly; no claim of Clp is trusted.
  *
- * Cost: a subgradient step takes the ones of the matrix, a round the simplex method on the columns
- * taken in, some hundreds of steps. */
+ * Cost: a subgradient step takes the ones of the matrix, a round the simplex method on the added
+ * columns, some hundreds of steps. */
 #include "cover/weight_bound.h"
 
 #include <float.h>
@@ -40,15 +40,15 @@
 
 enum {
     STEPS = 100,      /* towards the first sides */
-    MOST_ADDED = 300, /* columns in a round      */
+    MOST_ADDED = 300, /* columns per round */
     MOST_ROUNDS = 100,
     BATCH_ENTRIES = 1 << 20, /* at least one column's */
     MOST_ENTRIES = INT_MAX / 2
 };
 
-static const double TOLERANCE = 1e-7; /* of what is overstated, as a part of the total weight */
+static const double TOLERANCE = 1e-7; /* for overestimates, as a fraction of the total weight */
 
-/* Half the width of the bend h = demand while sides are looked for, as a part of the demand. */
+/* Half width of the bend h = demand while choosing sides, as a fraction of the demand. */
 static const double BEND = 0.1;
 
 typedef struct overstated {
@@ -59,18 +59,18 @@ typedef struct overstated {
 typedef struct relaxing {
     const cover_instance *instance;
     cover_weight_bound *bound;
-    bool by_goal;    /* K follows the bound for the goal                  */
-    uint64_t enough; /* rows for the goal or weight of the rows: no better bound is wanted */
+    bool by_goal;    /* K follows the bound for the goal */
+    uint64_t enough; /* rows for the goal or weight of the rows: stop at this bound */
     size_t limit;    /* K */
     Clp_Simplex *model;
-    double unit;             /* the mean weight, 1 in the model          */
-    uint64_t *inside, *kept; /* masks: in the model; replaced by w       */
-    uint32_t *columns;       /* those inside, in the order of the model  */
-    size_t count, entries;   /* columns and ones in the model            */
-    double *cost;            /* per row: minus what the linear columns add */
-    double *held;            /* per column: h                            */
-    overstated *found;       /* columns not inside                       */
-    int *index;              /* a batch of columns                       */
+    double unit;             /* mean weight, 1 in the model */
+    uint64_t *inside, *kept; /* masks: in the model; replaced by w */
+    uint32_t *columns;       /* those inside, in model order */
+    size_t count, entries;   /* columns and ones in the model */
+    double *cost;            /* per row: minus the contribution of the linear columns */
+    double *held;            /* per column: h */
+    overstated *found;       /* columns outside */
+    int *index;              /* a batch of columns */
     double *ones;
     CoinBigIndex starts[MOST_ADDED + 1];
     size_t room;
@@ -89,7 +89,7 @@ static void relaxing_free(starg_context *context, relaxing *relax) {
     starg_release(context, relax->ones);
 }
 
-/* Multipliers that fall from full to 0 while h crosses the bend. */
+/* Multipliers that decrease from full to 0 while h crosses the bend. */
 static void set_trial(const relaxing *relax) {
     const cover_instance *instance = relax->instance;
     for (size_t j = 0; j < instance->columns; j++) {
@@ -99,7 +99,7 @@ static void set_trial(const relaxing *relax) {
     }
 }
 
-/* Moves x by a part of the way towards the K rows of the largest sums of multipliers. */
+/* Moves x a fraction of the way to the K rows with the largest sums of multipliers. */
 static void step_towards_best(relaxing *relax, double part) {
     const cover_instance *instance = relax->instance;
     for (size_t j = 0; j < instance->columns; j++)
@@ -131,7 +131,7 @@ static starg_status find_sides(cover_run *run, relaxing *relax) {
     return STARG_OK;
 }
 
-/* Replaces each column by the side that it is on. */
+/* Replaces each column by its side. */
 static void choose_sides(relaxing *relax) {
     const cover_instance *instance = relax->instance;
     for (size_t j = 0; j < instance->columns; j++) {
@@ -168,7 +168,7 @@ done:
     return status;
 }
 
-/* The model with all rows and no column, but for the limit; false when there is none. */
+/* The model with all rows and the limit but no column; false if it cannot be created. */
 static bool start_model(relaxing *relax) {
     size_t rows = relax->instance->rows;
     CoinBigIndex starts[2] = {0, (CoinBigIndex)rows};
@@ -178,7 +178,7 @@ static bool start_model(relaxing *relax) {
     choose_sides(relax);
     Clp_setLogLevel(relax->model, 0);
     Clp_resize(relax->model, 0, (int)rows);
-    Clp_chgColumnUpper(relax->model, relax->ones); /* there is room for all rows */
+    Clp_chgColumnUpper(relax->model, relax->ones); /* allocates room for all rows */
     Clp_chgObjCoefficients(relax->model, relax->cost);
     for (size_t i = 0; i < rows; i++)
         relax->index[i] = (int)i;
@@ -187,7 +187,7 @@ static bool start_model(relaxing *relax) {
     return true;
 }
 
-/* Writes the rows that hold a column into the batch; false when there is no room. */
+/* Appends a column's rows to the batch; false if there is no room. */
 static bool list_rows(relaxing *relax, size_t column, size_t added) {
     const cover_instance *instance = relax->instance;
     const uint64_t *bits = cover_column(instance, column);
@@ -204,7 +204,7 @@ static bool list_rows(relaxing *relax, size_t column, size_t added) {
     return true;
 }
 
-/* The variables s or e of the last `added` columns. */
+/* Adds the variables s or e of the last `added` columns. */
 static void add_slacks(relaxing *relax, size_t added) {
     double cost[MOST_ADDED], elements[MOST_ADDED];
     int rows[MOST_ADDED];
@@ -228,7 +228,7 @@ static int compare_overstated(const void *a, const void *b) {
     return (x->column > y->column) - (x->column < y->column);
 }
 
-/* The columns that are overstated by their replacements; the sum in units. */
+/* Finds the overestimated columns; returns the sum in units. */
 static double find_overstated(relaxing *relax, size_t *count) {
     const cover_instance *instance = relax->instance;
     double sum = 0;
@@ -246,7 +246,7 @@ static double find_overstated(relaxing *relax, size_t *count) {
     return sum;
 }
 
-/* Takes in the most overstated columns; false when there are none that matter. */
+/* Adds the most overestimated columns; false if none matters. */
 static bool add_overstated(relaxing *relax) {
     double lower[MOST_ADDED], upper[MOST_ADDED];
     size_t count, added = 0;
@@ -268,7 +268,7 @@ static bool add_overstated(relaxing *relax) {
     return added > 0;
 }
 
-/* h of the solution, and its multipliers as the bound's trial ones. */
+/* Reads h, and the multipliers as the bound's trial ones. */
 static void read_solution(relaxing *relax) {
     const cover_instance *instance = relax->instance;
     cover_weight_bound *bound = relax->bound;
@@ -296,7 +296,7 @@ static void read_solution(relaxing *relax) {
     }
 }
 
-/* What x covers, in units. */
+/* The weight covered by x, in units. */
 static double seen_weight(const relaxing *relax) {
     const cover_instance *instance = relax->instance;
     double seen = 0;
@@ -307,8 +307,7 @@ static double seen_weight(const relaxing *relax) {
     return seen;
 }
 
-/* Follows the bound on the rows for the goal; false when the relaxation of so many rows reaches it.
- */
+/* Raises K to the bound for the goal; false if the relaxation with K rows reaches it. */
 static bool follow_least(relaxing *relax) {
     const cover_weight_bound *bound = relax->bound;
     if (bound->least == relax->limit)
@@ -342,14 +341,14 @@ typedef struct clp_call {
     starg_status status;
 } clp_call;
 
-/* May be left by an exception at each call of Clp: what the rounds before have proven stands. */
+/* An exception may leave this at any call of Clp: bounds of earlier rounds remain valid. */
 static void run_clp(void *argument) {
     clp_call *call = argument;
     if (start_model(call->relax))
         call->status = run_rounds(call->run, call->relax);
 }
 
-/* A model that an exception has come out of is not touched again. */
+/* After an exception the model is not used again. */
 static starg_status run_clp_safely(cover_run *run, relaxing *relax) {
     clp_call call = {run, relax, STARG_OK};
     if (!cover_call_safely(run_clp, &call)) {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Animations as binary glTF 2.0.
  *
- * The numbers, all of four bytes and in this order: vertex indices of the faces; positions of the
- * first frame; for each other frame the displacements from the first; the times of the frames; the
+ * Numbers, all four bytes wide, in this order: vertex indices of the faces; positions of the first
+ * frame; for each other frame the displacements from the first; the times of the frames; the
  * weights of the targets at each time, one of them 1 and the others 0. Each is a view and an
- * accessor of its own. Little endian, as the format demands, on any machine. */
+ * accessor of its own. Little endian, as the format requires, on any machine. */
 #include "starguard/animation.h"
 
 #include <math.h>
@@ -63,7 +63,7 @@ static void find_box(animation *a) {
 
 /* ---- description ---- */
 
-/* Values in accessor `index`. Accessors: indices, positions, targets, times, weights. */
+/* Number of values in accessor `index`. Accessors: indices, positions, targets, times, weights. */
 static size_t accessor_count(const animation *a, size_t index) {
     if (index == 0)
         return a->indices;
@@ -107,7 +107,7 @@ static json_t *accessor_json(const animation *a, size_t index) {
     return NULL;
 }
 
-/* Appends to each list; false when memory is out. */
+/* Appends to each list; false when out of memory. */
 static bool describe_numbers(const animation *a, json_t *accessors, json_t *views,
                              json_t *targets) {
     size_t offset = 0;

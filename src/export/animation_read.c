@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reads the frames of a morph back from binary glTF 2.0, as animation.c writes it: the first
- * primitive of the first mesh, whose positions are the first frame and whose morph targets lead to
- * the others, each a displacement from the first, about the first node's translation.
+/* Reads the frames of a morph from binary glTF 2.0 in the form written by animation.c: the first
+ * primitive of the first mesh, whose positions are the first frame and whose morph targets are the
+ * displacements of the others, relative to the first node's translation.
  *
- * Everything is checked against the bytes that are there; other glTF files are refused unless they
- * are of that form (positions in floats, packed; triangles with indices). Cost: linear. */
+ * Everything is checked against the available bytes; glTF files of another form (positions in
+ * packed floats, triangles with indices) are rejected. Cost: linear. */
 #include <math.h>
 
 #include "core/file.h"
@@ -28,7 +28,7 @@ typedef struct reader {
     double translation[3];
 } reader;
 
-/* Numbers of an accessor, which lie within the binary chunk. */
+/* Numbers of an accessor, within the binary chunk. */
 typedef struct span {
     const uint8_t *at;
     size_t count; /* of its elements */
@@ -46,7 +46,7 @@ static uint32_t load_word(const uint8_t *at) {
 
 /* ---- chunks ---- */
 
-/* A chunk of that type at `*at`, which moves behind it. */
+/* Returns a chunk of that type at `*at`, which advances behind it. */
 static bool take_chunk(const uint8_t *bytes, size_t size, size_t *at, uint32_t type,
                        const uint8_t **chunk, size_t *length) {
     if (size - *at < CHUNK_HEADER || load_word(bytes + *at + 4) != type)
@@ -71,7 +71,7 @@ static starg_status open_chunks(reader *r, const uint8_t *bytes, size_t size) {
     return starg_json_parse(r->context, STAGE, r->name, text, length, &r->root);
 }
 
-/* ---- accessors ---- */
+/* The integer under a key, `missing` if there is none, -1 if it is anything else. */
 
 /* A whole number under a key, `missing` where there is none, -1 where it is something else. */
 static json_int_t number(const json_t *object, const char *key, json_int_t missing) {
@@ -86,7 +86,7 @@ static size_t bytes_of(json_int_t type) {
     return type == GL_UNSIGNED_BYTE ? 1 : type == GL_UNSIGNED_SHORT ? 2 : 4;
 }
 
-/* `parts` is how many numbers an element has. */
+/* `parts` is the number of values per element. */
 static starg_status open_accessor(const reader *r, json_int_t index, size_t parts, span *out) {
     const json_t *accessor =
         json_array_get(json_object_get(r->root, "accessors"), (size_t)(index < 0 ? -1 : index));
@@ -158,7 +158,7 @@ static starg_status open_positions(const reader *r, const json_t *attributes, sp
     return status;
 }
 
-/* Frame `index` into `points`; `first` are the positions of frame 0. */
+/* Writes frame `index` to `points`; `first` are the positions of frame 0. */
 static starg_status read_points(const reader *r, const span *first, size_t index, double *points) {
     starg_status status = STARG_OK;
     span target = {0};

@@ -10,7 +10,7 @@ static const char STAGE[] = "chart";
 
 enum { SIDE = 480, LEFT = 64, TOP = 24, BELOW = 56, LEGEND = 200, LEGEND_STEP = 18 };
 
-/* Names come from files: what would end a text in XML is spelled out. */
+/* Names come from files: escapes characters that are special in XML. */
 static void write_text(FILE *stream, const char *text) {
     for (; *text != '\0'; text++) {
         if (*text == '&')

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A sequence of colours that stay easy to tell apart however long it gets.
+/* A sequence of colours that stay easy to distinguish, however long.
  *
- * The hue turns by the golden angle, which keeps any first n hues apart (no two closer than about
- * 1 / (sqrt(5) n) turns); lightness and chroma alternate in steps of three and two, so that
- * neighbours in hue differ in those as well. Colours are laid out in Oklab's polar form, where
- * equal steps look equal, and pulled towards grey until they fit sRGB. */
+ * The hue advances by the golden angle, which keeps any first n hues apart (no two closer than
+ * about 1 / (sqrt(5) n) turns); lightness cycles through three values and chroma through two, so
+ * that neighbours in hue differ in those as well. Colours are chosen in Oklab's polar form, where
+ * equal steps look equal, and desaturated until they fit sRGB. */
 #include <math.h>
 
 #include "starguard/picture.h"

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Corner normals and feature lines.
  *
- * The normal at a corner is the area-weighted mean over those faces about the vertex that bend away
- * from the corner's own face by less than the crease angle: smooth parts look smooth, sharp edges
- * stay sharp. A crease is an edge between two faces that bend by more than that, or an edge with
- * one face only; those that go on at both ends are the feature lines. Vertices with very many faces
- * (fan centres) keep flat normals and have no lines, which bounds the cost to O(faces). */
+ * The normal at a corner is the area-weighted mean over the faces at the vertex that deviate from
+ * the corner's own face by less than the crease angle: smooth parts look smooth, sharp edges stay
+ * sharp. A crease is an edge with a larger angle between its faces, or with a single face; creases
+ * that continue at both ends are the feature lines. Vertices with very many faces (fan centres)
+ * keep flat normals and have no lines, which bounds the cost to O(faces). */
 #include "export/features.h"
 
 #include "geometry/vec3.h"
@@ -17,7 +17,7 @@ static const double TURN_COSINE = 0.75; /* of about 41 degrees */
 
 enum { MAX_VALENCE = 48 };
 
-/* The faces about each vertex: list[start[v] .. start[v + 1] - 1]. */
+/* The faces at each vertex: list[start[v] .. start[v + 1] - 1]. */
 typedef struct vertex_faces {
     size_t *start;
     uint32_t *list;
@@ -36,7 +36,7 @@ static starg_status collect_vertex_faces(starg_context *context, size_t vertex_c
     starg_status status = STARG_OK;
     STARG_NEW_ZERO(context, STAGE, about->start, vertex_count + 2);
     STARG_NEW(context, STAGE, about->list, 3 * face_count);
-    /* start[v + 2] counts, then start[v + 1] is the next free place of v, at last its end */
+    /* start[v + 2] counts; then start[v + 1] is the next free place of v, finally its end */
     for (size_t i = 0; i < 3 * face_count; i++)
         about->start[faces[i] + 2]++;
     for (size_t v = 2; v < vertex_count + 2; v++)
@@ -72,7 +72,7 @@ static bool has_corner(const uint32_t *face, uint32_t vertex) {
     return face[0] == vertex || face[1] == vertex || face[2] == vertex;
 }
 
-/* Does the mesh bend sharply along the edge (a, b) of `face`, and is `face` the one to say so? */
+/* Is edge (a, b) of `face` a crease, and is `face` the one that reports it? */
 static bool is_crease(const surface *s, size_t face, uint32_t a, uint32_t b) {
     size_t begin = s->about.start[a], end = s->about.start[a + 1];
     if (a == b || end - begin > MAX_VALENCE)
@@ -103,14 +103,14 @@ done:
     return status;
 }
 
-/* Where the creases about a vertex lead. */
+/* The creases at a vertex. */
 typedef struct crease_end {
     uint32_t count;
-    uint32_t far[2]; /* the other ends of the first two */
+    uint32_t far[2]; /* other ends of the first two */
 } crease_end;
 
-/* Does the crease from `v` to `far` go on beyond v: into a corner of three or more creases, or with
- * a small turn? */
+/* Does the crease from `v` to `far` continue beyond v: at a corner of three or more creases, or
+ * with a small turn? */
 static bool goes_on(const double *vertices, const crease_end *ends, uint32_t v, uint32_t far) {
     const crease_end *end = &ends[v];
     if (end->count != 2)
@@ -122,7 +122,7 @@ static bool goes_on(const double *vertices, const crease_end *ends, uint32_t v, 
     return vec3_dot(in, out) > TURN_COSINE * vec3_length(in) * vec3_length(out);
 }
 
-/* Drops creases that lead nowhere: on coarse smooth meshes they are noise. */
+/* Drops creases that do not continue: on coarse smooth meshes they are noise. */
 static starg_status keep_long_creases(starg_context *context, const double *vertices,
                                       size_t vertex_count, starg_index_array *lines) {
     starg_status status = STARG_OK;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a picture of a mesh needs besides its triangles: normals at the corners and lines along the
- * edges where it bends sharply. Both are decoration: every mesh is accepted. */
+/* Extra data for a picture of a mesh: corner normals and feature lines. Decoration only: any mesh
+ * is accepted. */
 #ifndef STARG_EXPORT_FEATURES_H
 #define STARG_EXPORT_FEATURES_H
 
@@ -12,8 +12,8 @@
 typedef STARG_ARRAY(uint32_t) starg_index_array;
 
 typedef struct starg_features {
-    float *normals;          /* face_count x 3 corners x 3, unit length                    */
-    starg_index_array lines; /* pairs of vertex indices                                    */
+    float *normals;          /* face_count x 3 corners x 3, unit length */
+    starg_index_array lines; /* pairs of vertex indices */
 } starg_features;
 
 /* Finds both for `vertices`, of any orthonormal frame. Errors: MEMORY. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Binary glTF 2.0: 12 bytes of header, then two chunks, each with its length and its name; the JSON
- * is filled up with blanks to a multiple of four bytes. */
+/* Binary glTF 2.0: a 12-byte header, then two chunks, each with its length and its type; the JSON
+ * is padded with blanks to a multiple of four bytes. */
 #include "export/glb.h"
 
 #include "core/file.h"

@@ -8,7 +8,7 @@
 
 #include "core/context.h"
 
-/* What numbers are in an accessor, and what a view is for. */
+/* Component types of accessors and targets of views. */
 enum {
     GLB_UNSIGNED_INT = 5125,
     GLB_FLOAT = 5126,
@@ -19,10 +19,10 @@ enum {
 /* Single precision holds coordinates below this. */
 #define GLB_LIMIT 1e38
 
-/* Writes the numbers: as many bytes as were announced, a multiple of four. */
+/* Writes the numbers: the announced number of bytes, a multiple of four. */
 typedef void glb_numbers(FILE *stream, const void *user);
 
-/* Writes a file; path "-" is standard output. `json` is NULL when memory was out as it was made.
+/* Writes a file; path "-" is standard output. `json` is NULL if creating it ran out of memory.
  * Errors: MESH (over 4 GiB), WRITE, MEMORY. */
 starg_status glb_write(starg_context *context, const char *stage, const char *path,
                        const json_t *json, size_t bytes, glb_numbers *put, const void *user);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Numbers in binary files, the least significant byte first, on any machine. */
+/* Little-endian numbers in binary files, on any machine. */
 #ifndef STARG_EXPORT_LITTLE_H
 #define STARG_EXPORT_LITTLE_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A table of distances as a picture: grey by rank, a cell of whole pixels an entry. */
+/* A distance matrix as a picture: grey by rank, a square of pixels per entry. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,7 +16,7 @@ static int by_value(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* How many entries of the sorted list are smaller. */
+/* Number of smaller entries in the sorted list. */
 static size_t count_smaller(const double *sorted, size_t count, double value) {
     size_t low = 0, high = count;
     while (low < high) {

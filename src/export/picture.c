@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures: checks the options, looks at the mesh from the camera, draws, writes.
+/* Pictures: checks the options, projects the mesh to the camera, draws, writes.
  *
- * The frame of the camera is x to the right, y up, z towards the viewer. The model is moved and
- * scaled to unit size first, so that models of any size (1e-300 or 1e+90) give the same picture.
- * Cost: O(faces x bands) for the cheap test that skips a triangle, plus the samples covered. */
+ * The camera's frame is x to the right, y up, z towards the viewer. The model is first moved and
+ * scaled to unit size, so that models of any size (1e-300 or 1e+90) give the same picture. Cost:
+ * O(faces x bands) for the cheap rejection of triangles, plus the samples covered. */
 #include "starguard/picture.h"
 
 #include <math.h>
@@ -80,7 +80,7 @@ static void aim_camera(const starg_mesh *mesh, const starg_picture_options *o, c
     }
     grow_box(o->points, o->point_count, lower, upper);
     vec3_subtract(upper, lower, span);
-    /* hypot does not overflow or underflow on the way */
+    /* hypot neither overflows nor underflows */
     c->size = hypot(hypot(span[0], span[1]), span[2]);
     if (c->size == 0)
         c->size = 1;
@@ -110,7 +110,7 @@ static void look(const camera *c, const double *points, size_t count, double *ou
     }
 }
 
-/* Where the camera's frame lands on the samples: x = ox + scale x', y = oy - scale y'. */
+/* Maps the camera's frame to samples: x = ox + scale x', y = oy - scale y'. */
 typedef struct frame {
     double ox, oy, scale;
 } frame;

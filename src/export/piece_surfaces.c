@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The surfaces of pieces: of all faces of the tetrahedra, those that no other tetrahedron of the
- * same piece shares.
+/* Surfaces of pieces: all faces of the tetrahedra that no other tetrahedron of the same piece
+ * shares.
  *
- * Faces are sorted by their corners, so that the two sides of a face follow one another; a pair of
- * one label goes. What remains is put in the order of the pieces by counting. The tetrahedra may be
- * anything whose indices are in range: what does not pair is shown. Cost: O(n log n). */
+ * Faces are sorted by their corners, so that the two sides of a face are adjacent; pairs of one
+ * label are removed. Counting sort orders the rest by pieces. The tetrahedra may be arbitrary as
+ * long as indices are in range: unpaired faces are shown. Cost: O(n log n). */
 #include "export/piece_surfaces.h"
 
 #include <stdlib.h>
@@ -18,10 +18,10 @@ static const int OPPOSITE[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 enum { MOST = 1 << 29 }; /* tetrahedra: sides are numbered in 32 bits */
 
-/* A face as one tetrahedron has it. */
+/* A face as a side of one tetrahedron. */
 typedef struct side {
     uint32_t corners[3]; /* ascending */
-    uint32_t place;      /* 4 tetrahedron + vertex opposite; the order of equal corners */
+    uint32_t place;      /* 4 tetrahedron + opposite vertex; breaks ties */
 } side;
 
 static starg_status check(starg_context *context, const starg_pieces_mesh *mesh) {
@@ -71,7 +71,7 @@ static int compare_sides(const void *left, const void *right) {
     return a->place < b->place ? -1 : a->place > b->place;
 }
 
-/* Keeps the sides that bound a piece, at the front; how many there are. */
+/* Moves the sides that bound a piece to the front; returns their number. */
 static size_t keep_boundary(const starg_pieces_mesh *mesh, side *sides, size_t count) {
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
@@ -85,7 +85,7 @@ static size_t keep_boundary(const starg_pieces_mesh *mesh, side *sides, size_t c
     return kept;
 }
 
-/* Numbers the vertices that faces use; `numbers` has an entry for each vertex of the mesh. */
+/* Numbers the vertices in use; `numbers` has an entry per vertex of the mesh. */
 static void number_vertices(const side *sides, size_t count, size_t vertex_count, uint32_t *numbers,
                             starg_piece_surfaces *out) {
     for (size_t i = 0; i < count; i++)
@@ -98,10 +98,10 @@ static void number_vertices(const side *sides, size_t count, size_t vertex_count
         }
 }
 
-/* Faces by piece, within a piece by their sides' order. */
+/* Faces by piece, within a piece in the order of their sides. */
 static void place_faces(const starg_pieces_mesh *mesh, const side *sides, size_t count,
                         const uint32_t *numbers, starg_piece_surfaces *out) {
-    size_t *next = out->first_face; /* one ahead while they are counted and placed */
+    size_t *next = out->first_face; /* one ahead during counting and placing */
     for (size_t i = 0; i < count; i++)
         next[mesh->labels[sides[i].place / 4] + 1]++;
     for (size_t p = 0; p < out->piece_count; p++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The surfaces of pieces of tetrahedra, to be drawn. */
+/* Surfaces of pieces of tetrahedra, for drawing. */
 #ifndef STARG_EXPORT_PIECE_SURFACES_H
 #define STARG_EXPORT_PIECE_SURFACES_H
 
@@ -8,10 +8,10 @@
 
 typedef struct starg_piece_surfaces {
     size_t piece_count;
-    size_t *first_face; /* piece_count + 1: the faces of each piece follow one another    */
-    uint32_t *faces;    /* three each, outward from the piece; indices into `vertices`    */
+    size_t *first_face; /* piece_count + 1: the faces of each piece are contiguous */
+    uint32_t *faces;    /* three each, outward from the piece; indices into `vertices` */
     size_t vertex_count;
-    uint32_t *vertices; /* that faces use, ascending; indices into those of the tetrahedra */
+    uint32_t *vertices; /* vertices in use, ascending; indices into those of the tetrahedra */
 } starg_piece_surfaces;
 
 /* Errors: ARGUMENT (an index or a label out of range), MEMORY, CANCELLED. */

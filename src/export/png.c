@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* PNG, as far as pictures need it: 8-bit RGB, one IDAT chunk, every row with the Paeth filter
- * (shaded surfaces on a plain background leave little else to gain). */
+ * (other filters gain little on shaded surfaces over a plain background). */
 #include "export/png.h"
 
 #include <stdlib.h>

@@ -12,7 +12,7 @@
 starg_status starg_png_write(starg_context *context, const char *path, const uint8_t *rgb,
                              size_t width, size_t height);
 
-/* The same into a new block. Errors: MEMORY. */
+/* Same into a new block. Errors: MEMORY. */
 starg_status starg_png_encode(starg_context *context, const uint8_t *rgb, size_t width,
                               size_t height, uint8_t **png, size_t *size);
 

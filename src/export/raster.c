@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The renderer: transparent triangles, lines and balls with exact order of depth.
+/* Renderer: transparent triangles, lines and balls in exact depth order.
  *
- * The image is cut into bands of rows, each drawn by one thread on its own: all that falls on a
- * sample is kept as a short list of fragments, sorted from near to far while it grows (an A-buffer;
- * Carpenter, The A-buffer, an antialiased hidden surface method, 1984, without its coverage masks:
- * here every pixel has 3 x 3 samples). What lies behind an opaque fragment is dropped, and so is
- * what comes after the nearest MAX_LAYERS. Then each list is blended from front to back over white.
+ * The image is divided into bands of rows, each drawn by one thread: every sample keeps a short
+ * list of fragments, sorted from near to far while it grows (an A-buffer; Carpenter, The A-buffer,
+ * an antialiased hidden surface method, 1984, without its coverage masks: here every pixel has 3 x
+ * 3 samples). Fragments behind an opaque one are dropped, as are those after the nearest
+ * MAX_LAYERS. Then each list is blended from front to back over white.
  *
- * Triangles that share an edge never both take a sample on it and never both leave it: the side of
- * an edge is computed from its end points in a fixed order, and samples exactly on it go to the
- * triangle on one fixed side.
+ * Of two triangles with a common edge, exactly one takes a sample on it: edge functions are
+ * computed from the end points in a fixed order, and samples exactly on the edge go to the triangle
+ * on one fixed side.
  *
- * A band depends on nothing but the scene: the same bytes for any number of threads. */
+ * A band depends only on the scene: the same bytes for any number of threads. */
 #include "export/raster.h"
 
 #include <math.h>
@@ -35,9 +35,9 @@ typedef struct fragment {
 /* One thread's fragments of one band. */
 typedef struct band {
     size_t columns, rows; /* samples */
-    double top;           /* sample row of the picture where the band begins */
-    uint8_t *counts;      /* of each sample */
-    fragment *fragments;  /* MAX_LAYERS for each sample */
+    double top;           /* sample row of the picture where the band starts */
+    uint8_t *counts;      /* per sample */
+    fragment *fragments;  /* MAX_LAYERS per sample */
 } band;
 
 typedef struct job {
@@ -45,9 +45,9 @@ typedef struct job {
     uint8_t *rgb;
 } job;
 
-/* ---- fragments ------------------------------------------------------------------------------ */
+/* ---- fragments ---- */
 
-/* Lines overlap where they meet: of two on one sample, a little apart in depth, one counts. */
+/* Lines overlap where they meet: two on one sample at nearly the same depth count once. */
 static bool line_is_there(const fragment *list, size_t count, const fragment *f, double radius) {
     for (size_t i = 0; i < count; i++)
         if (list[i].kind == LINE && fabs((double)list[i].z - (double)f->z) < 8 * radius)
@@ -76,7 +76,7 @@ static void insert(band *b, size_t column, size_t row, const fragment *f) {
     b->counts[sample] = (uint8_t)count;
 }
 
-/* ---- light ---------------------------------------------------------------------------------- */
+/* ---- light ---- */
 
 static const uint8_t NEUTRAL[3] = {174, 192, 212};
 static const uint8_t INK[3] = {44, 54, 70};
@@ -91,7 +91,7 @@ static double power4(double x) {
     return x * x * x * x;
 }
 
-/* Light on a matt surface with a soft gloss; `n` is unit and faces the viewer. */
+/* Lighting of a matt surface with a soft gloss; `n` is a unit vector facing the viewer. */
 static void shade(const uint8_t base[3], const double n[3], double gloss, uint8_t rgb[3]) {
     double key = 0.5 + 0.5 * vec3_dot(n, KEY_LIGHT);
     double fill = fmax(0, vec3_dot(n, FILL_LIGHT));
@@ -104,7 +104,7 @@ static void shade(const uint8_t base[3], const double n[3], double gloss, uint8_
         rgb[k] = to_byte(((double)base[k] * light) * rim + 255 * highlight);
 }
 
-/* ---- triangles ------------------------------------------------------------------------------ */
+/* ---- triangles ---- */
 
 /* One edge of a triangle as a half-plane: value(x, y) > 0 inside, and on the edge if `closed`. */
 typedef struct half_plane {
@@ -152,7 +152,7 @@ static bool make_triangle(const starg_raster_scene *scene, size_t face, triangle
     return true;
 }
 
-/* Barycentric coordinates of a sample; the third is what is left. */
+/* Barycentric coordinates of a sample; the third is 1 minus the others. */
 static void barycentric(const triangle *t, double x, double y, double w[3]) {
     const double *a = t->corners[0], *b = t->corners[1], *c = t->corners[2];
     w[1] = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / t->area;
@@ -165,14 +165,14 @@ static void surface_normal(const triangle *t, const double w[3], double n[3]) {
     for (int k = 0; k < 3; k++)
         n[k] = w[0] * (double)t->normals[k] + w[1] * (double)t->normals[3 + k] +
                w[2] * (double)t->normals[6 + k];
-    /* y points down in the picture, so a face whose area is negative looks at the viewer */
+    /* y points down in the picture, so a face with negative area faces the viewer */
     double length = vec3_length(n) * (t->area < 0 ? 1 : -1);
     for (int k = 0; k < 3; k++)
         n[k] = length == 0 ? k == 2 : n[k] / length;
     n[2] = fmax(n[2], 0); /* smooth normals may turn away a little at the silhouette */
 }
 
-/* Slanting parts are more opaque, as glass is: the silhouette stays clear. */
+/* Oblique parts are more opaque, like glass: the silhouette stays clear. */
 static double surface_alpha(double opacity, double slant) {
     return opacity + (1 - opacity) * 0.62 * slant * slant * slant;
 }
@@ -220,7 +220,7 @@ static void box_of(const double *const *points, size_t count, double margin, dou
 
 static void draw_triangle(band *b, const starg_raster_scene *scene, size_t face) {
     const uint32_t *f = scene->faces + 3 * face;
-    double bottom = b->top + (double)b->rows; /* most triangles miss the band: quickly out */
+    double bottom = b->top + (double)b->rows; /* rejects most triangles quickly */
     double y0 = scene->positions[3 * (size_t)f[0] + 1], y1 = scene->positions[3 * (size_t)f[1] + 1];
     double y2 = scene->positions[3 * (size_t)f[2] + 1];
     if ((y0 < b->top && y1 < b->top && y2 < b->top) || (y0 > bottom && y1 > bottom && y2 > bottom))
@@ -244,7 +244,7 @@ static void draw_triangle(band *b, const starg_raster_scene *scene, size_t face)
         }
 }
 
-/* ---- lines and balls ------------------------------------------------------------------------ */
+/* ---- lines and balls ---- */
 
 static void draw_line(band *b, const starg_raster_scene *scene, const uint32_t *line) {
     const double *ends[2] = {scene->positions + 3 * (size_t)line[0],
@@ -264,7 +264,7 @@ static void draw_line(band *b, const starg_raster_scene *scene, const uint32_t *
             t = t < 0 ? 0 : t > 1 ? 1 : t;
             if (hypot(x - t * dx, y - t * dy) > radius)
                 continue;
-            /* raised by its radius, or the surface on both sides would swallow half of it */
+            /* raised by its radius, otherwise the surface would hide half of it */
             double z = (1 - t) * ends[0][2] + t * ends[1][2] + radius;
             fragment f = {.z = (float)z, .alpha = 205, .kind = LINE};
             for (int k = 0; k < 3; k++)
@@ -297,7 +297,7 @@ static void draw_ball(band *b, const starg_raster_scene *scene, const starg_rast
         }
 }
 
-/* ---- bands ---------------------------------------------------------------------------------- */
+/* ---- bands ---- */
 
 /* Adds the colour of one sample, 0 to 255 per channel, over white. */
 static void blend(const fragment *list, size_t count, double sum[3]) {

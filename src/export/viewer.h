@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The viewer: the text of a page before and behind its data. viewer/build.mjs makes it of the
- * sources in viewer/; without Node.js and npm at build time, viewer_missing.c stands in. */
+/* The viewer: the text of a page before and after its data. viewer/build.mjs builds it from the
+ * sources in viewer/; without Node.js and npm at build time, viewer_missing.c replaces it. */
 #ifndef STARG_EXPORT_VIEWER_H
 #define STARG_EXPORT_VIEWER_H
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Bounding volume hierarchy: split at the median of the longest axis of the centroids, leaves of
- * up to four triangles. Construction O(n log n), queries O(log n) where little is hit.
+/* Bounding volume hierarchy: median split along the longest axis of the centroids, leaves of up to
+ * four triangles. Construction O(n log n), queries O(log n) when few triangles are hit.
  *
- * Boxes hold the exact minima and maxima of the corners, and the vertical line of the winding
- * number is tested by comparisons alone. Only the slab test of a segment computes; its interval is
- * widened by more than its rounding error, so that it never loses a triangle. */
+ * Boxes hold the exact minima and maxima of the corners, and the winding number tests its vertical
+ * line by comparisons only. Only the slab test of segments computes; its interval is widened by
+ * more than its rounding error, so that it never loses a triangle. */
 #include "geometry/bvh.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ enum { LEAF_SIZE = 4, STACK_SIZE = 128 };
 
 typedef struct builder {
     bvh *tree;
-    double *centroids; /* three per triangle, halved to stay in range */
+    double *centroids; /* three per triangle, halved to avoid overflow */
 } builder;
 
 static const double *corner(const bvh *tree, uint32_t triangle, int k) {
@@ -41,13 +41,6 @@ static void box_add(bvh_box *box, const double p[3]) {
     }
 }
 
-static bool boxes_meet(const bvh_box *a, const bvh_box *b) {
-    for (int k = 0; k < 3; k++)
-        if (a->upper[k] < b->lower[k] || b->upper[k] < a->lower[k])
-            return false;
-    return true;
-}
-
 static bvh_box triangle_box(const bvh *tree, uint32_t triangle) {
     bvh_box box;
     box_clear(&box);
@@ -62,7 +55,7 @@ static bool before(const builder *build, int axis, uint32_t a, uint32_t b) {
     return x < y || (x == y && a < b);
 }
 
-/* Quickselect: order[middle] gets the element that a sort would put there. */
+/* Quickselect: order[middle] becomes what sorting would put there. */
 static void select_median(const builder *build, int axis, uint32_t *order, size_t low, size_t high,
                           size_t middle) {
     while (high - low > 1) {
@@ -197,13 +190,13 @@ typedef struct box_query {
 
 static bool box_may_meet(void *user, const bvh_box *box) {
     const box_query *query = user;
-    return boxes_meet(query->box, box);
+    return bvh_boxes_meet(query->box, box);
 }
 
 static bool visit_if_met(void *user, size_t rank) {
     const box_query *query = user;
     bvh_box own = triangle_box(query->tree, query->tree->order[rank]);
-    return !boxes_meet(&own, query->box) || query->visit(query->user, query->tree->order[rank]);
+    return !bvh_boxes_meet(&own, query->box) || query->visit(query->user, query->tree->order[rank]);
 }
 
 bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *user) {
@@ -232,9 +225,9 @@ bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user) {
     return true;
 }
 
-/* Where the line upwards from p passes edge a b in projection: 1 when it passes on its left.
- * p is shaken to (x + e, y + e^2), so that it never lies on the edge. */
-static int shaken_turn(const double a[3], const double b[3], const double p[3]) {
+/* Where the upward line from p passes edge a b in projection: 1 if on its left. p is perturbed to
+ * (x + e, y + e^2), so that it never lies on the edge. */
+static int perturbed_turn(const double a[3], const double b[3], const double p[3]) {
     int turn = orient2d(a, b, p, 0, 1);
     if (turn == 0)
         turn = (a[1] > b[1]) - (a[1] < b[1]);
@@ -247,7 +240,7 @@ int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]) {
     const double *a = corner(tree, triangle, 0);
     const double *b = corner(tree, triangle, 1);
     const double *c = corner(tree, triangle, 2);
-    int ab = shaken_turn(a, b, p), bc = shaken_turn(b, c, p), ca = shaken_turn(c, a, p);
+    int ab = perturbed_turn(a, b, p), bc = perturbed_turn(b, c, p), ca = perturbed_turn(c, a, p);
     if (ab == 0 || ab != bc || bc != ca)
         return 0;
     /* The triangle is not vertical, and ab tells whether it faces up. */
@@ -279,10 +272,10 @@ int bvh_winding(const bvh *tree, const double p[3], bool *on_surface) {
     return query.winding;
 }
 
-/* A segment p + t d, 0 <= t <= 1, made ready for slab tests. */
+/* A segment p + t d, 0 <= t <= 1, prepared for slab tests. */
 typedef struct slab_segment {
     double origin[3], extent[3], inverse[3];
-    bool flat[3]; /* the extent is zero, or so small that its inverse overflows */
+    bool flat[3]; /* the extent is zero or its inverse overflows */
 } slab_segment;
 
 static slab_segment slab_prepare(const double p[3], const double q[3]) {
@@ -297,8 +290,8 @@ static slab_segment slab_prepare(const double p[3], const double q[3]) {
     return s;
 }
 
-/* Never false when the exact segment meets the box: each bound carries at most three roundings,
- * a relative error below 4 x 2^-53. */
+/* Conservative: true whenever the exact segment meets the box. Each bound has at most three
+ * roundings, a relative error below 4 x 2^-53. */
 static bool slab_meets(const slab_segment *s, const bvh_box *box) {
     double enter = 0, leave = 1;
     for (int k = 0; k < 3; k++) {
@@ -340,7 +333,7 @@ static double segment_distance_squared(const double p[3], const double a[3], con
     return vec3_distance_squared(p, foot);
 }
 
-/* The foot of the perpendicular counts when it lies in the triangle, else the nearest edge. */
+/* Uses the foot of the perpendicular if it lies in the triangle, else the nearest edge. */
 static double triangle_distance_squared(const double p[3], const double a[3], const double b[3],
                                         const double c[3]) {
     double n[3], ap[3], s[3];

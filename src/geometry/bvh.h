@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A bounding volume hierarchy over the triangles of a mesh. Box tests only compare coordinates, so
- * that nothing is lost to rounding; what is found in the leaves is decided by predicates. */
+/* Bounding volume hierarchy over the triangles of a mesh. Box tests only compare coordinates and
+ * lose nothing to rounding; predicates decide at the leaves. */
 #ifndef STARG_GEOMETRY_BVH_H
 #define STARG_GEOMETRY_BVH_H
 
@@ -15,6 +15,13 @@ typedef struct bvh_box {
     double lower[3], upper[3];
 } bvh_box;
 
+static inline bool bvh_boxes_meet(const bvh_box *a, const bvh_box *b) {
+    for (int k = 0; k < 3; k++)
+        if (a->upper[k] < b->lower[k] || b->upper[k] < a->lower[k])
+            return false;
+    return true;
+}
+
 /* An inner node has count 0 and its children at `first` and `first` + 1; a leaf holds the
  * triangles order[first .. first + count - 1]. */
 typedef struct bvh_node {
@@ -28,7 +35,7 @@ typedef struct bvh {
     bvh_node *nodes; /* root at 0 */
     uint32_t *order; /* triangle indices, leaf by leaf: a spatial order of the mesh */
     const double *vertices;
-    const uint32_t *faces; /* both borrowed: must outlive the tree */
+    const uint32_t *faces; /* borrowed: must outlive the tree */
 } bvh;
 
 /* Builds the tree. Errors: MEMORY. */
@@ -36,9 +43,9 @@ starg_status bvh_create(starg_context *context, const double *vertices, const ui
                         size_t face_count, bvh **out) STARG_PRIVATE(bvh_create);
 void bvh_free(bvh *tree) STARG_PRIVATE(bvh_free);
 
-/* Calls visit with the position in `order` of every triangle in the leaves that may_meet lets
- * through, until it returns false; returns false exactly if visit did. may_meet may say no only
- * where none of a box's triangles matters. The other queries are special cases. */
+/* Calls visit with the position in `order` of every triangle in the leaves that pass may_meet,
+ * until it returns false; returns false exactly if visit did. may_meet may reject a box only if no
+ * triangle inside matters. The other queries are special cases. */
 typedef bool bvh_box_test(void *user, const bvh_box *box);
 typedef bool bvh_visit_rank(void *user, size_t rank);
 bool bvh_query(const bvh *tree, bvh_box_test *may_meet, void *test_user, bvh_visit_rank *visit,
@@ -53,21 +60,21 @@ bool bvh_query_box(const bvh *tree, const bvh_box *box, bvh_visit *visit, void *
 typedef bool bvh_visit_pair(void *user, uint32_t a, uint32_t b);
 bool bvh_query_pairs(const bvh *tree, bvh_visit_pair *visit, void *user);
 
-/* Winding number of the mesh about p, and whether p lies on a triangle (then the number means
- * nothing). Exact for closed meshes: a vertical line, shaken symbolically off every edge. */
+/* Winding number of the mesh about p, and whether p lies on a triangle (the number is then
+ * meaningless). Exact for closed meshes: a vertical line, symbolically perturbed off every edge. */
 int bvh_winding(const bvh *tree, const double p[3], bool *on_surface);
 
-/* What one triangle adds to the winding number about p: 1 when the line upwards leaves through
- * it, -1 when it enters, 0 when it misses. */
+/* Contribution of one triangle to the winding number about p: 1 where the upward line leaves
+ * through it, -1 where it enters, 0 where it misses. */
 int bvh_crossing(const bvh *tree, uint32_t triangle, const double p[3]);
 
-/* Calls visit with the position in `order` of every triangle whose leaf the segment from p to q
- * may meet (none that it meets is left out), until it returns false. Returns false exactly if
- * visit did. */
+/* Calls visit with the position in `order` of every triangle in the leaves that the segment from p
+ * to q may meet (a superset of those that it meets), until it returns false. Returns false exactly
+ * if visit did. */
 bool bvh_query_segment(const bvh *tree, const double p[3], const double q[3], bvh_visit_rank *visit,
                        void *user) STARG_PRIVATE(bvh_query_segment);
 
-/* Distance from p to the nearest triangle, rounded (not a decision); infinity without triangles. */
+/* Distance from p to the nearest triangle, rounded; infinity without triangles. */
 double bvh_distance(const bvh *tree, const double p[3]) STARG_PRIVATE(bvh_distance);
 
 #endif

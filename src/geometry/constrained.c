@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Constrained triangulation of a planar straight-line graph.
  *
- * Problem: triangles between given vertices, such that given edges are among theirs.
+ * Problem: triangulate given vertices such that given edges are edges of the triangulation.
  *
- * Stages: vertices sorted by place and added one by one, each with the edges of the hull that it
- * sees; edges flipped until all are locally Delaunay [Lawson 1977]; for every edge of the graph
- * that is still missing, the edges that it crosses are flipped until none does [Sloan 1993]; then
- * Delaunay again, the edges of the graph excepted.
+ * Stages: insert the vertices in lexicographic order, each joined to the hull edges that it sees;
+ * flip edges until all are locally Delaunay [Lawson 1977]; for each missing edge of the graph, flip
+ * the edges that cross it until none does [Sloan 1993]; restore the Delaunay property, leaving the
+ * graph's edges alone.
  *
- * Invariants: every triangle turns counter-clockwise, exactly, at all times: a flip is made only
- * where both of its triangles do. Whether an edge is Delaunay is rounded, for it is a matter of
- * quality alone; so the number of flips is bounded.
+ * Invariants: every triangle is counter-clockwise, exactly, at all times: a flip requires that of
+ * both its triangles. The Delaunay test is rounded, since it affects only quality; a bound on the
+ * flips ensures termination.
  *
- * Cost: n log n for sorting; flips are about n sqrt(n) as a rule. */
+ * Cost: O(n log n) for sorting, usually about n sqrt(n) flips. */
 #include "geometry/constrained.h"
 
 #include <math.h>
@@ -23,25 +23,25 @@
 static const char STAGE[] = "triangulate";
 static const uint32_t NONE = CONSTRAINED_NONE;
 
-enum { FLIPS_EACH = 400 }; /* for each triangle, at most */
+enum { FLIPS_EACH = 400 }; /* upper bound per triangle */
 
 typedef struct site {
     double at[2];
     uint32_t vertex;
 } site;
 
-/* Corners are numbers of sites until the end. */
+/* Corners are site numbers until the end. */
 typedef struct triangulator {
     starg_context *context;
     const double *points;
     int u, v;
-    STARG_ARRAY(site) sites; /* by place */
-    uint32_t *by_vertex;     /* sites by their vertex */
-    uint32_t *next, *before; /* of a site on the hull, counter-clockwise */
-    uint32_t *outer;         /* of such a site: 4 * triangle + edge of the hull's edge from it */
-    uint32_t *triangle_of;   /* per site: a triangle with it */
+    STARG_ARRAY(site) sites; /* in lexicographic order */
+    uint32_t *by_vertex;     /* sites by vertex */
+    uint32_t *next, *before; /* neighbours of a site on the hull, counter-clockwise */
+    uint32_t *outer; /* of such a site: 4 * triangle + edge, for the hull edge that starts there */
+    uint32_t *triangle_of; /* per site: one of its triangles */
     STARG_ARRAY(uint32_t) stack;
-    STARG_ARRAY(uint32_t) crossed; /* ends of edges, two by two */
+    STARG_ARRAY(uint32_t) crossed; /* pairs of endpoints */
     constrained_triangles *triangles;
     uint64_t flips_left;
 } triangulator;
@@ -77,7 +77,7 @@ done:
     return status;
 }
 
-/* Vertices with the number of their site, ascending. */
+/* Vertices with their site numbers, ascending. */
 static int by_first(const void *x, const void *y) {
     const uint32_t *a = x, *b = y;
     return compare_numbers(a[0], b[0]);
@@ -128,12 +128,12 @@ static constrained_triangle *at(const triangulator *t, uint32_t number) {
     return &t->triangles->data[number];
 }
 
-/* The edge of a triangle that begins at a site. */
+/* The edge of a triangle that starts at a site. */
 static int edge_from(const constrained_triangle *it, uint32_t s) {
     return it->corners[0] == s ? 0 : it->corners[1] == s ? 1 : 2;
 }
 
-/* Makes two triangles neighbours across an edge; b may be none. */
+/* Links two triangles across an edge; b may be NONE. */
 static void join(const triangulator *t, uint32_t a, int edge, uint32_t b, int other) {
     at(t, a)->beyond[edge] = b;
     if (b != NONE)
@@ -159,7 +159,7 @@ static void link_hull(triangulator *t, uint32_t a, uint32_t b, uint32_t triangle
     t->outer[a] = 4 * triangle + (uint32_t)edge;
 }
 
-/* The first sites lie on one line: a fan of them about the first one that does not. */
+/* The first sites are collinear: makes a fan around the first site off their line. */
 static starg_status start_hull(triangulator *t, uint32_t apex) {
     starg_status status = STARG_OK;
     bool left = turn(t, 0, 1, apex) > 0;
@@ -180,8 +180,7 @@ done:
     return status;
 }
 
-/* Triangles between a new site and the edges of the hull that it sees, which are next to the last
- * one before it. */
+/* Joins a new site to the hull edges that it sees; they are adjacent to the last site inserted. */
 static starg_status extend_hull(triangulator *t, uint32_t fresh) {
     starg_status status = STARG_OK;
     uint32_t from = fresh - 1, to = fresh - 1, first = (uint32_t)t->triangles->count;
@@ -244,13 +243,13 @@ static void put_side(const triangulator *t, uint32_t number, int edge, side s) {
     other->beyond[edge_from(other, it->corners[(edge + 1) % 3])] = number;
 }
 
-/* The corner of the triangle beyond an edge that is not on it. */
+/* The corner of the triangle across an edge that is not on the edge. */
 static uint32_t opposite(const triangulator *t, const constrained_triangle *it, int edge) {
     const constrained_triangle *other = at(t, it->beyond[edge]);
     return other->corners[(edge_from(other, it->corners[(edge + 1) % 3]) + 2) % 3];
 }
 
-/* Flips an edge ab between c and d to cd, if both triangles then turn the right way. */
+/* Flips edge ab between c and d to cd if both new triangles are counter-clockwise. */
 static bool flip(triangulator *t, uint32_t number, int edge) {
     constrained_triangle *s = at(t, number);
     uint32_t other = s->beyond[edge];
@@ -273,7 +272,7 @@ static bool flip(triangulator *t, uint32_t number, int edge) {
     return true;
 }
 
-/* Is the sum of the angles at c and d above pi, so that the edge ab between them is not Delaunay?
+/* Is the sum of the angles at c and d above pi, so that edge ab between them is not Delaunay?
  * Rounded. */
 static bool is_obtuse(const triangulator *t, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     const double *p = t->sites.data[a].at, *q = t->sites.data[b].at;
@@ -326,7 +325,7 @@ static uint32_t next_about(const triangulator *t, uint32_t number, uint32_t s) {
     return it->beyond[(edge_from(it, s) + 2) % 3];
 }
 
-/* The first triangle about a site, clockwise, or any if they go all around. */
+/* The first triangle around a site, clockwise, or any for an interior site. */
 static uint32_t first_about(const triangulator *t, uint32_t s) {
     uint32_t start = t->triangle_of[s], number = start;
     for (;;) {
@@ -352,7 +351,7 @@ static uint32_t find_edge(const triangulator *t, uint32_t a, uint32_t b) {
     return NONE;
 }
 
-/* The triangle at a that the way to b enters by, or NONE: some vertex lies on the way. */
+/* The triangle at a that the segment to b enters, or NONE if a vertex lies on the segment. */
 static uint32_t find_way(const triangulator *t, uint32_t a, uint32_t b) {
     uint32_t first = first_about(t, a);
     for (uint32_t number = first; number != NONE;) {
@@ -368,8 +367,8 @@ static uint32_t find_way(const triangulator *t, uint32_t a, uint32_t b) {
     return NONE;
 }
 
-/* The edges between a and b. *clear is false when one of them is of the graph, or a vertex lies on
- * the way. */
+/* Lists the edges that cross segment a b. *clear is false when one of them belongs to the graph, or
+ * a vertex lies on the segment. */
 static starg_status list_crossed(triangulator *t, uint32_t a, uint32_t b, bool *clear) {
     starg_status status = STARG_OK;
     uint32_t number = find_way(t, a, b);
@@ -393,7 +392,7 @@ static starg_status list_crossed(triangulator *t, uint32_t a, uint32_t b, bool *
             *clear = far == b;
             break;
         }
-        /* on through the edge at whose ends the way has one on either side */
+        /* continue through the edge whose endpoints lie on opposite sides of the segment */
         edge = edge_from(at(t, number), sign > 0 ? right : far);
     }
 done:
@@ -404,8 +403,7 @@ static bool is_between(const triangulator *t, uint32_t a, uint32_t b, uint32_t c
     return c != a && c != b && d != a && d != b && turn(t, a, b, c) * turn(t, a, b, d) < 0;
 }
 
-/* Flips what is crossed until nothing is. Some edge can always be flipped; those that cannot wait
- * for others. */
+/* Flips crossing edges until none is left. Some edge can always be flipped; the others wait. */
 static starg_status clear_way(triangulator *t, uint32_t a, uint32_t b, bool *done) {
     starg_status status = STARG_OK;
     STARG_TRY(list_crossed(t, a, b, done));
@@ -459,7 +457,7 @@ done:
     return status;
 }
 
-/* All vertices on one line: edges may then be there, but nothing inside of them. */
+/* All vertices are collinear: the graph may have edges, but no interior. */
 static bool is_flat_graph(const constrained_edge *edges, size_t count) {
     for (size_t i = 0; i < count; i++)
         if (edges[i].turns != 0)

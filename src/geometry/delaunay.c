@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Incremental Delaunay tetrahedralisation [Bowyer 1981, Watson 1981] with exact predicates.
+/* Incremental Delaunay tetrahedralization [Bowyer 1981, Watson 1981] with exact predicates.
  *
- * Points are inserted in a biased randomised order (rounds of doubling size, each along a Hilbert
- * curve) [Amenta, Choi, Rote 2003], so that the walk to a point is short and memory is local.
+ * Points are inserted in a biased randomized order (rounds of doubling size, each along a Hilbert
+ * curve) [Amenta, Choi, Rote 2003], which keeps walks short and memory access local.
  *
- * The hull is closed by ghost tetrahedra with the vertex GHOST. A tetrahedron is in conflict with
- * a point p that lies strictly inside its circumscribed sphere; a ghost, if p lies strictly beyond
- * its hull face, or in the face's plane and in conflict with the tetrahedron behind it. The
- * tetrahedra in conflict are connected and star-shaped about p; each of their border faces is
- * joined to p. That holds for cospherical points too, because "on the sphere" always counts as
- * outside: a facet of the border coplanar with p would put p strictly inside the circle of the
- * facet and so inside both spheres through it.
+ * Ghost tetrahedra with the vertex GHOST close the hull. A tetrahedron conflicts with a point p
+ * strictly inside its circumsphere; a ghost conflicts if p lies strictly beyond its hull face, or
+ * in the face's plane and in conflict with the tetrahedron behind it. The conflict zone is
+ * connected and star-shaped about p; each face of its border is joined to p. This holds for
+ * cospherical points too, because "on the sphere" always counts as outside: a border facet coplanar
+ * with p would put p strictly inside the facet's circle and so inside both spheres through it.
  *
  * Expected cost O(n log n) for points on surfaces in practice; O(n^2) in the worst case. */
 #include "geometry/delaunay.h"
@@ -31,12 +30,12 @@ typedef struct cell {
     uint32_t next_free;
 } cell;
 
-/* A face of the border of the conflict zone: face `side` of `cell`. */
+/* Face `side` of `cell`, on the border of the conflict zone. */
 typedef struct border_face {
     uint32_t cell, side;
 } border_face;
 
-/* An edge of the border, which waits for the second new cell that has it. */
+/* A border edge waiting for its second new cell. */
 typedef struct open_edge {
     uint64_t key;
     uint32_t cell, side;
@@ -48,10 +47,10 @@ typedef struct delaunay_builder {
     const double *points;
     size_t count;       /* points inserted or skipped */
     uint32_t *incident; /* a cell at each point, or NOWHERE */
-    bool *changed;      /* of each point: since the caller last asked */
+    bool *changed;      /* per point: since the caller last asked */
     STARG_ARRAY(cell) cells;
     uint32_t free_cells;
-    uint32_t last; /* where the next walk starts */
+    uint32_t last; /* start of the next walk */
     uint32_t stamp;
     STARG_ARRAY(uint32_t) zone;
     STARG_ARRAY(border_face) border;
@@ -59,9 +58,9 @@ typedef struct delaunay_builder {
     size_t edge_capacity; /* a power of two */
     starg_rng rng;
     STARG_ARRAY(uint32_t) star;
-    uint32_t star_of; /* the point whose star was handed out last, or NOWHERE */
+    uint32_t star_of; /* the point whose star was returned last, or NOWHERE */
     size_t star_count;
-    uint32_t (*corners)[3]; /* of the star, as handed out */
+    uint32_t (*corners)[3]; /* of the star, as returned */
     size_t corner_capacity;
 } builder;
 
@@ -70,7 +69,7 @@ typedef struct sort_key {
     uint32_t point;
 } sort_key;
 
-/* Position along a Hilbert curve through 2^20 cells an axis [Skilling 2004]. */
+/* Position along a Hilbert curve through 2^20 cells per axis [Skilling 2004]. */
 static uint64_t hilbert_index(const uint32_t position[3]) {
     enum { BITS = 20 };
     uint32_t x[3] = {position[0], position[1], position[2]}, t;
@@ -163,8 +162,8 @@ static bool in_conflict(const builder *b, const cell *c, const double p[3]) {
     return side > 0 || (side == 0 && in_sphere(b, &b->cells.data[c->neighbour[ghost]], p));
 }
 
-/* Walks to the cell that holds p, or to a ghost beyond whose face p lies. The face to leave by is
- * tried from a random one on, which rules out cycles. */
+/* Walks to the cell that contains p, or to a ghost whose face separates p from the hull. Faces are
+ * tested from a random one on, which rules out cycles. */
 static uint32_t locate(builder *b, const double p[3]) {
     uint32_t at = b->last;
     int ghost = ghost_side(&b->cells.data[at]);
@@ -208,7 +207,7 @@ done:
     return status;
 }
 
-/* Collects the cells in conflict with p, from `start` on, and the faces of their border. */
+/* Collects the cells in conflict with p, starting from `start`, and their border faces. */
 static starg_status find_zone(builder *b, uint32_t start, const double p[3]) {
     starg_status status = STARG_OK;
     b->stamp += 2;
@@ -238,7 +237,7 @@ static uint64_t edge_key(uint32_t u, uint32_t v) {
     return u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
 }
 
-/* The table holds three edges for two border faces, at most half full. */
+/* Three edges per two border faces fill the table at most half. */
 static starg_status reserve_edges(builder *b) {
     starg_status status = STARG_OK;
     size_t wanted = 4 * b->border.count;
@@ -281,7 +280,7 @@ static void note_change(builder *b, const uint32_t vertex[4], uint32_t index) {
         }
 }
 
-/* The new cell on a border face: the old one with its corner inside the zone moved to p. */
+/* Makes the new cell on a border face: the old cell with its corner in the zone replaced by p. */
 static starg_status fill_face(builder *b, border_face face, uint32_t vertex) {
     uint32_t index;
     starg_status status = new_cell(b, &index);
@@ -332,7 +331,7 @@ done:
     return status;
 }
 
-/* Finds four points, early in the order, that span a tetrahedron, and moves them to its front. */
+/* Finds four points, early in the order, that span a tetrahedron, and moves them to the front. */
 static bool find_first_four(const builder *b, sort_key *order, size_t count) {
     size_t found = 0;
     for (size_t i = 0; i < count && found < 4; i++) {
@@ -353,8 +352,8 @@ static bool find_first_four(const builder *b, sort_key *order, size_t count) {
     return found == 4;
 }
 
-/* One tetrahedron and its four ghosts. Ghost k replaces corner k by GHOST; to keep it positively
- * oriented beyond the face, two of its other corners change places. */
+/* Makes one tetrahedron and its four ghosts. Ghost k replaces corner k by GHOST and swaps two other
+ * corners to stay positively oriented. */
 static starg_status make_first(builder *b, const sort_key *order) {
     uint32_t v[4], index;
     for (int k = 0; k < 4; k++)
@@ -379,8 +378,8 @@ static starg_status make_first(builder *b, const sort_key *order) {
         ghost->vertex[i] = v[j];
         ghost->vertex[j] = v[i];
         for (uint32_t m = 0; m < 4; m++)
-            ghost->neighbour[m] = 1 + m; /* opposite corner m lies ghost m ... */
-        ghost->neighbour[i] = 1 + j;     /* ... whose corner has moved */
+            ghost->neighbour[m] = 1 + m; /* ghost m lies opposite corner m ... */
+        ghost->neighbour[i] = 1 + j;     /* ... whose corner was swapped */
         ghost->neighbour[j] = 1 + i;
         ghost->neighbour[k] = 0;
         first->neighbour[k] = 1 + k;
@@ -408,7 +407,7 @@ static starg_status insert_all(builder *b, const sort_key *order, size_t first, 
     return status;
 }
 
-/* Numbers the cells that are no ghosts in the order of the pool; `mark` holds the number. */
+/* Numbers the finite cells in the order of the pool; `mark` receives the number. */
 static size_t number_cells(builder *b) {
     size_t count = 0;
     for (size_t i = 0; i < b->cells.count; i++) {
@@ -436,7 +435,7 @@ done:
     return status;
 }
 
-/* Makes room for what is known of each point. */
+/* Makes room for the data of each point. */
 static starg_status reserve_points(builder *b, size_t count) {
     starg_status status = STARG_OK;
     uint32_t *incident =
@@ -455,7 +454,7 @@ static starg_status reserve_points(builder *b, size_t count) {
     return status;
 }
 
-/* As long as all points lie in one plane there are no cells, and those skipped stay so. */
+/* While all points are coplanar there are no cells; skipped points are never inserted. */
 starg_status delaunay_extend(delaunay_builder *b, const double *points, size_t count) {
     starg_status status = STARG_OK;
     sort_key *order = NULL;
@@ -551,7 +550,7 @@ bool delaunay_take_change(delaunay_builder *b, uint32_t point_index) {
     return changed;
 }
 
-/* Room for the corners of as many cells as the star can hold. */
+/* Makes room for the corners of all cells of the star. */
 static starg_status reserve_corners(builder *b) {
     starg_status status = STARG_OK;
     uint32_t(*corners)[3] = NULL;
@@ -566,7 +565,7 @@ static starg_status reserve_corners(builder *b) {
     return status;
 }
 
-/* The other corners of a cell at a vertex; the cells beyond the faces there join the star. */
+/* Appends the other corners of a cell at a vertex, and adds its neighbours there to the star. */
 static starg_status leave_by_faces(builder *b, uint32_t index, uint32_t vertex) {
     starg_status status = STARG_OK;
     const cell *c = &b->cells.data[index];
@@ -588,7 +587,7 @@ done:
     return status;
 }
 
-/* All cells at a vertex, ghosts among them, from one of them on across the faces at the vertex. */
+/* Collects all cells at a vertex, ghosts included, by walking across the faces at the vertex. */
 static starg_status find_star(builder *b, uint32_t vertex) {
     starg_status status = STARG_OK;
     b->star.count = b->star_count = 0;

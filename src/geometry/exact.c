@@ -76,7 +76,7 @@ static int compare_magnitude(const exact *a, const exact *b) {
     return 0;
 }
 
-/* |out| = |a| + |b| with |a| the one of more limbs. */
+/* |out| = |a| + |b|, where a has at least as many limbs as b. */
 static void add_magnitude(exact *out, const exact *a, const exact *b) {
     starg_uint128 carry = 0;
     for (int i = 0; i < a->count; i++) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Rational points: constructions by Cramer's rule, signs of determinants of homogeneous
- * coordinates, rounding by division. Cost: 0.1-2 us each where the filter does not decide. */
+ * coordinates, rounding by long division. Cost: 0.1-2 us where the filter does not decide. */
 #include "geometry/exact_points.h"
 
 #include <math.h>
@@ -48,8 +48,8 @@ static void set_one(exact *out) {
     out->limb[0] = 1;
 }
 
-/* Nearest double of a / b 2^scale, b > 0. Both are brought to the same length, so that 56 steps of
- * long division give 55 or 56 bits of the quotient; what remains only breaks ties. */
+/* Nearest double to a / b 2^scale, b > 0. Both are shifted to the same length, so that 56 steps of
+ * long division give 55 or 56 bits of the quotient; the remainder only breaks ties. */
 static double round_quotient(const exact *a, const exact *b, int scale) {
     if (a->sign == 0)
         return 0;
@@ -73,7 +73,7 @@ static double round_quotient(const exact *a, const exact *b, int scale) {
     return a->sign * ldexp((double)quotient, scale - shift - 55);
 }
 
-/* out = x a - y b for points of weight 1 with x, y of a line: coordinate by coordinate. */
+/* out = x a - y b, coordinate by coordinate, for points a, b of weight 1. */
 static void combine(exact_point *out, const exact a[3], const exact *x, const exact b[3],
                     const exact *y) {
     for (int k = 0; k < 3; k++)
@@ -117,7 +117,8 @@ void exact_plane_set(exact_plane *out, const double *const corner[3], int scale)
     dot(&out->offset, out->normal, p[0]);
 }
 
-void exact_point_round(exact_point *point, int scale) {
+/* Fills `rounded` from x, which the caller set. */
+static void round_point(exact_point *point, int scale) {
     for (int k = 0; k < 3; k++)
         point->rounded[k] = round_quotient(&point->x[k], &point->x[3], scale);
 }
@@ -129,13 +130,13 @@ void exact_point_set(exact_point *out, const double p[3], int scale) {
         out->rounded[k] = p[k] + 0.0; /* no -0: equal points have equal bits */
 }
 
-/* The point of the line p q at which a linear function with values at_p, at_q is zero. */
+/* The zero on line p q of a linear function with values at_p and at_q. */
 static void set_zero(exact_point *out, const exact p[3], const exact *at_p, const exact q[3],
                      const exact *at_q, int scale) {
     combine(out, p, at_q, q, at_p);
     exact_subtract(&out->x[3], at_q, at_p);
     make_positive(out);
-    exact_point_round(out, scale);
+    round_point(out, scale);
 }
 
 void exact_point_on_plane(exact_point *out, const double p[3], const double q[3],
@@ -175,13 +176,14 @@ void exact_point_of_planes(exact_point *out, const exact_plane *const plane[3], 
         exact_determinant(&out->x[column], row[0], row[1], row[2]);
     }
     make_positive(out);
-    exact_point_round(out, scale);
+    round_point(out, scale);
 }
 
 void exact_point_between(exact_point *out, const exact_point *const corner[3],
                          const uint32_t weight[3], int scale) {
     exact factor[3], product, sum, whole = {0};
-    for (int i = 0; i < 3; i++) { /* the other two weights of coordinates, and its own share */
+    for (int i = 0; i < 3;
+         i++) { /* the other two weights times the coordinates, and its own share */
         exact share = {.sign = 1, .count = 1, .limb = {weight[i]}};
         exact_multiply(&product, &corner[(i + 1) % 3]->x[3], &corner[(i + 2) % 3]->x[3]);
         exact_multiply(&factor[i], &product, &share);
@@ -199,15 +201,15 @@ void exact_point_between(exact_point *out, const exact_point *const corner[3],
         }
         copy(&out->x[k], &total);
     }
-    exact_point_round(out, scale);
+    round_point(out, scale);
 }
 
 /* ---- signs ---- */
 
-/* The turn of the rounded points where it is certain, else 0. Each coordinate is off by at most
- * 2^-53 of the largest magnitude m, each difference by 4 x 2^-53 m; what that and the roundings
- * here do to the determinant is below the bound by a factor of two. Below 1e-250 underflow might
- * count. */
+/* The turn of the rounded points if it is certain, else 0. Each coordinate is off by at most 2^-53
+ * of the largest magnitude m, each difference by 4 x 2^-53 m; the resulting error of the
+ * determinant, with the roundings here, is below half the bound. Below 1e-250 underflow could
+ * matter. */
 static int certain_turn(const double *a, const double *b, const double *c, int u, int v) {
     double au = a[u] - c[u], av = a[v] - c[v], bu = b[u] - c[u], bv = b[v] - c[v];
     double m = fmax(fmax(fmax(fabs(a[u]), fabs(a[v])), fmax(fabs(b[u]), fabs(b[v]))),
@@ -270,7 +272,7 @@ void exact_points_get(const exact_points *set, uint32_t number, exact_point *out
     memcpy(out->rounded, exact_points_rounded(set, number), sizeof out->rounded);
 }
 
-/* Sign of a's coordinate minus b's: numerators over weights. */
+/* Sign of a's coordinate minus b's, compared as quotients. */
 static int compare_quotients(const exact *a, const exact *a_weight, const exact *b,
                              const exact *b_weight) {
     exact difference;

@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Points with rational coordinates: where lines through vertices and planes through faces meet.
+/* Points with rational coordinates: intersections of lines through vertices and planes through
+ * faces.
  *
  * A point is four integers (x, y, z, w) with w > 0 in units of a common power of two (the scale):
- * its coordinates are x/w, y/w, z/w times 2^scale. Beside them stands the nearest double of each
- * coordinate. Rounding is monotone, so doubles that differ decide an order, and equal points have
- * equal doubles. All signs are exact: a filter on the doubles first, then integers.
+ * its coordinates are x/w, y/w, z/w times 2^scale. The nearest double of each coordinate is stored
+ * too. Rounding is monotone, so different doubles decide an order, and equal points have equal
+ * doubles. All signs are exact: a filter on the doubles first, then integers.
  *
- * Planes go through three vertices, lines through two, so that numbers stay short: a vertex has
- * degree 1 in the coordinates, a line and a plane meet in degree 4 / 3, three planes in 7 / 6, and
- * the largest sign asked for has degree 21. EXACT_POINT_BITS of the coordinates fit. */
+ * Planes pass through three vertices and lines through two, which keeps numbers short: a vertex has
+ * degree 1 in the coordinates, the intersection of a line and a plane degree 4 / 3, that of three
+ * planes 7 / 6, and the largest sign needed has degree 21. Coordinates of up to EXACT_POINT_BITS
+ * bits fit. */
 #ifndef STARG_GEOMETRY_EXACT_POINTS_H
 #define STARG_GEOMETRY_EXACT_POINTS_H
 
 #include "core/memory.h"
 #include "geometry/exact.h"
 
-/* Width of the coordinates (exact_scale) that the integers have room for. */
+/* Largest width of the coordinates (exact_scale). */
 enum { EXACT_POINT_BITS = 360 };
 
 typedef struct exact_point {
@@ -23,44 +25,42 @@ typedef struct exact_point {
     double rounded[3];
 } exact_point;
 
-/* normal . x = offset; seen from the side to which the normal points, the three points that it was
- * made from turn counter-clockwise. */
+/* normal . x = offset; the three defining points are counter-clockwise seen from the side to which
+ * the normal points. */
 typedef struct exact_plane {
     exact normal[3], offset;
 } exact_plane;
 
 void exact_plane_set(exact_plane *out, const double *const corner[3], int scale);
 
-/* Fills `rounded` from x, which the caller has set. */
-void exact_point_round(exact_point *point, int scale);
 void exact_point_set(exact_point *out, const double p[3], int scale);
-/* The line p q meets the plane; p and q do not both lie in it. */
+/* Intersection of line p q and the plane, in which they do not both lie. */
 void exact_point_on_plane(exact_point *out, const double p[3], const double q[3],
                           const exact_plane *plane, int scale);
-/* The lines p q and a b meet, which lie in one plane that projects one to one to (u, v). */
+/* Intersection of lines p q and a b, whose common plane projects injectively to (u, v). */
 void exact_point_on_line(exact_point *out, const double p[3], const double q[3], const double a[3],
                          const double b[3], int u, int v, int scale);
-/* Three planes meet, in one point. */
+/* Intersection of three planes in one point. */
 void exact_point_of_planes(exact_point *out, const exact_plane *const plane[3], int scale);
-/* weight[0] a + weight[1] b + weight[2] c, divided by the sum of the weights (each above 0). */
+/* Barycentric combination: weight[0] a + weight[1] b + weight[2] c over the sum of the weights, all
+ * above 0. */
 void exact_point_between(exact_point *out, const exact_point *const corner[3],
                          const uint32_t weight[3], int scale);
 
 /* Sign of the turn a, b, c in the plane of coordinates u and v: 1 for counter-clockwise. */
 int exact_turn(const exact_point *a, const exact_point *b, const exact_point *c, int u, int v);
-/* 1 when the point lies strictly on the side to which the plane's normal points, -1 on the other.
- */
+/* 1 if the point lies strictly on the side to which the plane's normal points, -1 on the other. */
 int exact_side(const exact_plane *plane, const exact_point *point);
 
 /* ---- a set of points ---- */
 
 typedef struct exact_entry {
     double rounded[3];
-    size_t limb;      /* where the integers begin */
-    int16_t count[4]; /* limbs of each, negative for a negative one */
+    size_t limb;      /* offset of the integers */
+    int16_t count[4]; /* limbs of each coordinate, negative for a negative number */
 } exact_entry;
 
-/* Each different point has one number. */
+/* Distinct points, numbered. */
 typedef struct exact_points {
     starg_context *context;
     int scale;
@@ -71,7 +71,7 @@ typedef struct exact_points {
 } exact_points;
 
 void exact_points_free(exact_points *set);
-/* The number of a point, which is added if it is new. Errors: MEMORY. */
+/* Returns the number of a point, adding it if it is new. Errors: MEMORY. */
 starg_status exact_points_add(exact_points *set, const exact_point *point, uint32_t *number);
 void exact_points_get(const exact_points *set, uint32_t number, exact_point *out);
 static inline const double *exact_points_rounded(const exact_points *set, uint32_t number) {

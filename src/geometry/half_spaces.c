@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Farkas' lemma for up to four half-spaces, in integers.
  *
- * Problem: the half-spaces n_i . x < d_i have no common point where factors f_i >= 0, not all zero,
+ * Problem: the half-spaces n_i . x < d_i have no common point if factors f_i >= 0, not all zero,
  * make sum f_i (d_i - n_i . x) <= 0.
  *
- * In a box: any factors will do, and the sum is linear in x, so that the corners of the box decide.
- * Everywhere: sum f_i n_i = 0 and sum f_i d_i <= 0. For a set without superfluous members such
- * factors are unique up to scale, minors of the normals. This proves what is true by a hair, or
- * just so (a flat common part of closed half-spaces), where rounded factors are not good enough.
+ * In a box: any factors will do, and the sum is linear in x, so testing the corners of the box is
+ * enough. Everywhere: sum f_i n_i = 0 and sum f_i d_i <= 0. For an irreducible set such factors are
+ * unique up to scale and are minors of the normals. This also proves tight cases (such as a flat
+ * intersection of the closed half-spaces), where rounded factors fail.
  *
  * Stages: normals and offsets as integers relative to one corner; factors, by the number of
- * half-spaces; the test of the definition, which is all that the answer rests on.
+ * half-spaces; the test of the definition, on which alone the answer depends.
  *
  * Degrees everywhere: normals 2, offsets 3, factors at most 6, sums 9; coordinates of up to
- * MOST_BITS bits keep the sums below the limbs of `exact`. Cost: some microseconds. */
+ * MOST_BITS bits keep the sums within the limbs of `exact`. Cost: some microseconds. */
 #include "geometry/half_spaces.h"
 
 #include "geometry/exact.h"
@@ -63,7 +63,7 @@ static void difference(exact out[3], const double p[3], const double q[3], int s
     }
 }
 
-/* out = (b - a) x (c - a), which points out of the half-space. */
+/* out = (b - a) x (c - a), the outward normal. */
 static void set_normal(exact out[3], const half_space *space, int scale) {
     exact u[3], v[3];
     difference(u, space->b, space->a, scale);
@@ -72,7 +72,7 @@ static void set_normal(exact out[3], const half_space *space, int scale) {
         cross(&out[k], u, v, k);
 }
 
-/* The common scale of all corners and of `more` values behind them. */
+/* The common scale of all corners and of `more` further values. */
 static int find_scale(const half_space *spaces, int count, const double *more, int more_count,
                       int *bits) {
     double values[9 * MOST + 6];
@@ -102,8 +102,8 @@ static bool set_up(system *s, const half_space *spaces, int count) {
     return true;
 }
 
-/* Factors for which sum f_i n_i vanishes in two components at least; all of them when the normals
- * have the rank count - 1. */
+/* Factors for which at least two components of sum f_i n_i vanish; all of them if the normals have
+ * rank count - 1. */
 static void choose_factors(system *s, int axis) {
     exact(*n)[3] = s->normal;
     if (s->count == 1) {
@@ -142,7 +142,7 @@ static bool orient_factors(system *s) {
     return sign != 0;
 }
 
-/* The definition: the normals cancel, the offsets leave no room. */
+/* Tests the definition: the normals cancel, and the offsets sum to at most 0. */
 static bool factors_prove(const system *s) {
     for (int k = 0; k < 3; k++) {
         exact sum = {.sign = 0};

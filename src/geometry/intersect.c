@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Intersection tests by signs of predicates only. A point of three dimensions is never computed:
- * coplanar cases are decided in a coordinate plane onto which the common plane projects
- * one to one, and triangles without area are taken apart into their edges. */
+/* Intersection tests by predicates only, without constructing points: coplanar cases are decided in
+ * a coordinate plane onto which the common plane projects injectively, and triangles without area
+ * are treated as their edges. */
 #include "geometry/intersect.h"
 
 #include "geometry/predicates.h"
@@ -22,7 +22,7 @@ static bool point_on_segment(const double p[3], const double a[3], const double 
     return in_box_of(p, a, b) && collinear(a, b, p);
 }
 
-/* Finds a coordinate plane (u, v) in which a, b, c have area; their turn there, or 0. */
+/* Finds a coordinate plane (u, v) in which a, b, c have area; returns their turn there, or 0. */
 static int turn_in_plane(const double a[3], const double b[3], const double c[3], int *u, int *v) {
     for (int k = 0; k < 3; k++) {
         *u = k;
@@ -34,7 +34,7 @@ static int turn_in_plane(const double a[3], const double b[3], const double c[3]
     return 0;
 }
 
-/* Closed segments in a plane in which not all four points are collinear. */
+/* Closed segments whose four endpoints are coplanar but not all collinear. */
 static bool segments_meet_in_plane(const double a[3], const double b[3], const double c[3],
                                    const double d[3], int u, int v) {
     return orient2d(a, b, c, u, v) * orient2d(a, b, d, u, v) <= 0 &&
@@ -71,14 +71,15 @@ static bool half_open_meets_segment(const double p[3], const double q[3], const 
         return false;
     if (!point_on_segment(q, a, b))
         return true;
-    /* They meet in q; in more than q only when they overlap along a common line. */
+    /* They meet in q; they meet elsewhere too only if they overlap along a line. */
     if (!collinear(p, a, b) || !collinear(p, q, a) || !collinear(p, q, b))
         return false;
     return in_box_of(p, a, b) || (in_box_of(a, p, q) && !same(a, q)) ||
            (in_box_of(b, p, q) && !same(b, q));
 }
 
-/* [p, q) against a triangle with area, all in one plane that projects to (u, v) with `turn`. */
+/* [p, q) against a triangle with area in the same plane, which projects injectively to (u, v) with
+ * `turn`. */
 static bool meets_in_plane(const double p[3], const double q[3], const double *const corner[3],
                            int u, int v, int turn) {
     int at_p[3], at_q[3];
@@ -92,7 +93,7 @@ static bool meets_in_plane(const double p[3], const double q[3], const double *c
     if (p_inside)
         return true;
     if (q_inside) {
-        /* q is in the triangle: does the segment leave q into it? */
+        /* q is in the triangle: does the segment extend into it from q? */
         for (int k = 0; k < 3; k++)
             if (at_q[k] == 0 && at_p[k] < 0)
                 return false;
@@ -123,7 +124,7 @@ bool segment_meets_triangle(const double p[3], const double q[3], const double a
             return point_on_triangle(p, a, b, c);
         return meets_coplanar(p, q, a, b, c);
     }
-    /* p is off the plane: contact in q alone is no contact of [p, q) */
+    /* p is off the plane: touching in q alone does not block [p, q) */
     if (at_p * orient3d(a, b, c, q) >= 0)
         return false;
     int s = orient3d(p, q, a, b), t = orient3d(p, q, b, c);
@@ -137,13 +138,13 @@ static bool closed_meets(const double p[3], const double q[3], const double *con
     return segment_meets_triangle(p, q, t[0], t[1], t[2]) || point_on_triangle(q, t[0], t[1], t[2]);
 }
 
-/* Does edge p q pass from one side of the plane of t to the other, through t? */
+/* Does edge p q cross the plane of t through t? */
 static bool pierces(const double p[3], const double q[3], const double *const t[3]) {
     return orient3d(t[0], t[1], t[2], p) * orient3d(t[0], t[1], t[2], q) < 0 &&
            segment_meets_triangle(p, q, t[0], t[1], t[2]);
 }
 
-/* Is there an edge of s that has all of t on its far side or on its line? */
+/* Does some edge of s have all of t on its outer side or on its line? */
 static bool separates(const double *const s[3], const double *const t[3], int u, int v, int turn) {
     for (int k = 0; k < 3; k++) {
         bool apart = true;
@@ -155,7 +156,7 @@ static bool separates(const double *const s[3], const double *const t[3], int u,
     return false;
 }
 
-/* Do the two lie in one plane and have area in common? */
+/* Are the two coplanar with an overlap of positive area? */
 static bool overlap_in_plane(const double *const s[3], const double *const t[3]) {
     for (int k = 0; k < 3; k++)
         if (orient3d(t[0], t[1], t[2], s[k]) != 0)
@@ -166,8 +167,8 @@ static bool overlap_in_plane(const double *const s[3], const double *const t[3])
 }
 
 triangle_contact triangles_contact(const double *const s[3], const double *const t[3], int shared) {
-    /* With one corner in common only the far edges count: a common segment that starts in the
-     * corner ends on one of them. With two, there is more contact only in one plane. */
+    /* With one common corner only the opposite edges matter: a common segment from that corner ends
+     * on one of them. With two, further contact requires coplanarity. */
     int first = shared == 1 ? 1 : 0, edges = shared == 0 ? 3 : shared == 1 ? 1 : 0;
     bool touch = false;
     if (shared == 3 || overlap_in_plane(s, t))

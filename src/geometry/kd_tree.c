@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* k-d tree [Bentley 1975], implicit: the middle of a range of `order` is the median along the axis
- * of its depth (axes take turns), what is before it is not above, what is behind it not below.
+/* Implicit k-d tree [Bentley 1975]: the middle of a range of `order` is its median along the axis
+ * of its depth (axes alternate); entries before it are not above it, entries behind it not below.
  *
- * Invariant: a range is skipped only where its distance along one axis, rounded as that of a
- * point is, exceeds the best one; rounding is monotone, so that no nearer point is lost.
+ * Invariant: a range is skipped only if its rounded distance along one axis exceeds the best one;
+ * rounding is monotone, so no nearer point is lost.
  *
- * Cost: O(n log n) to build on average, O(log n) a query for points that are spread out. */
+ * Cost: O(n log n) on average to build, O(log n) per query for well distributed points. */
 #include "geometry/kd_tree.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ static bool before(const kd_tree *tree, int axis, uint32_t a, uint32_t b) {
     return x < y || (x == y && a < b);
 }
 
-/* Quickselect: order[middle] gets the point that a sort would put there. */
+/* Quickselect: order[middle] becomes what sorting would put there. */
 static void select_median(const kd_tree *tree, int axis, size_t low, size_t high, size_t middle) {
     uint32_t *order = tree->order;
     while (high - low > 1) {
@@ -95,7 +95,7 @@ static void look_at(search *s, uint32_t point) {
     }
 }
 
-/* The side of p first, then the other one if it may hold something as near. */
+/* Searches the side of p first, then the other if it may hold a point at least as near. */
 static void look_in(search *s, size_t low, size_t high, int axis) {
     if (low >= high)
         return;

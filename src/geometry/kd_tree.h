@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A k-d tree over points of up to four coordinates: which one is nearest? */
+/* k-d tree for nearest neighbours, up to four coordinates. */
 #ifndef STARG_GEOMETRY_KD_TREE_H
 #define STARG_GEOMETRY_KD_TREE_H
 
@@ -15,7 +15,7 @@ typedef struct kd_tree {
     const double *points; /* count x dimension, borrowed; finite */
     size_t count;
     int dimension;
-    uint32_t *order; /* of each range the middle one splits it, along the axis of its depth */
+    uint32_t *order; /* the middle of each range splits it, along the axis of its depth */
 } kd_tree;
 
 /* Errors: MEMORY. */
@@ -23,8 +23,8 @@ starg_status kd_tree_create(starg_context *context, const double *points, size_t
                             int dimension, kd_tree *out) STARG_PRIVATE(kd_tree_create);
 void kd_tree_free(starg_context *context, kd_tree *tree) STARG_PRIVATE(kd_tree_free);
 
-/* The point nearest to p, of equal ones that of the lowest index; `squared` receives the square of
- * its rounded distance. The tree must not be empty. */
+/* The point nearest to p, on ties that of the lowest index; `squared` receives the rounded squared
+ * distance. The tree must not be empty. */
 size_t kd_tree_nearest(const kd_tree *tree, const double *p, double *squared)
     STARG_PRIVATE(kd_tree_nearest);
 

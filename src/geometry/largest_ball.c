@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The largest ball inside of half-spaces that come one by one.
+/* Largest ball in an intersection of half-spaces, updated as half-spaces are added.
  *
- * Problem: maximise r over (x, r) with n_i . x + r <= b_i, when the half-spaces are not known all
- * at once, because there are many and only those that the ball violates are worth the time.
+ * Problem: maximize r over (x, r) with n_i . x + r <= b_i, where there are many half-spaces and
+ * only those that the ball violates are added.
  *
  * Method: the dual simplex algorithm [Lemke 1954] in four variables. Four half-spaces are tight;
- * their weights w >= 0 with sum w_i n_i = 0 and sum w_i = 1 prove that no ball inside of them is
- * larger. A violated half-space is written as a combination of the four; the ratio test says which
- * of the four it replaces so that all weights stay >= 0. Changing an offset changes no weight: so
- * a half-space is taken away by moving it far out, and all that was learnt is kept.
+ * their weights w >= 0 with sum w_i n_i = 0 and sum w_i = 1 prove that no larger ball fits. A
+ * violated half-space is written as a combination of the four; the ratio test picks the one to
+ * replace so that all weights stay >= 0. Changing an offset does not change the weights: a
+ * half-space is removed by moving it far away, which keeps the basis.
  *
- * Invariants: weights >= 0 up to rounding; the inverse is computed anew each time, so that errors
- * do not grow. Cost: some 200 operations for each half-space added. */
+ * Invariants: weights >= 0 up to rounding; the inverse is recomputed each time, so that errors do
+ * not accumulate. Cost: some 200 operations per half-space added. */
 #include "geometry/largest_ball.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ enum { UPDATES_MOST = 12 };
 
 static const double TINY = 1e-11, SMALL = 1e-3;
 
-/* inverse = the inverse of the matrix with the rows (normal, 1); false when it has none. */
+/* inverse = inverse of the matrix with rows (normal, 1); false if singular. */
 static bool invert(largest_ball *ball) {
     double m[4][8];
     for (int i = 0; i < 4; i++)
@@ -54,7 +54,7 @@ static bool invert(largest_ball *ball) {
     return true;
 }
 
-/* The inverse after row `out` has become a combination of the four with these factors. */
+/* The inverse after replacing row `out` by a combination of the four with these factors. */
 static bool replace(largest_ball *ball, int out, const double factors[4]) {
     if (factors[out] < SMALL || ++ball->updates == UPDATES_MOST) {
         ball->updates = 0;
@@ -94,7 +94,7 @@ void largest_ball_start(largest_ball *ball) {
     place(ball);
 }
 
-/* The place that the new half-space takes, whose normal is a combination of the four. */
+/* The slot that the new half-space takes, given its normal as a combination of the four. */
 static int leaving(const largest_ball *ball, const double factors[4]) {
     int best = -1;
     double least = INFINITY;

@@ -1,26 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Randomised incremental linear programming.
+/* Randomized incremental linear programming.
  *
- * Problem: maximise a linear function over n half-spaces and a ball, in d <= 4 variables.
+ * Problem: maximize a linear function over n half-spaces and a ball, in d <= 4 variables.
  * Source: R. Seidel, Small-dimensional linear programming and convex hulls made easy, 1991; rows
- * that turn out to matter are moved to the front as in E. Welzl, Smallest enclosing disks (balls
- * and ellipsoids), 1991.
+ * that become tight move to the front as in E. Welzl, Smallest enclosing disks (balls and
+ * ellipsoids), 1991.
  *
- * Stages: the rows in random order, those of an earlier solution first; the best point of the ball;
- * then row by row: a row that the point satisfies changes nothing, a row that it violates holds the
- * new solution, which is found on that row's plane among the rows before it, one dimension lower.
- * On a line, the rows leave an interval.
+ * Stages: shuffle the rows, those of an earlier solution first; start from the best point of the
+ * ball; add row by row: a satisfied row changes nothing, a violated row is tight in the new
+ * solution, which is found on its plane among the earlier rows, one dimension lower. On a line, the
+ * rows leave an interval.
  *
- * A plane of lower dimension is kept as a point and an orthonormal basis of R^d, not as eliminated
- * coordinates: rows are used as they were given at every level, and errors do not grow from level
- * to level. A ball instead of a box, because the best point of a ball on a plane is a formula.
+ * A lower-dimensional plane is a point and an orthonormal basis of R^d, not a set of eliminated
+ * coordinates: every level uses the original rows, and errors do not grow with depth. A ball rather
+ * than a box, because its best point on a plane has a closed form.
  *
- * Invariants: after i rows the point is the solution for the first i rows of `order` (rounded);
- * recursion permutes only those. When rows have no common point, the violated rows on the way down
- * and the two that leave no interval have none either: the point before was on the wrong side of
- * the violated row and satisfied all others, and what the others have in common is convex.
+ * Invariants: after i rows the point solves the first i rows of `order` (rounded); recursion
+ * permutes only those. If rows are infeasible, so are the violated rows on the way down together
+ * with the two that leave no interval: the point before satisfied all others and violated that row,
+ * and the intersection of the others is convex.
  *
- * Cost: expected O(d! n), O(n) when `start` is right. */
+ * Cost: expected O(d! n); O(n) if `start` is right. */
 #include "geometry/linear_program.h"
 
 #include <math.h>
@@ -31,11 +31,10 @@
 enum { MOST = LINEAR_PROGRAM_MOST };
 
 static const uint32_t NO_ROW = UINT32_MAX;
-static const double SLACK = 0x1p-46; /* of the radius: rows violated by less are satisfied */
-static const double PARALLEL =
-    0x1p-42; /* directions with a smaller cosine to a row never meet it */
+static const double SLACK = 0x1p-46;    /* relative to the radius: smaller violations are ignored */
+static const double PARALLEL = 0x1p-42; /* directions with a smaller cosine are parallel to a row */
 
-/* The points point + span of the first `dimension` basis vectors. */
+/* Affine subspace: point + span of the first `dimension` basis vectors. */
 typedef struct flat {
     int dimension;
     double point[MOST];
@@ -65,7 +64,7 @@ static double excess(const linear_program *program, uint32_t row, const double *
     return dot(a, point, program->dimension) - a[program->dimension];
 }
 
-/* The order that the rows are taken in. */
+/* The order in which rows are added. */
 static void shuffle(const linear_program *program, uint32_t *order) {
     starg_rng rng = starg_rng_make(program->seed, program->count, 0);
     for (size_t i = 0; i < program->count; i++) {
@@ -91,7 +90,7 @@ static void start_with(const linear_program *program, uint32_t *order,
             }
 }
 
-/* The ball on a flat: its centre, and its radius or a negative number when they do not meet. */
+/* The ball's intersection with a flat: centre, and radius or a negative number if empty. */
 static double ball_on(const linear_program *program, const flat *f, double center[MOST]) {
     int n = program->dimension;
     double offset[MOST], distance = 0;
@@ -110,7 +109,7 @@ static double ball_on(const linear_program *program, const flat *f, double cente
     return square < 0 ? -1 : sqrt(square);
 }
 
-/* Components of a direction along the basis of a flat; their length. */
+/* Components of a direction along a flat's basis; returns their length. */
 static double project(const linear_program *program, const flat *f, const double *direction,
                       double out[MOST]) {
     for (int i = 0; i < f->dimension; i++)
@@ -140,8 +139,8 @@ static bool best_of_ball(const solver *s, const flat *f, double point[MOST]) {
     return true;
 }
 
-/* The part of a flat that lies in the plane of a row; false when they are parallel. Householder's
- * reflection turns the row's direction into the first basis vector, which is dropped. */
+/* The intersection of a flat with a row's plane; false if parallel. Householder's reflection maps
+ * the row's direction to the first basis vector, which is dropped. */
 static bool cut(const solver *s, const flat *f, uint32_t row, const double *point, flat *out) {
     const linear_program *program = s->program;
     double g[MOST] = {0};
@@ -164,18 +163,18 @@ static bool cut(const solver *s, const flat *f, uint32_t row, const double *poin
     return true;
 }
 
-/* What rows leave of a line. */
+/* What the rows leave of a line. */
 typedef struct interval {
     double low, high;
     uint32_t low_row, high_row; /* NO_ROW: the ball */
 } interval;
 
-static void hold(linear_solution *out, uint32_t row) {
+static void add_tight(linear_solution *out, uint32_t row) {
     if (row != NO_ROW)
         out->tight[out->tight_count++] = row;
 }
 
-/* False when a parallel row excludes the whole line. */
+/* False if a parallel row excludes the whole line. */
 static bool clip(const solver *s, const flat *f, uint32_t row, interval *left) {
     const double *a = row_at(s->program, row);
     double slope = dot(a, f->basis[0], s->program->dimension);
@@ -193,7 +192,7 @@ static bool clip(const solver *s, const flat *f, uint32_t row, interval *left) {
     return true;
 }
 
-/* An interval whose ends have passed one another by rounding alone is a point. */
+/* If the ends passed one another by rounding only, the interval is a point. */
 static bool is_empty(const solver *s, const interval *left, const double *middle) {
     if (left->low <= left->high)
         return false;
@@ -212,22 +211,22 @@ static bool solve_on_line(const solver *s, const flat *f, size_t count, linear_s
     interval left = {-radius, radius, NO_ROW, NO_ROW};
     for (size_t i = 0; i < count; i++)
         if (!clip(s, &line, s->order[i], &left)) {
-            hold(out, s->order[i]);
+            add_tight(out, s->order[i]);
             return false;
         }
     double one = 1, slope = dot(program->objective, line.basis[0], program->dimension);
     double middle = 0.5 * (left.low + left.high);
     advance(program, &line, line.point, middle, &one, out->point);
     if (is_empty(s, &left, out->point)) {
-        hold(out, left.low_row);
-        hold(out, left.high_row);
+        add_tight(out, left.low_row);
+        add_tight(out, left.high_row);
         return false;
     }
     if (fabs(slope) <= PARALLEL)
         return true;
     if (left.low < left.high)
         advance(program, &line, line.point, slope > 0 ? left.high : left.low, &one, out->point);
-    hold(out, slope > 0 ? left.high_row : left.low_row);
+    add_tight(out, slope > 0 ? left.high_row : left.low_row);
     return true;
 }
 
@@ -246,7 +245,7 @@ static bool solve_on(const solver *s, const flat *f, size_t count, linear_soluti
         bool met = cut(s, f, row, out->point, &plane);
         out->tight_count = 0;
         bool feasible = met && solve_on(s, &plane, i, out);
-        hold(out, row);
+        add_tight(out, row);
         if (!feasible)
             return false;
         move_to_front(s->order, i);

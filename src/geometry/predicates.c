@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Exact predicates in three steps: a floating-point filter, 128-bit integers where the inputs are
- * short (lattice-like coordinates), integers of many limbs otherwise.
+/* Exact predicates in three steps: a floating-point filter, 128-bit integers for short inputs
+ * (lattice-like coordinates), multi-limb integers otherwise.
  *
  * Source: J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
- * predicates, 1997: the formulas of the filters and their bounds (his "A" stages), widened by one
- * unit roundoff of the permanent. That slack absorbs underflow, which his analysis leaves out, as
- * long as the permanent is not tiny: each filter names its threshold. The exact steps replace his
- * expansions because those overflow and underflow at the ends of the range that we promise.
+ * predicates, 1997: the formulas of the filters and their bounds (the "A" stages), widened by one
+ * unit roundoff of the permanent. The slack absorbs underflow, which his analysis excludes, unless
+ * the permanent is tiny: each filter states its threshold. Integers replace his expansions, which
+ * overflow and underflow at the ends of the supported range.
  *
  * Cost: 5-10 ns when the filter decides, about 30 ns in 128 bits, 0.2-2 us in limbs. */
 #include "geometry/predicates.h"
@@ -56,7 +56,7 @@ static bool same(const double a[3], const double b[3]) {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* The usual reasons for a zero: a corner that is an end of the segment, walls along the axes. */
+/* The common causes of a zero: a corner is an endpoint of the segment; axis-aligned walls. */
 static bool plainly_coplanar(const double a[3], const double b[3], const double c[3],
                              const double d[3]) {
     for (int k = 0; k < 3; k++)
@@ -94,7 +94,7 @@ int orient3d(const double a[3], const double b[3], const double c[3], const doub
     double permanent = (fabs(bdxcdy) + fabs(cdxbdy)) * fabs(adz) +
                        (fabs(cdxady) + fabs(adxcdy)) * fabs(bdz) +
                        (fabs(adxbdy) + fabs(bdxady)) * fabs(cdz);
-    /* An underflow costs at most 2^-1074 x 2e100; above 1e-200 the slack is larger than six. */
+    /* An underflow costs at most 2^-1074 x 2e100; above 1e-200 the slack covers more than six. */
     double bound = 8 * EPSILON * permanent;
     if (permanent > 1e-200 && fabs(determinant) > bound)
         return sign_of(determinant);
@@ -142,7 +142,7 @@ static __attribute__((noinline)) int insphere_exact(const double *const points[5
     exact v[4][3], sum = {0}, total, lift, volume, term;
     for (int i = 0; i < 4; i++)
         exact_difference(v[i], points[i], points[4], scale);
-    /* expanded by the column of squares: the rows keep their order, the signs alternate */
+    /* expansion along the column of squares: rows keep their order, signs alternate */
     static const int rows[4][3] = {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}};
     for (int i = 0; i < 4; i++) {
         exact_determinant(&volume, v[rows[i][0]], v[rows[i][1]], v[rows[i][2]]);
@@ -216,8 +216,8 @@ bool collinear(const double a[3], const double b[3], const double c[3]) {
            orient2d(a, b, c, 2, 0) == 0;
 }
 
-/* Sign of ((q - p) . d)^2 - cosine^2 |q - p|^2 |d|^2, each factor in units of its own: the cosine's
- * unit is made up for by a one. */
+/* Sign of ((q - p) . d)^2 - cosine^2 |q - p|^2 |d|^2. Each factor has its own unit; a one scaled
+ * like the cosine balances its unit. */
 static __attribute__((noinline)) int compare_cone_squares(const double p[3], const double d[3],
                                                           double cosine, const double q[3]) {
     const double points[6] = {p[0], p[1], p[2], q[0], q[1], q[2]}, cosines[2] = {cosine, 1};

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Exact geometric predicates: the one place where signs are decided.
+/* Exact geometric predicates: the only place that decides signs.
  *
- * Every function returns the sign (-1, 0, 1) that exact arithmetic on the given doubles would
- * give, for all finite doubles below 1e100 in magnitude, subnormal ones included. A floating-point
- * filter with a proven error bound answers first [She97]; what it cannot decide goes to integers
- * of as many limbs as it takes (geometry/exact.h). Pure functions; any thread. */
+ * Every function returns the sign (-1, 0, 1) of exact arithmetic on the given doubles, for all
+ * finite doubles below 1e100 in magnitude, subnormal ones included. A floating-point filter with a
+ * proven error bound comes first [She97]; multi-limb integers (geometry/exact.h) decide the rest.
+ * Pure functions; any thread. */
 #ifndef STARG_GEOMETRY_PREDICATES_H
 #define STARG_GEOMETRY_PREDICATES_H
 
@@ -12,25 +12,25 @@
 
 #include <stdbool.h>
 
-/* Sign of det(a - d, b - d, c - d): 1 when d lies below the plane of a, b, c, seen so that a, b, c
- * turn counter-clockwise. For a face (a, b, c) that is counter-clockwise from outside, 1 means that
- * d is strictly on its inner side, -1 strictly outside, 0 in its plane. */
+/* Sign of det(a - d, b - d, c - d): 1 if d lies below the plane of a, b, c, where a, b, c are
+ * counter-clockwise seen from above. For a face (a, b, c) that is counter-clockwise from outside, 1
+ * means that d is strictly inside of its plane, -1 strictly outside, 0 on it. */
 int orient3d(const double a[3], const double b[3], const double c[3], const double d[3])
     STARG_PRIVATE(orient3d);
 
 /* Sign of the turn a, b, c in the plane of coordinates `u` and `v`: 1 for counter-clockwise. */
 int orient2d(const double a[3], const double b[3], const double c[3], int u, int v);
 
-/* 1 when e lies strictly inside the sphere through a, b, c, d, -1 outside, 0 on it, given
- * orient3d(a, b, c, d) = 1; the opposite when it is -1. */
+/* 1 if e lies strictly inside the sphere through a, b, c, d, -1 outside, 0 on it, given orient3d(a,
+ * b, c, d) = 1; opposite signs if it is -1. */
 int insphere(const double a[3], const double b[3], const double c[3], const double d[3],
              const double e[3]);
 
 /* Sign of |p - q| - radius, for radius >= 0 (below 1e100). */
 int compare_distance(const double p[3], const double q[3], double radius);
 
-/* 1 when q lies strictly within the cone of p about the direction d (any length but 0), whose half
- * opening angle has the given cosine, from -1 to 1; 0 on its side or at p, -1 outside. */
+/* 1 if q lies strictly in the cone with apex p, axis d (any nonzero length) and the given cosine
+ * (-1 to 1) of the half opening angle; 0 on the cone or at p, -1 outside. */
 int compare_cone(const double p[3], const double d[3], double cosine, const double q[3]);
 
 /* True when a, b, c lie on one line (or coincide). */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Vectors of three doubles. Nothing here decides a sign: see predicates.h. */
+/* Vectors of three doubles. They decide no signs: see predicates.h. */
 #ifndef STARG_GEOMETRY_VEC3_H
 #define STARG_GEOMETRY_VEC3_H
 
@@ -63,7 +63,7 @@ static inline double vec3_distance(const double a[3], const double b[3]) {
     return sqrt(vec3_distance_squared(a, b));
 }
 
-/* Twice the area vector of a triangle: its length is twice the area, its direction the normal. */
+/* Area vector of a triangle, doubled: length twice the area, direction the normal. */
 static inline void vec3_triangle_normal(const double a[3], const double b[3], const double c[3],
                                         double out[3]) {
     double u[3], v[3];

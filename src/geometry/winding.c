@@ -5,10 +5,10 @@
  * generalized winding numbers, 2013; G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, Fast
  * winding numbers for soups and clouds, 2018 (first order).
  *
- * A triangle counts with its solid angle. Triangles of a node that is farther than twice its radius
- * count as one dipole at their centre: their area vectors' sum over the squared distance.
+ * Near triangles contribute their solid angles. A node farther away than twice its radius
+ * contributes one dipole at its centre: the sum of its area vectors over the squared distance.
  *
- * Cost: O(n) once, O(log n) a point. */
+ * Cost: O(n) to build, O(log n) per point. */
 #include "geometry/winding.h"
 
 #include <math.h>
@@ -73,7 +73,7 @@ static double reach(const winding_field *field, const bvh_box *box, const double
     return vec3_length(d);
 }
 
-/* Children come after their parent, so that they are done before it. */
+/* Children follow their parent in the array, so a backward loop handles them first. */
 static void make_moment(const winding_field *field, double *weights, size_t index) {
     const bvh_node *node = &field->tree->nodes[index];
     winding_moment sum = {.radius = 0};

@@ -4,9 +4,9 @@
  * Stages: a star-shaped solid needs one guard (starguard/kernel.h); levels of detail; candidate
  * points, of a large model from one of the levels (guard/proxy.c); their visibility rows; more
  * candidates until every face that can be seen is seen by one (guard/augment.c); the choice, by
- * one cover problem or from coarse to fine (guard/progressive.c); candidates added where they pay
- * (guard/refine.c); the search over every point of the solid, where that is asked for
- * (guard/search.c); what the chosen guards see (guard/measure.c).
+ * one cover problem or from coarse to fine (guard/progressive.c); refinement and, on request, the
+ * search over every point of the solid (both guard/search.c); what the chosen guards see
+ * (guard/measure.c).
  *
  * The lower bound is that of the cover problem: it holds for guards taken from the final candidate
  * set. That of the search holds for guards anywhere. */

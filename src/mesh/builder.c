@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The mesh that a reader builds up, and the messages that name places in its file. Counts and
- * indices have been checked when they arrive here or are checked here, so that what finish hands
- * over cannot be refused for its contents. */
+/* The mesh under construction by a reader, and messages that name a place in its file. Counts and
+ * indices are checked on arrival, so that `finish` cannot reject the contents. */
 #include <math.h>
 #include <stdarg.h>
 
 #include "mesh/formats/io.h"
 
-/* Concave polygons beyond this many corners are refused: ear clipping is quadratic. */
+/* Larger concave polygons are refused: ear clipping is quadratic. */
 enum { MAX_CONCAVE_CORNERS = 4096 };
 
-/* Items between two looks at the clock and the cancellation flag; a power of two. */
+/* Items between two checks of the clock and the cancellation flag; a power of two. */
 enum { TICKS = 1 << 14 };
 
 /* "'cube.off', line 7: " */
@@ -69,7 +68,7 @@ starg_status starg_builder_vertex(starg_mesh_builder *builder, const double poin
                                   starg_place place) {
     starg_status status = STARG_OK;
     for (size_t k = 0; k < 3; k++)
-        if (!(fabs(point[k]) < STARG_COORDINATE_LIMIT)) /* true for NaN as well */
+        if (!(fabs(point[k]) < STARG_COORDINATE_LIMIT)) /* also true for NaN */
             return fail_range(builder, k, point[k], place);
     for (size_t k = 0; k < 3; k++)
         STARG_PUSH(builder->source->context, STARG_MESH_FILE, &builder->vertices, point[k]);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The check of a mesh as the boundary of a solid.
+/* Checks a mesh as the boundary of a solid.
  *
  * Stages: corners, edges, vertices (fans), positions, duplicate faces, degenerate faces,
- * intersections by the tree over all pairs whose boxes meet, shells. All decisions are exact.
+ * intersections of all pairs with overlapping boxes (by the tree), shells. All decisions are exact.
  * Cost: O(n log n) plus the number of box pairs. */
 #include "starguard/check.h"
 
@@ -24,10 +24,10 @@ typedef struct checker {
     mesh_topology *topology;
     bvh *tree;
     mesh_shell *shells;
-    size_t pairs; /* of faces that were looked at */
+    size_t pairs; /* of faces tested so far */
 } checker;
 
-/* How often to look at the clock. */
+/* Pairs between two checks of the clock. */
 enum { PAIRS_PER_CLOCK = 4096 };
 
 const char *starg_finding_name(starg_finding_kind kind) {
@@ -102,7 +102,7 @@ static void check_edges(checker *c) {
     }
 }
 
-/* The corners at a vertex that are linked across edges of two faces form a fan. */
+/* Joins the corners at a vertex across manifold edges into fans. */
 static void link_fans(const checker *c, uint32_t *fan) {
     const uint32_t *faces = c->mesh->faces;
     for (uint32_t h = 0; h < 3 * c->mesh->face_count; h++) {
@@ -197,7 +197,7 @@ static bool same_corners(const uint32_t *a, const uint32_t *b) {
     return common == 3;
 }
 
-/* A duplicate shares all its edges: it is found in the ring of its first one. */
+/* Duplicates share all edges: the edge ring of the first one contains the others. */
 static void check_duplicates(checker *c) {
     const uint32_t *faces = c->mesh->faces;
     for (uint32_t f = 0; f < c->mesh->face_count; f++) {
@@ -258,7 +258,7 @@ static starg_status check_shells(checker *c) {
     starg_status status = shells_classify(c->context, c->mesh, c->topology, c->tree, c->shells);
     if (status != STARG_OK)
         return status;
-    double volume = 0; /* scaled: the true one may be too small for a double */
+    double volume = 0; /* scaled: the true volume may underflow */
     for (size_t i = 0; i < c->topology->component_count; i++) {
         const mesh_shell *own = &c->shells[i];
         check->cavities += own->cavity;

@@ -10,7 +10,7 @@ static void bring_to(uint32_t triple[3], int i, int k) {
     triple[k] = swap;
 }
 
-/* Puts the corners that both have first, in the same order; returns their number. */
+/* Moves the common corners to the front of both, in the same order; returns their number. */
 static int align_shared(uint32_t u[3], uint32_t v[3]) {
     int shared = 0;
     for (int i = 0; i < 3; i++)

@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-/* Contact of two triangles given by their corners; corners of the same vertex are shared. Exact. */
+/* Contact of two triangles given by their corners; equal vertices are shared corners. Exact. */
 triangle_contact faces_contact(const double *vertices, const uint32_t a[3], const uint32_t b[3]);
 
 #endif

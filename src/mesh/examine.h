@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The check together with the tables that it was made from, for callers that go on with them. */
+/* The check and the tables that it was computed from, for callers that need both. */
 #ifndef STARG_MESH_EXAMINE_H
 #define STARG_MESH_EXAMINE_H
 
@@ -17,8 +17,8 @@ typedef struct mesh_examination {
 
 /* Examines a mesh; release with mesh_examination_free, whatever the status. */
 starg_status mesh_examine(starg_context *context, const starg_mesh *mesh, mesh_examination *out);
-/* By vertex the first one at its position; `count` is how many are not that themselves. Release
- * with starg_release, whatever the status. Errors: MEMORY. */
+/* For each vertex the first vertex at its position; `count` is the number of vertices that are not
+ * the first. Release with starg_release, whatever the status. Errors: MEMORY. */
 starg_status mesh_find_coincident(starg_context *context, const starg_mesh *mesh, uint32_t **first,
                                   size_t *count);
 void mesh_examination_free(starg_context *context, mesh_examination *examination);

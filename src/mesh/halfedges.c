@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Collapse, flip and split of a halfedge mesh.
+/* Collapse, flip and split on a halfedge mesh.
  *
- * Invariants: the twins of living faces are mutual and run opposite ways; `leaving` names a
+ * Invariants: twins of living faces are mutual and have opposite directions; `leaving` names a
  * halfedge of each vertex that has faces; nothing is renumbered.
  *
- * Cost: constant time but for the collapse and the search for a halfedge, which take the degree of
- * the vertex. */
+ * Cost: constant, except collapse and halfedge search, which take the degree of the vertex. */
 #include "mesh/halfedges.h"
 
 #include <string.h>
@@ -31,7 +30,7 @@ done:
     return status;
 }
 
-/* TO = a copy of the growable array FROM with as much room, or leave by `done`. */
+/* TO = a copy of the growable array FROM with the same capacity; jumps to `done` on failure. */
 #define COPY_ARRAY(CONTEXT, STAGE, FROM, TO)                                                       \
     do {                                                                                           \
         STARG_NEW((CONTEXT), (STAGE), (TO)->data, (FROM)->capacity);                               \
@@ -95,7 +94,7 @@ static void join_twins(mesh_halfedges *m, uint32_t g, uint32_t h) {
 
 /* ---- collapse ---- */
 
-/* Takes a face out whose corner at `halfedge` has been merged with the one before: its other two
+/* Removes a face whose corner at `halfedge` was merged with the previous corner: its other two
  * sides become one edge. */
 static void close_face(mesh_halfedges *m, uint32_t halfedge) {
     uint32_t g = m->twins.data[corner_next(halfedge)];
@@ -109,7 +108,7 @@ static void close_face(mesh_halfedges *m, uint32_t halfedge) {
 void halfedges_collapse(mesh_halfedges *m, uint32_t h) {
     uint32_t twin = m->twins.data[h], a = halfedges_start(m, h), b = halfedges_end(m, h);
     uint32_t turned = twin;
-    do { /* the corners keep their halfedges: turning does not look at them */
+    do { /* corners keep their halfedges: halfedges_turn does not read corners */
         m->corners.data[turned] = a;
         turned = halfedges_turn(m, turned);
     } while (turned != twin);
@@ -120,7 +119,7 @@ void halfedges_collapse(mesh_halfedges *m, uint32_t h) {
 
 /* ---- flip and split ---- */
 
-/* Writes a face; its halfedges become the ones that leave its corners. */
+/* Writes a face and makes its halfedges the `leaving` ones of its corners. */
 static void set_face(mesh_halfedges *m, uint32_t face, uint32_t a, uint32_t b, uint32_t c) {
     const uint32_t v[3] = {a, b, c};
     for (uint32_t k = 0; k < 3; k++) {
@@ -148,11 +147,11 @@ done:
     return status;
 }
 
-/* An edge u v between faces u v w and v u x, and the halfedges beyond the other sides of those. */
+/* An edge u v between faces u v w and v u x, and the twins of their other sides. */
 typedef struct edge_pair {
-    uint32_t f, g;           /* the faces                       */
-    uint32_t u, v, w, x;     /* the corners                     */
-    uint32_t vw, wu, ux, xv; /* twins of the halfedges so named */
+    uint32_t f, g;           /* the faces */
+    uint32_t u, v, w, x;     /* the corners */
+    uint32_t vw, wu, ux, xv; /* twins of these halfedges */
 } edge_pair;
 
 static edge_pair pair_at(const mesh_halfedges *m, uint32_t h) {
@@ -236,7 +235,7 @@ done:
     return status;
 }
 
-/* ---- what is left ---- */
+/* ---- compaction ---- */
 
 uint32_t halfedges_compact(const mesh_halfedges *m, uint32_t *number, uint32_t *faces) {
     uint32_t count = 0;

@@ -18,7 +18,7 @@ static starg_status check_counts(starg_context *context, size_t vertex_count, si
 static starg_status check_vertices(starg_context *context, const double *vertices, size_t count) {
     for (size_t i = 0; i < 3 * count; i++) {
         if (fabs(vertices[i]) < STARG_COORDINATE_LIMIT)
-            continue; /* false for NaN as well */
+            continue; /* also for NaN */
         uint64_t vertex = i / 3;
         return starg_fail_at(context, STARG_ERROR_RANGE, "mesh", STARG_ELEMENT_VERTEX, &vertex, 1,
                              "coordinate %c of vertex %zu is %g; coordinates must be finite and "
@@ -164,7 +164,7 @@ double starg_mesh_volume(const starg_mesh *mesh) {
     double sum = 0;
     int exponent = starg_mesh_exponent(mesh);
     for (size_t f = 0; f < mesh->face_count; f++) {
-        double p[3][3]; /* relative to any point: a near one keeps digits */
+        double p[3][3]; /* relative to the first vertex, for precision */
         for (size_t k = 0; k < 3; k++)
             starg_mesh_scaled_corner(mesh, f, k, exponent, p[k]);
         sum += vec3_triple(p[0], p[1], p[2]);

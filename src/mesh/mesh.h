@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of a mesh. */
+/* Internals of a mesh. */
 #ifndef STARG_MESH_MESH_H
 #define STARG_MESH_MESH_H
 
@@ -10,30 +10,31 @@ struct starg_mesh {
     starg_context *context;
     size_t vertex_count, face_count;
     double *vertices; /* vertex_count x 3 */
-    uint32_t *faces;  /* face_count x 3   */
+    uint32_t *faces;  /* face_count x 3 */
 };
 
 /* Largest number of vertices or faces. */
 #define STARG_MESH_LIMIT ((size_t)0x7fffffff)
 
-/* Every coordinate is smaller in magnitude. */
+/* Upper bound on the magnitude of coordinates. */
 #define STARG_COORDINATE_LIMIT 1e100
 
-/* Solids are at least that wide along some axis: squares of areas of far smaller ones vanish. */
+/* Least extent of a solid: squares of areas underflow far below this. */
 #define STARG_EXTENT_LEAST 1e-90
 
-/* Errors: RANGE, when the mesh has an extent, but one below STARG_EXTENT_LEAST. */
+/* Errors: RANGE, if the mesh has an extent below STARG_EXTENT_LEAST other than 0. */
 starg_status mesh_check_extent(starg_context *context, const starg_mesh *mesh, const char *stage);
 
-/* The power of two of the mesh's extent: differences of coordinates times 2^-exponent are at most 1
- * in magnitude, so that their products neither over- nor underflow as a whole. */
+/* Exponent of the mesh's extent: differences of coordinates times 2^-exponent are at most 1 in
+ * magnitude, so that products of them neither overflow nor underflow as a whole. */
 int starg_mesh_exponent(const starg_mesh *mesh);
 
 /* Corner k of a face, relative to the first vertex and scaled by 2^-exponent. */
 void starg_mesh_scaled_corner(const starg_mesh *mesh, size_t face, size_t k, int exponent,
                               double out[3]);
 
-/* Takes over two blocks of the context (on success only), after the checks of starg_mesh_create. */
+/* Takes ownership of two blocks of the context (on success only), after the checks of
+ * starg_mesh_create. */
 starg_status starg_mesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
                               uint32_t *faces, size_t face_count, starg_mesh **out);
 

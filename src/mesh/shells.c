@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The depth of a shell is the number of other shells that have a winding number other than 0
- * about one of its corners, counted along a vertical line: O(log n) per shell as a rule. */
+/* The depth of a shell is the number of other shells with nonzero winding number about one of its
+ * corners, counted along a vertical line: usually O(log n) per shell. */
 #include "mesh/shells.h"
 
 #include <math.h>
@@ -8,13 +8,13 @@
 #include "core/memory.h"
 #include "geometry/vec3.h"
 
-/* Windings are zero between queries; the shells that a query touched are set back after it. */
+/* Windings are zero between queries; each query resets the shells that it touched. */
 typedef struct line_query {
     const bvh *tree;
     const mesh_topology *topology;
     const double *p;
     int *winding;      /* per shell */
-    uint32_t *touched; /* shells, each crossing once */
+    uint32_t *touched; /* shells, one entry per crossing */
     size_t touched_count;
 } line_query;
 
@@ -28,7 +28,7 @@ static bool count_crossing(void *user, uint32_t triangle) {
     return true;
 }
 
-/* In how many other shells p lies, and their winding number about it. */
+/* Number of other shells that contain p, and their total winding number about it. */
 static size_t nesting_depth(line_query *query, const double *p, uint32_t own, int *around) {
     bvh_box line = {{p[0], p[1], p[2]}, {p[0], p[1], INFINITY}};
     size_t depth = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How the closed shells of a mesh lie in one another, and which of them must be turned so that
- * all faces point out of the solid. */
+/* Nesting of the closed shells of a mesh, and which of them must be reversed so that all faces
+ * point out of the solid. */
 #ifndef STARG_MESH_SHELLS_H
 #define STARG_MESH_SHELLS_H
 
@@ -20,9 +20,9 @@ typedef struct mesh_shell {
 } mesh_shell;
 
 /* Fills volume, around, cavity and turn of topology->component_count shells of a closed, oriented
- * mesh. Shells nest: one inside an even number of others bounds the solid from outside (positive
- * volume), one inside an odd number bounds a cavity (negative). Where shells intersect nesting
- * has no meaning; those all get positive volume. Errors: MEMORY. */
+ * mesh. A shell inside an even number of others bounds the solid from outside (positive volume),
+ * inside an odd number a cavity (negative). Nesting is undefined where shells intersect; those all
+ * get positive volume. Errors: MEMORY. */
 starg_status shells_classify(starg_context *context, const starg_mesh *mesh,
                              const mesh_topology *topology, const bvh *tree, mesh_shell *shells);
 

@@ -7,7 +7,7 @@
 #include "mesh/examine.h"
 #include "mesh/flood.h"
 
-/* Findings that no solid may have, in the order in which they are reported. */
+/* Findings that rule out a solid, in the order in which they are reported. */
 static const starg_finding_kind FATAL[] = {
     STARG_FINDING_REPEATED_CORNER, STARG_FINDING_OPEN_EDGE, STARG_FINDING_NONMANIFOLD_EDGE,
     STARG_FINDING_NONMANIFOLD_VERTEX, STARG_FINDING_INCONSISTENT_EDGE};
@@ -40,8 +40,8 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
 
 /* ---- coincident vertices ---- */
 
-/* Corners at equal positions become the first vertex there; the others stay, without a face, so
- * that vertices and faces keep their numbers. *welded is how many those are. */
+/* Maps corners at equal positions to the first vertex there; the others stay as isolated vertices,
+ * so that vertices and faces keep their numbers. *welded counts those. */
 static starg_status weld_faces(starg_context *context, starg_mesh *mesh, size_t *welded) {
     starg_status status = STARG_OK;
     uint32_t *first = NULL;
@@ -53,8 +53,8 @@ done:
     return status;
 }
 
-/* Many programs write a vertex for each corner of a seam. Where the faces bound a solid once such
- * vertices are one, they are made one; where not, the examination is that of the mesh as given. */
+/* Many programs write a vertex per corner along a seam. Coincident vertices are welded if the faces
+ * then bound a solid; otherwise the mesh is examined as given. */
 static starg_status weld_if_closed(starg_context *context, starg_solid *solid,
                                    mesh_examination *all) {
     starg_status status = STARG_OK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of a solid: what the later stages read. */
+/* Internals of a solid, for later stages. */
 #ifndef STARG_MESH_SOLID_H
 #define STARG_MESH_SOLID_H
 
@@ -10,11 +10,11 @@
 #include "starguard/solid.h"
 #include "starguard/space.h"
 
-/* Free is where the winding number of the mesh plus `ambient` is at least 1. */
+/* Free space: winding number of the mesh plus `ambient` at least 1. */
 struct starg_solid {
     starg_context *context;
     starg_mesh *mesh;   /* every shell faces out of the free space */
-    starg_check *check; /* `embedded` promises that no face has free space on its outer side */
+    starg_check *check; /* `embedded` promises that no face has free space outside */
     bvh *tree;
 
     /* Scenes (mesh/space.c); all zero in a plain solid. */
@@ -22,51 +22,51 @@ struct starg_solid {
     int ambient;
     size_t model_vertices, model_faces; /* those of obstacles follow */
     size_t obstacle_count;
-    size_t *obstacle_sizes; /* vertices and faces of each, as given */
-    uint32_t *other_side;   /* by face: of a triangle that stands twice, front and back, the other
-                               one, else TOPOLOGY_NONE; NULL: there are none */
+    size_t *obstacle_sizes;      /* vertices and faces of each, as given */
+    uint32_t *other_side;        /* by face: the other side of a two-sided triangle, otherwise
+                                    TOPOLOGY_NONE; NULL if there are none */
     struct flood_cells *reached; /* where guards may stand; NULL: anywhere */
     double *importance;          /* by face; NULL: 1 each */
     uint64_t *targets[2];        /* bits of the faces, and of the vertices, to be seen; NULL: all */
     starg_space_options space;
-    starg_mesh *model; /* what distances are from, and its tree; NULL: `mesh` */
+    starg_mesh *model; /* the model that distances are measured from, and its tree; NULL: `mesh` */
     bvh *model_tree;
 };
 
-/* Is a face, or a vertex, to be seen? */
+/* Is a face, or a vertex, a target? */
 static inline bool solid_is_target(const starg_solid *solid, bool vertices, size_t index) {
     return solid->targets[vertices] == NULL || starg_bit_test(solid->targets[vertices], index);
 }
 
-/* Clears the bits of a row, by face or by vertex, that are no targets. */
+/* Clears the bits of a row, by face or by vertex, that are not targets. */
 void solid_mask_row(const starg_solid *solid, bool vertices, uint64_t *row);
 
-/* A box that holds all places where guards may stand. */
+/* Bounding box of all places where guards may stand. */
 void solid_reach(const starg_solid *solid, bvh_box *out);
 
-/* A box that holds them and the mesh. */
+/* Bounding box of those and the mesh. */
 void solid_extent(const starg_solid *solid, bvh_box *out);
 
-/* The halfedge on the other side of one, by the topology of the mesh; where more than two faces may
- * meet, that of the triangle's other side. */
+/* The twin of a halfedge by the topology of the mesh; on edges with more than two faces, that of
+ * the triangle's other side. */
 uint32_t solid_twin(const starg_solid *solid, const uint32_t *twins, uint32_t halfedge);
 
-/* Logs what is wrong with the surface of a solid. It names faces of the mesh that was given: for
- * the user's own, which `whose` may introduce ("A: "). */
+/* Logs the defects of a solid's surface, with face numbers of the given mesh. `whose` introduces
+ * messages ("A: "). */
 void solid_tell(starg_context *context, const char *whose, const starg_check *check)
     STARG_PRIVATE(solid_tell);
 
-/* starg_solid_create for steps of a longer work, in which nothing is logged; in the first the time
- * limit does not end it. */
+/* starg_solid_create without logging, as a step of a longer computation. solid_make_in_time fails
+ * at the time limit; solid_make leaves the caller's time rule in force. */
 starg_status solid_make(starg_context *context, const starg_mesh *mesh, starg_solid **out)
     STARG_PRIVATE(solid_make);
-/* Without turning shells. */
+/* Same without reorienting shells. */
 starg_status solid_make_as_given(starg_context *context, const starg_mesh *mesh, starg_solid **out);
 starg_status solid_make_in_time(starg_context *context, const starg_mesh *mesh, starg_solid **out)
     STARG_PRIVATE(solid_make_in_time);
 
-/* The solid that another process has examined: its mesh as it was after that, and as much of the
- * check as is needed. Copies all. Errors: those of starg_mesh_create. */
+/* Rebuilds a solid that another process examined: its mesh after examination, and the needed part
+ * of the check. Copies everything. Errors: those of starg_mesh_create. */
 starg_status solid_of_parts(starg_context *context, const double *vertices, size_t vertex_count,
                             const uint32_t *faces, size_t face_count, const starg_check *check,
                             starg_solid **out);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Edges are found by sorting the halfedges of each lower vertex by their upper vertex; the faces
- * of an edge are chained in the order of their halfedge numbers. */
+/* Finds edges by sorting the halfedges of each lower vertex by upper vertex; the faces of an edge
+ * are chained by halfedge number. */
 #include "mesh/topology.h"
 
 #include <stdlib.h>
 
 #include "core/memory.h"
 
-/* A halfedge filed under the lower of its two vertices. */
+/* A halfedge, stored at the lower of its two vertices. */
 typedef struct entry {
     uint32_t upper, halfedge;
 } entry;
@@ -57,7 +57,7 @@ static void file_halfedges(const starg_mesh *mesh, size_t *start, entry *entries
     }
 }
 
-/* Chains the halfedges of one edge, and pairs them when they are two. */
+/* Chains the halfedges of one edge; pairs them if there are two. */
 static void link_edge(mesh_topology *topology, uint32_t *parent, const entry *first, size_t count) {
     for (size_t i = 0; i < count; i++) {
         uint32_t next = first[(i + 1) % count].halfedge;
@@ -71,7 +71,7 @@ static void link_edge(mesh_topology *topology, uint32_t *parent, const entry *fi
 static void link_edges(mesh_topology *topology, uint32_t *parent, const size_t *start,
                        entry *entries) {
     for (size_t v = 0; v < topology->vertex_count; v++) {
-        /* start was shifted by one while filing: the entries of v begin at start[v + 1] */
+        /* start was shifted by one while filling: the entries of v begin at start[v + 1] */
         size_t low = start[v + 1];
         size_t high = v + 1 < topology->vertex_count ? start[v + 2] : 3 * topology->face_count;
         qsort(entries + low, high - low, sizeof *entries, compare_entries);
@@ -128,7 +128,7 @@ done:
     return status;
 }
 
-/* Each face has two sides, 2 f and 2 f + 1; over an edge one goes from side to side. */
+/* Each face has two sides, 2 f and 2 f + 1; an edge connects a side to a side. */
 static void join_sides(const mesh_topology *topology, const starg_mesh *mesh, uint32_t *parent) {
     for (uint32_t h = 0; h < 3 * (uint32_t)topology->face_count; h++) {
         uint32_t twin = topology->twin[h];

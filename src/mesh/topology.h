@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which faces meet along which edges, and the connected parts that follow from it. */
+/* Adjacency of faces across edges, and connected components. */
 #ifndef STARG_MESH_TOPOLOGY_H
 #define STARG_MESH_TOPOLOGY_H
 
@@ -8,8 +8,8 @@
 
 #define TOPOLOGY_NONE UINT32_MAX
 
-/* Corner k of face f has number 3 f + k and stands also for the halfedge from it to the next
- * corner of f. */
+/* Corner k of face f has number 3 f + k, which also denotes the halfedge from it to the next corner
+ * of f. */
 static inline uint32_t corner_next(uint32_t corner) {
     return corner % 3 == 2 ? corner - 2 : corner + 1;
 }
@@ -22,9 +22,9 @@ typedef struct mesh_topology {
     starg_context *context;
     size_t vertex_count, face_count, edge_count;
     size_t component_count;
-    /* The halfedge on the other side of an edge of exactly two faces, else TOPOLOGY_NONE. */
+    /* The opposite halfedge on an edge of exactly two faces, otherwise TOPOLOGY_NONE. */
     uint32_t *twin;
-    /* Faces on each edge are chained: the next halfedge on the same edge, cyclic. */
+    /* Cyclic chain of the faces on an edge: the next halfedge on the same edge. */
     uint32_t *ring;
     /* Component of each face, numbered by their lowest face. */
     uint32_t *component;
@@ -38,12 +38,12 @@ void topology_free(mesh_topology *topology) STARG_PRIVATE(topology_free);
 /* Number of halfedges on the edge of `halfedge`. */
 size_t topology_edge_faces(const mesh_topology *topology, uint32_t halfedge);
 
-/* Number of faces that can be reached from their own other side over edges of two faces: they have
- * one side only, like a Moebius strip. Errors: MEMORY. */
+/* Number of faces connected to their own other side across manifold edges: they are one-sided, like
+ * a Moebius strip. Errors: MEMORY. */
 starg_status topology_count_one_sided(const mesh_topology *topology, const starg_mesh *mesh,
                                       size_t *count);
 
-/* Disjoint sets over 0 .. count - 1 in a caller's array of parents. */
+/* Disjoint sets over 0 .. count - 1 in a parent array of the caller. */
 void sets_make(uint32_t *parent, size_t count) STARG_PRIVATE(sets_make);
 uint32_t sets_find(uint32_t *parent, uint32_t item) STARG_PRIVATE(sets_find);
 /* The smaller root becomes the root. */

@@ -15,7 +15,7 @@ static uint64_t hash_point(const double point[3]) {
     return hash;
 }
 
-/* The slot of the vertex at `point`, or the free one where it belongs. */
+/* The slot of the vertex at `point`, or the free slot for it. */
 static uint32_t *find(const starg_weld *weld, const double point[3]) {
     size_t mask = weld->size - 1;
     for (size_t i = (size_t)hash_point(point) & mask;; i = (i + 1) & mask) {
@@ -46,7 +46,7 @@ static starg_status grow(starg_weld *weld) {
 starg_status starg_weld_point(starg_weld *weld, const double point[3], starg_place place,
                               uint32_t *vertex) {
     starg_status status = STARG_OK;
-    /* adding 0 turns -0 into 0, and nothing else into anything */
+    /* adding 0 turns -0 into 0 and changes nothing else */
     const double p[3] = {point[0] + 0.0, point[1] + 0.0, point[2] + 0.0};
     size_t count = starg_builder_vertex_count(weld->builder);
     if (2 * (count + 1) > weld->size)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Welding: points at exactly equal positions become one vertex. */
+/* Welding: merges points at exactly equal positions. */
 #ifndef STARG_MESH_WELD_H
 #define STARG_MESH_WELD_H
 
@@ -11,8 +11,8 @@ typedef struct starg_weld {
     size_t size;     /* a power of two */
 } starg_weld;
 
-/* The builder's vertex at `point`, which is appended when it is new; vertices keep the order of
- * their first appearance, and -0 counts as 0. Errors: RANGE, MEMORY. */
+/* The builder's vertex at `point`, appended if it is new; vertices are in order of first
+ * appearance, and -0 equals 0. Errors: RANGE, MEMORY. */
 starg_status starg_weld_point(starg_weld *weld, const double point[3], starg_place place,
                               uint32_t *vertex);
 void starg_weld_free(starg_weld *weld);

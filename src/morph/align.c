@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Alignment of two spread surfaces by a rotation of the sphere.
+/* Aligns two spherical embeddings by a rotation of the sphere.
  *
- * Stages: principal axes of both surfaces in space; the 24 ways to lay the axes of one on those of
- * the other without mirroring (with three landmarks or more, only the way that fits these best);
- * for each way, every sample of the first surface is paired with the nearest sample of the second
- * in space, and the rotation of the sphere that brings the paired directions together best is found
- * [Kabsch 1976]; landmarks count as much as all samples. The rotation wins under which the points
- * that lie on one another on the sphere are the nearest in space, in the mean of squares.
+ * Stages: principal axes of both surfaces in space; the 24 proper ways to map the axes of one to
+ * those of the other (with three or more landmarks, only the rotation that fits them best); for
+ * each, every sample of the first surface is paired with the nearest sample of the second in space,
+ * and the rotation of the sphere that best aligns the paired directions is computed [Kabsch 1976];
+ * landmarks count as much as all samples. The winning rotation minimizes the mean squared distance
+ * in space of points that coincide on the sphere.
  *
- * Without landmarks, extremities (extremities.c) that are each other's nearest in space after the
- * winning way are told as pairs.
+ * Without landmarks, extremities (extremities.c) that are mutually nearest in space under the
+ * winning rotation are reported as pairs.
  *
  * Cost: 24 x SAMPLES^2 distances and 24 x SAMPLES locations. */
 #include "morph/align.h"
@@ -22,14 +22,15 @@
 
 static const char STAGE[] = "align";
 enum { SAMPLES = 600, WAYS = 24 };
-static const double NEAR = 1.3; /* of the surface's size: extremities farther apart are no pair */
+static const double NEAR =
+    1.3; /* relative to the surface's size: largest distance of paired extremities */
 
 typedef struct axes {
     double center[3], frame[9]; /* columns: principal axes */
-    double size;                /* root of the mean square distance from the center */
+    double size;                /* root mean square distance from the center */
 } axes;
 
-/* By the vertices' shares of the area. */
+/* Weighted by the vertices' shares of the area. */
 static void add_moments(const starg_mesh *mesh, const double center[3], double moments[9],
                         double mean[3], double *total) {
     for (size_t f = 0; f < mesh->face_count; f++) {
@@ -62,7 +63,7 @@ static axes principal_axes(const starg_mesh *mesh) {
     return a;
 }
 
-/* The proper rotation number `way` of the 24 that permute the axes and turn them over. */
+/* Number `way` of the 24 proper rotations that permute the axes and flip signs. */
 static void signed_permutation(int way, double out[9]) {
     static const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                      {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
@@ -99,7 +100,7 @@ static void motion_of_way(const axes *from, const axes *to, int way, motion *m) 
     m->to = to;
 }
 
-/* The rotation that fits the landmarks best in space, about the surfaces' centers. */
+/* The rotation in space that best fits the landmarks, about the surfaces' centers. */
 static void motion_of_landmarks(const sphere *from, const sphere *to, const landmark_list *marks,
                                 motion *m) {
     double sum[9] = {0};
@@ -180,7 +181,7 @@ static double misfit(const aligner *a, const motion *m, const double rotation[9]
     return sum;
 }
 
-/* Rounding can turn over a triangle that is nearly flat: then the surface stays as it is. */
+/* Rounding can flip a nearly flat triangle: the surface then stays unchanged. */
 static starg_status turn(sphere *s, const double rotation[9]) {
     starg_status status = STARG_OK;
     double *before = NULL;
@@ -196,8 +197,7 @@ done:
     return status;
 }
 
-/* Takes the nearest two of two lists of places out; false when they are farther apart than `far`.
- */
+/* Removes the closest pair from two lists of places; false if its distance exceeds `far`. */
 static bool take_nearest(double (*from)[3], size_t from_count, double (*to)[3], size_t to_count,
                          double far, size_t pair[2]) {
     double least = far;
@@ -213,11 +213,11 @@ static bool take_nearest(double (*from)[3], size_t from_count, double (*to)[3], 
             found = true;
         }
     if (found)
-        from[pair[0]][0] = to[pair[1]][0] = NAN; /* nearest to nothing any more */
+        from[pair[0]][0] = to[pair[1]][0] = NAN; /* nearest to nothing from now on */
     return found;
 }
 
-/* Extremities that are near to one another in space after the motion, the nearest first. */
+/* Pairs extremities that are close in space after the motion, nearest first. */
 static starg_status pair_extremities(const aligner *a, const motion *m, feature_pairs *out) {
     starg_status status = STARG_OK;
     extremity_list from, to;

@@ -1,23 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A map between two surfaces that distorts little, coarse to fine.
+/* Low-distortion map between two surfaces, coarse to fine.
  *
- * Problem: two surfaces spread over the sphere make a bijection, but each was spread for itself:
- * between landmarks the composed map twists and crowds. Find directions of the first surface's
- * vertices, landmarks held, for which the map of surface to surface distorts little.
- * Source: J. Schreiner, A. Asirvatham, E. Praun, H. Hoppe, Inter-surface mapping, 2004, where both
- * surfaces play on a common coarse mesh; here the sphere is the common domain, and only the first
- * surface's vertices move.
+ * Problem: two spherical embeddings compose to a bijection, but each was computed alone: between
+ * landmarks the composed map twists and compresses. Find directions of the first surface's
+ * vertices, with landmarks fixed, for which the map of surface to surface distorts little. Source:
+ * J. Schreiner, A. Asirvatham, E. Praun, H. Hoppe, Inter-surface mapping, 2004, which uses a common
+ * coarse mesh; here the sphere is the common domain, and only the first surface's vertices move.
  *
- * Stages of a cycle: take vertices of the first surface out, landmarks never, as long as the
- * embedding stays valid; bring landmarks to their counterparts, which few triangles hinder; move
- * all together (flow.c) and each by itself (descend.c); put vertices back, each into the middle of
- * the kernel of its polygon, and move them whenever there are a third more. Where landmarks could
- * not be met they are tried again on each finer level; those that the first cycle does not meet
- * contradict one another. A further cycle unwinds what the one before left; the map of least energy
- * among the cycles' ends is kept.
+ * Stages of a cycle: remove vertices of the first surface, except landmarks, as long as the
+ * embedding stays valid; move landmarks to their counterparts, which few triangles then obstruct;
+ * move all vertices together (flow.c) and one by one (descend.c); restore vertices, each to the
+ * centre of the kernel of its polygon, and move all whenever there are a third more. Landmarks that
+ * could not be met are tried again on each finer level; those not met in the first cycle contradict
+ * one another. Further cycles untwist what the previous one left; the best map among the cycles'
+ * ends is kept.
  *
  * Invariant: all spherical triangles are positive by the exact predicate: the map is a bijection at
- * all times. Cost: all levels of a cycle together are some sweeps of the finest. */
+ * all times. Cost: all levels of a cycle together take a few sweeps of the finest. */
 #include "morph/compose.h"
 
 #include <math.h>
@@ -31,11 +30,11 @@ static const char STAGE[] = "map";
 enum {
     CYCLES = 3,
     LEAST = 500,      /* vertices of the coarsest level, */
-    LEAST_FACTOR = 3, /* or so many for each landmark    */
+    LEAST_FACTOR = 3, /* or so many per landmark */
     COARSE_SWEEPS = 30,
     COARSE_STEPS = 20,
     LEVEL_STEPS = 5,
-    STEPS_MOST = 5000, /* vertices: finer levels descend only */
+    STEPS_MOST = 5000, /* vertices: finer levels only descend */
     LEVEL_SWEEPS = 15,
     FINAL_SWEEPS = 30
 };
@@ -46,7 +45,7 @@ typedef struct composer {
     const landmark_list *landmarks;
     sphere_work work;
     double *best; /* directions of the best map so far */
-    double least; /* its energy                        */
+    double least; /* its energy */
     bool met;
 } composer;
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The map from one spread surface to another, with all that is known about both. */
+/* Low-distortion map from one spherically embedded surface to another. */
 #ifndef STARG_MORPH_COMPOSE_H
 #define STARG_MORPH_COMPOSE_H
 
 #include "morph/align.h"
 
-/* Moves the directions of `from` until the landmarks lie exactly on their counterparts and the map
+/* Moves the directions of `from` until the landmarks coincide with their counterparts and the map
  * from surface to surface, by way of the sphere, distorts little; every triangle stays positive.
  * `met` tells whether all landmarks were met. Errors: SOLVER (no room in doubles), MEMORY,
  * CANCELLED. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of compose.c: a map between two spread surfaces while it is bettered. */
+/* Internals of compose.c: a map between two embedded surfaces under optimization. */
 #ifndef STARG_MORPH_COMPOSITION_H
 #define STARG_MORPH_COMPOSITION_H
 
@@ -9,11 +9,11 @@
 typedef struct composition {
     sphere *from;
     const locator *to;
-    uint8_t *kept;         /* per vertex: a landmark, which stays where it is        */
-    surface_point *points; /* per vertex where it is on the second surface           */
-    double *images;        /* per vertex its place there, scaled to equal areas      */
-    double scale;          /* of the second surface                                  */
-    double floor;          /* added to squared edges, lest needles rule; by level    */
+    uint8_t *kept;         /* per vertex: a fixed landmark */
+    surface_point *points; /* per vertex its image on the second surface */
+    double *images;        /* per vertex its place there, scaled to equal areas */
+    double scale;          /* of the second surface */
+    double floor;          /* added to squared edges to limit the influence of needles; per level */
 } composition;
 
 /* The first fundamental form of a triangle with edges u, w from its apex. */
@@ -25,27 +25,29 @@ typedef struct triangle_form {
 triangle_form triangle_form_of(const double apex[3], const double p[3], const double q[3],
                                double floor);
 
-/* A place for a vertex, and what the energy of its triangles does there. */
+/* A place for a vertex, and the energy of its triangles there. */
 typedef struct trial {
     surface_point point;
     double image[3], direction[3];
     double energy;
-    double slope[3], spherical_slope[3]; /* gradients by the image and by the direction */
+    double slope[3],
+        spherical_slope[3]; /* gradients with respect to the image and to the direction */
 } trial;
 
-/* The vertex where it is; the vertex moved to a point of the second surface. No energy yet. */
+/* The vertex in place; the vertex moved to a point of the second surface. Energy not computed
+ * yet. */
 void trial_here(const composition *c, uint32_t v, trial *t);
 void trial_at(const composition *c, const surface_point *point, trial *t);
-/* Finds the energy, and the slopes where they are wanted. */
+/* Computes the energy, and on request the slopes. */
 void trial_measure(const composition *c, uint32_t v, bool with_slopes, trial *t);
-/* Is every spherical triangle about the vertex positive there? Exact. */
+/* Is every spherical triangle at the vertex positive? Exact. */
 bool trial_is_valid(const composition *c, uint32_t v, const trial *t);
-/* The worst roundness of the spherical triangles about the vertex: 1 for equilateral ones. */
+/* The worst roundness of the spherical triangles at the vertex: 1 for equilateral ones. */
 double trial_roundness(const composition *c, uint32_t v, const trial *t);
 /* Moves the vertex there. */
 void trial_accept(composition *c, uint32_t v, const trial *t);
 
-/* Finds the images of all vertices that are not out; of one, from a face on that is near. */
+/* Locates the images of all present vertices; of one, starting from a nearby face. */
 void composition_locate_all(composition *c);
 void composition_locate(composition *c, uint32_t v, uint32_t start);
 /* Distance from a vertex's image to the nearest one of its neighbours. */
@@ -53,11 +55,11 @@ double composition_nearest(const composition *c, uint32_t v);
 /* The sum of all triangles' energies. */
 double composition_energy(const composition *c);
 
-/* Lets each vertex go downhill, `sweeps` times (descend.c). Errors: CANCELLED. */
+/* Moves each vertex downhill, `sweeps` times (descend.c). Errors: CANCELLED. */
 starg_status composition_descend(composition *c, int sweeps);
 
-/* Brings all vertices together nearer to where the surface would be as rigid as possible, `steps`
- * times, with some descent after each (flow.c). Errors: SOLVER, MEMORY, CANCELLED. */
+/* Moves all vertices together, as rigidly as possible, `steps` times, each followed by some descent
+ * (flow.c). Errors: SOLVER, MEMORY, CANCELLED. */
 starg_status composition_flow(composition *c, int steps);
 
 #endif

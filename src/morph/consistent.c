@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Consistent guarding [YL11, section 5.2]: guards of A and counterparts in B, and pieces of the
- * surface that each pair of them sees.
+/* Consistent guarding [YL11, section 5.2]: guards of A and counterparts in B, and the pieces of the
+ * surface that each pair sees.
  *
- * Stages: candidates are the nodes of A's curve skeleton; the counterpart of a node follows the map
- * of the surface vertices that it and its neighbours stand for, by the similar motion that fits
- * them best, or is the middle of their images where that is not inside of B; candidates without a
- * counterpart strictly inside of B are dropped. A face is simultaneously visible to a candidate
- * when A shows it to the candidate and B shows its image to the counterpart: a matrix of bits, of
- * which the fewest rows are chosen by the cover machinery. Each face goes to the nearest of the
- * guards that see it (by the sum of both distances). Faces that no candidate sees simultaneously
- * take the guard of a neighbour, and are counted.
+ * Stages: candidates are the nodes of A's curve skeleton; the counterpart of a node is its image
+ * under the best similarity transform of the surface vertices represented by it and its neighbours,
+ * or their images' mean if that is not inside B; candidates without a counterpart strictly inside B
+ * are dropped. A face is simultaneously visible to a candidate if A shows it to the candidate and B
+ * shows its image to the counterpart: a bit matrix, from which set cover chooses the fewest rows.
+ * Each face goes to the nearest guard that sees it (by the sum of both distances). Faces that no
+ * candidate sees simultaneously take the guard of a neighbour, and are counted.
  *
- * All visibility is exact; B may intersect itself, then a guard still sees only what no face hides.
- * Cost: that of one skeleton, two visibility matrices and a set cover. */
+ * All visibility is exact; if B intersects itself, a guard still sees only what no face hides.
+ * Cost: one skeleton, two visibility matrices and a set cover. */
 #include <math.h>
 #include <string.h>
 
@@ -28,7 +27,7 @@
 #include "starguard/visibility.h"
 
 static const char STAGE[] = "consistent guards";
-static const double WHOLE = 1e-3; /* share of the whole's motion in a counterpart's */
+static const double WHOLE = 1e-3; /* share of the global motion in a counterpart's */
 
 typedef struct guarding {
     starg_morph *morph;
@@ -54,7 +53,7 @@ starg_status morph_solid(const starg_morph *m, int end, starg_solid **out) {
 
 /* ---- counterparts ---- */
 
-/* Sums over surface vertices p and their images q: what a similar motion is fitted to. */
+/* Sums over surface vertices p and their images q, to fit a similarity transform. */
 typedef struct moments {
     double p[3], q[3], cross[9], pp, qq, count;
 } moments;
@@ -79,7 +78,7 @@ static void add_moments(moments *sum, const moments *other) {
     sum->count += other->count;
 }
 
-/* Makes means of the sums, and the rest relative to them. */
+/* Turns the sums into means and centred moments. */
 static void center_moments(moments *m) {
     for (int k = 0; k < 3; k++) {
         m->p[k] /= m->count;
@@ -91,8 +90,8 @@ static void center_moments(moments *m) {
     m->qq -= m->count * vec3_dot(m->q, m->q);
 }
 
-/* Of the vertices of each node and its neighbours; `own` is working memory. The last entry is that
- * of the whole. */
+/* Over the vertices of each node and its neighbours; `own` is working memory. The last entry is
+ * global. */
 static void gather_moments(const guarding *g, moments *own, moments *all) {
     const starg_morph *m = g->morph;
     const starg_skeleton *s = g->skeleton;
@@ -122,8 +121,8 @@ static void scale(const starg_morph *m, int end, const double p[3], double out[3
         out[k] = (p[k] - m->centers[end][k]) / m->sizes[end];
 }
 
-/* The similar motion of the node's surroundings; a little of that of the whole is mixed in, which
- * decides where these are too few or flat to fix it. */
+/* The similarity transform of the node's neighbourhood, mixed with a little of the global one,
+ * which decides where the neighbourhood is too small or flat. */
 static void follow_map(const moments *own, const moments *whole, const double p[3], double out[3]) {
     double share = WHOLE * (own->pp > 0 ? own->pp / whole->pp : 1), cross[9], rotation[9];
     double offset[3];
@@ -137,7 +136,7 @@ static void follow_map(const moments *own, const moments *whole, const double p[
     vec3_along(own->q, scale_by, offset, out);
 }
 
-/* False when no counterpart is inside of B. */
+/* False if no counterpart is inside B. */
 static bool counterpart(const guarding *g, const moments *own, const moments *whole,
                         const double node[3], double out[3]) {
     double place[3];
@@ -235,21 +234,14 @@ done:
 
 /* ---- pieces ---- */
 
-static void middle_of(const double *positions, const uint32_t corner[3], double out[3]) {
-    for (size_t k = 0; k < 3; k++)
-        out[k] = (positions[3 * (size_t)corner[0] + k] + positions[3 * (size_t)corner[1] + k] +
-                  positions[3 * (size_t)corner[2] + k]) /
-                 3;
-}
-
 /* The nearest guard that sees the face at both ends; UINT32_MAX if none does. */
 static uint32_t nearest_viewer(const guarding *g, size_t face) {
     const starg_morph *m = g->morph;
     const uint32_t *corner = m->mesh->faces + 3 * face;
     double a[3], b[3], least = INFINITY;
     uint32_t best = UINT32_MAX;
-    middle_of(m->mesh->vertices, corner, a);
-    middle_of(m->images, corner, b);
+    morph_centroid(m->mesh->vertices, corner, a);
+    morph_centroid(m->images, corner, b);
     for (uint32_t i = 0; i < m->guard_count; i++) {
         if (!starg_bits_test(g->seen, g->cover->rows[i], face))
             continue;
@@ -263,7 +255,7 @@ static uint32_t nearest_viewer(const guarding *g, size_t face) {
     return best;
 }
 
-/* Faces without a guard take that of a neighbour, in rings about those that have one. */
+/* Faces without a guard take a neighbour's, ring by ring. */
 static starg_status spread_pieces(starg_morph *m) {
     starg_status status = STARG_OK;
     mesh_topology *topology = NULL;
@@ -282,7 +274,7 @@ static starg_status spread_pieces(starg_morph *m) {
             m->pieces[other] = m->pieces[queue[i]];
             queue[count++] = other;
         }
-    for (size_t f = 0; f < m->mesh->face_count; f++) /* a shell that nothing sees */
+    for (size_t f = 0; f < m->mesh->face_count; f++) /* a shell that no guard sees */
         if (m->pieces[f] == UINT32_MAX)
             m->pieces[f] = 0;
 done:

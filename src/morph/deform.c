@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Mesh deformation: tetrahedra of A that go with a morph to B.
+/* Mesh deformation: tetrahedra of A that follow a morph to B.
  *
  * Problem: A's surface moves to B's along a given path; find positions of the interior vertices
  * such that every tetrahedron is positive at the end. The tetrahedra then fill B, because their
  * boundary is its surface.
  *
- * Stages, for a step of the way: the surface takes its places; vertices inside are displaced by the
- * discrete harmonic extension of the surface's displacement (one sparse factor for all steps); then
- * those of tetrahedra that are inverted or thin go one after the other to where they are farthest
- * from the planes of the faces about them, a linear program [Freitag, Plassmann 2000], until none
- * is inverted. If some stay so, the step is halved, until it is too short: then it cannot be done.
+ * Stages of a time step: the surface moves; interior vertices are displaced by the discrete
+ * harmonic extension of the surface's displacement (one sparse factor for all steps); then the
+ * vertices of inverted or thin tetrahedra are moved one by one to the point farthest from the
+ * planes of the surrounding faces, a linear program [Freitag, Plassmann 2000], until none is
+ * inverted. If some stay inverted, the step is halved; below a minimal step the deformation fails.
  *
  * Before the first step, interior edges with both ends on the surface are split (split.c), because
  * they leave no freedom where the surface bends. This has always sufficed if the surface did not
  * intersect itself on the way.
  *
- * Invariant: at every moment reached all tetrahedra are positive, exactly.
- * Cost: for a step a frame, three solutions and some sweeps over the tetrahedra. */
+ * Invariant: after each step all tetrahedra are positive, exactly. Cost: per step one frame, three
+ * solves and some sweeps over the tetrahedra. */
 #include "morph/deform.h"
 
 #include <math.h>
@@ -32,24 +32,25 @@
 static const char STAGE[] = "deform tetrahedra";
 
 enum {
-    SWEEPS = 40,  /* over the vertices in question, in a step            */
-    PATIENCE = 4, /* sweeps without fewer inverted tetrahedra            */
+    SWEEPS = 40,  /* per step, over affected vertices */
+    PATIENCE = 4, /* sweeps without fewer inverted tetrahedra */
     ROW = 5       /* of a linear program: normal, factor of room, offset */
 };
 static const double LONGEST_STEP = 0x1p-3, SHORTEST_STEP = 0x1p-8;
-static const double THIN = 0.03; /* least height over longest edge that is left as it is */
-static const double FAR = 4;     /* how far a vertex may go, in units of its surroundings */
+static const double THIN =
+    0.03; /* lower bound of least height over longest edge for tetrahedra left alone */
+static const double FAR = 4; /* largest move of a vertex, relative to its neighbourhood */
 
-/* What a step needs. */
+/* Data of a step. */
 typedef struct walk {
     const starg_morph *m;
     deform_mesh *c;
-    size_t inner;            /* vertices behind the fixed ones */
-    uint32_t *first, *about; /* tetrahedra about inner vertex i: about[first[i]] and on */
+    size_t inner;            /* vertices after the fixed ones */
+    uint32_t *first, *about; /* tetrahedra at inner vertex i: about[first[i]] and on */
     sparse_factors *system;
     double *frame;   /* the morph's */
-    double *next;    /* x 3 per vertex: places after the step */
-    double *sides;   /* inner + inner: a right-hand side, and room to solve it */
+    double *next;    /* x 3 per vertex: positions after the step */
+    double *sides;   /* inner + inner: a right-hand side and work space */
     uint8_t *marked; /* per inner vertex */
     STARG_ARRAY(double) rows;
     STARG_ARRAY(uint32_t) order;
@@ -79,7 +80,7 @@ static bool is_positive(const deform_mesh *c, const double *places, size_t t) {
                     corner_of(c, places, t, 2), corner_of(c, places, t, 3)) < 0;
 }
 
-/* The least height of a positive tetrahedron over its longest edge is small. */
+/* Is the least height of a positive tetrahedron over its longest edge small? */
 static bool is_thin(const deform_mesh *c, const double *places, size_t t) {
     double longest = 0, widest = 0, e[3][3];
     for (int i = 0; i < 6; i++)
@@ -113,7 +114,7 @@ done:
 
 /* ---- displacement ---- */
 
-/* The graph's Laplacian: each edge counts once for each tetrahedron about it. */
+/* Graph Laplacian: an edge counts once per tetrahedron. */
 static starg_status make_system(walk *w) {
     starg_status status = STARG_OK;
     const deform_mesh *c = w->c;
@@ -131,7 +132,7 @@ static starg_status make_system(walk *w) {
             if (b >= c->fixed)
                 triplets[count++] = (triplet){row, (uint32_t)(b - c->fixed), -1};
         }
-    for (uint32_t v = 0; v < w->inner; v++) /* what no tetrahedron has stays */
+    for (uint32_t v = 0; v < w->inner; v++) /* vertices of no tetrahedron stay */
         if (w->first[v] == w->first[v + 1])
             triplets[count++] = (triplet){v, v, 1};
     STARG_TRY(triplets_factorise(c->context, w->inner, triplets, count, &w->system));
@@ -183,10 +184,10 @@ done:
     return status;
 }
 
-/* ---- mending ---- */
+/* ---- untangling ---- */
 
-/* The face opposite vertex v of tetrahedron t, seen from v's place: a row of the program, lengths
- * over `unit`. A face without area bounds the room alone. */
+/* The face opposite vertex v of tetrahedron t, seen from v, as a row of the program, in units of
+ * `unit`. A zero-area face only bounds the room. */
 static void make_row(const walk *w, uint32_t v, size_t t, double unit, double row[ROW]) {
     const deform_mesh *c = w->c;
     int own = 0;
@@ -214,7 +215,7 @@ static double longest_about(const walk *w, uint32_t v) {
     return sqrt(longest);
 }
 
-/* Takes a vertex to where it is farthest from all planes about it, if that is better. */
+/* Moves a vertex to the point farthest from all surrounding planes, if that is better. */
 static starg_status relocate(walk *w, uint32_t v) {
     starg_status status = STARG_OK;
     size_t i = v - w->c->fixed, count = w->first[i + 1] - w->first[i];
@@ -244,7 +245,7 @@ done:
     return status;
 }
 
-/* Marks the inner vertices of what is inverted or thin; how many are inverted. */
+/* Marks the inner vertices of inverted or thin tetrahedra; returns the number of inverted ones. */
 static size_t examine(walk *w) {
     const deform_mesh *c = w->c;
     size_t inverted = 0;
@@ -261,7 +262,7 @@ static size_t examine(walk *w) {
     return inverted;
 }
 
-static starg_status mend(walk *w, size_t *inverted) {
+static starg_status untangle(walk *w, size_t *inverted) {
     starg_status status = STARG_OK;
     size_t least = SIZE_MAX;
     int idle = 0;
@@ -288,7 +289,7 @@ typedef STARG_ARRAY(deform_edge) edge_list;
 static starg_status find_surface_edges(const walk *w, edge_list *out) {
     starg_status status = STARG_OK;
     const starg_mesh *mesh = w->m->mesh;
-    uint32_t *own = NULL; /* of the mesh's vertices their numbers here */
+    uint32_t *own = NULL; /* numbers of the mesh's vertices here */
     STARG_NEW_ZERO(w->c->context, STAGE, own, mesh->vertex_count);
     for (uint32_t v = 0; v < w->c->fixed; v++)
         own[w->c->surface[v]] = v;
@@ -303,7 +304,7 @@ done:
     return status;
 }
 
-/* Edges inside that have both ends on the surface. */
+/* Interior edges with both ends on the surface. */
 static starg_status find_chords(const walk *w, const edge_list *surface, edge_list *out) {
     starg_status status = STARG_OK;
     const deform_mesh *c = w->c;
@@ -331,7 +332,7 @@ done:
     return status;
 }
 
-/* ---- the way ---- */
+/* ---- time steps ---- */
 
 starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, double *reached) {
     starg_status status = STARG_OK;
@@ -342,7 +343,7 @@ starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, doub
     STARG_TRY(prepare(&w));
     while (*reached < 1 && step >= SHORTEST_STEP) {
         STARG_TRY(predict(&w, fmin(1, *reached + step)));
-        STARG_TRY(mend(&w, inverted));
+        STARG_TRY(untangle(&w, inverted));
         if (*inverted == 0) {
             *reached = fmin(1, *reached + step);
             memcpy(c->now.data, w.next, c->now.count * sizeof *w.next);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Mesh deformation: tetrahedra that go with a morph. */
+/* Mesh deformation: tetrahedra that follow a morph. */
 #ifndef STARG_MORPH_DEFORM_H
 #define STARG_MORPH_DEFORM_H
 
@@ -7,17 +7,17 @@
 #include "core/memory.h"
 #include "starguard/morph.h"
 
-/* Tetrahedra of A, where they are at the moment, and which vertices the surface holds. */
+/* Tetrahedra of A at their current places, and which vertices are on the surface. */
 typedef struct deform_mesh {
     starg_context *context;
-    size_t fixed;                     /* vertices of the surface: the first ones */
+    size_t fixed;                     /* vertices of the surface, which come first */
     const uint32_t *surface;          /* their numbers in the morph's mesh; borrowed */
-    STARG_ARRAY(double) rest;         /* x 3: places in A */
-    STARG_ARRAY(double) now;          /* x 3: places at the moment */
+    STARG_ARRAY(double) rest;         /* x 3: positions in A */
+    STARG_ARRAY(double) now;          /* x 3: current positions */
     STARG_ARRAY(uint32_t) tetrahedra; /* x 4 */
 } deform_mesh;
 
-/* An edge by both vertices, the lower one in the upper half. */
+/* An edge: both vertices, the lower one in the upper half. */
 typedef uint64_t deform_edge;
 
 static inline deform_edge deform_edge_of(uint32_t a, uint32_t b) {
@@ -27,17 +27,17 @@ static inline deform_edge deform_edge_of(uint32_t a, uint32_t b) {
 /* The corners of the six edges of a tetrahedron. */
 extern const int DEFORM_EDGES[6][2];
 
-/* Is it in the ascending list? */
+/* Is the edge in the ascending list? */
 bool deform_edge_in(const deform_edge *list, size_t count, deform_edge edge);
-/* Makes a list ascending and free of doubles. */
+/* Sorts a list and removes duplicates. */
 void deform_edges_sort(deform_edge *list, size_t *count);
 
-/* Puts a vertex in the middle of every edge of the ascending list, which splits the tetrahedra
- * about it; not where a part would have no volume in A (split.c). Errors: MEMORY. */
+/* Inserts a vertex into the middle of every edge of the ascending list, which splits its
+ * tetrahedra; skips edges where a part would have no volume in A (split.c). Errors: MEMORY. */
 starg_status deform_split(deform_mesh *c, const deform_edge *edges, size_t count);
 
-/* Takes the inner vertices of `c`, which is as A is, along while the morph goes to B. *inverted is
- * 0, or so many tetrahedra could not be kept positive near `*reached`. Errors: SOLVER, MEMORY,
+/* Moves the inner vertices of `c`, initially as in A, along with the morph to B. *inverted is 0, or
+ * the number of tetrahedra that could not be kept positive near `*reached`. Errors: SOLVER, MEMORY,
  * CANCELLED. */
 starg_status deform(const starg_morph *m, deform_mesh *c, size_t *inverted, double *reached);
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Descent of a composed map, a vertex at a time.
+/* Descent of a composed map, one vertex at a time.
  *
- * A vertex goes straight along the second surface against the gradient of its triangles' energy
- * (distortion.c), by the longest of some halved steps that lowers it. Steps on the surface, not on
- * the sphere, are of one scale. Cost of a sweep: O(edges). */
+ * A vertex moves straight along the second surface against the gradient of its triangles' energy
+ * (distortion.c), by the longest of some halved steps that lowers it. Steps are measured on the
+ * surface, not on the sphere, so that they have one scale. Cost of a sweep: O(edges). */
 #include <math.h>
 
 #include "geometry/vec3.h"
@@ -11,10 +11,10 @@
 
 static const char STAGE[] = "map";
 enum { HALVINGS = 6 };
-static const double FLOOR = 1e-3;     /* of the mean area of a face             */
-static const double FIRST_STEP = 0.5; /* of the distance to the nearest image   */
+static const double FLOOR = 1e-3;     /* relative to the mean face area */
+static const double FIRST_STEP = 0.5; /* relative to the distance of the nearest image */
 
-/* The way uphill in the face of a place, from both slopes; its length. */
+/* The uphill direction in the face of a place, from both slopes; returns its length. */
 static double uphill(const composition *c, const trial *t, double out[3]) {
     const sphere *s = c->to->sphere;
     const uint32_t *corner = s->mesh->faces + 3 * (size_t)t->point.face;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How much a composed map distorts about a vertex.
+/* Distortion of a composed map at a vertex.
  *
  * Energy of a triangle of area S: S (s^2 + r^2 + 1/s^2 + 1/r^2) for the singular values s, r of the
  * linear map to the flat triangle of its corners' images (symmetric Dirichlet), both surfaces
  * scaled to equal area; plus a small share of the roundness of its spherical triangle, squared
- * edges over area, which is infinite where that turns over: it keeps room for moves. */
+ * edges over area, which is infinite where that flips: it keeps room for moves. */
 #include <math.h>
 #include <string.h>
 
@@ -88,8 +88,8 @@ triangle_form triangle_form_of(const double apex[3], const double p[3], const do
     return out;
 }
 
-/* How far the spherical triangle v p q is from an equilateral one, 1 at the least, by flat
- * measures; infinite where it turns over. Adds the weighted gradient unless that is NULL. */
+/* Roundness of the spherical triangle v p q: at least 1, the value of an equilateral one, by flat
+ * measures; infinite if it flips. Adds the weighted gradient unless that is NULL. */
 static double roundness(const composition *c, const uint32_t corner[3], const double direction[3],
                         double weight, double *gradient) {
     const double *p = c->from->directions + 3 * (size_t)corner[1];
@@ -109,7 +109,7 @@ static double roundness(const composition *c, const uint32_t corner[3], const do
 }
 
 /* Symmetric Dirichlet energy of the triangle v p q with the image of v at x; adds the gradient
- * unless that is NULL. `weight` takes twice the area. */
+ * unless that is NULL. `weight` receives twice the area. */
 static double stretch(const composition *c, const uint32_t corner[3], const double x[3],
                       double *weight, double *gradient) {
     const double *surface = c->from->mesh->vertices;

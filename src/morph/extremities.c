@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Extremities: where the mean distance along the surface to all of it is locally largest.
+/* Extremities: local maxima of the mean geodesic distance to the whole surface.
  *
  * Source: the centricity of M. Hilaga et al., Topology matching for fully automatic similarity
- * estimation of 3D shapes, 2001; bending does not change it.
+ * estimation of 3D shapes, 2001; it is invariant under bending.
  *
- * Stages: some bases, each the vertex farthest from those before; distances along edges from each
- * (Dijkstra); their sum; its local maxima among the neighbours, from the largest down, that are
- * neither below the mean nor near to an extremity already taken. Cost: O((BASES + extremities) n
+ * Stages: some bases, each the vertex farthest from the earlier ones; distances along edges from
+ * each (Dijkstra); their sum; its local maxima among neighbours, in decreasing order, that are
+ * neither below the mean nor close to an extremity already found. Cost: O((BASES + extremities) n
  * log n). */
 #include "morph/extremities.h"
 
@@ -17,14 +17,15 @@
 
 static const char STAGE[] = "extremities";
 enum { BASES = 12 };
-static const double APART = 0.2; /* of the largest distance between two extremities or more */
+static const double APART =
+    0.2; /* of the largest distance: smallest distance between extremities */
 
 typedef struct search {
     const sphere *sphere;
     mesh_heap *heap;
-    double *distance; /* to the last source                  */
+    double *distance; /* to the last source */
     double *nearest;  /* to the nearest of all sources so far */
-    double *sum;      /* of the distances to the bases       */
+    double *sum;      /* of the distances to the bases */
 } search;
 
 static starg_status spread_from(search *s, uint32_t source) {
@@ -65,7 +66,8 @@ static starg_status measure(search *s) {
     size_t count = s->sphere->rings->vertex_count;
     for (size_t i = 0; i < count; i++)
         s->nearest[i] = INFINITY;
-    STARG_TRY(spread_from(s, 0)); /* the first base must not hang on the numbering: it is dropped */
+    STARG_TRY(
+        spread_from(s, 0)); /* the first base must not depend on the numbering: it is dropped */
     uint32_t base = largest(s->distance, count);
     for (size_t i = 0; i < count; i++)
         s->nearest[i] = INFINITY;
@@ -87,7 +89,7 @@ static bool is_peak(const search *s, uint32_t v) {
     return true;
 }
 
-/* The highest peak that is far from all extremities; count when there is none. */
+/* The highest peak far from all extremities; count if there is none. */
 static size_t next_peak(const search *s, double floor, double apart) {
     size_t count = s->sphere->rings->vertex_count, best = count;
     for (uint32_t v = 0; v < count; v++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Extremities, the ends of a shape's limbs: features that tell which way round it stands. */
+/* Extremities, the ends of a shape's limbs: features for orientation. */
 #ifndef STARG_MORPH_EXTREMITIES_H
 #define STARG_MORPH_EXTREMITIES_H
 
@@ -12,8 +12,7 @@ typedef struct extremity_list {
     uint32_t vertices[EXTREMITIES_MOST];
 } extremity_list;
 
-/* Finds the extremities of a surface, the farthest from everything else first. Errors: MEMORY,
- * CANCELLED. */
+/* Finds the extremities of a surface, most extreme first. Errors: MEMORY, CANCELLED. */
 starg_status extremities_find(const sphere *s, extremity_list *out);
 
 #endif

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How each face turns and stretches on its way from A to B [ACOL00; YL11, section 5.2].
+/* Rotation and stretch of each face on its way from A to B [ACOL00; YL11, section 5.2].
  *
  * Stages: the rotation R0 that brings the whole of A closest to B; for each face the Jacobian J of
- * the affine map between its two shapes, about the two guards of its piece, or, where there are
- * none, they do not see it, or see it at a slant, with its normals; the polar decomposition R0^T J
- * = R S; the rotation vectors of R.
+ * the affine map between its two shapes, relative to the two guards of its piece, or, if there are
+ * none, they do not see it, or see it at a grazing angle, with its normals; the polar decomposition
+ * R0^T J = R S; the rotation vectors of R.
  *
- * A rotation has many vectors, which differ by whole turns. Neighbours must take the same way
- * round, or the surface tears itself apart between them: the vectors are fixed face by face along a
- * spanning tree of the dual graph, the most alike neighbours first (Prim), each nearest to that of
- * the face before. Angles beyond pi are then possible: a limb may turn further than half-way round
- * against the trunk. Where faces of a poor map turn wildly, the tree can wind a limb about a fold
- * that does not turn at all: the vectors shorter than pi are taken if they tear less over all
- * edges.
+ * A rotation has many vectors, which differ by whole turns. Neighbours must rotate the same way, or
+ * the surface tears between them: vectors are fixed face by face along a spanning tree of the dual
+ * graph, most similar neighbours first (Prim), each nearest to that of the previous face. Angles
+ * beyond pi are then possible: a limb may rotate by more than pi against the trunk. Where faces of
+ * a poor map rotate wildly, the tree can wind a limb around a fold that does not rotate: vectors
+ * shorter than pi are used instead if they tear less over all edges.
  *
  * Cost: O(faces log faces). */
 #include <math.h>
@@ -30,7 +29,7 @@ static const double GRAZING = 0.6; /* least sine of the angle at which a guard s
 
 /* ---- Jacobians ---- */
 
-/* inverse of m by cofactors; false for a singular one */
+/* inverse of m by cofactors; false if singular */
 static bool invert(const double m[9], double out[9]) {
     double c[9];
     for (int i = 0; i < 3; i++) {
@@ -54,7 +53,7 @@ static void corners_about(const double *positions, const uint32_t corner[3], con
             out[3 * k + j] = positions[3 * (size_t)corner[j] + (size_t)k] - about[k];
 }
 
-/* Two edges, and the normal with the length of the root of twice the area, as columns. */
+/* Two edges, and the normal scaled to the square root of twice the area, as columns. */
 static void frame_of(const double *positions, const uint32_t corner[3], double out[9]) {
     const double *p = positions + 3 * (size_t)corner[0];
     double u[3], v[3], n[3];
@@ -79,7 +78,7 @@ static bool sees_well(const double *positions, const uint32_t corner[3], const d
     return vec3_dot(n, d) > GRAZING * vec3_length(n) * vec3_length(d);
 }
 
-/* False when the face has no extent at the source. */
+/* False if the face has no extent at the source. */
 static bool jacobian(const starg_morph *m, size_t face, double out[9]) {
     const uint32_t *corner = m->mesh->faces + 3 * face;
     const double *source = m->mesh->vertices;
@@ -104,7 +103,7 @@ static bool jacobian(const starg_morph *m, size_t face, double out[9]) {
     return true;
 }
 
-/* ---- the whole ---- */
+/* ---- global rotation ---- */
 
 static void mean_of(const double *positions, size_t count, double out[3]) {
     out[0] = out[1] = out[2] = 0;
@@ -161,14 +160,14 @@ static void decompose(const starg_morph *m, const double whole[9], size_t face, 
 }
 
 /* The angle between two faces' rotations. */
-static double unlike(const face_path *a, const face_path *b) {
+static double angle_between(const face_path *a, const face_path *b) {
     double near[3];
     vec3_copy(b->rotation, near);
     rotation_vector_near(a->rotation, near);
     return vec3_distance(a->rotation, near);
 }
 
-static size_t calmest(const starg_morph *m, const uint8_t *fixed) {
+static size_t least_rotated(const starg_morph *m, const uint8_t *fixed) {
     size_t best = m->mesh->face_count;
     double least = INFINITY;
     for (size_t f = 0; f < m->mesh->face_count; f++) {
@@ -194,7 +193,7 @@ static void offer_neighbours(const starg_morph *m, const mesh_topology *topology
         if (topology->twin[h] == TOPOLOGY_NONE)
             continue;
         uint32_t other = topology->twin[h] / 3;
-        double key = unlike(&m->faces[face], &m->faces[other]);
+        double key = angle_between(&m->faces[face], &m->faces[other]);
         if (p->fixed[other] || !(key < p->keys[other]))
             continue;
         p->keys[other] = key;
@@ -229,7 +228,7 @@ static starg_status unwrap(starg_morph *m) {
     for (size_t f = 0; f < count; f++) {
         if (p.fixed[f])
             continue;
-        size_t first = parts++ == 0 ? calmest(m, p.fixed) : f;
+        size_t first = parts++ == 0 ? least_rotated(m, p.fixed) : f;
         unwrap_part(m, topology, &p, (uint32_t)first);
         if (!p.fixed[f])
             unwrap_part(m, topology, &p, (uint32_t)f);
@@ -243,8 +242,9 @@ done:
     return status;
 }
 
-/* How much rotation vectors differ across the edges, by length. */
-static double tear(const starg_morph *m, const mesh_topology *topology, const double *vectors) {
+/* Length-weighted difference of rotation vectors across edges. */
+static double variation(const starg_morph *m, const mesh_topology *topology,
+                        const double *vectors) {
     double sum = 0;
     for (uint32_t h = 0; h < 3 * m->mesh->face_count; h++) {
         uint32_t twin = topology->twin[h];
@@ -258,7 +258,7 @@ static double tear(const starg_morph *m, const mesh_topology *topology, const do
     return sum;
 }
 
-/* Takes the shortest vectors where those along the tree tear more. */
+/* Uses the shortest vectors if those along the tree tear more. */
 static starg_status keep_smoother(starg_morph *m) {
     starg_status status = STARG_OK;
     static const double zero[3];
@@ -273,7 +273,7 @@ static starg_status keep_smoother(starg_morph *m) {
         vec3_copy(m->faces[f].rotation, shortest + 3 * f);
         rotation_vector_near(zero, shortest + 3 * f);
     }
-    if (tear(m, topology, shortest) < tear(m, topology, along))
+    if (variation(m, topology, shortest) < variation(m, topology, along))
         for (size_t f = 0; f < count; f++)
             vec3_copy(shortest + 3 * f, m->faces[f].rotation);
 done:

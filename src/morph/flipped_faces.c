@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Faces that the map flips, and how they get from A to B nevertheless.
+/* Faces that the map flips, and their paths from A to B.
  *
- * Problem: where A's triangles are coarse for B's shape, B in A's connectivity passes through
- * itself. Faces there turn and stretch as the fold happens to lie, each its own way, so that they
- * pass through one another long before.
+ * Problem: where A's triangles are coarse for B's shape, B in A's connectivity intersects itself.
+ * Faces there rotate and stretch arbitrarily, as the fold happens to lie, and would intersect long
+ * before the end.
  *
- * Stages: faces that intersect others in B but not in A, and some rings about them, are called
+ * Stages: faces that intersect others in B but not in A, with some rings around them, are called
  * flipped; their rotation vectors and stretches become harmonic on the graph of faces, with the
- * values of the faces around. So the least squares carry A's shape along with its surroundings
- * there. What is then missing to B is part of the residual, and comes in last (residual.c).
+ * values of the faces around them. So the least squares transport A's shape with its surroundings
+ * there. The remaining difference to B is part of the residual, and is added last (residual.c).
  *
  * Cost: two checks of a surface and a sparse system of the flipped faces. */
 #include <string.h>
@@ -20,17 +20,17 @@
 
 static const char STAGE[] = "morph";
 enum {
-    RINGS = 2,  /* about what intersects */
+    RINGS = 2,  /* around intersecting faces */
     PARTS = 12, /* numbers of a path: rotation and stretch */
     FACE_TRIPLETS = 7
 };
-static const double OWN = 1e-6; /* weight of a face's own path: decides where nothing is around */
+static const double OWN = 1e-6; /* weight of a face's own path: decides if nothing is around */
 
 #define NONE UINT32_MAX
 
 /* ---- which ---- */
 
-/* Gives what intersects at one end the value. */
+/* Marks the faces that intersect at one end with a value. */
 static starg_status mark(const starg_morph *m, const double *positions, uint8_t value) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
@@ -83,7 +83,7 @@ done:
 typedef struct filling {
     starg_morph *m;
     const mesh_topology *topology;
-    const uint32_t *number; /* per face, NONE for what is given */
+    const uint32_t *number; /* per face, NONE for given ones */
     size_t count;
 } filling;
 
@@ -116,7 +116,7 @@ done:
     return status;
 }
 
-/* What is given around the flipped faces, and a little of their own. */
+/* Sums the given values around the flipped faces, and a little of their own. */
 static void sum_given(const filling *f, int part, double *sums) {
     memset(sums, 0, f->count * sizeof *sums);
     for (size_t h = 0; h < 3 * f->m->mesh->face_count; h++) {

@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Steps of a composed map that move all vertices together, as rigidly as possible.
  *
- * Problem: vertex by vertex a limb that is wound about its axis comes to rest; only together can
- * its vertices turn back.
- * Source: local and global steps of L. Liu et al., A local/global approach to mesh
- * parameterization, 2008, here with a curved target.
+ * Problem: with vertex-by-vertex descent a limb twisted about its axis gets stuck; only together
+ * can its vertices untwist. Source: local and global steps of L. Liu et al., A local/global
+ * approach to mesh parameterization, 2008, here with a curved target.
  *
- * Stages of a step: each triangle's edges, turned in the plane of its image by the rotation that
- * fits it best; the places in space whose edges come nearest to these in the sense of cotangents,
- * landmarks held (one factorised matrix); each vertex goes along the second surface towards its
- * place, half as far as long as a spherical triangle would turn over or become a needle; some
- * sweeps of descent, which even out what was squeezed. That the energy falls is not asked for: a
- * step may first make worse what is wound up.
+ * Stages of a step: rotate each triangle's edges in the plane of its image by the best-fitting
+ * rotation; find the places in space whose edges come closest to these with cotangent weights,
+ * landmarks fixed (one factorized matrix); move each vertex along the second surface towards its
+ * place, halving the move while a spherical triangle would flip or become a needle; some sweeps of
+ * descent, which even out compressed regions. The energy need not fall: untwisting may raise it
+ * first.
  *
- * Cost: one factorisation, for each step three solutions and O(edges). */
+ * Cost: one factorization; per step three solves and O(edges). */
 #include <math.h>
 
 #include "core/memory.h"
@@ -23,13 +22,13 @@
 
 static const char STAGE[] = "map";
 enum { HALVINGS = 5, SWEEPS = 2, TRIPLETS = 4 };
-static const double PIN = 1e3, MASS = 1e-3; /* weights of staying, beside cotangents */
-static const double NEEDLE = 10;            /* roundness that a step may lead to     */
+static const double PIN = 1e3, MASS = 1e-3; /* weights of staying, relative to cotangents */
+static const double NEEDLE = 10;            /* largest roundness after a step */
 
 typedef struct flow {
     composition *c;
-    uint32_t *slot; /* per vertex its unknown                */
-    size_t count;   /* unknowns                              */
+    uint32_t *slot; /* per vertex its unknown */
+    size_t count;   /* unknowns */
     double *sides;  /* 3 x count: right-hand sides, solutions */
     double *work;
     sparse_factors *system;
@@ -39,7 +38,7 @@ static double weight_of_staying(const flow *f, uint32_t v) {
     return f->c->kept[v] ? PIN : MASS;
 }
 
-/* The i-th triangle about a vertex; false unless that is its lowest corner: each counts once. */
+/* The i-th triangle at a vertex; false unless the vertex is its lowest corner: counts each once. */
 static bool triangle_at(const sphere *s, uint32_t v, size_t i, uint32_t corner[3]) {
     const ring *around = &s->rings->of[v];
     corner[0] = v;
@@ -48,7 +47,7 @@ static bool triangle_at(const sphere *s, uint32_t v, size_t i, uint32_t corner[3
     return v < corner[1] && v < corner[2];
 }
 
-/* The cotangent at a corner, for the edge of the other two. */
+/* Cotangent at a corner, for the opposite edge. */
 static double cotangent(const flow *f, const uint32_t corner[3], int at) {
     const double *x = f->c->from->mesh->vertices;
     const triangle_form form =
@@ -95,7 +94,7 @@ done:
 
 /* ---- local step ---- */
 
-/* An orthonormal basis of a triangle's plane, the first vector along u; false without an area. */
+/* An orthonormal basis of a triangle's plane, the first vector along u; false without area. */
 static bool plane_of(const double u[3], const double w[3], double basis[2][3]) {
     double n[3];
     vec3_cross(u, w, n);
@@ -115,8 +114,8 @@ static void in_plane(double basis[2][3], const double v[3], double out[2]) {
     out[1] = vec3_dot(basis[1], v);
 }
 
-/* Bases of a triangle and of its image, and the turn (cosine, sine) between them that fits best:
- * the rotation of the polar decomposition in two dimensions. */
+/* Bases of a triangle and of its image, and the best-fitting rotation (cosine, sine) between them:
+ * the rotation of the 2D polar decomposition. */
 typedef struct fit {
     double from[2][3], to[2][3], turn[2];
 } fit;
@@ -177,7 +176,7 @@ static void find_places(const flow *f) {
         sparse_solve(f->system, f->sides + j * f->count, f->work);
 }
 
-/* Takes a vertex towards its place, along the surface. */
+/* Moves a vertex towards its place, along the surface. */
 static void approach(const flow *f, size_t k) {
     composition *c = f->c;
     const starg_mesh *mesh = c->to->sphere->mesh;

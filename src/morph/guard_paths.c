@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How the guards go from A to B: along the guarding graph.
+/* Paths of the guards from A to B, along the guarding graph.
  *
  * Guards whose pieces share an edge are neighbours. A spanning tree of short edges (Prim) is rooted
- * at the guard of the largest piece. Each guard's offset from its parent wants to turn with the
- * mean of the two pieces' rotations and to gain the rest of its change in proportion to t. Where
- * guards come to be is found together with the vertices (rigid.c), so that neither pulls the other
- * off.
+ * at the guard of the largest piece. Each guard's offset from its parent should rotate with the
+ * mean of the two pieces' rotations and gain the rest of its change in proportion to t. Guard
+ * positions are solved for together with the vertices (rigid.c), so that neither drags the other
+ * along.
  *
  * Cost: O(guards^2 + faces). */
 #include <math.h>
@@ -18,7 +18,7 @@
 #include "starguard/bits.h"
 
 static const char STAGE[] = "consistent guards";
-static const double APART = 1e3; /* added to the length of edges between pieces that do not meet */
+static const double APART = 1e3; /* added to the length of edges between pieces without contact */
 
 static void add_pieces(starg_morph *m) {
     double total = 0;

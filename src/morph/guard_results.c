@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The guards of a morph's ends as results of their own, and what each end alone would need.
+/* The guards at both ends of a morph as separate results, and the number that each end alone would
+ * need.
  *
- * Both use the candidates of the common problem, so that what differs is only that a pair must see
- * at both ends. Cost: that of guarding with so many given candidates. */
+ * Both use the candidates of the common problem, so the only difference is that a pair must see at
+ * both ends. Cost: that of guarding with given candidates. */
 #include "morph/morph.h"
 
 static const char STAGE[] = "consistent guards";

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A spread surface is warped until its landmarks are met.
+/* Warps a spherical embedding until its landmarks are met.
  *
- * Stages, repeated: the tangent field that moves every landmark towards its counterpart, between
- * them as smooth as radial functions of Matern's kind (1 + r) e^-r make it; all vertices go along
- * the field by at most STEP, less while any triangle would turn over; where a triangle blocks even
- * a short step, each vertex goes as far as its own triangles allow; then some sweeps of relaxation
- * with the landmarks held. A diffeomorphism of the sphere can bring any points to any others; what
- * landmarks contradict is only the relaxation's limits of resolution, so that the search gives up
- * after ROUNDS.
+ * Stages, repeated: compute the tangent field that moves every landmark towards its counterpart,
+ * interpolated by radial functions of Matern type (1 + r) e^-r; move all vertices along the field
+ * by at most STEP, less while any triangle would flip; where a triangle blocks even a short step,
+ * move each vertex as far as its own triangles allow; then relax for some sweeps with the landmarks
+ * fixed. A diffeomorphism of the sphere can map any points to any others; only the resolution
+ * limits of relaxation prevent it, so the search gives up after ROUNDS.
  *
- * Invariant: the embedding is valid at all times, by the exact predicate.
- * Cost: for each round O(landmarks^3 + landmarks n). */
+ * Invariant: the embedding is valid at all times, by the exact predicate. Cost: per round
+ * O(landmarks^3 + landmarks n). */
 #include "morph/landmarks.h"
 
 #include <math.h>
@@ -28,7 +27,7 @@ typedef struct warp {
     sphere *from;
     const sphere *to;
     const landmark_list *marks;
-    double *matrix; /* count x (count + 3): the radial functions, then displacements, weights */
+    double *matrix; /* count x (count + 3): radial functions, then displacements, later weights */
     double *before; /* directions before a step */
     uint8_t *pinned;
 } warp;
@@ -56,7 +55,7 @@ static void towards(const double x[3], const double y[3], double out[3]) {
         out[k] = length > 0 ? out[k] * angle / length : 0;
 }
 
-/* Gauss's elimination with row pivots; false for a matrix without an inverse. */
+/* Gaussian elimination with row pivots; false for a singular matrix. */
 static bool eliminate(double *m, size_t n, size_t columns) {
     for (size_t j = 0; j < n; j++) {
         size_t pivot = j;
@@ -82,8 +81,8 @@ static bool eliminate(double *m, size_t n, size_t columns) {
     return true;
 }
 
-/* Finds the field's weights; the longest displacement, or -1 when two landmarks are in one place.
- */
+/* Computes the field's weights; returns the longest displacement, or -1 if two landmarks
+ * coincide. */
 static double make_field(const warp *w) {
     size_t n = w->marks->count, columns = n + 3;
     double longest = 0;
@@ -97,7 +96,7 @@ static double make_field(const warp *w) {
     return eliminate(w->matrix, n, columns) ? longest : -1;
 }
 
-/* Where the field brings a place by a step. */
+/* Image of a place after a step along the field. */
 static void advance(const warp *w, const double x[3], double step, double out[3]) {
     size_t n = w->marks->count, columns = n + 3;
     double field[3] = {0};
@@ -111,7 +110,7 @@ static void advance(const warp *w, const double x[3], double step, double out[3]
         out[k] /= length;
 }
 
-/* All vertices by the same step; a whole step ends exactly at the goals. */
+/* Moves all vertices by the same step; a whole step ends exactly at the goals. */
 static bool step_all(warp *w, double step) {
     const sphere *s = w->from;
     for (size_t i = 0; i < s->rings->left; i++) {
@@ -126,7 +125,7 @@ static bool step_all(warp *w, double step) {
     return false;
 }
 
-/* Each vertex as far as its own triangles allow. */
+/* Moves each vertex as far as its own triangles allow. */
 static bool step_each(warp *w, double step) {
     bool moved = false;
     for (size_t k = 0; k < w->from->rings->left; k++) {
@@ -144,7 +143,7 @@ static bool step_each(warp *w, double step) {
     return moved;
 }
 
-/* One round; `moved` tells whether a landmark did. */
+/* One round; `moved` tells whether a landmark moved. */
 static starg_status advance_round(warp *w, double longest, bool *moved) {
     size_t size = 3 * w->from->mesh->vertex_count * sizeof *w->before;
     double step = fmin(1, STEP / longest);

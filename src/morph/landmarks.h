@@ -5,13 +5,13 @@
 
 #include "morph/align.h"
 
-/* Moves the directions of what is not out of `from` until each landmark, none of which may be out,
- * lies exactly where its counterpart is on `to`, every triangle positive all the way. `met` tells
- * whether that was reached. Errors: MEMORY, CANCELLED. */
+/* Moves the directions of the present vertices of `from`, which include all landmarks, until each
+ * landmark coincides with its counterpart on `to`, every triangle positive all the way. `met` tells
+ * whether that succeeded. Errors: MEMORY, CANCELLED. */
 starg_status landmarks_meet(sphere *from, const sphere *to, const landmark_list *landmarks,
                             bool *met);
 
-/* Fails with MESH and names the landmark that is farthest from its counterpart. */
+/* Fails with MESH and names the landmark farthest from its counterpart. */
 starg_status landmarks_contradict(sphere *from, const sphere *to, const landmark_list *landmarks);
 
 #endif

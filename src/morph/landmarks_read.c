@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Files of landmarks: a pair a line, by vertex numbers or by points. */
+/* Landmark files: a pair per line, by vertex numbers or by points. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static starg_status fail_line(starg_context *context, const char *path, size_t l
                          path, line, what);
 }
 
-/* The numbers of a line; VALUES_MOST + 1 when there is anything else in it. */
+/* The numbers of a line; VALUES_MOST + 1 if it contains anything else. */
 static size_t parse_line(char *line, double values[VALUES_MOST]) {
     size_t count = 0;
     char *comment = strchr(line, '#'), *end;

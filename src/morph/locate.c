@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Point location on the sphere by walking.
  *
- * From a face the walk crosses an edge that has the direction on its other side. On triangulations
- * that are not Delaunay such a walk can run in circles; edges are tried from a corner that a hash
- * of the step chooses, and after as many steps as there are faces all of them are tried in turn.
- * The cones of the faces cover all directions, and all signs are exact: one is always found. */
+ * From a face the walk crosses an edge that separates it from the direction. On non-Delaunay
+ * triangulations such a walk can cycle; edges are tried from a corner chosen by a hash of the step,
+ * and after as many steps as there are faces all faces are tried in turn. The cones of the faces
+ * cover all directions, and all signs are exact: one is always found. */
 #include "morph/locate.h"
 
 #include "core/rng.h"
@@ -26,7 +26,7 @@ static const double *direction_of(const locator *l, uint32_t halfedge) {
     return l->sphere->directions + 3 * (size_t)l->sphere->mesh->faces[halfedge];
 }
 
-/* The halfedge of a face that x lies strictly outside of; TOPOLOGY_NONE when the face holds x. */
+/* A halfedge that has x strictly on its outer side; TOPOLOGY_NONE if the face contains x. */
 static uint32_t way_out(const locator *l, uint32_t face, const double x[3], uint64_t step) {
     uint32_t turn = (uint32_t)(starg_hash64(step) % 3);
     for (uint32_t k = 0; k < 3; k++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where on a spread surface is a direction? */
+/* Point location on a spherical embedding. */
 #ifndef STARG_MORPH_LOCATE_H
 #define STARG_MORPH_LOCATE_H
 
@@ -15,9 +15,9 @@ typedef struct locator {
 starg_status locator_create(starg_context *context, const sphere *s, locator *out);
 void locator_free(locator *l);
 
-/* The face whose spherical triangle holds the direction, exactly (one of them on an edge), and the
- * barycentric coordinates of its central projection into the flat triangle. `start` is a face to
- * begin at. */
+/* The face whose spherical triangle contains the direction, exactly (one of them on an edge), and
+ * the barycentric coordinates of its central projection into the flat triangle. `start` is the face
+ * to begin at. */
 uint32_t locate(const locator *l, const double direction[3], uint32_t start, double coordinates[3]);
 
 #endif

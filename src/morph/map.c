@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Maps between surfaces, the first of the steps of section 5.2 of [YL11].
+/* Maps between surfaces, the first step of section 5.2 of [YL11].
  *
- * Stages for surfaces of genus 0 with different faces: check both; spread both over the sphere
- * (sphere.c); turn one onto the other (align.c); warp it until the landmarks are met (landmarks.c);
- * find the vertices of the one among the faces of the other (locate.c). The composition of the
- * spread of A and the inverse of that of B is a bijection of the surfaces. */
+ * Stages for surfaces of genus 0 with different faces: check both; embed both in the sphere
+ * (sphere.c); rotate one to match the other (align.c); warp it until the landmarks are met and
+ * optimize the composed map (compose.c); locate the vertices of one in the faces of the other
+ * (locate.c). Composing the embedding of A with the inverse of that of B gives a bijection of the
+ * surfaces. */
 #include "morph/map.h"
 
 #include <math.h>
@@ -18,16 +19,17 @@
 #include "morph/landmarks.h"
 
 static const char STAGE[] = "map";
-enum { SAME_SHARE = 20 }; /* one face in so many may differ between poses */
+enum { SAME_SHARE = 20 }; /* fraction of faces that may differ between poses: one in so many */
 
 void starg_map_options_default(starg_map_options *options) {
     *options = (starg_map_options){0};
 }
 
-/* ---- parts that reading a map shares ---- */
+/* ---- tables ---- */
 
-starg_status map_make(starg_context *context, const starg_mesh *a, const starg_mesh *b,
-                      starg_map_kind kind, starg_map **out) {
+/* Allocates a map and its tables. */
+static starg_status make_map(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                             starg_map_kind kind, starg_map **out) {
     starg_status status = STARG_OK;
     starg_map *map = NULL;
     *out = NULL;
@@ -53,7 +55,8 @@ void starg_map_free(starg_context *context, starg_map *map) {
     starg_release(context, map);
 }
 
-size_t map_different_faces(const starg_mesh *a, const starg_mesh *b) {
+/* Number of faces that differ at equal positions in the lists; SIZE_MAX if counts differ. */
+static size_t different_faces(const starg_mesh *a, const starg_mesh *b) {
     size_t count = 0;
     if (a->vertex_count != b->vertex_count || a->face_count != b->face_count)
         return SIZE_MAX;
@@ -62,7 +65,8 @@ size_t map_different_faces(const starg_mesh *a, const starg_mesh *b) {
     return count;
 }
 
-starg_status map_identity(starg_context *context, const starg_mesh *b, starg_map *map) {
+/* Maps every vertex to the vertex with its number. */
+static starg_status fill_identity(starg_context *context, const starg_mesh *b, starg_map *map) {
     memset(map->faces, 0xff, map->vertex_count * sizeof *map->faces);
     memset(map->coordinates, 0, 3 * map->vertex_count * sizeof *map->coordinates);
     for (size_t i = 0; i < 3 * b->face_count; i++) {
@@ -163,7 +167,7 @@ static starg_status check_landmarks(starg_context *context, const starg_mesh *a,
     return STARG_OK;
 }
 
-/* ---- the identity ---- */
+/* ---- identity maps ---- */
 
 static starg_status map_same(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                              size_t different, const starg_map_options *options, starg_map **out) {
@@ -179,13 +183,13 @@ static starg_status map_same(starg_context *context, const starg_mesh *a, const 
                               "the surfaces have the same faces, which maps vertex i to vertex i, "
                               "but landmark %zu pairs %u with %u",
                               i, options->landmarks[2 * i], options->landmarks[2 * i + 1]);
-    STARG_TRY(map_make(context, a, b, STARG_MAP_SAME, out));
-    STARG_TRY(map_identity(context, b, *out));
+    STARG_TRY(make_map(context, a, b, STARG_MAP_SAME, out));
+    STARG_TRY(fill_identity(context, b, *out));
 done:
     return status;
 }
 
-/* ---- by the sphere ---- */
+/* ---- maps by spherical embeddings ---- */
 
 typedef struct spread {
     starg_mesh *unit;
@@ -196,7 +200,7 @@ static starg_status spread_surface(starg_context *context, const starg_mesh *mes
                                    spread *out) {
     starg_status status = STARG_OK;
     starg_solid *solid = NULL;
-    /* it may meet itself: only what its faces share counts */
+    /* it may touch itself: only shared topology counts */
     STARG_TRY(solid_make_in_time(context, mesh, &solid));
     STARG_TRY(check_surface(context, starg_solid_check(solid), name));
     STARG_TRY(map_unit_copy(context, starg_solid_mesh(solid), &out->unit));
@@ -211,7 +215,7 @@ static void spread_free(spread *s) {
     starg_mesh_free(s->unit);
 }
 
-/* A face with that vertex as a corner. */
+/* A face with the vertex as a corner. */
 static void at_vertex(const starg_mesh *b, uint32_t vertex, uint32_t *face, double coordinates[3]) {
     uint32_t corner = 0;
     while (b->faces[corner] != vertex)
@@ -221,7 +225,7 @@ static void at_vertex(const starg_mesh *b, uint32_t vertex, uint32_t *face, doub
         coordinates[k] = k == corner % 3;
 }
 
-/* Coordinates found for the corners of a face of the solid, as corners of the same face of B. */
+/* Converts coordinates for a face of the solid to the corner order of the same face of B. */
 static void reorder(const starg_mesh *solid, const starg_mesh *b, uint32_t face,
                     double coordinates[3]) {
     double found[3];
@@ -252,7 +256,7 @@ done:
     return status;
 }
 
-/* The pairs as two lists. */
+/* Splits the pairs into two lists. */
 static starg_status split_landmarks(starg_context *context, const starg_map_options *options,
                                     uint32_t **lists, landmark_list *out) {
     starg_status status = STARG_OK;
@@ -265,8 +269,8 @@ done:
     return status;
 }
 
-/* Composes both spreads. Without landmarks the ends of limbs are brought together where that can be
- * done; they are a guess, so that what they contradict is no error. */
+/* Composes both embeddings. Without landmarks, extremities are matched if possible; they are
+ * guesses, so contradictions between them are not an error. */
 static starg_status compose(sphere *from, const locator *to, const landmark_list *marks,
                             const feature_pairs *features) {
     starg_status status = STARG_OK;
@@ -303,7 +307,7 @@ static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, c
     STARG_TRY(locator_create(context, to.sphere, &where));
     STARG_TRY(align_spheres(from.sphere, &where, &marks, &features));
     STARG_TRY(compose(from.sphere, &where, &marks, &features));
-    STARG_TRY(map_make(context, a, b, STARG_MAP_SPHERE, out));
+    STARG_TRY(make_map(context, a, b, STARG_MAP_SPHERE, out));
     STARG_TRY(place_vertices(from.sphere, &where, b, &marks, *out));
 done:
     starg_release(context, lists);
@@ -323,7 +327,7 @@ starg_status starg_map_create(starg_context *context, const starg_mesh *a, const
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(check_landmarks(context, a, b, options));
-    size_t different = map_different_faces(a, b);
+    size_t different = different_faces(a, b);
     if (different <= a->face_count / SAME_SHARE)
         STARG_TRY(map_same(context, a, b, different, options, &map));
     else

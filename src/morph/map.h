@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of a map. */
+/* Internals of a map. */
 #ifndef STARG_MORPH_MAP_H
 #define STARG_MORPH_MAP_H
 
@@ -9,21 +9,11 @@
 /* MAP.json as a starg_map. */
 extern const starg_fields map_file_fields;
 
-/* A map with room for its tables. Errors: MEMORY. */
-starg_status map_make(starg_context *context, const starg_mesh *a, const starg_mesh *b,
-                      starg_map_kind kind, starg_map **out);
-
-/* Fills in how much the map distorts. Errors: MEMORY. */
+/* Fills in the distortion of the map. Errors: MEMORY. */
 starg_status map_measure(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                          starg_map *map);
 
-/* Number of faces that are not the same at the same place; SIZE_MAX when counts differ. */
-size_t map_different_faces(const starg_mesh *a, const starg_mesh *b);
-
-/* Every vertex to the vertex of its number. Errors: MESH, MEMORY. */
-starg_status map_identity(starg_context *context, const starg_mesh *b, starg_map *map);
-
-/* A copy within a unit cube about the origin. Errors: MESH (no extent), MEMORY. */
+/* A copy scaled to a unit cube about the origin. Errors: MESH (no extent), MEMORY. */
 starg_status map_unit_copy(starg_context *context, const starg_mesh *mesh, starg_mesh **out);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* MAP.json: where each vertex of A lies on B, as text (docs/formats.md). Its table
- * (starguard/fields.h) is the one place that says what its keys are called, may hold and mean. */
+/* MAP.json: the place on B of each vertex of A, as text (docs/formats.md). Its table
+ * (starguard/fields.h) defines names, ranges and meaning of its keys. */
 #include <float.h>
 #include <math.h>
 
@@ -12,7 +12,7 @@
 
 static const char STAGE[] = "map file";
 enum { MARGIN = 2 };
-#define SUM_ERROR 1e-6 /* of three coordinates that should sum to 1 */
+#define SUM_ERROR 1e-6 /* tolerance for three coordinates that should sum to 1 */
 
 /* ---- the table ---- */
 
@@ -25,7 +25,7 @@ enum { MARGIN = 2 };
 
 static const char *const KINDS[] = {"same", "sphere", "given", NULL};
 
-/* Anybody may write a map: what follows from the points may be missing. */
+/* Others may write maps: whatever follows from the points is optional. */
 static const starg_field MAP[] = {
     {.key = "kind",
      .kind = STARG_FIELD_CHOICE,
@@ -133,7 +133,7 @@ static starg_status check_point(starg_context *context, const starg_map *map, si
                                : "names a face that B does not have");
 }
 
-/* Is it a map between these meshes? Their counts become those of the map. */
+/* Checks that it is a map between these meshes, and takes over their counts. */
 static starg_status check_map(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                               starg_map *map) {
     starg_status status = STARG_OK;

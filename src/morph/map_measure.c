@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How much a map distorts: the singular values of the linear maps between faces and their images.
- */
+/* Distortion of a map: the singular values of the linear maps between faces and their images. */
 #include "morph/map.h"
 
 #include <math.h>
@@ -10,7 +9,7 @@
 #include "mesh/mesh.h"
 
 static const char STAGE[] = "map";
-static const double WORST = 1000; /* of one face */
+static const double WORST = 1000; /* per face */
 
 /* Area and first fundamental form of the triangle in the basis of its first two edges. */
 typedef struct form {
@@ -26,12 +25,12 @@ static form form_of(const double *vertices, const uint32_t corner[3]) {
     return (form){vec3_dot(u, u), vec3_dot(u, v), vec3_dot(v, v), 0.5 * vec3_length(n)};
 }
 
-/* s^2 + r^2, the trace of the image's form in an orthonormal basis of the face. */
+/* s^2 + r^2: the trace of the image's form in an orthonormal basis of the face. */
 static double trace_of(const form *a, const form *b) {
     return (a->g * b->e - 2 * a->f * b->f + a->e * b->g) / (4 * a->area * a->area);
 }
 
-/* No number counts as the worst. */
+/* Maps NaN to the worst value. */
 static double capped(double x) {
     return x < WORST ? x : WORST;
 }
@@ -39,7 +38,7 @@ static double capped(double x) {
 starg_status map_measure(starg_context *context, const starg_mesh *a, const starg_mesh *b,
                          starg_map *map) {
     starg_status status = STARG_OK;
-    starg_mesh *from = NULL, *to = NULL; /* of unit size: squares do not overflow */
+    starg_mesh *from = NULL, *to = NULL; /* of unit size, so that squares do not overflow */
     double *images = NULL, angles = 0, areas = 0;
     STARG_TRY(map_unit_copy(context, a, &from));
     STARG_TRY(map_unit_copy(context, b, &to));

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a frame of a morph is like: exact counts of intersections, folds, and drifts. */
+/* Measures a frame of a morph: exact counts of intersections, folds, and drifts. */
 #include <math.h>
 #include <string.h>
 
@@ -10,14 +10,14 @@
 #include "starguard/check.h"
 
 static const char STAGE[] = "measure";
-static const double COLLAPSED = 1e-6; /* of the smaller area at the ends */
+static const double COLLAPSED = 1e-6; /* relative to the smaller area at the ends */
 
 static void normal_of(const double *positions, const uint32_t corner[3], double out[3]) {
     vec3_triangle_normal(positions + 3 * (size_t)corner[0], positions + 3 * (size_t)corner[1],
                          positions + 3 * (size_t)corner[2], out);
 }
 
-/* Is a face turned against the sum of its neighbours' normals? */
+/* Does a face oppose the sum of its neighbours' normals? */
 static bool is_flipped(const starg_mesh *mesh, const mesh_topology *topology,
                        const double *positions, size_t face) {
     double own[3], sum[3] = {0}, other[3];
@@ -66,7 +66,7 @@ static starg_status size_of(const starg_morph *m, const double *positions, doubl
     return STARG_OK;
 }
 
-/* How far a value is from the interpolated one, relative to that. */
+/* Deviation of a value from the interpolated one, relative to that. */
 static double drift(double value, double first, double last, double t) {
     double wanted = (1 - t) * first + t * last;
     return wanted != 0 ? (value - wanted) / fabs(wanted) : 0;

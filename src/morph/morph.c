@@ -3,12 +3,12 @@
  *
  * Stages: check and scale both ends; for methods with guards, choose guards and pieces
  * (consistent.c); for the rigid ones, the paths of the faces (face_paths.c; flipped_faces.c for
- * star) and guards (guard_paths.c), the factorised system (rigid.c) and what it leaves
- * (residual.c). Every frame is then independent of others.
+ * star) and guards (guard_paths.c), the factorized system (rigid.c) and its residual (residual.c).
+ * Frames are then independent of one another.
  *
- * All work is done about the middle of each end's box, and in units of which closed ends have equal
- * volumes: what the whole grows by is no stretch of single faces. The unit goes such that its cube,
- * as a volume does, changes in proportion to t; the middle itself goes straight. */
+ * All computations are relative to the centre of each end's box, in units that give closed ends
+ * equal volumes, so that global growth does not stretch single faces. The unit varies so that its
+ * cube, and hence the volume, is linear in t; the centre moves straight. */
 #include "morph/morph.h"
 #include "core/fields.h"
 
@@ -21,7 +21,7 @@
 
 static const char STAGE[] = "morph";
 enum { CANDIDATES = 1000, CANDIDATES_MOST = 100000 };
-static const double GROWTH_MOST = 1e6; /* of volumes that are brought to one size */
+static const double GROWTH_MOST = 1e6; /* largest ratio of volumes that is normalized */
 
 static const char *const METHODS[] = {"star", "arap", "linear", "spherical", NULL};
 
@@ -74,7 +74,7 @@ static starg_status check_input(starg_context *context, const starg_mesh *a, con
     return STARG_OK;
 }
 
-/* The middle of a box and its largest side. */
+/* Centre of the box and its largest side. */
 static double box_of(const double *positions, size_t count, double center[3]) {
     double extent = 0;
     for (size_t k = 0; k < 3; k++) {
@@ -96,7 +96,7 @@ static bool is_closed(const mesh_topology *topology) {
     return true;
 }
 
-/* The scale that brings A to the volume of the images; 1 where either has none to speak of. */
+/* The scale that brings A to the volume of the images; 1 if either volume is negligible. */
 static starg_status find_growth(starg_morph *m, double *growth) {
     starg_status status = STARG_OK;
     starg_mesh *other = NULL;

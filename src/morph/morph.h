@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of a morph. */
+/* Internals of a morph. */
 #ifndef STARG_MORPH_MORPH_H
 #define STARG_MORPH_MORPH_H
 
@@ -14,79 +14,88 @@ enum { MORPH_COVER_NODES = 2000 };
 /* Entries of starg_morph.weights for a face. */
 enum { FACE_WEIGHTS = 4 };
 
-/* How a face gets from A to B about a reference: A(t) = R0(t) R(t) ((1 - t) I + t S), with
- * R0(t) = exp(t w0) for all faces and R(t) = exp(t w). */
+/* Path of a face relative to a reference: A(t) = R0(t) R(t) ((1 - t) I + t S), with R0(t) = exp(t
+ * w0) for all faces and R(t) = exp(t w). */
 typedef struct face_path {
     double rotation[3];  /* w */
     double stretch[9];   /* S */
-    double anchor[2][3]; /* from its guard to its middle: in A, and in B turned back to A */
+    double anchor[2][3]; /* from its guard to its centroid: in A, and in B rotated back to A */
 } face_path;
 
-/* How a guard gets from A to B, relative to its parent in the tree of guards. */
+/* Path of a guard relative to its parent in the tree of guards. */
 typedef struct guard_path {
     uint32_t parent;    /* itself for the root */
     double rotation[3]; /* of the piece, w */
     double turn[3];     /* of the offset: the mean of both pieces' */
     double offset[3];   /* from the parent's place in A */
-    double change[3];   /* what the offset gains on the way, in A's frame */
+    double change[3];   /* total change of the offset, in A's frame */
     double weight;      /* share of the area */
 } guard_path;
 
 struct starg_morph {
     starg_context *context;
     starg_morph_method method;
-    starg_mesh *mesh;        /* A about its center, over its size                 */
-    double centers[2][3];    /* of the boxes of A and of the images               */
-    double sizes[2];         /* units of both: A and the images have one volume   */
-    double *source, *target; /* vertex_count x 3, the inputs as they are          */
-    double *images;          /* vertex_count x 3, about their center, over their size */
-    double turn[3];          /* w0                                                   */
-    face_path *faces;        /* per face                                             */
+    starg_mesh *mesh;        /* A about its centre, over its size */
+    double centers[2][3];    /* of the boxes of A and of the images */
+    double sizes[2];         /* units of both, for equal volumes */
+    double *source, *target; /* vertex_count x 3, the inputs */
+    double *images;          /* vertex_count x 3, about their centre, over their size */
+    double turn[3];          /* w0 */
+    face_path *faces;        /* per face */
     double *weights;         /* per face: cotangents at its corners, anchor's weight */
-    uint8_t *loose;          /* per vertex: no face holds it                         */
-    size_t tree_guards;      /* guards that are unknowns: all for star, else none    */
-    size_t unknowns;         /* vertices, then guards                                */
-    uint32_t *component;     /* per unknown a name of its connected part             */
+    uint8_t *loose;          /* per vertex: has no face */
+    size_t tree_guards;      /* guards that are unknowns: all for star, otherwise none */
+    size_t unknowns;         /* vertices, then guards */
+    uint32_t *component;     /* per unknown: name of its component */
     sparse_factors *system;
-    double *residual;     /* vertex_count x 3: what the least squares leave at 1  */
-    double *late;         /* the part of it that comes last; NULL: none           */
-    size_t flipped_count; /* flipped faces (star)                                  */
-    uint8_t *flipped;     /* per face; NULL for other methods                     */
+    double *residual;     /* vertex_count x 3: residual of the least squares at 1 */
+    double *late;         /* the part of it that is added last; NULL: none */
+    size_t flipped_count; /* flipped faces (star) */
+    uint8_t *flipped;     /* per face; NULL for other methods */
 
     size_t guard_count, unguarded;
     size_t candidate_count, lower_bound; /* of the common problem */
-    double *candidates[2];               /* candidate_count x 3, as the inputs */
-    double *guards[2];                   /* guard_count x 3, as the inputs  */
-    double *places[2];                   /* the same, scaled as the mesh    */
-    uint32_t *pieces;                    /* per face                        */
+    double *candidates[2];               /* candidate_count x 3, in input coordinates */
+    double *guards[2];                   /* guard_count x 3, in input coordinates */
+    double *places[2];                   /* the same, scaled like the mesh */
+    uint32_t *pieces;                    /* per face */
     uint8_t *guarded;                    /* per face: its guard sees it at both ends */
     guard_path *guard_paths;
 };
 
-/* Chooses guards and pieces that correspond (consistent.c). */
+/* Chooses corresponding guards and pieces (consistent.c). */
 starg_status morph_guard(starg_morph *m, size_t candidates);
 
 /* One end as a solid. Errors: MESH, MEMORY. */
 starg_status morph_solid(const starg_morph *m, int end, starg_solid **out);
 
-/* The unit of length at t: volumes go in proportion to t. */
+/* The centroid of a face. */
+static inline void morph_centroid(const double *positions, const uint32_t corner[3],
+                                  double out[3]) {
+    for (size_t k = 0; k < 3; k++)
+        out[k] = (positions[3 * (size_t)corner[0] + k] + positions[3 * (size_t)corner[1] + k] +
+                  positions[3 * (size_t)corner[2] + k]) /
+                 3;
+}
+
+/* The unit of length at t: volumes are linear in t. */
 double morph_size(const starg_morph *m, double t);
 
-/* Finds the whole's and the faces' paths (face_paths.c). */
+/* Computes the global and the faces' paths (face_paths.c). */
 starg_status morph_prepare_faces(starg_morph *m);
 
-/* Finds the flipped faces and gives them the paths of what is around them (flipped_faces.c). */
+/* Finds the flipped faces and fills in their paths from their surroundings (flipped_faces.c). */
 starg_status morph_fill_flipped(starg_morph *m);
 
-/* Parts the residual of the least squares, and adds what has come in at t (residual.c). */
+/* Splits the residual of the least squares; adds its share at t (residual.c). */
 starg_status morph_part_residual(starg_morph *m);
 void morph_add_residual(const starg_morph *m, double t, double *out);
 
-/* Factorises the system and finds the residual; shapes at t, scaled (rigid.c). */
+/* Factorizes the system and computes the residual; shapes at t, scaled (rigid.c). */
 starg_status morph_prepare_rigid(starg_morph *m);
 starg_status morph_frame_rigid(const starg_morph *m, double t, double *out);
 
-/* Finds the guards' paths from those of the faces, which come first (guard_paths.c). */
+/* Computes the guards' paths; requires those of the faces (guard_paths.c). */
 starg_status morph_prepare_guards(starg_morph *m);
 /* Spherical coordinates about the guards (spherical.c). */
 starg_status morph_frame_spherical(const starg_morph *m, double t, double *out);

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Relaxation of spherical triangulations by stretch.
  *
- * Problem: a valid embedding in the sphere squeezes limbs to almost nothing; give every part of the
- * surface its share of the sphere.
- * Source: the stretch of a parameterisation, as minimised coarse to fine by E. Praun, H. Hoppe,
- * Spherical parametrization and remeshing, 2003.
+ * Problem: a valid embedding in the sphere compresses limbs to almost nothing; give every part of
+ * the surface its share of the sphere. Source: the stretch of a parameterization, minimized coarse
+ * to fine by E. Praun, H. Hoppe, Spherical parametrization and remeshing, 2003.
  *
  * Energy of a triangle a b c on the sphere with the squared lengths l of the surface's edges and
- * their area S: S times the mean square stretch of the map from the sphere to the surface, which
- * is S sum of l_k cot(angle k) / D^2, with det(a, b, c) as D in place of twice the area, and the
- * cotangents over it as well. It is infinite where a triangle turns over, also for the large ones
- * of coarse levels, and where its share of the sphere goes to nothing: descent keeps away from
- * both. A small length is added to all edges, lest needles of the surface lose all their share.
+ * their area S: S times the mean square stretch of the map from the sphere to the surface, which is
+ * S sum of l_k cot(angle k) / D^2, with det(a, b, c) as D in place of twice the area, and the
+ * cotangents over it as well. It is infinite where a triangle flips, also for the large ones of
+ * coarse levels, and where its share of the sphere vanishes: descent avoids both. A small length is
+ * added to all edges, so that needles keep some of their share.
  *
- * A vertex goes down the gradient in its tangent plane, by the longest of some halved steps that
- * lowers the energy of its triangles. No rounding decides validity: the triangles about the new
+ * A vertex moves down the gradient in its tangent plane, by the longest of some halved steps that
+ * lowers the energy of its triangles. Rounding never decides validity: the triangles at the new
  * place must pass the exact predicate. Cost: O(edges) a sweep. */
 #include "morph/relax.h"
 
@@ -24,7 +23,7 @@
 #include "geometry/vec3.h"
 
 enum { HALVINGS = 8 };
-static const double FIRST_STEP = 0.5; /* of the distance to the nearest neighbour */
+static const double FIRST_STEP = 0.5; /* relative to the distance of the nearest neighbour */
 
 static const double ORIGIN[3];
 
@@ -38,11 +37,11 @@ bool relax_is_positive(const ring *around, const double *directions, const doubl
     return true;
 }
 
-/* A triangle about the vertex that moves. */
+/* A triangle at the moving vertex. */
 typedef struct corner {
     const double *p, *q;
     double opposite, to_p, to_q; /* squared lengths of the surface's edges */
-    double area;                 /* of the triangle with these, times 4    */
+    double area;                 /* of the triangle with these edges, times 4 */
 } corner;
 
 static corner corner_of(const relaxation *r, uint32_t v, size_t i) {

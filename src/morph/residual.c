@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the least squares leave to B at t = 1, and how it comes in.
+/* Residual of the least squares to B at t = 1, and how it is added.
  *
- * In [YL11] all of it comes in proportion to t. That is right for what moves whole limbs. But where
- * faces are flipped at B (flipped_faces.c), it is the fold itself, and half a fold passes through
- * itself as well: it must come last. So the residual is parted: its smooth part, by one implicit
- * step of diffusion over the surface of A, comes in proportion to t, the rest with a high power of
- * t. Without folds the residual is a matter of rounding, and is not parted.
+ * In [YL11] all of it is added in proportion to t, which is right where whole limbs move. But where
+ * faces are flipped at B (flipped_faces.c), the residual is the fold itself, and half a fold
+ * intersects itself too: it must come last. So the residual is split: its smooth part, by one
+ * implicit step of diffusion over the surface of A, is added in proportion to t, the rest with a
+ * high power of t. Without folds the residual is rounding error and is not split.
  *
- * Cost: one more sparse factorisation. */
+ * Cost: one more sparse factorization. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -15,9 +15,9 @@
 #include "morph/morph.h"
 
 static const char STAGE[] = "morph";
-static const double REACH = 0.03;       /* of the diffusion, to the larger box */
-static const double LEAST_MASS = 1e-18; /* of a vertex without area about it   */
-enum { LATE = 8 };                      /* the power of t                      */
+static const double REACH = 0.03;       /* of the diffusion, relative to the larger box */
+static const double LEAST_MASS = 1e-18; /* of a vertex whose faces have no area */
+enum { LATE = 8 };                      /* the power of t */
 
 static starg_status make_system(const starg_morph *m, double *masses, sparse_factors **out) {
     starg_status status = STARG_OK;

@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shapes that are as rigid as possible: vertices by least squares [BBA08].
+/* Shapes as rigid as possible: vertices by least squares [BBA08].
  *
- * Energy: for each face with the wanted Jacobian A(t), its cotangents times the squared errors of
- * its three edges, which is the error of its Jacobian within its plane, weighted by area; with
- * guards, for faces that theirs see and that are not flipped, also the error along the direction
- * from the guard to the face's middle c, weighted by the face's area over the square of that
- * distance: the middle less the guard shall be A(t) (c - g). Guards are unknowns as vertices are;
- * edges of the guarding graph want their offsets (see guard_paths.c), each with the weight of one
- * cotangent.
+ * Energy: for each face with the wanted Jacobian A(t), the cotangent-weighted squared errors of its
+ * three edges, which is the error of its Jacobian within its plane, weighted by area; with guards,
+ * for unflipped faces that their guard sees, also the error along the direction from the guard to
+ * the face's centroid c, weighted by the face's area over the squared distance: the centroid minus
+ * the guard should be A(t) (c - g). Guards are unknowns like vertices; edges of the guarding graph
+ * prescribe their offsets (see guard_paths.c), each with the weight of one cotangent.
  *
- * The matrix does not depend on t: it is factorised once. It knows differences only; one unknown of
- * each connected part is held, and the part is then moved so that its mean goes straight. What is
- * missing to B at t = 1, the non-rigid part of [YL11], is added (residual.c).
+ * The matrix does not depend on t and is factorized once. It only contains differences; one unknown
+ * of each component is fixed, and the component is then translated so that its mean moves straight.
+ * The difference to B at t = 1, the non-rigid part of [YL11], is added (residual.c).
  *
- * Cost of a frame: O(faces) and three solutions with the factor. */
+ * Cost of a frame: O(faces) and three solves. */
 #include <math.h>
 #include <string.h>
 
@@ -24,21 +23,14 @@
 #include "morph/rotation.h"
 
 static const char STAGE[] = "morph";
-static const double LEAST_AREA = 1e-10; /* of a face, to the square of its longest edge */
+static const double LEAST_AREA = 1e-10; /* of a face, relative to its squared longest edge */
 static const double TREE_EDGE = 1;      /* weight of an edge of the tree of guards */
 enum { FACE_TRIPLETS = 3 * EDGE_TRIPLETS + 16 };
 
 /* ---- system ---- */
 
-static void middle_of(const double *positions, const uint32_t corner[3], double out[3]) {
-    for (size_t k = 0; k < 3; k++)
-        out[k] = (positions[3 * (size_t)corner[0] + k] + positions[3 * (size_t)corner[1] + k] +
-                  positions[3 * (size_t)corner[2] + k]) /
-                 3;
-}
-
-/* Half the cotangents of the corners, which make a positive form for any area above 0, and the
- * anchor's weight. A face in one point has none. */
+/* Half the cotangents of the corners, positive semidefinite for any area above 0, and the anchor's
+ * weight. A face in one point has none. */
 static void weigh_face(const starg_morph *m, size_t face, double weights[FACE_WEIGHTS]) {
     const uint32_t *corner = m->mesh->faces + 3 * face;
     double e[3][3], n[3], longest = 0;
@@ -57,7 +49,7 @@ static void weigh_face(const starg_morph *m, size_t face, double weights[FACE_WE
     if (m->method != STARG_MORPH_STAR || !m->guarded[face] || m->flipped[face])
         return;
     double middle[3];
-    middle_of(m->mesh->vertices, corner, middle);
+    morph_centroid(m->mesh->vertices, corner, middle);
     double d = vec3_distance_squared(middle, m->places[0] + 3 * (size_t)m->pieces[face]);
     weights[3] = area / fmax(d, area);
 }
@@ -71,7 +63,7 @@ static triplet *put_anchor(const uint32_t unknowns[4], double w, triplet *next) 
     return next;
 }
 
-/* Guards come behind the vertices. */
+/* Guards follow the vertices. */
 static uint32_t guard_unknown(const starg_morph *m, uint32_t guard) {
     return (uint32_t)m->mesh->vertex_count + guard;
 }
@@ -96,7 +88,8 @@ static triplet *put_guards(const starg_morph *m, triplet *next) {
     return next;
 }
 
-/* Parts are named by their least unknown; that one is held, and so is what no weight holds. */
+/* Components are named by their lowest unknown, which is fixed, as is any unknown without
+ * weights. */
 static starg_status name_parts(starg_morph *m, const triplet *triplets, size_t count) {
     starg_status status = STARG_OK;
     STARG_NEW(m->context, STAGE, m->component, m->unknowns);
@@ -137,7 +130,7 @@ done:
 
 /* ---- frames ---- */
 
-/* Right-hand sides, one behind the other. */
+/* Right-hand sides, concatenated. */
 typedef struct sides {
     double *values;
     size_t count;
@@ -203,7 +196,7 @@ static void add_guards(const starg_morph *m, const double whole[9], double t, co
     }
 }
 
-/* Moves every part so that the mean of its unknowns goes straight from A to B. */
+/* Translates every component so that the mean of its unknowns moves straight from A to B. */
 static starg_status center_parts(const starg_morph *m, double t, const sides *s) {
     starg_status status = STARG_OK;
     size_t count = m->mesh->vertex_count;
@@ -226,7 +219,7 @@ done:
     return status;
 }
 
-/* All unknowns at t; `out` takes the vertices. */
+/* All unknowns at t; `out` receives the vertices. */
 static starg_status rigid_part(const starg_morph *m, double t, double *out) {
     starg_status status = STARG_OK;
     sides s = {.count = m->unknowns};

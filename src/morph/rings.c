@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Removal and return of the vertices of a triangulated sphere [Hop96].
+/* Removal and restoration of the vertices of a triangulated sphere [Hop96].
  *
- * Each vertex keeps the cycle of its neighbours. To remove b is to merge it into a neighbour a: the
- * hole that its faces leave is filled by the fan from a. That gives a triangulated sphere again
- * exactly if a and b have no common neighbours but the two that they must have. Outside of b's
- * faces the edges between its neighbours are chords of a disk that do not cross; so one neighbour
- * has none, and every vertex can be removed while more than four are left. Vertices of more than
- * DEGREE neighbours wait: those of at most five are never missing [Euler].
+ * Each vertex stores the cycle of its neighbours. Removing b merges it into a neighbour a: the hole
+ * left by its faces is filled by the fan from a. The result is a triangulated sphere exactly if a
+ * and b have no common neighbours besides the necessary two. Outside of b's faces the edges between
+ * its neighbours are non-crossing chords of a disk; so some neighbour has none, and every vertex
+ * can be removed while more than four are left. Vertices of degree above DEGREE wait: there is
+ * always one of degree at most five [Euler].
  *
- * Not on mesh/halfedges.h: every removal is undone later, so that each cycle begins where it did
- * (sums over it round accordingly); and relaxation reads the cycles as arrays, far more often than
- * they change.
+ * It does not use mesh/halfedges.h: every removal is undone later, so each cycle must start where
+ * it did (sums over it round accordingly); and relaxation reads the cycles as arrays, far more
+ * often than they change.
  *
- * Order: the shortest merge first, so that what sticks out stays for long.
- * Cost: O(degree^2) for each removal with its neighbourhood, O(log n) for the queue. */
+ * Order: shortest merge first, so that protruding vertices stay long. Cost: O(degree^2) per removal
+ * with its neighbourhood, O(log n) for the queue. */
 #include "morph/rings.h"
 
 #include <math.h>
@@ -99,7 +99,7 @@ static size_t count_marked(const rings *r, uint32_t a) {
     return count;
 }
 
-/* Are the triangles that fill the hole of a vertex from one of its neighbours positive? Exact. */
+/* Are the triangles positive that fill a vertex's hole from one of its neighbours? Exact. */
 static bool is_positive_fan(const ring *around, size_t from, const double *directions) {
     static const double origin[3];
     size_t count = around->count;
@@ -113,7 +113,7 @@ static bool is_positive_fan(const ring *around, size_t from, const double *direc
     return true;
 }
 
-/* The best neighbour to merge b into and its cost; infinite when b must wait. */
+/* The best neighbour to merge b into and its cost; infinite if b must wait. */
 static double choose_target(rings *r, const rings_limits *limits, uint32_t b, uint32_t *target) {
     const ring *own = &r->of[b];
     double least = INFINITY;
@@ -136,7 +136,7 @@ static double choose_target(rings *r, const rings_limits *limits, uint32_t b, ui
     return least;
 }
 
-/* Takes out `count` cyclic entries from `first` on. */
+/* Removes `count` cyclic entries starting at `first`. */
 static void ring_drop(ring *r, size_t first, size_t count) {
     for (size_t i = 0; i < count; i++) {
         size_t at = first < r->count ? first : 0;
@@ -154,7 +154,7 @@ done:
     return status;
 }
 
-/* Keeps b and its neighbours, from a on. */
+/* Records b and its neighbours, starting at a. */
 static starg_status record(rings *r, uint32_t b, uint32_t a) {
     starg_status status = STARG_OK;
     const ring *own = &r->of[b];
@@ -167,8 +167,8 @@ done:
     return status;
 }
 
-/* With the neighbours p0 = a, p1, ..., of b: p1 and the last lose b, those between see a instead,
- * and a sees them where it saw b. */
+/* With the neighbours p0 = a, p1, ..., of b: p1 and the last lose b, those between get a instead,
+ * and a gets them in place of b. */
 static starg_status merge(rings *r, uint32_t b, uint32_t a) {
     starg_status status = STARG_OK;
     STARG_TRY(record(r, b, a));

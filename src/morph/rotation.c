@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rotations out of 3 x 3 matrices, as morphing needs them [ACOL00]. */
+/* Rotations from 3 x 3 matrices, for morphing [ACOL00]. */
 #include "morph/rotation.h"
 
 #include <math.h>
@@ -27,7 +27,7 @@ void matrix_apply(const double m[9], const double v[3], double out[3]) {
     vec3_copy(x, out);
 }
 
-/* Makes entry (p, q) of a zero by a rotation in that plane, and turns the columns of v with it. */
+/* Zeroes entry (p, q) of a by a rotation in that plane, and rotates the columns of v along. */
 static void jacobi_rotate(double a[9], double v[9], int p, int q) {
     double off = a[3 * p + q];
     if (off == 0)
@@ -80,7 +80,7 @@ void symmetric_eigen(const double matrix[9], double values[3], double vectors[9]
             vectors[3 * k + i] = x[i][k];
 }
 
-/* A unit vector across u. */
+/* A unit vector orthogonal to u. */
 static void any_normal(const double u[3], double out[3]) {
     int k = fabs(u[0]) < fabs(u[1]) ? 0 : 1;
     if (fabs(u[2]) < fabs(u[k]))
@@ -92,8 +92,7 @@ static void any_normal(const double u[3], double out[3]) {
         out[i] /= length;
 }
 
-/* v without its part along the unit vector u, as a unit vector; any normal of u if nothing is left.
- */
+/* v orthogonalized against the unit vector u and normalized; any normal of u if nothing is left. */
 static void make_normal(const double u[3], double v[3]) {
     double before = vec3_length(v);
     vec3_along(v, -vec3_dot(u, v), u, v);
@@ -127,7 +126,7 @@ void polar_rotation(const double m[9], double rotation[9]) {
                 u[0][i] * v[3 * k] + u[1][i] * v[3 * k + 1] + u[2][i] * v[3 * k + 2];
 }
 
-/* By the unit quaternion of the largest component, which is safe at every angle. */
+/* Uses the largest component of the unit quaternion, which is stable at every angle. */
 void rotation_to_vector(const double r[9], double vector[3]) {
     double trace = r[0] + r[4] + r[8];
     double squares[4] = {1 + trace, 1 - trace + 2 * r[0], 1 - trace + 2 * r[4],
@@ -170,7 +169,7 @@ void rotation_from_vector(const double vector[3], double r[9]) {
 
 void rotation_vector_near(const double near[3], double vector[3]) {
     double angle = vec3_length(vector), axis[3];
-    if (!(angle > 1e-9)) /* the axis means nothing: take that of the wish */
+    if (!(angle > 1e-9)) /* the axis is undefined: use that of `near` */
         vec3_copy(near, axis);
     else
         vec3_copy(vector, axis);

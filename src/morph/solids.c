@@ -2,12 +2,12 @@
 /* Consistent decomposition of solids [YL11, section 5.2]: both ends of a morph cut into the same
  * pieces, each star-shaped in both.
  *
- * Stages: both ends must bound a solid without meeting themselves; A is filled with tetrahedra that
- * keep its surface; the morph takes these to B (deform.c); the pieces are sets of tetrahedra that
+ * Stages: check that both ends bound a solid without self-intersections; fill A with tetrahedra
+ * that keep its surface; deform these to B along the morph (deform.c); find sets of tetrahedra that
  * are star-shaped in both places (star/strict/start/compatible.c).
  *
- * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the surface
- * of either, so that they fill both without overlap. Cost: that of its stages. */
+ * Invariant: the tetrahedra are positive in A and in B, exactly, and their boundary is the
+ * respective surface, so they fill both without overlap. Cost: that of its stages. */
 #include "core/memory.h"
 #include "geometry/vec3.h"
 #include "mesh/solid.h"
@@ -17,7 +17,7 @@
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "consistent pieces";
-static const double DENSITY = 1; /* tetrahedra per vertex to begin with */
+static const double DENSITY = 1; /* initial tetrahedra per vertex */
 
 /* ---- ends ---- */
 
@@ -36,7 +36,7 @@ static starg_status check_end(const starg_morph *m, int end, const starg_solid *
                       touching, flat);
 }
 
-/* A as a solid; both ends are looked at. */
+/* Checks both ends; returns A as a solid. */
 static starg_status check_ends(const starg_morph *m, starg_solid **out) {
     starg_status status = STARG_OK;
     starg_solid *solids[2] = {NULL, NULL};
@@ -54,7 +54,7 @@ done:
 
 /* ---- tetrahedra ---- */
 
-/* The vertices of A that faces use, in their order: the tetrahedra begin with them. */
+/* The vertices of A in use, in order: the tetrahedra's first vertices. */
 static starg_status list_surface(const starg_morph *m, uint32_t **out, size_t *count) {
     starg_status status = STARG_OK;
     uint8_t *used = NULL;
@@ -89,7 +89,7 @@ done:
     return status;
 }
 
-static starg_status take_along(const starg_morph *m, deform_mesh *c) {
+static starg_status deform_along(const starg_morph *m, deform_mesh *c) {
     size_t inverted;
     double reached;
     starg_status status = deform(m, c, &inverted, &reached);
@@ -102,7 +102,7 @@ static starg_status take_along(const starg_morph *m, deform_mesh *c) {
     return status;
 }
 
-/* The tetrahedra in one of the two places. That they do not overlap is known. */
+/* The tetrahedra in one of the two places, known not to overlap. */
 static starg_status place(const deform_mesh *c, const double *places, starg_tetmesh **out) {
     starg_status status = STARG_OK;
     double *vertices = NULL;
@@ -152,7 +152,7 @@ starg_status starg_morph_solids(const starg_morph *m, starg_decomposition *out[2
     STARG_TRY(list_surface(m, &surface, &c.fixed));
     c.surface = surface;
     STARG_TRY(fill(m, solid, &c));
-    STARG_TRY(take_along(m, &c));
+    STARG_TRY(deform_along(m, &c));
     STARG_TRY(cut(m, &c, out));
 done:
     starg_time_end(m->context, former);

@@ -4,15 +4,15 @@
  * Source: E. Praun, H. Hoppe, Spherical parametrization and remeshing, 2003, on progressive
  * removals [Hop96].
  *
- * Stages: remove vertices until a tetrahedron is left; put that on the sphere; put the vertices
- * back in reverse order, each into the kernel of the spherical polygon of its neighbours; whenever
- * the number of vertices has grown by a fifth, relax all; relax the whole at the end.
+ * Stages: remove vertices until a tetrahedron is left; embed that; restore the vertices in reverse
+ * order, each into the kernel of the spherical polygon of its neighbours; relax all whenever the
+ * number of vertices has grown by a fifth, and again at the end.
  *
  * Invariants: all triangles are positive, by the exact predicate. A polygon that was a fan of
- * positive triangles about one of its corners has a kernel with an interior near that corner. The
- * middle of the kernel, the point farthest from the great circles of the polygon's sides, is a
- * linear program in four variables. Degree one: a tetrahedron about the centre covers the sphere
- * once, and moving or adding a vertex within the kernel changes no more than its polygon.
+ * positive triangles about one of its corners has a kernel with nonempty interior near that corner.
+ * The centre of the kernel, the point farthest from the great circles of the polygon's sides, is a
+ * linear program in four variables. The map has degree one: a tetrahedron around the centre covers
+ * the sphere once, and moving or adding a vertex within the kernel changes only its polygon.
  *
  * Cost: O(n log n + sweeps n); each level costs a sixth more than the next coarser one. */
 #include "morph/sphere.h"
@@ -26,11 +26,11 @@
 static const char STAGE[] = "sphere";
 enum { BASE = 4, LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40, HALVINGS = 40 };
 static const double GROWTH = 1.2;
-static const double FLOOR = 0.02; /* of the mean area of a face, added to squared edges */
+static const double FLOOR = 0.02; /* relative to the mean face area, added to squared edges */
 
 /* ---- base ---- */
 
-/* Any three neighbours of a corner follow one another counter-clockwise. */
+/* Any three neighbours of a corner are in counter-clockwise order. */
 static void place_base(sphere *s) {
     static const double corners[4][3] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
     uint32_t top = 0;
@@ -50,7 +50,7 @@ static void place_base(sphere *s) {
 
 /* ---- insertion ---- */
 
-/* The side p q as a row of the program: x on its inner side by at least the fourth variable. */
+/* The side p q as a row of the program: x is on its inner side by at least the fourth variable. */
 static void side_row(const double p[3], const double q[3], double row[5]) {
     vec3_cross(p, q, row);
     double length = vec3_length(row);
@@ -87,8 +87,8 @@ done:
     return status;
 }
 
-/* A place next to the vertex that b had been merged into, by halving: near enough to it the kernel
- * is met where the middle of the kernel is too small for the program. */
+/* A place close to the vertex that b had been merged into, by halving: close enough to it the
+ * kernel contains it, even if the kernel is too small for the program. */
 static bool place_near(const sphere *s, const ring *around, double out[3]) {
     const double *a = s->directions + 3 * (size_t)around->data[0];
     double middle[3] = {0};

@@ -1,46 +1,45 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Surfaces of genus 0 spread over the unit sphere. */
+/* Spherical embeddings of surfaces of genus 0. */
 #ifndef STARG_MORPH_SPHERE_H
 #define STARG_MORPH_SPHERE_H
 
 #include "morph/rings.h"
 
 /* A bijection between a surface and the sphere, given by the directions of its vertices: the
- * spherical triangles of the faces are all positively oriented (exactly: det(a, b, c) > 0 of the
- * doubles as they are) and cover the sphere once. */
+ * spherical triangles of the faces are all positive (exactly: det(a, b, c) > 0 in doubles) and
+ * cover the sphere once. */
 typedef struct sphere {
     starg_context *context;
-    const starg_mesh *mesh; /* borrowed; every coordinate within about a unit */
-    rings *rings;           /* with all vertices, but while it is changed     */
-    uint32_t *alive;        /* rings->left vertices: those that are not out   */
-    double *directions;     /* vertex_count x 3, of length about 1            */
-    double floor;           /* of its relaxation                              */
+    const starg_mesh *mesh; /* borrowed; coordinates of about unit size */
+    rings *rings;           /* complete except during changes */
+    uint32_t *alive;        /* rings->left vertices: those not removed */
+    double *directions;     /* vertex_count x 3, of length about 1 */
+    double floor;           /* for relaxation */
 } sphere;
 
-/* Spreads a mesh whose genus, orientation and single part the caller has checked.
- * Errors: SOLVER (too uneven for doubles), MEMORY, CANCELLED. */
+/* Embeds a mesh; the caller has checked that it is connected, oriented and of genus 0. Errors:
+ * SOLVER (too uneven for doubles), MEMORY, CANCELLED. */
 starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out);
 void sphere_free(sphere *s);
 
-/* Is every face positively oriented, of what is not out? Exact. */
+/* Is every present face positive? Exact. */
 bool sphere_is_positive(const sphere *s);
 
-/* Lists the vertices that are not out, in ascending order. */
+/* Lists the present vertices, ascending. */
 void sphere_list_alive(sphere *s);
 
-/* Evens out what is not out, but for the vertices that are pinned (NULL: none). Errors: CANCELLED.
- */
+/* Relaxes the present vertices except the pinned ones (NULL: none). Errors: CANCELLED. */
 starg_status sphere_relax(sphere *s, const uint8_t *pinned, int sweeps);
 
-/* Memory that grows with the largest polygon; zero at first. */
+/* Work space that grows with the largest polygon; initially zero. */
 typedef struct sphere_work {
     STARG_ARRAY(double) rows;
     STARG_ARRAY(uint32_t) order;
 } sphere_work;
 void sphere_work_free(starg_context *context, sphere_work *work);
 
-/* Puts the last removed vertex back, into the middle of the kernel of its polygon, and at the end
- * of `alive`. Errors: SOLVER (no room in doubles), MEMORY. */
+/* Restores the last removed vertex, at the centre of the kernel of its polygon, and appends it to
+ * `alive`. Errors: SOLVER (no room in doubles), MEMORY. */
 starg_status sphere_insert(sphere *s, sphere_work *work);
 
 #endif

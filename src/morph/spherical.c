@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Spherical coordinates about the guards, interpolated [SR95 carried to 3D]: the baseline that
- * [YL11, section 5.2] says does not work well.
+/* Interpolated spherical coordinates about the guards [SR95 extended to 3D]: the baseline that
+ * [YL11, section 5.2] reports as unsatisfactory.
  *
- * A corner of a face goes from its place about the face's guard in A to that about the counterpart
- * in B by its radius, latitude and longitude, each in proportion to t, the longitude by the shorter
- * way; the guards go straight. A vertex is the mean of its corners. */
+ * A corner of a face moves from its place relative to the face's guard in A to that relative to the
+ * counterpart in B in radius, latitude and longitude, each linear in t, the longitude by the
+ * shorter way; guards move straight. A vertex is the mean of its corners. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -25,7 +25,7 @@ static polar polar_of(const double p[3], const double about[3]) {
     return (polar){vec3_length(d), atan2(d[2], level), atan2(d[1], d[0])};
 }
 
-/* Adds where a corner is at t. */
+/* Adds the place of a corner at t. */
 static void add_corner(const starg_morph *m, uint32_t guard, uint32_t v, double t, double *sum) {
     const double *g = m->places[0] + 3 * (size_t)guard, *h = m->places[1] + 3 * (size_t)guard;
     polar p = polar_of(m->mesh->vertices + 3 * (size_t)v, g);

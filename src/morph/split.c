@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Splitting edges of tetrahedra in two.
+/* Splits edges of tetrahedra.
  *
- * An edge is split with all tetrahedra about it, so that they still fit together. In each round a
- * tetrahedron names the longest of its edges that are to be split, and edges that all tetrahedra
- * about them have named are split together; the longest of all is among them. An edge is left as it
- * is where a part would have no volume by the rounded middle.
+ * An edge is split with all its tetrahedra, so that they still fit together. In each round a
+ * tetrahedron selects the longest of its edges to be split, and edges selected by all their
+ * tetrahedra are split; the longest of all is among them. An edge is kept if the rounded midpoint
+ * would leave a part without volume.
  *
- * Invariant: tetrahedra stay positive in A, exactly. Cost: O(tetrahedra) for each round. */
+ * Invariant: tetrahedra stay positive in A, exactly. Cost: O(tetrahedra) per round. */
 #include <stdlib.h>
 
 #include "geometry/predicates.h"
@@ -59,18 +59,18 @@ typedef struct splitting {
     deform_mesh *c;
     const deform_edge *edges;
     size_t count;
-    uint32_t *about, *named; /* per edge: tetrahedra that have it, and that name it */
-    uint32_t *middle;        /* per edge: its new vertex                            */
-    uint8_t *over;           /* per edge: split, or left as it is                   */
-    uint32_t *choice;        /* per tetrahedron of the round                        */
+    uint32_t *about, *named; /* per edge: number of its tetrahedra, and of those that select it */
+    uint32_t *middle;        /* per edge: its new vertex */
+    uint8_t *over;           /* per edge: split, or kept */
+    uint32_t *choice;        /* per tetrahedron of the round */
 } splitting;
 
 static const double *place(const splitting *s, uint32_t vertex) {
     return s->c->rest.data + 3 * (size_t)vertex;
 }
 
-/* The longest edge of a tetrahedron that is still to be split; the lower number of equal ones. */
-static uint32_t name_edge(const splitting *s, size_t t) {
+/* The longest edge of a tetrahedron still to be split; ties go to the lower number. */
+static uint32_t select_edge(const splitting *s, size_t t) {
     const uint32_t *corner = s->c->tetrahedra.data + 4 * t;
     uint32_t best = NONE;
     double longest = -1;
@@ -95,7 +95,7 @@ static void name_edges(const splitting *s, size_t tetrahedra) {
         s->middle[i] = NONE;
     }
     for (size_t t = 0; t < tetrahedra; t++) {
-        s->choice[t] = name_edge(s, t);
+        s->choice[t] = select_edge(s, t);
         if (s->choice[t] != NONE)
             s->named[s->choice[t]]++;
     }
@@ -147,7 +147,7 @@ done:
     return status;
 }
 
-/* The tetrahedron keeps the lower end of the edge, a new one takes the upper one. */
+/* The tetrahedron keeps the lower end of the edge, a new one gets the upper end. */
 static starg_status cut(const splitting *s, size_t t, uint32_t edge) {
     starg_status status = STARG_OK;
     uint32_t lower = (uint32_t)(s->edges[edge] >> 32), upper = (uint32_t)s->edges[edge];

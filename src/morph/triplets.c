@@ -13,9 +13,8 @@ triplet *triplets_put_edge(uint32_t a, uint32_t b, double w, triplet *next) {
     return next;
 }
 
-/* By columns, in the order given: a counting sort whose starts are one place ahead while it runs.
- */
-static void lay_out(const triplet *triplets, size_t count, sparse_matrix *m) {
+/* Counting sort by columns, stable; its starts are one place ahead while it runs. */
+static void assemble(const triplet *triplets, size_t count, sparse_matrix *m) {
     for (size_t i = 0; i < count; i++)
         m->starts[triplets[i].column + (size_t)2]++;
     for (size_t i = 0; i < m->size; i++)
@@ -35,7 +34,7 @@ starg_status triplets_factorise(starg_context *context, size_t size, const tripl
     STARG_NEW_ZERO(context, STAGE, m.starts, size + 2);
     STARG_NEW(context, STAGE, m.rows, count);
     STARG_NEW(context, STAGE, m.values, count);
-    lay_out(triplets, count, &m);
+    assemble(triplets, count, &m);
     STARG_TRY(sparse_factorise(context, STAGE, &m, out));
 done:
     starg_release(context, m.starts);

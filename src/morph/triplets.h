@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Sparse systems that are assembled from triplets. */
+/* Sparse systems assembled from triplets. */
 #ifndef STARG_MORPH_TRIPLETS_H
 #define STARG_MORPH_TRIPLETS_H
 
 #include "shape/sparse.h"
 
-/* An entry of the matrix; triplets of one place are summed, both triangles are given. */
+/* A matrix entry; duplicates are summed, both triangles are given. */
 typedef struct triplet {
     uint32_t row, column;
     double value;
 } triplet;
 
-/* Writes the quadratic form of w (x_a - x_b)^2, EDGE_TRIPLETS triplets; the place behind them. */
+/* Writes the quadratic form of w (x_a - x_b)^2 as EDGE_TRIPLETS triplets; returns the place after
+ * them. */
 enum { EDGE_TRIPLETS = 4 };
 triplet *triplets_put_edge(uint32_t a, uint32_t b, double w, triplet *next);
 
-/* Factorises a positive definite matrix of `size` rows. Errors: SOLVER, MEMORY. */
+/* Factorizes a positive definite matrix with `size` rows. Errors: SOLVER, MEMORY. */
 starg_status triplets_factorise(starg_context *context, size_t size, const triplet *triplets,
                                 size_t count, sparse_factors **out);
 

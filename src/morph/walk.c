@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Straight lines on a triangulated surface, from face to face by unfolding.
  *
- * In each face the step is written in barycentric coordinates; the first of them to become negative
- * tells the edge that it leaves by. What is left of the step keeps its part along that edge, and
- * its part across the edge goes on in the neighbour's plane.
+ * In each face the step is expressed in barycentric coordinates; the first of them to become
+ * negative determines the edge where it leaves. The rest of the step keeps its component along that
+ * edge, and its component across continues in the neighbour's plane.
  *
- * Invariant: coordinates are at least 0 and have the sum 1, so that rounding cannot leave the
- * surface. Cost: O(faces crossed). */
+ * Invariant: coordinates are at least 0 and sum to 1, so rounding cannot leave the surface. Cost:
+ * O(faces crossed). */
 #include "morph/walk.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ void surface_place(const starg_mesh *mesh, const surface_point *point, double ou
     vec3_copy(sum, out);
 }
 
-/* The unit normal; false for a face without area. */
+/* The unit normal; false for a zero-area face. */
 static bool unit_normal(const starg_mesh *mesh, uint32_t face, double out[3]) {
     vec3_triangle_normal(corner_at(mesh, 3 * face), corner_at(mesh, 3 * face + 1),
                          corner_at(mesh, 3 * face + 2), out);
@@ -64,8 +64,8 @@ bool surface_gradient(const starg_mesh *mesh, const surface_point *point, const 
     return true;
 }
 
-/* Moves within the face; the share of the step that is done, and the corner opposite to the edge
- * that stops it (3: none does, or the face is too thin to tell, and nothing is done). */
+/* Moves within the face; returns the completed share of the step, and the corner opposite to the
+ * edge that stops it (3: none does, or the face is too thin and nothing is done). */
 static double advance(surface_point *point, const double change[3], uint32_t *opposite) {
     double share = 1, sum = 0, moved[3];
     *opposite = 3;
@@ -88,7 +88,7 @@ static double advance(surface_point *point, const double change[3], uint32_t *op
     return share;
 }
 
-/* Takes a point on the edge of a halfedge over to the neighbour, and turns the vector with it. */
+/* Moves a point on the edge of a halfedge to the neighbour, and rotates the vector along. */
 static bool cross_edge(const starg_mesh *mesh, uint32_t halfedge, uint32_t twin,
                        surface_point *point, double normal[3], double v[3]) {
     double edge[3], outward[3], next[3];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The catalogue: which samples there are, and who makes them. */
+/* The catalogue of samples and their generators. */
 #include <string.h>
 
 #include "core/context.h"

@@ -54,7 +54,7 @@ static void build_vertebrate(const vertebrate *table, figure *f) {
         f->turns[f->turn_count++] = table->turns[i];
 }
 
-/* ---- octopus -------------------------------------------------------------------------------- */
+/* ---- octopus ---- */
 
 enum { ARMS = 8, SEGMENTS = 4 };
 
@@ -66,7 +66,7 @@ static double arm_angle(int arm) {
     return 6.28318530717958648 * (arm + 0.5) / ARMS;
 }
 
-/* The arm along x, turned about y to its place. */
+/* The arm along x, rotated about y to its place. */
 static void octopus_point(int arm, const double along[3], double out[3]) {
     double angle = arm_angle(arm);
     out[0] = along[0] * cos(angle) - along[2] * sin(angle);
@@ -95,7 +95,7 @@ static void build_octopus_arm(int arm, figure *f) {
     }
 }
 
-/* How the arms are held: degrees up at the root, more up at each further joint, and the same
+/* Bends of the arms: degrees up at the root, further degrees up at each later joint, and the same
  * sideways. */
 typedef struct arm_bend {
     double lift, curl, swing, sway;

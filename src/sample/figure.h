@@ -9,8 +9,8 @@
 
 enum { FIGURE_MAX_JOINTS = 40, FIGURE_MAX_TURNS = 160, FIGURE_POSES = 5 };
 
-/* A turn of one joint, with all that hangs on it, in one pose: about the direction of `degrees` in
- * the rest pose, by as many degrees as that is long. */
+/* Rotation of one joint, with all its descendants, in one pose: about the direction of `degrees` in
+ * the rest pose, by its length in degrees. */
 typedef struct figure_turn {
     int pose, joint;
     double degrees[3];

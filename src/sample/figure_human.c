@@ -58,7 +58,7 @@ static const figure_turn turns[] = {
     {2, LEG_L, {12, 0, 0}},
     {2, HEAD, {0, 0, 14}},
     {2, CHEST, {0, 0, 5}},
-    /* 3: sits on a chair that is not there */
+    /* 3: sits as on a chair */
     {3, LEG_R, {-6, 0, 76}},
     {3, LEG_R2, {0, 0, -76}},
     {3, LEG_L, {6, 0, 76}},

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Round cones and their smooth union.
  *
- * The distance to a round cone is taken in the half-plane through its axis: there the outline is
- * two arcs joined by their common tangent. Parts are joined one after the other by the quadratic
- * smooth minimum, which differs from the minimum only where the two values are closer than the
- * blend; so a part that is far off can be skipped without changing a bit of the value. Both have
- * Lipschitz constant 1, which the mesher relies on to leave out empty space. */
+ * The distance to a round cone is computed in the half-plane through its axis: there the outline is
+ * two arcs joined by their common tangent. Parts are joined one by one by the quadratic smooth
+ * minimum, which differs from the minimum only where the two values are closer than the blend; so
+ * skipping a distant part does not change the value by a bit. Both have Lipschitz constant 1, which
+ * lets the mesher skip empty space. */
 #include "sample/implicit.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ void implicit_prepare(implicit_part *part) {
         part->center[k] = 0.5 * (part->a[k] + part->b[k]);
     }
     part->reach = 0.5 * part->length + fmax(part->ra, part->rb);
-    /* where one ball holds the other, sine = +-1 and one of the caps takes all */
+    /* if one ball contains the other, sine = +-1 and one of the caps covers all */
     double sine = part->length > 0 ? (part->ra - part->rb) / part->length : 0;
     part->sine = fmax(-1, fmin(1, sine));
     part->cosine = sqrt(1 - part->sine * part->sine);
@@ -39,7 +39,7 @@ static double ball_value(const double p[3], const double center[3], double radiu
     return length - radius;
 }
 
-/* Distance to the round cone that is not flattened. */
+/* Distance to the round cone without flattening. */
 static double cone_value(const implicit_part *part, const double p[3], double gradient[3],
                          double *radius) {
     double from_a[3], across[3];
@@ -69,7 +69,7 @@ double implicit_part_value(const implicit_part *part, const double p[3], double 
         gradient = own;
     if (part->flatten == 1)
         return cone_value(part, p, gradient, radius);
-    /* stretch space, then shrink the value so that it still grows no faster than distance */
+    /* stretch space, then shrink the value so that its Lipschitz constant stays 1 */
     double from_a[3], q[3], stretch = part->flatten - 1;
     vec3_subtract(p, part->a, from_a);
     vec3_along(p, stretch * vec3_dot(from_a, part->flat), part->flat, q);
@@ -117,7 +117,7 @@ void implicit_project(const implicit_field *field, double p[3], int steps, doubl
         implicit_sample s = implicit_evaluate(field, p);
         vec3_copy(s.gradient, gradient);
         double square = vec3_dot(s.gradient, s.gradient);
-        if (square < 1e-4) /* on the medial axis of the solid: leave it */
+        if (square < 1e-4) /* on the solid's medial axis: the gradient vanishes */
             return;
         vec3_along(p, -s.value / square, s.gradient, p);
     }
@@ -130,7 +130,7 @@ void implicit_bounds(const implicit_field *field, double lower[3], double upper[
     }
     for (size_t i = 0; i < field->count; i++) {
         const implicit_part *part = &field->parts[i];
-        double margin = 0.5 * part->blend; /* the union bulges by at most a quarter of it */
+        double margin = 0.5 * part->blend; /* the union bulges by at most a quarter of the blend */
         for (int k = 0; k < 3; k++) {
             lower[k] = fmin(lower[k], fmin(part->a[k] - part->ra, part->b[k] - part->rb) - margin);
             upper[k] = fmax(upper[k], fmax(part->a[k] + part->ra, part->b[k] + part->rb) + margin);

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A solid as a function of space: the smooth union of round cones, negative inside. */
+/* A solid as an implicit function: the smooth union of round cones, negative inside. */
 #ifndef STARG_SAMPLE_IMPLICIT_H
 #define STARG_SAMPLE_IMPLICIT_H
 
 #include <stddef.h>
 
-/* The convex hull of two balls, flattened if wished. */
+/* The convex hull of two balls, optionally flattened. */
 typedef struct implicit_part {
     double a[3], b[3]; /* centres of the balls */
     double ra, rb;     /* their radii, above 0 */
-    double blend;      /* width over which the part melts into those before it, above 0 */
-    double flat[3];    /* unit direction in which the part is thinner ...       */
-    double flatten;    /* ... by this factor, at least 1; 0 means 1             */
+    double blend;      /* width over which the part blends with earlier ones, above 0 */
+    double flat[3];    /* unit direction in which the part is thinner ... */
+    double flatten;    /* ... by this factor, at least 1; 0 means 1 */
     /* derived by implicit_prepare */
     double axis[3], length, sine, cosine; /* of the cone's half-angle */
-    double center[3], reach;              /* ball that holds the part */
+    double center[3], reach;              /* ball that contains the part */
 } implicit_part;
 
 enum { IMPLICIT_MAX_PARTS = 128 };
@@ -25,12 +25,12 @@ typedef struct implicit_field {
 } implicit_field;
 
 typedef struct implicit_sample {
-    double value;       /* never more than the distance to the surface */
-    double gradient[3]; /* length at most 1                            */
-    double radius;      /* of the part that is nearest there: how thin the solid is */
+    double value;       /* at most the distance to the surface */
+    double gradient[3]; /* length at most 1 */
+    double radius;      /* of the nearest part: how thin the solid is there */
 } implicit_sample;
 
-/* Fills in the derived entries of a part. */
+/* Computes the derived members of a part. */
 void implicit_prepare(implicit_part *part);
 /* Value of one part alone; `gradient` may be NULL; *radius is that of its axis nearest to p. */
 double implicit_part_value(const implicit_part *part, const double p[3], double gradient[3],
@@ -38,7 +38,7 @@ double implicit_part_value(const implicit_part *part, const double p[3], double 
 implicit_sample implicit_evaluate(const implicit_field *field, const double p[3]);
 /* Moves p onto the surface by `steps` (> 0) Newton steps; `gradient` is that before the last. */
 void implicit_project(const implicit_field *field, double p[3], int steps, double gradient[3]);
-/* A box that holds the surface. */
+/* Bounding box of the surface. */
 void implicit_bounds(const implicit_field *field, double lower[3], double upper[3]);
 
 #endif

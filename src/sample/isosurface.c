@@ -1,19 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Marching tetrahedra on the body-centred cubic lattice.
  *
- * Problem: a closed 2-manifold near the zero set of a field, touching only space near it.
- * Stages: descend an octree and drop every cube that the surface cannot reach (|value at the
- * centre| above half the diagonal: the field has Lipschitz constant 1); for each cube that is left,
- * cut the tetrahedra that it has in common with its six neighbours.
+ * Problem: a closed 2-manifold near the zero set of a field, evaluating only space near it. Stages:
+ * descend an octree and drop every cube that the surface cannot reach (|value at the centre| above
+ * half the diagonal: the field has Lipschitz constant 1); for each remaining cube, cut the
+ * tetrahedra that it shares with its six neighbours.
  *
- * The tetrahedra of the lattice join the centres of two neighbouring cubes with the four edges of
- * the square between them; they are all congruent and nearly regular, the reason why [LS07] and
- * others choose them. Lattice points have integer coordinates: all odd in centres, all even in
- * corners.
+ * A lattice tetrahedron joins the centres of two neighbouring cubes with an edge of the square
+ * between them; all are congruent and nearly regular, which is why [LS07] uses them. Lattice points
+ * have integer coordinates: all odd for centres, all even for corners.
  *
  * Invariants: a lattice point is inside exactly if its value is negative. Then the triangles cut
- * out of the tetrahedra form a closed 2-manifold (each tetrahedron holds one disc at most, and
- * discs meet along whole borders). An edge that is cut gives one vertex, named by its ends.
+ * out of the tetrahedra form a closed 2-manifold (each tetrahedron contains at most one disc, and
+ * discs meet along whole borders). A cut edge makes one vertex, identified by its ends.
  *
  * Cost: O(n) field values and look-ups for n cubes that the surface meets. */
 #include "sample/isosurface.h"
@@ -23,7 +22,8 @@
 #include "geometry/vec3.h"
 
 static const char STAGE[] = "sample";
-static const double CLAMP = 1e-5; /* no cut nearer to an edge's end than this fraction of it */
+static const double CLAMP =
+    1e-5; /* smallest distance of a cut from an end, as a fraction of the edge */
 
 enum { BITS = 20, MAX_LEVELS = 16 };
 
@@ -35,7 +35,7 @@ typedef struct mesher {
     double origin[3], half; /* position of lattice point 0, and half the side of a cube */
     key_map cubes;          /* those that the surface may meet, by their centres */
     key_array cube_keys;
-    key_map points; /* lattice points whose value is known */
+    key_map points; /* lattice points with known values */
     STARG_ARRAY(double) values;
     mesh_builder *builder;
 } mesher;
@@ -59,7 +59,7 @@ static void point_position(const mesher *m, const lattice_point *p, double out[3
         out[k] = m->origin[k] + m->half * (double)p->x[k];
 }
 
-/* ---- cubes near the surface ----------------------------------------------------------------- */
+/* ---- cubes near the surface ---- */
 
 /* A cube of the octree: its centre, and half its side in lattice units (a power of two). */
 static starg_status descend(mesher *m, const lattice_point *center, int64_t half) {
@@ -101,7 +101,7 @@ static starg_status find_cubes(mesher *m, double spacing) {
     return descend(m, &center, cubes);
 }
 
-/* ---- tetrahedra ----------------------------------------------------------------------------- */
+/* ---- tetrahedra ---- */
 
 typedef struct corner {
     lattice_point point;
@@ -123,7 +123,7 @@ done:
     return status;
 }
 
-/* The lattice edges are named by their midpoints, which no two edges share. */
+/* Lattice edges are identified by their midpoints, which are distinct. */
 static uint64_t edge_key(const corner *a, const corner *b) {
     lattice_point sum;
     for (int k = 0; k < 3; k++)
@@ -145,7 +145,8 @@ static starg_status cut_edge(mesher *m, const corner *a, const corner *b, uint32
 /* Cuts the tetrahedron c, of positive orientation: det(c1 - c0, c2 - c0, c3 - c0) > 0. */
 static starg_status cut_tetrahedron(mesher *m, const corner *const c[4]) {
     starg_status status = STARG_OK;
-    /* even permutations that bring what is inside (or, for three, outside) to the front */
+    /* even permutations that move the inside corners (or, for three, the outside one) to the
+     * front */
     static const int order[16][4] = {{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3},
                                      {2, 0, 1, 3}, {0, 2, 3, 1}, {1, 2, 0, 3}, {3, 0, 2, 1},
                                      {3, 0, 2, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}, {2, 0, 1, 3},
@@ -213,7 +214,7 @@ static starg_status cut_cube(mesher *m, uint64_t key) {
         for (int step = -2; step <= 2; step += 4) {
             lattice_point q = p;
             q.x[axis] += step;
-            /* a neighbour in the set cuts what lies on its upper side itself */
+            /* a neighbour in the set cuts its upper side itself */
             if (step < 0 && key_map_find(&m->cubes, point_key(&q)) != UINT32_MAX)
                 continue;
             STARG_TRY(load_corner(m, &q, &neighbour));

@@ -6,7 +6,7 @@
 #include "sample/builder.h"
 #include "sample/implicit.h"
 
-/* Fills `builder` with a closed 2-manifold, outward oriented, of cells of side `spacing`; its
+/* Fills `builder` with a closed 2-manifold, outward oriented, from cells of side `spacing`; its
  * triangles may be thin. Errors: MEMORY, CANCELLED. */
 starg_status isosurface_extract(const implicit_field *field, double spacing, mesh_builder *builder);
 

@@ -8,7 +8,7 @@ static const char STAGE[] = "sample";
 
 enum { FIRST_SLOTS = 1024 };
 
-/* The slot of `key`, or the free one where it belongs. */
+/* The slot of `key`, or the free slot for it. */
 static size_t find_slot(const key_map *map, uint64_t key) {
     size_t mask = map->slots - 1, slot = starg_hash64(key) & mask;
     while (map->numbers[slot] != UINT32_MAX && map->keys[slot] != key)

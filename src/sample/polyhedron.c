@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Polyhedra whose triangles are cut into n^2 smaller ones each: the sphere and the shell (blown up
- * to balls), and the spiky star (flat).
+/* Polyhedra whose triangles are subdivided into n^2 each: the sphere and the shell (projected to
+ * spheres), and the spiky star (flat).
  *
- * Vertices are named by where they lie: a corner, an edge and the step along it, or a face and the
- * two steps in it; so neighbouring triangles share what lies on their common edge. */
+ * Vertices are identified by their place: a corner, an edge and the step along it, or a face and
+ * the two steps in it; neighbouring triangles share those on their common edge. */
 #include <math.h>
 
 #include "geometry/vec3.h"
@@ -25,7 +25,7 @@ static void icosahedron_corner(uint32_t i, double p[3]) {
         p[k] /= length;
 }
 
-/* Finds the faces as the triples of corners that are all an edge length apart. */
+/* Finds the faces as triples of corners at mutual edge distance. */
 static void icosahedron_faces(uint32_t faces[FACES][3]) {
     double p[CORNERS][3];
     size_t count = 0;
@@ -53,10 +53,10 @@ typedef struct patch {
     double corners[3][3];
     uint32_t number; /* of the triangle */
     uint32_t n;
-    double radius;    /* of the sphere that it is blown up to, or 0: flat */
+    double radius;    /* of the sphere that it is projected to, or 0: flat */
     double center[3]; /* of that sphere */
-    bool inward;      /* turned inside out */
-    uint64_t shell;   /* keeps the names of separate surfaces apart */
+    bool inward;      /* orientation reversed */
+    uint64_t shell;   /* separates the names of different surfaces */
 } patch;
 
 /* The name of the point with weights w (summing to n). */

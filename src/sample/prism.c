@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Upright solids over a plan of rectangles: rooms (the solid is the air), halls with round columns,
- * a plate with holes.
+/* Vertical prisms over a plan of rectangles: rooms (the solid is the air), halls with round
+ * columns, a plate with holes.
  *
  * The plan is a table of characters: '#' solid, ' ' empty, 'o' solid with a round hole through it.
- * Each strip of the plan and the height are cut into a whole number of steps, and every surface is
- * made of quads with corners on those steps, so that neighbours conform exactly and edges stay
+ * Each strip of the plan and the height are divided into a whole number of steps, and every surface
+ * consists of quads with corners on those steps, so that neighbours conform exactly and edges stay
  * sharp. Around a hole the quads go from the cell's border inward to the circle.
  *
- * The vertex count follows from the quads by Euler's formula (V = quads + 2 - 2 genus), so that the
- * step length for a wanted count is found by bisection without building anything. */
+ * The vertex count follows from the quads by Euler's formula (V = quads + 2 - 2 genus), so
+ * bisection finds the step length for a wanted count without building a mesh. */
 #include <math.h>
 #include <string.h>
 
@@ -25,7 +25,7 @@ typedef struct plan {
     const char *cells[MAX_STRIPS];
 } plan;
 
-/* How a plan is cut into steps. */
+/* How a plan is divided into steps. */
 typedef struct cutting {
     const plan *p;
     size_t x[MAX_STRIPS + 1], z[MAX_STRIPS + 1]; /* steps before each strip */
@@ -53,7 +53,7 @@ static void cut_strips(const double *lengths, size_t count, double step, size_t 
     }
 }
 
-/* Steps upright are `stretch` times as long as those across. */
+/* Vertical steps are `stretch` times as long as horizontal ones. */
 static cutting cut_plan(const plan *p, double step, double stretch) {
     cutting c = {.p = p, .step = step, .levels = steps_of(p->height, stretch * step)};
     cut_strips(p->widths, p->columns, step, c.x, c.x_at);
@@ -85,7 +85,7 @@ static size_t border_length(const cell *l) {
     return 2 * (l->nx + l->nz);
 }
 
-/* Point `a` of the border walk: along x, along z, back along x, back along z. */
+/* Point `a` of the walk around the border: along x, along z, back along x, back along z. */
 static void border_point(const cell *l, size_t a, size_t *x, size_t *z) {
     size_t nx = l->nx, nz = l->nz;
     a %= border_length(l);
@@ -104,7 +104,7 @@ static void border_point(const cell *l, size_t a, size_t *x, size_t *z) {
     }
 }
 
-/* ---- counting ------------------------------------------------------------------------------- */
+/* ---- counting ---- */
 
 static bool side_is_open(const cell *l, int side) {
     static const int across[4][2] = {{0, -1}, {1, 0}, {0, 1}, {-1, 0}};
@@ -134,8 +134,8 @@ static size_t count_vertices(const cutting *c) {
     return quads + 2 - 2 * holes;
 }
 
-/* The cutting that comes nearest to the wanted number. The count falls as the step grows, in jumps
- * where many strips are equally wide; a few stretches give it more values to choose from. */
+/* The division closest to the wanted number. The count falls as the step grows, in jumps if many
+ * strips are equally wide; several stretches provide more values to choose from. */
 static cutting find_cutting(const plan *p, size_t vertex_count) {
     static const double stretches[] = {1, 0.9, 1.1, 0.8, 1.25, 0.7, 1.4};
     cutting best = {0};
@@ -160,7 +160,7 @@ static cutting find_cutting(const plan *p, size_t vertex_count) {
     return best;
 }
 
-/* ---- building ------------------------------------------------------------------------------- */
+/* ---- building ---- */
 
 /* The vertex at step (x, z) of the cell and at a level. */
 static starg_status grid_vertex(mesh_builder *b, const cell *l, size_t x, size_t z, size_t level,
@@ -284,7 +284,7 @@ done:
     return status;
 }
 
-/* ---- plans ---------------------------------------------------------------------------------- */
+/* ---- plans ---- */
 
 starg_status solid_l_room(starg_context *context, size_t vertex_count, starg_mesh **out) {
     static const plan room = {.columns = 2,

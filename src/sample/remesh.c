@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Coarsening and smoothing of an isosurface.
+/* Coarsens and smooths an isosurface.
  *
- * Stages: half-edges; collapse of the shortest edges until the number of vertices is met; then
- * rounds of edge flips (towards Delaunay) and of tangential smoothing, each vertex moving to the
+ * Stages: half-edges; collapse of the shortest edges down to the wanted number of vertices; then
+ * rounds of edge flips (towards Delaunay) and tangential smoothing, where each vertex moves to the
  * mean of its neighbours and back onto the surface.
  *
- * An edge's length is measured against the square root of the solid's thickness there, so that thin
- * limbs get smaller triangles. The shortest edges go first by passes with a slowly rising limit:
- * that needs no priority queue and is as good for this purpose.
+ * Edge length is relative to the square root of the solid's local thickness, so that thin limbs get
+ * smaller triangles. Passes with a slowly rising limit collapse the shortest edges first: this
+ * needs no priority queue and is as good here.
  *
- * Invariants: the mesh stays a closed 2-manifold of the same genus, because an edge is collapsed
- * only under the link condition (its ends have exactly two common neighbours) and flipped only if
- * the new edge does not exist; no triangle turns its normal by much in either.
+ * Invariants: the mesh stays a closed 2-manifold of the same genus: an edge is collapsed only under
+ * the link condition (its ends have exactly two common neighbours) and flipped only if the new edge
+ * does not exist; neither rotates a normal by much.
  *
- * Cost: O(n) for each pass; passes grow with the logarithm of the coarsening. */
+ * Cost: O(n) per pass; the number of passes grows with the logarithm of the coarsening. */
 #include "sample/remesh.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@ typedef struct surface {
     starg_context *context;
     const implicit_field *field;
     mesh_halfedges mesh;
-    size_t vertex_count, halfedge_count; /* gone ones as well */
-    size_t live;                         /* vertices          */
+    size_t vertex_count, halfedge_count; /* removed ones included */
+    size_t live;                         /* vertices */
     double *positions, *moved;
     double *thickness; /* of the solid at each vertex */
 } surface;
@@ -69,12 +69,12 @@ done:
     return status;
 }
 
-/* The half-edges about v; 0 when they are more than MAX_RING. */
+/* The half-edges around v; 0 if there are more than MAX_RING. */
 static size_t ring_of(const surface *s, uint32_t v, uint32_t ring[MAX_RING]) {
     return halfedges_ring(&s->mesh, v, ring, MAX_RING);
 }
 
-/* ---- work on all vertices ------------------------------------------------------------------- */
+/* ---- work on all vertices ---- */
 
 typedef void vertex_work(const surface *s, uint32_t v);
 
@@ -96,7 +96,7 @@ static starg_status run_block(starg_context *context, void *shared, void *scratc
     return STARG_OK;
 }
 
-/* Every vertex writes only what is its own, so the order does not matter. */
+/* Every vertex writes only its own data, so the order does not matter. */
 static starg_status for_vertices(const surface *s, vertex_work *work) {
     vertex_job job = {.s = s, .work = work};
     starg_parallel_loop loop = {.stage = STAGE,
@@ -110,7 +110,7 @@ static void measure_thickness(const surface *s, uint32_t v) {
     s->thickness[v] = implicit_evaluate(s->field, position(s, v)).radius;
 }
 
-/* ---- collapse ------------------------------------------------------------------------------- */
+/* ---- collapse ---- */
 
 /* Squared length over thickness. */
 static double edge_cost(const surface *s, uint32_t h) {
@@ -119,9 +119,9 @@ static double edge_cost(const surface *s, uint32_t h) {
            (s->thickness[a] + s->thickness[b]);
 }
 
-/* How well-shaped the face is as seen along the unit `normal`: the sine of the angle between its
- * longest and its shortest edge, below 0 when it looks the other way. Needles do well here, because
- * a collapse of their short edge is all that they need. */
+/* Quality of a face seen along the unit `normal`: the sine of the angle between its longest and its
+ * shortest edge, negative if it faces the other way. Needles score well here, because collapsing
+ * their short edge fixes them. */
 static double shape_quality(const double *a, const double *b, const double *c,
                             const double normal[3]) {
     double own[3], ab = vec3_distance_squared(a, b), bc = vec3_distance_squared(b, c);
@@ -130,8 +130,8 @@ static double shape_quality(const double *a, const double *b, const double *c,
     return vec3_dot(own, normal) / sqrt(fmax(ab, fmax(bc, ca)) * fmin(ab, fmin(bc, ca)));
 }
 
-/* Would all faces of the ring, but for those that hold `gone`, have some shape, or a better one
- * than now, when their vertex moves to p? */
+/* If the vertex moved to p, would each face of its ring, except those with `gone`, be acceptable or
+ * better than now? */
 static bool ring_keeps_shape(const surface *s, const uint32_t *ring, size_t count, uint32_t gone,
                              const double p[3], const double normal[3]) {
     for (size_t i = 0; i < count; i++) {
@@ -147,7 +147,7 @@ static bool ring_keeps_shape(const surface *s, const uint32_t *ring, size_t coun
     return true;
 }
 
-/* Where the ends of h can merge: halfway, or else at one of them. */
+/* Where the ends of h can merge: at the midpoint, or else at one of them. */
 static bool find_place(const surface *s, uint32_t h, const uint32_t *ring_a, size_t count_a,
                        const uint32_t *ring_b, size_t count_b, double p[3]) {
     static const double places[3] = {0.5, 0, 1};
@@ -164,7 +164,7 @@ static bool find_place(const surface *s, uint32_t h, const uint32_t *ring_a, siz
     return false;
 }
 
-/* Collapses the edge if the surface stays what it is; false if it would not. */
+/* Collapses the edge if topology and shape allow it; returns whether it did. */
 static bool collapse_edge(surface *s, uint32_t h) {
     uint32_t ring_a[MAX_RING], ring_b[MAX_RING], ring_c[MAX_RING], ring_d[MAX_RING];
     uint32_t a = halfedges_start(&s->mesh, h), b = edge_end(s, h);
@@ -187,7 +187,7 @@ static bool collapse_edge(surface *s, uint32_t h) {
     return true;
 }
 
-/* ---- flips ---------------------------------------------------------------------------------- */
+/* ---- flips ---- */
 
 /* Cotangent of the angle at p. */
 static double cotangent(const double p[3], const double a[3], const double b[3]) {
@@ -199,7 +199,7 @@ static double cotangent(const double p[3], const double a[3], const double b[3])
     return area > 0 ? vec3_dot(u, v) / area : 1e9;
 }
 
-/* Do the faces (a, d, c) and (d, b, c) look the same way as (a, b, c) and (b, a, d) together? */
+/* Do the faces (a, d, c) and (d, b, c) face the same way as (a, b, c) and (b, a, d) together? */
 static bool flip_keeps_side(const double *a, const double *b, const double *c, const double *d) {
     double before[3], other[3], after[2][3];
     vec3_triangle_normal(a, b, c, before);
@@ -231,14 +231,14 @@ static bool is_flip_wanted(const surface *s, uint32_t h) {
     return halfedges_find(&s->mesh, c, d) == TOPOLOGY_NONE && flip_keeps_side(pa, pb, pc, pd);
 }
 
-/* Of the two half-edges of an edge, the lower one stands for it. */
+/* An edge is represented by the lower of its two half-edges. */
 static bool is_edge(const surface *s, uint32_t h) {
     uint32_t twin = halfedges_twin(&s->mesh, h);
     return twin != TOPOLOGY_NONE && h < twin;
 }
 
-/* Where faces and rings begin decides about the bytes of a sample: the first face begins at the
- * start of h, and the other corner across from it keeps its ring's begin in the second. */
+/* The start of faces and rings determines the bytes of a sample: the first face begins at the start
+ * of h, and the ring of the other opposite corner keeps its start in the second. */
 static void flip_edge(surface *s, uint32_t h) {
     uint32_t twin = halfedges_twin(&s->mesh, h), x = halfedges_apex(&s->mesh, twin);
     halfedges_flip(&s->mesh, h);
@@ -252,7 +252,7 @@ static void flip_edges(surface *s) {
             flip_edge(s, h);
 }
 
-/* ---- coarsening -------------------------------------------------------------------------- */
+/* ---- coarsening ---- */
 
 static double mean_cost(const surface *s) {
     double sum = 0;
@@ -261,8 +261,8 @@ static double mean_cost(const surface *s) {
     return s->halfedge_count ? sum / (double)s->halfedge_count : 0;
 }
 
-/* Passes over all edges with a rising limit, until the number is met or nothing can be done: at a
- * limit of 10^6 times the mean every edge has had its chance. */
+/* Passes over all edges with a rising limit, until the number is reached or nothing more can
+ * collapse: at 10^6 times the mean cost every edge has been tried. */
 static starg_status coarsen(surface *s, size_t vertex_count) {
     starg_status status = STARG_OK;
     double mean = mean_cost(s);
@@ -277,9 +277,9 @@ done:
     return status;
 }
 
-/* ---- smoothing ------------------------------------------------------------------------------ */
+/* ---- smoothing ---- */
 
-/* Where v goes: towards the mean of its neighbours, along the surface, unless that would spoil a
+/* New place of v: towards the mean of its neighbours, along the surface, unless that would spoil a
  * face. Written to `moved`. */
 static void propose_move(const surface *s, uint32_t v) {
     uint32_t ring[MAX_RING];
@@ -310,9 +310,9 @@ static starg_status smooth(surface *s) {
     return status;
 }
 
-/* ---- result --------------------------------------------------------------------------------- */
+/* ---- result ---- */
 
-/* The mesh of what is left. */
+/* Makes the mesh of the remaining vertices. */
 static starg_status compact(const surface *s, starg_mesh **out) {
     starg_status status = STARG_OK;
     size_t face_count = 0;

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Linear blend skinning.
  *
- * A vertex follows the joint whose parts are nearest, and near the border to another joint both, by
- * weights that fall smoothly to 0 as the other one's distance exceeds the nearest by the width of
- * their border, which is in proportion to the limb where the thinner of the two begins. Weights
- * depend on the place in the rest pose only, so meshes of any fineness bend alike. Joints turn by
- * moderate angles, for which the blend of matrices loses little volume. Cost: O(vertices x parts).
- */
+ * A vertex follows the joint with the nearest part, and near the border between two joints both:
+ * weights fall smoothly to 0 as the other joint's distance exceeds the nearest by the width of
+ * their border, which is proportional to the thinner limb at its start. Weights depend only on the
+ * place in the rest pose, so meshes of any resolution bend alike. Joint rotations are moderate, so
+ * blending matrices loses little volume. Cost: O(vertices x parts). */
 #include "sample/skin.h"
 
 #include <math.h>
@@ -87,13 +86,13 @@ static void pose_joints(const figure *f, int pose, motion *joints) {
 typedef struct skin_job {
     const figure *f;
     motion joints[FIGURE_MAX_JOINTS];
-    double limbs[FIGURE_MAX_JOINTS]; /* radius of each joint's limb where it begins */
+    double limbs[FIGURE_MAX_JOINTS]; /* radius of each joint's limb at its start */
     double *vertices;
     size_t count;
 } skin_job;
 
-/* Distance of p to each joint's parts, and the radius of the part that is nearest (of those of the
- * joint); a joint without parts is infinitely far. */
+/* Distance of p to the parts of each joint, and the radius of the joint's nearest part; infinite
+ * for a joint without parts. */
 static void joint_distances(const figure *f, const double p[3], double *distances, double *radii) {
     for (int j = 0; j < f->joint_count; j++) {
         distances[j] = INFINITY;

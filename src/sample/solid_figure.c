@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Articulated figures as meshes: an isosurface of the rest pose, coarsened to the wanted number of
- * vertices, bent by skinning and freed of the folds that this makes. All poses of one size share
- * their connectivity, because the mesh is made from the rest pose only.
+ * vertices, bent by skinning, with the resulting folds removed. All poses of one size share their
+ * connectivity, because the mesh is made from the rest pose only.
  *
- * The isosurface starts finer than what is asked for, so that the coarsening can throw its thin
- * triangles away; its spacing is extrapolated from a first mesh, as the number of vertices grows
- * with the inverse square. Small meshes start from that first one: thin limbs need it to hold
- * together, and a collapse never breaks them. */
+ * The isosurface starts finer than wanted, so that coarsening can remove its thin triangles; its
+ * spacing is extrapolated from a first mesh, since the number of vertices grows with the inverse
+ * square. Small meshes start from that first one: thin limbs need its resolution to stay connected,
+ * and a collapse never breaks them. */
 #include <math.h>
 
 #include "sample/builder.h"
@@ -21,7 +21,7 @@ static const char STAGE[] = "sample";
 
 /* First spacing, over the diagonal of the figure's box. */
 static const double FIRST_SPACING = 0.009;
-/* Vertices of the isosurface for one of the result. */
+/* Isosurface vertices per vertex of the result. */
 static const double EXCESS = 2.2;
 
 enum { MAX_ATTEMPTS = 8 };
@@ -43,8 +43,8 @@ done:
     return status;
 }
 
-/* All figures are balls in topology. A web between two fingers is as thin as it likes near its
- * edge, so that a lattice may see holes in it: then a slightly finer one is tried. */
+/* All figures are topological balls. A web between two fingers becomes arbitrarily thin near its
+ * edge, so a lattice may see holes in it: then a slightly finer one is tried. */
 static starg_status extract_ball(starg_context *context, const implicit_field *field,
                                  double spacing, starg_mesh **out) {
     starg_status status = STARG_OK;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The families of solids that the catalogue is made of. Each takes the wanted number of vertices
- * and comes as near to it as its structure allows. Errors: MEMORY, CANCELLED. */
+/* The families of solids in the catalogue. Each takes the wanted number of vertices and comes as
+ * close to it as its structure allows. Errors: MEMORY, CANCELLED. */
 #ifndef STARG_SAMPLE_SOLIDS_H
 #define STARG_SAMPLE_SOLIDS_H
 
@@ -11,7 +11,7 @@
 starg_status solid_figure(starg_context *context, figure_kind kind, int pose, size_t vertex_count,
                           starg_mesh **out);
 
-/* Upright solids over a plan of squares (prism.c). */
+/* Vertical prisms over a plan of rectangles (prism.c). */
 starg_status solid_l_room(starg_context *context, size_t vertex_count, starg_mesh **out);
 starg_status solid_gallery(starg_context *context, size_t vertex_count, starg_mesh **out);
 starg_status solid_labyrinth(starg_context *context, size_t vertex_count, starg_mesh **out);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tubes of round section around closed curves: the torus, and a tube tied into a trefoil knot.
+/* Tubes of circular section around closed curves: the torus and a trefoil knot.
  *
- * The section stands on the Frenet frame, which is periodic on both curves (their curvature never
- * vanishes), so that rows close up without a twist. Rows are spaced by arc length, and how many
- * points a row has follows from the ratio of the tube's girth to its length. */
+ * The section uses the Frenet frame, which is periodic on both curves (their curvature never
+ * vanishes), so rows close without twist. Rows are spaced by arc length; the number of points per
+ * row follows from the ratio of the tube's girth to its length. */
 #include <math.h>
 
 #include "geometry/vec3.h"
@@ -60,7 +60,7 @@ static starg_status make_ring(mesh_builder *builder, curve *c, double t, double 
     normalize(normal);
     normalize(binormal);
     for (size_t j = 0; j < around; j++) {
-        /* every other ring is turned by half a step: better triangles, and no seam to see */
+        /* every other ring is rotated by half a step: better triangles, and no visible seam */
         double angle = TURN * ((double)j + 0.5 * (double)(ring % 2)) / (double)around, p[3];
         vec3_along(point, radius * cos(angle), normal, p);
         vec3_along(p, radius * sin(angle), binormal, p);
@@ -94,7 +94,7 @@ static starg_status make_tube(starg_context *context, curve *c, double radius, s
                               starg_mesh **out) {
     starg_status status = STARG_OK;
     mesh_builder builder = {.context = context};
-    double *lengths = NULL; /* too many for a small stack */
+    double *lengths = NULL; /* too large for a small stack */
     STARG_NEW(context, "sample", lengths, LENGTH_STEPS + 1);
     measure(c, lengths);
     double length = lengths[LENGTH_STEPS], girth = TURN * radius;

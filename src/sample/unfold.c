@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Linear blending lets the skin run through itself where a joint closes. Such faces turn against
- * the mean normal about their corners, or lose their shape. Vertices of those faces, and their
- * neighbours, take up more and more of their neighbours' motion out of the rest pose, until no face
- * is spoiled that was fine there. All else stays where it is. (It is the motion that is smoothed:
- * places would shrink thin limbs.) Rounds go on while the number of spoiled faces falls, and the
- * best places are kept: on a very coarse mesh that may be those of the skinning itself.
+/* Linear blending makes the skin intersect itself where a joint closes. Such faces oppose the mean
+ * normal at their corners, or degenerate. Their vertices, and neighbours of those, take over more
+ * and more of their neighbours' motion from the rest pose, until no face is spoiled that was fine
+ * there. Everything else stays in place. (Motions are smoothed because smoothing positions would
+ * shrink thin limbs.) Rounds continue while the number of spoiled faces falls, and the best
+ * positions are kept: on a very coarse mesh those may be the skinning's own.
  *
- * Cost: O(faces) for each round; few rounds are needed, and a mesh without folds takes one. */
+ * Cost: O(faces) per round; few rounds are needed, one for a mesh without folds. */
 #include "sample/unfold.h"
 
 #include <math.h>
@@ -16,9 +16,9 @@
 
 static const char STAGE[] = "sample";
 
-/* A face is spoiled when the angle between its normal and a corner's has a lower cosine, */
+/* A face is spoiled if the cosine of the angle between its normal and a corner's is lower, */
 static const double MIN_COSINE = 0.0;
-/* or twice its area is below this fraction of its longest edge squared. */
+/* or if twice its area is below this fraction of its squared longest edge. */
 static const double MIN_QUALITY = 0.06;
 
 enum { MAX_IDLE_ROUNDS = 10, HALO = 2 };
@@ -28,11 +28,11 @@ typedef struct unfolder {
     const uint32_t *faces;
     const double *rest;
     size_t vertex_count, face_count;
-    double *normals; /* of vertices: the sum of the face normals by area */
-    double *best;    /* places with the fewest spoiled faces so far */
+    double *normals; /* per vertex: the area-weighted sum of face normals */
+    double *best;    /* positions with the fewest spoiled faces so far */
     double *sums;    /* of the neighbours' motions */
     uint32_t *degrees;
-    uint8_t *moves;        /* vertices that are to move */
+    uint8_t *moves;        /* vertices to move */
     uint8_t *spoiled_rest; /* faces that are no better in the rest pose */
 } unfolder;
 
@@ -71,7 +71,7 @@ static bool is_spoiled(const unfolder *u, const double *vertices, size_t f) {
     return area < MIN_QUALITY * longest;
 }
 
-/* Marks the corners of spoiled faces and counts those. */
+/* Marks the corners of spoiled faces and counts these. */
 static size_t mark_spoiled(const unfolder *u, const double *vertices) {
     size_t count = 0;
     sum_normals(u, vertices);
@@ -86,7 +86,7 @@ static size_t mark_spoiled(const unfolder *u, const double *vertices) {
     return count;
 }
 
-/* Marks the neighbours of those marked by `level` with one more. */
+/* Marks the neighbours of vertices marked `level` with `level` + 1. */
 static void widen(const unfolder *u, uint8_t level) {
     for (size_t i = 0; i < 3 * u->face_count; i++) {
         uint32_t a = u->faces[i], b = u->faces[i % 3 == 2 ? i - 2 : i + 1];

@@ -37,7 +37,7 @@ enum {
 typedef struct vertebrate_part {
     int joint;
     double a[3], ra; /* a ball ... */
-    double b[3], rb; /* ... and another, with what is between them */
+    double b[3], rb; /* ... and another, and their convex hull */
     double blend;
     double flat[3], flatten; /* see implicit.h */
 } vertebrate_part;

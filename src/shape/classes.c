@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Classes of models: from their file names, or from a text. */
+/* Classes of models, from their file names or from a text. */
 #include <stdlib.h>
 
 #include "core/file.h"
@@ -9,9 +9,9 @@
 static const char STAGE[] = "classes";
 static const char BLANKS[] = " \t\r";
 
-/* ---- from words ---- */
+/* ---- from file names ---- */
 
-/* A model and the word of its class, which is a part of a longer text. */
+/* A model and its class word, a part of a longer text. */
 typedef struct naming {
     const char *word;
     size_t size;
@@ -42,7 +42,7 @@ done:
     return status;
 }
 
-/* Sorts the namings and numbers the different words. */
+/* Sorts the entries and numbers the distinct words. */
 static starg_status make_classes(starg_context *context, naming *namings, size_t count,
                                  size_t model_count, starg_classes **out) {
     starg_status status = STARG_OK;
@@ -110,7 +110,7 @@ static starg_status fail_line(const reading *r, const char *what, const char *wo
                          "'%s', line %zu: %s '%.200s'", r->path, r->line, what, word);
 }
 
-static starg_status give_class(reading *r, const char *model, const char *class) {
+static starg_status assign_class(reading *r, const char *model, const char *class) {
     starg_status status = STARG_OK;
     size_t found = 0;
     for (size_t i = 0; i < r->models->count; i++) {
@@ -129,7 +129,7 @@ done:
     return status;
 }
 
-/* The class is the last word, the model all before it. */
+/* The class is the last word, the model everything before it. */
 static starg_status read_line(reading *r, char *line) {
     line += strspn(line, BLANKS);
     size_t size = strlen(line);
@@ -146,7 +146,7 @@ static starg_status read_line(reading *r, char *line) {
     if (end == line)
         return fail_line(r, "no class behind", line);
     *end = '\0';
-    return give_class(r, line, class);
+    return assign_class(r, line, class);
 }
 
 starg_status starg_classes_read(starg_context *context, const char *path,

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The D2 shape distribution [OFCD02]: how far apart are two random points of the surface?
+/* D2 shape distribution [OFCD02]: distances between random points of the surface.
  *
- * Stages: running sums of the face areas; pairs of points, uniform in area; their distances by the
- * mean distance; a histogram of equal bins, whose values sum to 1.
+ * Stages: running sums of the face areas; pairs of points, uniform in area; their distances
+ * relative to the mean distance; a histogram of equal bins, normalized to sum 1.
  *
- * Pair i depends on the seed and i only, so that the numbers are the same at any thread count; the
- * sum of the distances is taken in order. Distances beyond the last bin count in it (between points
- * of a segment none is over three times the mean; only surfaces that are mostly in one place have
+ * Pair i depends only on the seed and i, so the numbers are the same for any thread count;
+ * distances are summed in order. Distances beyond the last bin count in it (between points of a
+ * segment none exceeds three times the mean; only surfaces concentrated mostly in one place have
  * some).
  *
- * Two histograms differ by the sum of the bins' differences (L1), from 0 to 2.
+ * Histograms are compared by the L1 norm of their difference, from 0 to 2.
  *
  * Cost: 2^20 pairs, each with two binary searches in the sums. */
 #include <math.h>
@@ -29,8 +29,8 @@ static const uint64_t RANDOM = 0x6432;
 typedef struct sampler {
     const starg_mesh *mesh;
     uint64_t seed;
-    double extent;     /* lengths are measured by it, so that no square vanishes */
-    double *sums;      /* of the areas of the faces up to each */
+    double extent;     /* unit of length, to avoid underflow of squares */
+    double *sums;      /* cumulative face areas */
     double *distances; /* of the pairs */
 } sampler;
 
@@ -38,7 +38,7 @@ static const double *corner(const sampler *s, size_t face, size_t k) {
     return starg_mesh_vertices(s->mesh) + 3 * (size_t)starg_mesh_faces(s->mesh)[3 * face + k];
 }
 
-/* From p to q by the extent. */
+/* From p to q, relative to the extent. */
 static void way(const sampler *s, const double p[3], const double q[3], double out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = (q[k] - p[k]) / s->extent;
@@ -68,7 +68,7 @@ done:
     return status;
 }
 
-/* The first face whose sum exceeds `goal`; goal is below the last sum, so the face has an area. */
+/* The first face whose sum exceeds `goal`, which is below the last sum; so the face has an area. */
 static size_t find_face(const sampler *s, double goal) {
     size_t low = 0, high = starg_mesh_face_count(s->mesh) - 1;
     while (low < high) {
@@ -81,7 +81,7 @@ static size_t find_face(const sampler *s, double goal) {
     return low;
 }
 
-/* The square root spreads points evenly towards the edge opposite to the first corner. */
+/* The square root makes the points uniform. */
 static void random_point(const sampler *s, starg_rng *rng, double out[3]) {
     double all = s->sums[starg_mesh_face_count(s->mesh) - 1];
     size_t face = find_face(s, all * starg_rng_unit(rng));

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The database file: making it, opening it, transactions.
+/* Database file: creation, opening, transactions.
  *
- * The schema is told apart by SQLite's application_id (ours or not) and user_version (which). The
- * journal is SQLite's default, a rollback journal: it works in every folder that can be written,
- * leaves one file when nothing is under way, and a process that dies in a transaction leaves a
- * journal that the next one to open the file plays back. */
+ * SQLite's application_id identifies our files, and user_version the schema. The journal is
+ * SQLite's default, a rollback journal: it works in every writable folder, leaves a single file
+ * when idle, and if a process dies in a transaction, the next one to open the file rolls back. */
 #include "shape/database.h"
 
 #include <errno.h>
@@ -29,7 +28,8 @@ static const char SCHEMA[] =
 
 /* ---- errors ---- */
 
-starg_status database_fail(starg_database *d) {
+/* Reports the failure of the last call on the connection. */
+static starg_status fail_sqlite(starg_database *d) {
     starg_context *context = d->context;
     const char *reason = sqlite3_errmsg(d->handle);
     int error = sqlite3_system_errno(d->handle);
@@ -75,13 +75,12 @@ static int wait_busy(void *user, int waits) {
 /* ---- statements ---- */
 
 starg_status database_run(starg_database *d, const char *sql) {
-    return sqlite3_exec(d->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? STARG_OK
-                                                                       : database_fail(d);
+    return sqlite3_exec(d->handle, sql, NULL, NULL, NULL) == SQLITE_OK ? STARG_OK : fail_sqlite(d);
 }
 
 starg_status database_prepare(starg_database *d, const char *sql, sqlite3_stmt **out) {
     return sqlite3_prepare_v2(d->handle, sql, -1, out, NULL) == SQLITE_OK ? STARG_OK
-                                                                          : database_fail(d);
+                                                                          : fail_sqlite(d);
 }
 
 starg_status database_step(starg_database *d, sqlite3_stmt *statement, bool *row) {
@@ -89,7 +88,7 @@ starg_status database_step(starg_database *d, sqlite3_stmt *statement, bool *row
     *row = result == SQLITE_ROW;
     if (*row)
         return STARG_OK;
-    starg_status status = result == SQLITE_DONE ? STARG_OK : database_fail(d);
+    starg_status status = result == SQLITE_DONE ? STARG_OK : fail_sqlite(d);
     sqlite3_reset(statement);
     return status;
 }
@@ -168,7 +167,7 @@ static starg_status check_schema(starg_database *d) {
     int application, version, programs;
     STARG_TRY(read_number(d, "PRAGMA application_id", &application));
     STARG_TRY(read_number(d, "PRAGMA user_version", &version));
-    /* a file may come from anywhere: nothing in it is to run when its tables are read */
+    /* a file may come from anywhere: reading its tables must not run code of its own */
     STARG_TRY(read_number(d, "SELECT count(*) FROM sqlite_schema WHERE type IN ('view', 'trigger')",
                           &programs));
     if (application != APPLICATION)
@@ -240,8 +239,8 @@ static starg_status fail_create(starg_context *context, const char *path, int er
                             path, strerror(error));
 }
 
-/* A link, unlike a renaming, fails when the name is taken: of two processes one wins. File systems
- * without links get the renaming. */
+/* Unlike renaming, linking fails if the name is taken, so only one of two processes wins. File
+ * systems without links use renaming. */
 static starg_status put_in_place(starg_context *context, const char *made, const char *path) {
     if (link(made, path) == 0)
         return STARG_OK;
@@ -273,7 +272,7 @@ starg_status starg_database_create(starg_context *context, const char *path) {
         status = fail_create(context, path, errno);
         goto done;
     }
-    close(file); /* an empty file is an empty database to SQLite */
+    close(file); /* SQLite accepts an empty file as an empty database */
     STARG_TRY(fill_file(context, made, path));
     status = put_in_place(context, made, path);
     unlink(made);

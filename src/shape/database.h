@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of the database: the connection, statements, and SQLite's errors in our words. */
+/* Internals of the database: connection, statements, and messages for SQLite's errors. */
 #ifndef STARG_SHAPE_DATABASE_H
 #define STARG_SHAPE_DATABASE_H
 
@@ -16,21 +16,18 @@ struct starg_database {
 
 extern const char DATABASE_STAGE[];
 
-/* The failure of the last call on the connection. */
-starg_status database_fail(starg_database *database);
-
 starg_status database_run(starg_database *database, const char *sql);
 starg_status database_prepare(starg_database *database, const char *sql, sqlite3_stmt **out);
 
-/* One row, *row false at the end. A finished statement is reset. */
+/* Reads a row; *row is false at the end. Resets a finished statement. */
 starg_status database_step(starg_database *database, sqlite3_stmt *statement, bool *row);
 
-/* Transactions that may write; rolling back never fails. */
+/* Write transactions; rolling back never fails. */
 starg_status database_begin(starg_database *database);
 starg_status database_commit(starg_database *database);
 void database_roll_back(starg_database *database);
 
-/* A copy of text in the context's memory; NULL when memory is out. */
+/* Copies text to the context's memory; NULL when out of memory. */
 char *database_copy(starg_context *context, const char *text);
 
 /* The file name at the end of a path. */

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Adding models to a database.
+/* Adds models to a database.
  *
- * Stages: the contents that are stored whole; then the files are described
- * (shape/database_files.c), in parallel and by other processes too if there are any
- * (core/distribute.c), and stored in their order, a few in one transaction, as soon as they and all
- * before them are described.
+ * Stages: list the contents that are completely stored; describe the files
+ * (shape/database_files.c), in parallel and in other processes if available (core/distribute.c);
+ * store each file in order, several per transaction, as soon as it and all before it are described.
  *
- * Descriptions are made outside of transactions: a database is locked for milliseconds only, and
- * two processes that add at once take turns. Contents that another process stored meanwhile, or
- * that stand twice in the list, meet the uniqueness of the hash and count as known.
+ * Descriptions are computed outside of transactions: the database is locked for milliseconds only,
+ * and two processes adding at once alternate. Contents that another process stored meanwhile, or
+ * that occur twice in the list, violate the uniqueness of the hash and count as known.
  *
  * Cost: that of the signatures. */
 #include <stdio.h>
@@ -23,19 +22,19 @@ enum { BATCH = 8 };
 static const double PAUSE = 0.2; /* seconds between transactions: each waits for the disk */
 
 typedef struct adding {
-    database_files files; /* first: what the loop's functions are given */
+    database_files files; /* first: the loop's functions receive a pointer to it */
     starg_database *database;
     starg_context *context;
     database_digest *stored;
-    size_t stored_files; /* how many files have been dealt with */
-    double stored_at;    /* the last of them, by starg_clock()  */
+    size_t stored_files; /* files processed so far */
+    double stored_at;    /* time of the last transaction, on starg_clock() */
     sqlite3_stmt *insert_model, *insert_signature, *find_model;
     starg_database_report *report;
 } adding;
 
-/* ---- what is stored ---- */
+/* ---- stored signatures ---- */
 
-/* How many signatures a model has that need not be made anew. */
+/* Number of a model's stored signatures that are up to date. */
 static starg_status prepare_stored(adding *a, sqlite3_stmt **out) {
     starg_status status = STARG_OK;
     char sql[64 + 160 * STARG_SIGNATURE_KINDS] = "SELECT hash FROM model WHERE";
@@ -122,7 +121,7 @@ done:
     return status;
 }
 
-/* The model of this content, and whether it was there before. */
+/* Finds or inserts the model with this content; tells whether it is new. */
 static starg_status store_model(adding *a, size_t item, bool *is_new, int64_t *id) {
     starg_status status = STARG_OK;
     const database_file *d = &a->files.files[item];
@@ -187,7 +186,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 /* A starg_parallel_loop's advance. */
 static starg_status store_described(starg_context *context, void *shared, size_t described) {

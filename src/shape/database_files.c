@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Describing files that are to be added to a database: read, hash, and make all signatures, unless
- * the content is stored already.
+/* Describes files to add to a database: reads and hashes them, and computes all signatures, unless
+ * the content is already stored.
  *
- * A worker has a context of its own (its errors are a file's, not the call's), which asks the
- * call's context whether to go on. It knows no time limit: one would change what is stored.
+ * Each worker has its own context (its errors belong to a file, not to the call), which checks the
+ * call's context for cancellation. It ignores the time limit, which would change what is stored.
  *
  * Cost: that of the signatures. */
 #include "shape/database_files.h"
@@ -51,7 +51,7 @@ void database_files_free_scratch(starg_context *context, void *scratch) {
     starg_context_free(scratch);
 }
 
-/* The least significant byte first, whatever the machine does. */
+/* Little-endian on any machine. */
 static starg_status keep_numbers(starg_context *context, const starg_signature *from,
                                  database_file *d) {
     starg_status status = STARG_OK;

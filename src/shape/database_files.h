@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Describing files that are to be added to a database, here or in other processes. */
+/* Describes files to add to a database, here or in other processes. */
 #ifndef STARG_SHAPE_DATABASE_FILES_H
 #define STARG_SHAPE_DATABASE_FILES_H
 
@@ -11,13 +11,13 @@ typedef struct database_digest {
     uint8_t bytes[STARG_SHA256_BYTES];
 } database_digest;
 
-/* What is known of one file before it is stored. */
+/* A file's data before it is stored. */
 typedef struct database_file {
-    char *message; /* why the file is refused */
+    char *message; /* why the file is rejected */
     database_digest hash;
     bool known; /* stored, with all signatures */
     size_t vertices, faces;
-    uint8_t *numbers[STARG_SIGNATURE_KINDS]; /* as they are stored */
+    uint8_t *numbers[STARG_SIGNATURE_KINDS]; /* in stored form */
     size_t sizes[STARG_SIGNATURE_KINDS];
 } database_file;
 
@@ -26,7 +26,7 @@ typedef struct database_files {
     size_t count;
     const database_digest *stored; /* contents that need no description, ascending */
     size_t stored_count;
-    database_file *files; /* by name; zero before they are described */
+    database_file *files; /* sorted by name; zero before they are described */
 } database_files;
 
 /* For bsearch and qsort. */
@@ -34,15 +34,14 @@ int database_by_digest(const void *a, const void *b);
 
 void database_file_clear(starg_context *context, database_file *file);
 
-/* The parts of a starg_parallel_loop over `count` files; `shared` is a database_files. An item
- * describes a file. What is wrong with a file is kept in its message; only MEMORY and CANCELLED end
- * the loop. */
+/* Functions of a starg_parallel_loop over `count` files; `shared` is a database_files. An item
+ * describes a file. A file's errors go to its message; only MEMORY and CANCELLED end the loop. */
 starg_status database_files_scratch(starg_context *context, void *shared, void **scratch);
 void database_files_free_scratch(starg_context *context, void *scratch);
 starg_status database_files_describe(starg_context *context, void *shared, void *scratch,
                                      size_t item);
 
-/* What a helper has to know of the files. Errors: MEMORY. */
+/* Packs what a helper needs to know about the files. Errors: MEMORY. */
 starg_status database_files_pack(starg_context *context, const database_files *all,
                                  starg_bytes *out);
 

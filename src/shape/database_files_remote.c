@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Files that other processes describe.
+/* Files described by other processes.
  *
- * A job is the names of all files, which helpers read themselves, by the same paths, and the hashes
- * of what is stored. A reply is the descriptions of a block, file by file. */
+ * A job contains the names of all files, which helpers read themselves by the same paths, and the
+ * hashes of what is stored. A reply contains the descriptions of a block, file by file. */
 #include "core/memory.h"
 #include "shape/database.h"
 #include "shape/database_files.h"
@@ -71,8 +71,8 @@ done:
 /* ---- helpers ---- */
 
 typedef struct remote_files {
-    char *names;         /* one after the other */
-    const char **starts; /* by file             */
+    char *names;         /* concatenated */
+    const char **starts; /* by file */
     database_digest *stored;
     size_t count, stored_count;
 } remote_files;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading a database, and removing from it.
+/* Reads a database, and removes models from it.
  *
- * Numbers are stored as IEEE doubles, the least significant byte first. A query goes through all
- * signatures of its kind once and keeps the best so far in order: no index is worth its trouble
- * before there are millions of models. */
+ * Numbers are stored as IEEE doubles, little-endian. A query scans all signatures of its kind once
+ * and keeps the best in order: an index pays only with millions of models. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -31,7 +30,7 @@ void starg_database_models_free(starg_context *context, starg_database_models *m
     starg_release(context, models);
 }
 
-/* Takes the list. */
+/* Moves the list to the result. */
 static starg_status hand_over(starg_context *context, model_array *list,
                               starg_database_models **out) {
     starg_status status = STARG_OK;
@@ -188,13 +187,13 @@ typedef struct candidate {
     int64_t id;
 } candidate;
 
-/* The nearest so far, in order. */
+/* The nearest so far, sorted. */
 typedef struct shortlist {
     candidate *items;
     size_t count, capacity;
 } shortlist;
 
-/* Rows come by ascending id: of equal distances the earlier stays in front. */
+/* Rows come by ascending id: ties keep the earlier one first. */
 static void consider(shortlist *s, candidate c) {
     if (s->count == s->capacity && !(c.distance < s->items[s->count - 1].distance))
         return;
@@ -246,7 +245,7 @@ done:
     return status;
 }
 
-/* The models behind the shortlist. */
+/* Reads the models of the shortlist. */
 static starg_status fetch(starg_database *d, const shortlist *nearest, model_array *list) {
     starg_status status = STARG_OK;
     sqlite3_stmt *statement = NULL;
@@ -290,7 +289,7 @@ done:
 
 /* ---- removing ---- */
 
-/* An id that a word means: "id:N", a path, or a file name. */
+/* Does the word name the model: "id:N", a path, or a file name? */
 static bool means(const starg_database_model *model, const char *word) {
     char text[32];
     snprintf(text, sizeof text, "id:%lld", (long long)model->id);

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The descriptor of a shape [YL11, section 5.1]: what its guards see, and how they are joined.
+/* Descriptor of a shape [YL11, section 5.1]: what its guards see, and how they are connected.
  *
- * Stages: the model at a standard level of detail (level.c); a strict star decomposition of it
- * within a budget of trials; its guards with the volumes of their pieces; an edge for each two
- * pieces that touch, with the centroid of what they share; from each guard the distance to the
- * boundary in directions that cover the sphere evenly; the spectrum of the boundary (vibrations.c)
- * and where it vibrates (wks.c), which unlike all else do not depend on where guards came to stand.
+ * Stages: the model at a standard level of detail (level.c); a strict star decomposition within a
+ * trial budget; its guards with the volumes of their pieces; an edge between pieces in contact,
+ * with the centroid of their common faces; from each guard the distance to the boundary in
+ * directions that cover the sphere evenly; the spectrum of the boundary (vibrations.c) and its wave
+ * kernel signature (wks.c), which do not depend on the positions of guards.
  *
- * The paper's graph follows the curve skeleton on which its guards lie. Here guards lie anywhere in
- * the kernels of their pieces and the edges are the contacts of pieces, so that the graph has a
- * component for each component of the solid, whatever the skeleton.
+ * The paper's graph follows the curve skeleton that contains its guards. Here guards lie anywhere
+ * in the kernels of their pieces and edges are contacts of pieces, so the graph has a component per
+ * component of the solid, whatever the skeleton.
  *
  * Invariants: rays (rays.c) are cast against the boundary of the tetrahedra, which is closed and
  * has each guard strictly inside.
  *
- * Cost: that of the decomposition, of the spectra, and O(log n) a ray. */
+ * Cost: that of the decomposition and of the spectra, and O(log n) per ray. */
 #include "starguard/descriptor.h"
 
 #include <math.h>
@@ -78,7 +78,7 @@ void starg_descriptor_options_default(starg_descriptor_options *options) {
     starg_fields_default(&OPTIONS_TABLE, options);
 }
 
-/* Equal steps in height give equal areas; the golden angle keeps neighbours apart. */
+/* Equal steps in height give equal areas; the golden angle separates neighbours. */
 void starg_descriptor_direction(size_t count, size_t index, double out[3]) {
     const double golden_angle = 2.39996322972865332;
     double z = 1 - (2 * (double)index + 1) / (double)count, radius = sqrt(fmax(0, 1 - z * z));
@@ -90,7 +90,8 @@ void starg_descriptor_direction(size_t count, size_t index, double out[3]) {
 
 /* ---- guards ---- */
 
-/* A mesh that encloses no solid by itself is filled with what it winds around: *closed is false. */
+/* A mesh that does not bound a solid is filled where its winding number exceeds 1/2; *closed is
+ * then false. */
 static starg_status decompose_mesh(starg_context *context, const starg_mesh *mesh,
                                    const starg_descriptor_options *options,
                                    starg_decomposition **out, bool *closed) {
@@ -109,11 +110,11 @@ static starg_status decompose_mesh(starg_context *context, const starg_mesh *mes
     return status;
 }
 
-/* What is described. */
+/* The described object. */
 typedef struct subject {
-    starg_mesh *level; /* NULL: the model as it is */
+    starg_mesh *level; /* NULL: the model itself */
     starg_decomposition *pieces;
-    const starg_mesh *surface; /* before it was cut; NULL where holes were filled */
+    const starg_mesh *surface; /* before it was cut; NULL if holes were filled */
 } subject;
 
 static void subject_free(starg_context *context, subject *s) {
@@ -121,7 +122,7 @@ static void subject_free(starg_context *context, subject *s) {
     starg_decomposition_free(context, s->pieces);
 }
 
-/* A model of which nothing is left at its level of detail is taken as it is. */
+/* If nothing of the model is left at its level of detail, the model itself is used. */
 static starg_status decompose(starg_context *context, const starg_mesh *mesh,
                               const starg_descriptor_options *options, subject *out) {
     starg_status status = STARG_OK;
@@ -174,7 +175,8 @@ static starg_descriptor_edge *find_edge(const starg_descriptor *d, uint32_t firs
     return &d->edges[low];
 }
 
-/* Adds a face to the sums of its edge: area times centroid in `gate`, both by the extent. */
+/* Adds a face to the sums of its edge: area times centroid in `gate`, both relative to the
+ * extent. */
 static void add_face(const starg_tetmesh *mesh, size_t face, double scale, double *area,
                      starg_descriptor_edge *edge) {
     uint32_t corners[3];
@@ -212,7 +214,7 @@ static starg_status add_edges(starg_context *context, const starg_decomposition 
     }
     for (size_t i = 0; i < d->edge_count; i++)
         for (int k = 0; k < 3; k++)
-            d->edges[i].gate[k] = /* a contact so small that its area vanishes leads to nowhere */
+            d->edges[i].gate[k] = /* the area of a tiny contact may vanish: use its first guard */
                 areas[i] > 0 ? mesh->vertices[k] + d->edges[i].gate[k] / areas[i] / scale
                              : d->guards[d->edges[i].first].position[k];
 done:
@@ -253,7 +255,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 static starg_status check_options(starg_context *context, const starg_descriptor_options *o) {
     if (o->detail != 0 && o->detail < LEAST_DETAIL)

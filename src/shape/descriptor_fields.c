@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* DESCRIPTOR.json as a table (starguard/fields.h): the one place that says what its keys are
- * called, may hold and mean. Rows are in the order of the file. */
+/* Field table of DESCRIPTOR.json (starguard/fields.h): names, ranges and meaning of its keys, in
+ * the order of the file. */
 #include "shape/descriptor_fields.h"
 
 #include <float.h>
@@ -11,7 +11,7 @@
 #define RESULT(NAME) FIELD_MEMBER(starg_descriptor, NAME)
 #define LENGTH(NAME) .length = offsetof(starg_descriptor, NAME)
 #define EDGE(NAME)   FIELD_MEMBER(starg_descriptor_edge, NAME)
-/* A member of the structs of guards. */
+/* A member of the guard structs. */
 #define GUARD(NAME)                                                                                \
     .offset = offsetof(starg_descriptor, guards), .stride = sizeof(starg_descriptor_guard),        \
     .within = offsetof(starg_descriptor_guard, NAME),                                              \

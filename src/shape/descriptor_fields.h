@@ -5,7 +5,7 @@
 
 #include "core/fields.h"
 
-/* The whole file as a starg_descriptor. */
+/* The file as a starg_descriptor. */
 extern const starg_fields descriptor_file_fields;
 
 #endif

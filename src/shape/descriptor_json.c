@@ -35,7 +35,7 @@ bool starg_descriptor_recognized(const void *bytes, size_t size) {
     return i < size && text[i] == '{';
 }
 
-/* What no table knows. */
+/* Conditions that the table does not express. */
 static starg_status check_edges(starg_context *context, const char *name,
                                 const starg_descriptor *d) {
     for (size_t i = 0; i < d->edge_count; i++) {

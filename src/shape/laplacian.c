@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The cotangent Laplacian: linear finite elements with lumped masses.
+/* Cotangent Laplacian: linear finite elements with lumped masses.
  *
- * Stages: scale by the extent, so that no square overflows; drop faces without extent; subdivide at
- * the edges' midpoints until there are enough vertices; number the vertices in use; sum the
- * triangles' contributions to edges, diagonal and masses; lay the matrix out by columns.
+ * Stages: scale by the extent, so that squares do not overflow; drop faces without extent;
+ * subdivide at edge midpoints until there are enough vertices; number the vertices in use; sum the
+ * triangles' contributions to edges, diagonal and masses; assemble the matrix by columns.
  *
  * A triangle with edge vectors e0, e1, e2 and area A adds e_i . e_j / (4 A) for the corners i and
- * j, a third of A to each corner's mass.
- * That is a Gram matrix for any A > 0: so a needle, whose area is taken as at least a tiny part of
- * its longest edge's square, leaves the sum semidefinite.
+ * j, a third of A to each corner's mass. This is a Gram matrix for any A > 0: clamping the area of
+ * needles to a tiny fraction of their squared longest edge keeps the sum semidefinite.
  *
  * Cost: O(faces). */
 #include "shape/laplacian.h"
@@ -21,15 +20,15 @@
 
 static const char STAGE[] = "spectrum";
 
-/* The smallest eigenvalues are right to about one in a hundred at this resolution. */
+/* At this resolution the smallest eigenvalues are accurate to about one percent. */
 enum { ENOUGH_VERTICES = 2000, ENOUGH_FACES = 20 * ENOUGH_VERTICES };
-static const double LEAST_AREA = 1e-10;    /* of a triangle, to the square of its longest edge */
-static const double LEAST_EXTENT = 1e-200; /* squared: what is smaller is a point */
+static const double LEAST_AREA = 1e-10;    /* of a triangle, relative to its squared longest edge */
+static const double LEAST_EXTENT = 1e-200; /* squared: anything smaller counts as a point */
 
 typedef struct surface {
     starg_context *context;
     size_t vertex_count, face_count;
-    double *positions; /* within a unit cube */
+    double *positions; /* in a unit cube */
     uint32_t *faces;
 } surface;
 
@@ -74,7 +73,7 @@ done:
     return status;
 }
 
-/* Four triangles for each: corners and midpoints, the middle one last. */
+/* Four triangles per face: those at corners, then the middle one. */
 static void split_face(const uint32_t f[3], const uint32_t middle[3], uint32_t *out) {
     for (size_t k = 0; k < 3; k++) {
         out[3 * k] = f[k];
@@ -115,7 +114,7 @@ done:
     return status;
 }
 
-/* Gives the vertices that faces use the numbers from 0 on, in their order. */
+/* Renumbers the vertices in use from 0, in order. */
 static starg_status renumber(surface *s, uint32_t **row_of) {
     starg_status status = STARG_OK;
     uint32_t *numbers = NULL;
@@ -142,8 +141,8 @@ done:
 
 typedef struct sums {
     edge_table edges;
-    double *weights;  /* of edges: minus the entry of the matrix */
-    double *diagonal; /* of vertices */
+    double *weights;  /* per edge: the negated matrix entry */
+    double *diagonal; /* per vertex */
     double area;
 } sums;
 
@@ -174,7 +173,7 @@ static void put(laplacian *l, int64_t *next, uint32_t row, uint32_t column, doub
 }
 
 /* By columns: the diagonal, then the edges in the order of their numbers. */
-static starg_status lay_out(starg_context *context, const sums *sum, laplacian *l) {
+static starg_status store_columns(starg_context *context, const sums *sum, laplacian *l) {
     starg_status status = STARG_OK;
     int64_t *next = NULL;
     size_t entries = l->count + 2 * (size_t)sum->edges.count;
@@ -221,7 +220,7 @@ static starg_status assemble(const surface *s, laplacian *l) {
         add_face(s, s->faces + 3 * i, &sum, l->masses);
     for (size_t i = 0; i < l->count; i++)
         l->masses[i] /= sum.area;
-    STARG_TRY(lay_out(context, &sum, l));
+    STARG_TRY(store_columns(context, &sum, l));
 done:
     edge_table_free(context, &sum.edges);
     starg_release(context, sum.weights);
@@ -247,7 +246,7 @@ done:
     return status;
 }
 
-/* Its entries with the masses on the diagonal, which comes first by column. */
+/* The matrix plus masses on the diagonal, which comes first in each column. */
 starg_status laplacian_factorise(starg_context *context, const laplacian *l, double shift,
                                  sparse_factors **out) {
     starg_status status = STARG_OK;

@@ -8,27 +8,26 @@
 #include "shape/sparse.h"
 #include "starguard/mesh.h"
 
-/* A symmetric, positive semidefinite matrix with zero row sums, stored by columns (all of it), and
- * a positive diagonal of masses, which sum to 1. The eigenvalues of L x = lambda M x are those of
- * the surface times its area: they do not change with its scale. */
+/* A symmetric, positive semidefinite matrix with zero row sums, stored completely and by columns,
+ * and a positive diagonal of masses that sum to 1. The eigenvalues of L x = lambda M x are those of
+ * the surface times its area, hence independent of scale. */
 typedef struct laplacian {
     size_t count;
     int64_t *starts; /* count + 1 */
     int64_t *rows;
     double *values;
     double *masses;
-    uint32_t *row_of; /* of each vertex of the mesh: its row, or LAPLACIAN_NO_ROW */
+    uint32_t *row_of; /* per vertex of the mesh: its row, or LAPLACIAN_NO_ROW */
 } laplacian;
 
 #define LAPLACIAN_NO_ROW UINT32_MAX
 
-/* Of a mesh that is closed or not; vertices that no face with an extent uses are left out. A mesh
- * of few vertices is subdivided first, which leaves the surface as it is: a spectrum needs a
- * resolution. Errors: MESH (no area), MEMORY,
- * CANCELLED. */
+/* The mesh may be open; vertices without a face of positive extent are omitted. A mesh with few
+ * vertices is subdivided first, which keeps its surface, since a spectrum needs resolution. Errors:
+ * MESH (no area), MEMORY, CANCELLED. */
 starg_status laplacian_create(starg_context *context, const starg_mesh *mesh, laplacian *out);
 
-/* Factorises L + shift M, which is positive definite for shift > 0. Errors: SOLVER, MEMORY. */
+/* Factorizes L + shift M, which is positive definite for shift > 0. Errors: SOLVER, MEMORY. */
 starg_status laplacian_factorise(starg_context *context, const laplacian *l, double shift,
                                  sparse_factors **out);
 void laplacian_free(starg_context *context, laplacian *l);

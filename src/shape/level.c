@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A model at a standard level of detail, so that noise, resolution and small faults of its mesh
- * count little in what is measured next.
+/* A model at a standard level of detail, so that noise, resolution and small defects of its mesh
+ * have little influence on later measurements.
  *
- * Stages: a very fine mesh is simplified to some times the wanted vertices, which noise survives;
- * smoothing that keeps the volume [Taub95], in rounds in proportion to the vertices, which makes
- * it reach equally far on fine and on coarse meshes of a shape (coarse ones are hardly touched);
- * simplification; repair of what intersects itself, so that limbs that touch do not become one.
+ * Stages: simplify a very fine mesh to a multiple of the wanted vertices, which preserves noise;
+ * volume-preserving smoothing [Taub95], with rounds proportional to the vertices, so that it
+ * reaches equally far on fine and coarse meshes of a shape (coarse ones hardly change); simplify;
+ * repair self-intersections, so that touching limbs do not merge.
  *
- * Invariants: closed 2-manifolds of the same topology throughout, but for what the repair drops.
+ * Invariants: closed 2-manifolds of the same topology throughout, except for what repair drops.
  *
- * Cost: O(n log n), most of it the simplification. */
+ * Cost: O(n log n), mostly simplification. */
 #include "shape/level.h"
 
 #include "core/memory.h"
@@ -19,10 +19,10 @@
 
 static const char STAGE[] = "level of detail";
 
-enum { MOST = 5, ROUNDS = 4 }; /* times the wanted vertices; rounds at the wanted vertices */
+enum { MOST = 5, ROUNDS = 4 }; /* multiple of the wanted vertices; rounds at the wanted vertices */
 
-/* Steps inward and outward [Taub95]: what is as fine as the mesh goes, what varies over more than
- * about ten edges (below the pass band of 0.1) stays. */
+/* Inward and outward steps [Taub95]: removes detail at the scale of the mesh, keeps variation over
+ * more than about ten edges (below the pass band of 0.1). */
 static const double INWARD = 0.5, OUTWARD = -0.5 / (1 - 0.1 * 0.5);
 
 /* ---- smoothing ---- */
@@ -34,8 +34,8 @@ typedef struct smoother {
     uint32_t *neighbours; /* how many */
 } smoother;
 
-/* Each vertex goes a part of the way to the mean of its neighbours: in a closed, oriented mesh each
- * of them follows it in exactly one face. */
+/* Moves each vertex a fraction of the way to the mean of its neighbours: in a closed, oriented mesh
+ * each of them follows it in exactly one face. */
 static void step(smoother *s, double part) {
     memset(s->sums, 0, 3 * s->vertex_count * sizeof *s->sums);
     for (size_t i = 0; i < s->face_count; i++)
@@ -74,9 +74,9 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
-/* Puts a mesh in the place of another. */
+/* Replaces a mesh by another. */
 static void replace(starg_mesh **mesh, starg_mesh *by) {
     starg_mesh_free(*mesh);
     *mesh = by;

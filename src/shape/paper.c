@@ -1,30 +1,29 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The distance of [YL11, section 5.1]: how hard is it to deform one guarding graph into another,
- * and how unlike are the histograms of the guards that come together?
+/* Distance of [YL11, section 5.1]: the energy of deforming one guarding graph into another, plus
+ * the difference of the histograms of matched guards.
  *
- * Numbers: the graph in its own frame (paper_pose.h), in units of the shape's size. A guard is
- * (x, y, z, valence / 10): an edge more or less counts as much as a tenth of the size. Its
- * histogram is what the paper stores, the distances by direction, here in 64 directions of that
- * frame.
+ * Numbers: the graph in its own frame (paper_pose.h), in units of the shape's size. A guard is (x,
+ * y, z, valence / 10): one edge counts as much as a tenth of the size. Its histogram is the
+ * paper's, distances by direction, here in 64 directions of that frame.
  *
- * The paper sums over guards and edges; here all terms are means, so that shapes of many guards do
- * not stand farther from everything than shapes of few. With g a guard, c its nearest one of the
- * other graph (by a k-d tree over four coordinates), phi an affine map for each guard:
+ * The paper sums over guards and edges; here all terms are means, so that shapes with many guards
+ * are not farther from everything. With g a guard, c its nearest one of the other graph (by a k-d
+ * tree over four coordinates), phi an affine map for each guard:
  *   E_M = mean |phi(g) - c|^2,  E_S = mean |phi_i - phi_j|,  E_L = mean (|e'| - |e|)^2,
  *   E_H = mean root mean square of the difference of two histograms,
  *   E = 0.1 E_M + E_S + E_L + 0.5 E_H, and the distance is the mean of both directions.
  *
- * Norms in E_S are rounded off near 0, where they have no gradient.
+ * Norms in E_S are smoothed near 0, where they have no gradient.
  *
- * What is minimised: the sum of the first three, over all maps, from the identity. E_S is a sum of
- * norms and E_L is not convex. Each round replaces the energy by a quadratic one that is nowhere
- * below and equal at the present maps: nearest guards stay (E_M), a norm is bounded by its square
- * (E_S), the length of an edge by the distance to its present direction (E_L). The best change of
- * all maps by the same, and then a few steps of conjugate gradients for each, lower that;
- * coordinates are independent of each other.
- * So the energy never rises, whatever the graph: a guard alone is pulled by E_M only, components
- * move on their own, and directions that no term holds stay as they are. A guard's histogram is
- * compared with that of the nearest guard at the end.
+ * Minimization: the weighted sum of the first three terms over all maps, starting from the
+ * identity. E_S is a sum of norms and E_L is not convex. Each round replaces the energy by a
+ * quadratic upper bound that is tight at the current maps: nearest guards stay (E_M), a norm is
+ * bounded by its square (E_S), the length of an edge by the distance to its current direction
+ * (E_L). The bound is lowered by the best common change of all maps, then by a few steps of
+ * conjugate gradients for each; coordinates are independent. So the energy never rises, whatever
+ * the graph: an isolated guard is pulled by E_M only, components move on their own, and directions
+ * in no term stay. At the end the histogram of each guard is compared with that of the nearest
+ * guard.
  *
  * Cost: rounds times steps times (guards + edges): a few milliseconds for 70 guards. */
 #include <math.h>
@@ -42,13 +41,13 @@ static const double MATCH = 0.1, SMOOTH = 1, LENGTH = 1, HISTOGRAM = 0.5;
 static const double VALENCE = 0.1;
 static const double KINK = 1e-3; /* norms n of E_S are taken as hypot(n, KINK) - KINK */
 
-/* ---- the numbers: guards, edges; x, y, z, valence and histogram of each guard; both ends of each
- * edge ---- */
+/* ---- layout of the numbers: guards, edges; x, y, z, valence and histogram per guard; both ends
+ * per edge ---- */
 
 typedef struct graph {
     size_t guards, edges;
     const double *guard; /* guards x GUARD */
-    const double *edge;  /* edges x 2      */
+    const double *edge;  /* edges x 2 */
 } graph;
 
 static graph graph_of(const double *numbers) {
@@ -129,17 +128,17 @@ static bool check(const double *numbers, size_t count) {
 
 /* ---- the energy ---- */
 
-enum { MAP = 4 }; /* a row of an affine map: it takes (x, y, z, 1) to one coordinate */
+enum { MAP = 4 }; /* a row of an affine map: maps (x, y, z, 1) to one coordinate */
 
 typedef struct fitting {
     graph from, to;
-    double *places;                          /* of the other graph: guards x PLACE             */
-    kd_tree tree;                            /* of them                                        */
-    double *maps;                            /* guards x 3 rows x MAP                          */
-    double *moved;                           /* guards x 3                                     */
-    size_t *match;                           /* guards: the nearest one of the other graph     */
-    double *weight;                          /* edges: of the square that bounds the norm      */
-    double *target;                          /* edges x 3: the edge as E_L would like it       */
+    double *places;                          /* of the other graph: guards x PLACE */
+    kd_tree tree;                            /* of them */
+    double *maps;                            /* guards x 3 rows x MAP */
+    double *moved;                           /* guards x 3 */
+    size_t *match;                           /* per guard: the nearest one of the other graph */
+    double *weight;                          /* per edge: of the square that bounds the norm */
+    double *target;                          /* edges x 3: edge vector of minimal E_L */
     double *right, *residual, *step, *image; /* guards x MAP, scratch */
 } fitting;
 
@@ -165,7 +164,7 @@ static double map_difference(const fitting *f, size_t edge) {
     return sqrt(sum);
 }
 
-/* Moves the guards by their maps, finds their matches; the energy without histograms. */
+/* Applies the maps to the guards and finds their matches; returns the energy without histograms. */
 static double move(fitting *f) {
     double match = 0, smooth = 0, length = 0;
     for (size_t i = 0; i < f->from.guards; i++) {
@@ -230,7 +229,7 @@ static void multiply(const fitting *f, const double *x, double *out) {
     }
 }
 
-static void make_right(const fitting *f, size_t axis) {
+static void compute_right_side(const fitting *f, size_t axis) {
     double guards = (double)f->from.guards, edges = (double)f->from.edges;
     memset(f->right, 0, MAP * f->from.guards * sizeof *f->right);
     for (size_t i = 0; i < f->from.guards; i++)
@@ -251,14 +250,14 @@ static double dot(const double *a, const double *b, size_t count) {
     return sum;
 }
 
-/* A residual whose square is below that is rounding. To go on from there would follow directions
- * that no term holds, of which a guard that nothing joins has three for each coordinate. */
+/* Residuals whose square is below this are rounding. Continuing would follow directions in no term;
+ * an isolated guard has three of them per coordinate. */
 static double negligible(const fitting *f) {
     return 1e-24 * dot(f->right, f->right, MAP * f->from.guards);
 }
 
-/* The best change of all rows by the same: norms of E_S do not see it, so that a graph moves as a
- * whole at once however stiff they are. Conjugate gradients in four dimensions. */
+/* The best common change of all rows: norms of E_S do not see it, so a graph moves as a whole at
+ * once however stiff it is. Conjugate gradients in four dimensions. */
 static void descend_together(fitting *f, double *x) {
     double guards = (double)f->from.guards, edges = (double)f->from.edges;
     double residual[MAP] = {0}, step[MAP], change[MAP] = {0};
@@ -294,7 +293,7 @@ static void descend_together(fitting *f, double *x) {
         x[i] += change[i % MAP];
 }
 
-/* Conjugate gradients from x: the quadratic form falls with each step. */
+/* Conjugate gradients from x: every step lowers the quadratic form. */
 static void descend(const fitting *f, double *x) {
     size_t count = MAP * f->from.guards;
     multiply(f, x, f->image);
@@ -317,12 +316,11 @@ static void descend(const fitting *f, double *x) {
     }
 }
 
-/* A row of all maps at a time; `moved` has not been needed since the bound, and holds nothing of
- * the row, so that x can be gathered and put back. */
+/* One row of all maps at a time; `moved` is unused since the bound, so x can be gathered there. */
 static void improve(fitting *f, double *x) {
     bound(f);
     for (size_t axis = 0; axis < 3; axis++) {
-        make_right(f, axis);
+        compute_right_side(f, axis);
         for (size_t i = 0; i < f->from.guards; i++)
             memcpy(x + MAP * i, f->maps + MAP * (3 * i + axis), MAP * sizeof *x);
         descend_together(f, x);
@@ -382,7 +380,7 @@ static void free_fitting(starg_context *context, fitting *f) {
     starg_release(context, f->image);
 }
 
-/* One way. */
+/* One direction. */
 static starg_status fit(starg_context *context, const double *a, const double *b, double *out) {
     starg_status status = STARG_OK;
     fitting f = {.from = graph_of(a), .to = graph_of(b)};

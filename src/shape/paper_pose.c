@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The pose of a descriptor: [YL11] compares coordinates but does not say of which frame.
+/* Pose of a descriptor: [YL11] compares coordinates but does not state the frame.
  *
- * Here: centre, size and principal axes of the points of the boundary that the guards see, each
- * guard counting by the volume of its piece. An axis points to where the third moment is positive;
- * the one whose third moment is the least makes the frame right-handed, so that a shape that is its
- * own mirror image, for which that moment is but noise, has one frame all the same.
- * Eigenvectors by Jacobi's rotations, which are well conditioned for any symmetric matrix; where
- * two moments are equal the axes are as good as arbitrary, but a pure function of the numbers.
+ * Here: centre, size and principal axes of the boundary points that the guards see, each guard
+ * weighted by the volume of its piece. Axes point to the side of positive third moment; the axis
+ * with the smallest third moment makes the frame right-handed, so that a mirror-symmetric shape,
+ * for which that moment is noise, still has a unique frame. Eigenvectors by Jacobi rotations, which
+ * are stable for any symmetric matrix; if two moments are equal the axes are arbitrary, but a pure
+ * function of the numbers.
  *
  * Cost: three passes over guards times directions. */
 #include "shape/paper_pose.h"
@@ -18,7 +18,7 @@
 
 enum { SWEEPS = 16 };
 
-/* Sums over the points that guards see, relative to the first guard and by the diagonal. */
+/* Sums over the points that guards see, relative to the first guard and to the diagonal. */
 typedef struct moments {
     const starg_descriptor *d;
     double unit, largest, weight;
@@ -33,7 +33,7 @@ static void seen_point(const moments *m, size_t guard, size_t i, double out[3]) 
                  step * direction[k];
 }
 
-/* By the largest, so that no sum over- or underflows; equal where there is no volume at all. */
+/* Relative to the largest, to avoid overflow and underflow; equal if there is no volume. */
 static double weigh(const moments *m, size_t guard) {
     return m->largest > 0 ? m->d->guards[guard].volume / m->largest : 1;
 }
@@ -68,7 +68,7 @@ static void find_spread(const moments *m, const double centre[3], double spread[
     }
 }
 
-/* One rotation in the plane of axes p and q that makes a[p][q] vanish. */
+/* One Jacobi rotation in the plane of axes p and q, which makes a[p][q] zero. */
 static void rotate(double a[3][3], double axes[3][3], int p, int q) {
     if (a[p][q] == 0)
         return;
@@ -99,7 +99,7 @@ static void swap_rows(double a[3][3], double axes[3][3], int p, int q) {
     vec3_copy(row, axes[q]);
 }
 
-/* The largest spread first. */
+/* Sorted by decreasing spread. */
 static void find_axes(double a[3][3], double axes[3][3]) {
     memset(axes, 0, 9 * sizeof(double));
     for (int k = 0; k < 3; k++)

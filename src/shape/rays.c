@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rays inside of a solid.
+/* Rays inside a solid.
  *
- * Which triangles of the boundary a ray meets is decided exactly, so that none slips through
- * between two of them; only the length is rounded. Cost: O(log n) a ray. */
+ * Which boundary triangles a ray meets is decided exactly, so no ray passes between two of them;
+ * only the length is rounded. Cost: O(log n) per ray. */
 #include "shape/rays.h"
 
 #include <math.h>
@@ -19,8 +19,8 @@ typedef struct ray {
     double nearest; /* of the boundary met so far */
 } ray;
 
-/* How far along the ray is a triangle that it meets? Where the ray lies in its plane, its nearest
- * corner stands for it. */
+/* Distance along the ray to a triangle that it meets. If the ray lies in its plane, its nearest
+ * corner is used. */
 static double reach(const ray *r, const double *const corner[3]) {
     double p[3][3], normal[3], least = INFINITY;
     for (int c = 0; c < 3; c++) {
@@ -60,7 +60,7 @@ void ray_caster_free(starg_context *context, ray_caster *caster) {
     tet_sight_free(context, &caster->sight);
 }
 
-/* The boundary is mostly near: short segments first. */
+/* The boundary is usually near: tries short segments first. */
 double ray_length(const ray_caster *caster, const double from[3], const double direction[3]) {
     ray r = {.caster = caster, .from = from, .nearest = INFINITY};
     vec3_copy(direction, r.direction);

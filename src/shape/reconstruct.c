@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How completely does a descriptor hold the shape? [YL11, section 5.1] says: completely.
+/* Measures how completely a descriptor represents the shape. According to [YL11, section 5.1]:
+ * completely.
  *
- * Stages: the points of the boundary that it holds; their distances to the model's surface; random
- * points of the surface, uniform in area, and their distances to the nearest one of these points.
+ * Stages: the boundary points that it contains; their distances to the model's surface; random
+ * points of the surface, uniform in area, and their distances to the nearest of these points.
  *
- * The first distances are rounding where the model's surface was kept by its tetrahedra, and how
- * far those are from it elsewhere. The second ones tell how densely the guards have looked: they
- * fall as directions grow in number, and stay large where no guard looks closely.
+ * The first distances are rounding errors if the tetrahedra keep the model's surface, otherwise
+ * their distance from it. The second ones show the sampling density of the guards: they fall as the
+ * number of directions grows, and stay large where no guard is close.
  *
- * Cost: O(log n) a point and a sample. */
+ * Cost: O(log n) per point and sample. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -53,10 +54,10 @@ typedef struct comparison {
     double *points;
     size_t count;
     bvh *surface;
-    kd_tree tree;      /* of the points                       */
-    double extent;     /* lengths are by it                   */
-    double *sums;      /* of the areas of the faces up to each */
-    double *to, *from; /* a distance for each point; sample */
+    kd_tree tree;      /* of the points */
+    double extent;     /* unit of length */
+    double *sums;      /* cumulative face areas */
+    double *to, *from; /* one distance per point; per sample */
 } comparison;
 
 static const double *corner(const comparison *c, size_t face, size_t k) {
@@ -83,7 +84,7 @@ done:
     return status;
 }
 
-/* The square root spreads points evenly towards the edge opposite to the first corner. */
+/* The square root makes the points uniform. */
 static void sample(const comparison *c, size_t index, double out[3]) {
     starg_rng rng = starg_rng_make(c->seed, RANDOM, index);
     size_t low = 0, high = starg_mesh_face_count(c->mesh) - 1;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How well distances retrieve models of the query's class: the measures of Shilane, Min, Kazhdan
- * and Funkhouser, The Princeton shape benchmark, SMI 2004 [SMKF04].
+/* Measures how well distances retrieve models of the query's class: Shilane, Min, Kazhdan and
+ * Funkhouser, The Princeton shape benchmark, SMI 2004 [SMKF04].
  *
- * Stages: for each query (in parallel) rank the other models that have a class; go down the ranking
- * and count; then the means, in the order of the queries.
+ * Stages: for each query (in parallel) rank the other models that have a class; walk down the
+ * ranking and count; then average in the order of the queries.
  *
  * Equal distances rank by index. A class of one model has no query, because there is nothing to
- * find. The largest possible gain has all relevant models in front, so that a perfect ranking has
- * the value 1 in every measure but the second tier and the E-measure of classes of other sizes.
+ * find. The largest possible gain has all relevant models first, so a perfect ranking scores 1 in
+ * every measure except the second tier and the E-measure of classes of other sizes.
  *
  * Cost: O(n^2 log n). */
 #include <math.h>
@@ -30,8 +30,8 @@ typedef struct evaluation {
     const double *distances;
     const uint32_t *class_of;
     size_t count;
-    size_t *sizes;            /* of classes  */
-    starg_retrieval *queries; /* one a model */
+    size_t *sizes;            /* of classes */
+    starg_retrieval *queries; /* one per model */
 } evaluation;
 
 static int by_distance(const void *a, const void *b) {
@@ -43,14 +43,14 @@ static int by_distance(const void *a, const void *b) {
 
 /* ---- one query ---- */
 
-/* A ranking: how many relevant models stand at the places up to each, from 1 on. */
+/* A ranking: number of relevant models up to each place, from 1 on. */
 typedef struct ranking {
     ranked *list;
     size_t *found;
     size_t shown, relevant;
 } ranking;
 
-/* Found at the first places, as many as there are. */
+/* Number found within the first places. */
 static double found_within(const ranking *r, size_t places) {
     return (double)r->found[places < r->shown ? places : r->shown];
 }
@@ -77,7 +77,7 @@ static double discounted_gain(const ranking *r) {
     return gain / best;
 }
 
-/* The precision where each level of recall is reached, or the largest one beyond. */
+/* Precision where each level of recall is reached, or the largest one beyond. */
 static void measure_precision(const ranking *r, double precision[STARG_RECALL_LEVELS]) {
     size_t level = 0;
     for (size_t place = 1; place <= r->shown; place++)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* SHA-256 as FIPS 180-4 has it. The constants are the first 32 bits of the fractional parts of the
+/* SHA-256 as in FIPS 180-4. The constants are the first 32 bits of the fractional parts of the
  * square roots (initial state) and cube roots (rounds) of the first primes. */
 #include "shape/sha256.h"
 
@@ -58,7 +58,7 @@ void starg_sha256(const void *bytes, size_t size, uint8_t digest[STARG_SHA256_BY
     size_t rest = size % BLOCK;
     for (size_t i = 0; i < size / BLOCK; i++, next += BLOCK)
         mix(state, next);
-    /* the end: a bit, zeros, and the length in bits in the last eight bytes of a block */
+    /* padding: a bit, zeros, and the length in bits in the last eight bytes of a block */
     if (rest > 0)
         memcpy(tail, next, rest);
     tail[rest] = 0x80;

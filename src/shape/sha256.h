@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* SHA-256 (FIPS 180-4) of a block of memory: names contents, so that equal files are known as such.
- */
+/* SHA-256 (FIPS 180-4) of a block of memory: identifies equal files. */
 #ifndef STARG_SHAPE_SHA256_H
 #define STARG_SHAPE_SHA256_H
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shape-DNA [RWP06]: the beginning of the spectrum of the surface's Laplacian, normalised by area.
+/* Shape-DNA [RWP06]: the beginning of the spectrum of the surface's Laplacian, normalized by area.
  *
- * The numbers are the eigenvalues behind the first one, which is 0, in ascending order (further
- * zeros mean further components). Isometric surfaces have the same spectrum, so that bending a
- * model changes little; the scale is taken out by the area.
+ * The numbers are the eigenvalues after the first one, which is 0, in ascending order (further
+ * zeros mean further components). Isometric surfaces have the same spectrum, so bending a model
+ * changes little; the area removes the scale.
  *
- * Eigenvalues grow about in proportion to their number (Weyl's law: by 4 pi each). Two spectra
- * differ by the Euclidean distance of the eigenvalues, each divided by its number, so that the low
- * ones, which tell of the coarse shape, are not drowned by the high ones.
+ * Eigenvalues grow roughly in proportion to their index (Weyl's law: by 4 pi each). Spectra are
+ * compared by the Euclidean distance of the eigenvalues divided by their index, so that the high
+ * ones do not drown the low ones, which describe the coarse shape.
  *
  * Cost: see spectrum.c; about 0.2 s for 5,000 vertices, 8 s for 200,000. */
 #include <math.h>
@@ -31,7 +31,7 @@ static starg_status compute(starg_context *context, const starg_mesh *mesh, doub
     STARG_TRY(spectrum_smallest(context, &l, EIGENVALUES + 1, values, NULL));
     memmove(values, values + 1, EIGENVALUES * sizeof *values);
     for (size_t i = 0; i < EIGENVALUES; i++)
-        values[i] = fmax(values[i], 0); /* rounding about the zeros */
+        values[i] = fmax(values[i], 0); /* rounding of zeros */
     *numbers = values;
     *count = EIGENVALUES;
 done:

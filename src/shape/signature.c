@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Signatures of all kinds behind one interface: the table of kinds, and what does not depend on
- * them. */
+/* Common interface of all kinds of signatures: the table of kinds, and what is common to them. */
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -35,7 +34,7 @@ static starg_status fail_kind(starg_context *context, starg_signature_kind kind)
                       (int)kind);
 }
 
-/* Takes the numbers. */
+/* Takes ownership of the numbers. */
 static starg_status wrap(starg_context *context, starg_signature_kind kind, double *numbers,
                          size_t count, starg_signature **out) {
     starg_status status = STARG_OK;
@@ -76,7 +75,7 @@ starg_status starg_signature_of_descriptor(starg_context *context,
                       "other; describe the model anew");
 }
 
-/* Of the descriptor where the kind wants one. */
+/* From the descriptor if the kind uses one. */
 static starg_status create(starg_context *context, const starg_mesh *mesh,
                            const starg_descriptor *descriptor, starg_signature_kind kind,
                            starg_signature **out) {

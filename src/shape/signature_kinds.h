@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The kinds of signatures: what each consists of and how two are compared. A new kind is an entry
- * in the table of signature.c and a file of its own. */
+/* Kinds of signatures: their contents and their comparison. A new kind is an entry in the table of
+ * signature.c and a file of its own. */
 #ifndef STARG_SHAPE_SIGNATURE_KINDS_H
 #define STARG_SHAPE_SIGNATURE_KINDS_H
 
@@ -8,20 +8,20 @@
 #include "starguard/descriptor.h"
 #include "starguard/shape.h"
 
-/* Makes the numbers in a new block. A failure keeps the model out of a database. */
+/* Computes the numbers in a new block. A failure keeps the model out of a database. */
 typedef starg_status signature_compute(starg_context *context, const starg_mesh *mesh,
                                        double **numbers, size_t *count);
 typedef starg_status signature_derive(starg_context *context, const starg_descriptor *descriptor,
                                       double **numbers, size_t *count);
 
-/* Are these numbers of the kind? They may come from a damaged file. */
+/* Are these valid numbers of the kind? They may come from a damaged file. */
 typedef bool signature_check(const double *numbers, size_t count);
 
 /* Symmetric, not negative, 0 for equal numbers; both have passed the check. Errors: MEMORY. */
 typedef starg_status signature_compare(starg_context *context, const double *a, size_t a_count,
                                        const double *b, size_t b_count, double *out);
 
-/* One of `compute` and `derive` makes the numbers; the other is NULL. */
+/* Either `compute` or `derive` makes the numbers; the other is NULL. */
 typedef struct signature_method {
     const char *name;
     int version;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* L D L' without pivoting (LDL), in the order of AMD: stable for positive definite matrices. AMD
- * takes its memory from malloc; all other memory is the context's.
+ * uses malloc; all other memory is the context's.
  *
- * Cost: the fill-in; for surfaces of n vertices about 30 n to 60 n numbers, for each solution. */
+ * Cost: determined by the fill-in, about 30 n to 60 n numbers for surfaces of n vertices; each
+ * solve is linear in it. */
 #include "shape/sparse.h"
 
 #include <suitesparse/amd.h>
@@ -17,7 +18,7 @@ struct sparse_factors {
     double *values, *diagonal;
 };
 
-/* What only the making needs. */
+/* Working data of the factorization. */
 typedef struct making {
     int64_t *inverse, *parents, *sizes, *flags, *pattern;
     double *row;

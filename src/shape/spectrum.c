@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The smallest eigenvalues of a Laplacian by shifted inversion.
+/* Smallest eigenvalues of a Laplacian by shift-and-invert.
  *
  * Implicitly restarted Lanczos iterations (ARPACK) on M^1/2 (L + M)^-1 M^1/2, whose largest
- * eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is factorised once
- * (core/sparse.h); each step costs one solution with it.
+ * eigenvalues 1 / (lambda + 1) belong to the smallest lambda. L + M is factorized once
+ * (shape/sparse.h); each step costs one solve.
  *
- * ARPACK keeps its state in static variables: one run at a time, behind a lock. Its start vector is
- * given, so that the result depends on the matrix only.
+ * ARPACK keeps its state in static variables: a lock admits one run at a time. The start vector is
+ * fixed, so that the result depends only on the matrix.
  *
  * Cost: some 2 to 4 steps per eigenvalue. */
 #include "shape/spectrum.h"
@@ -40,7 +40,7 @@ typedef struct iteration {
     double *roots; /* of the masses */
     double *solution, *residual, *vectors, *work, *small;
     a_int *chosen;
-    bool functions; /* are eigenvectors wanted? */
+    bool functions; /* compute eigenvectors? */
 } iteration;
 
 /* y = M^1/2 (L + SHIFT M)^-1 M^1/2 x */
@@ -58,13 +58,13 @@ static void start_vector(const iteration *it) {
         it->residual[i] = starg_rng_unit(&rng) - 0.5;
 }
 
-/* The largest eigenvalues of the operator, in any order, their vectors, if wanted, in the first
- * columns of `vectors`. The lock is held. */
+/* The largest eigenvalues of the operator, in any order, and if wanted their vectors, in the first
+ * columns of `vectors`. Requires the lock. */
 static starg_status iterate(starg_context *context, const iteration *it, a_int wanted,
                             a_int vectors, double *largest) {
     starg_status status = STARG_OK;
     a_int n = (a_int)it->l->count, ido = 0, info = 1, small = vectors * (vectors + 8);
-    size_t expected = 8 * (size_t)wanted; /* more or less: for the progress only */
+    size_t expected = 8 * (size_t)wanted; /* rough estimate, for progress only */
     a_int parameters[11] = {1, 0, ITERATIONS, 1, 0, 0, 1}, places[14] = {0};
     start_vector(it);
     starg_progress_begin(context, STAGE);
@@ -111,7 +111,7 @@ static int by_eigenvalue(const void *left, const void *right) {
     return order != 0 ? order : (a->column > b->column) - (a->column < b->column);
 }
 
-/* From the operator's solutions, `eigenvalues` and it->vectors, to those of the Laplacian. */
+/* Converts the operator's solutions, `eigenvalues` and it->vectors, to those of the Laplacian. */
 static starg_status sort_modes(starg_context *context, const iteration *it, mode *modes,
                                size_t wanted, double *eigenvalues, double *functions) {
     size_t n = it->l->count;

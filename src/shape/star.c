@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The star distance: what the pieces of a star decomposition tell of a shape whatever its pose and
- * however it was cut.
+/* Star distance: features of a star decomposition that do not depend on the pose or on how the
+ * shape was cut.
  *
  * Numbers, in three parts:
- * - the spectrum of the boundary as a surface [RWP06], in units of its own growth: between things
- * of a kind that differ in proportions, the area is no measure of the scale;
+ * - the spectrum of the boundary surface [RWP06], in units of its own growth, because among objects
+ *   of a kind with different proportions, area does not measure scale;
  * - views: what is seen from points spread over the pieces (views.c), in units of the cube root of
  *   the shape's volume;
  * - wave kernel signature: where the surface vibrates (wks.c), as logarithms.
  *
- * Spectra differ by the mean difference of their eigenvalues, each divided by its place, because
- * they grow in proportion to it (Weyl's law). Rows of views and of the wave kernel signature are
- * quantiles, so that their mean difference is the cost of transporting distributions into each
- * other. Each part is divided by what it is on average between two shapes, and the mean of the
- * three is the distance. That is a weighted L1 norm of a difference, and so a metric.
+ * Spectra are compared by the mean difference of their eigenvalues, each divided by its index,
+ * because they grow in proportion to it (Weyl's law). Rows of views and of the wave kernel
+ * signature are quantiles, so their mean difference is the optimal transport cost between
+ * distributions. Each part is divided by its average between two shapes, and the distance is the
+ * mean of the three: a weighted L1 norm of a difference, hence a metric.
  *
- * Cost: a few additions for each number. */
+ * Cost: a few additions per number. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -27,19 +27,19 @@ enum {
     EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES,
     VIEWS_COUNT = STARG_DESCRIPTOR_VIEW * STARG_DESCRIPTOR_SPREAD,
     WKS_COUNT = STARG_DESCRIPTOR_ENERGIES * STARG_DESCRIPTOR_SPREAD,
-    VIEWS = EIGENVALUES, /* where views begin, and the wave kernel signature */
+    VIEWS = EIGENVALUES, /* offsets of the views and of the wave kernel signature */
     WKS = VIEWS + VIEWS_COUNT,
     NUMBERS = WKS + WKS_COUNT
 };
 
-static const double FAINT = 0.05;    /* vibrations below that are about as weak; 1 is average */
-static const double LARGEST = 1e100; /* number that is taken for one */
+static const double FAINT = 0.05;    /* lower values count as equally weak; 1 is average */
+static const double LARGEST = 1e100; /* upper bound of plausible numbers */
 
 /* Mean differences between two models of the TOSCA set. */
 static const double SPECTRUM_UNIT = 0.078, VIEWS_UNIT = 0.041, WKS_UNIT = 0.18;
 
-/* The cube root of the volume. Relative to the largest, so that volumes of any shape that has
- * coordinates can be summed. */
+/* Cube root of the volume. Summed relative to the largest volume, to avoid overflow and
+ * underflow. */
 static double unit_of(const starg_descriptor *d) {
     double largest = 0, sum = 0;
     for (size_t i = 0; i < d->guard_count; i++)
@@ -49,7 +49,7 @@ static double unit_of(const starg_descriptor *d) {
     return largest > 0 ? cbrt(largest) * cbrt(sum) : fmax(d->diagonal, 1e-300);
 }
 
-/* Eigenvalues in units of what they grow by on average from one to the next. */
+/* Eigenvalues in units of their mean increment. */
 static void put_spectrum(const double *eigenvalues, double *out) {
     double sum = 0;
     for (size_t i = 0; i < EIGENVALUES; i++)

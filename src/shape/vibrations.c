@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The spectrum of a solid's boundary, and where it vibrates.
+/* Spectrum of a solid's boundary, and where it vibrates.
  *
- * Problem: numbers of a shape that change neither with its pose, nor with the decomposition that
- * happens to come out, nor with noise on its surface: Shape-DNA [RWP06].
+ * Problem: numbers that do not change with a shape's pose, its decomposition or noise on its
+ * surface: Shape-DNA [RWP06].
  *
  * Stages: the boundary; the smallest eigenvalues of its Laplacian and their eigenfunctions
- * (spectrum.c); what wks.c makes of both.
+ * (spectrum.c); the wave kernel signature of both (wks.c).
  *
- * Invariants: eigenvalues are times the area, so that units do not count. Cost: that of spectrum.c.
- */
+ * Invariants: eigenvalues are multiplied by the area, hence independent of scale. Cost: that of
+ * spectrum.c. */
 #include "shape/vibrations.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static const char STAGE[] = "vibrations";
 
 enum { EIGENVALUES = STARG_DESCRIPTOR_EIGENVALUES };
 
-/* All but the first one; what rounding put below 0 is 0. */
+/* All but the first eigenvalue, clamped to at least 0. */
 static void keep_behind_zero(double *eigenvalues, double *out) {
     for (size_t i = 0; i <= EIGENVALUES; i++)
         eigenvalues[i] = fmax(eigenvalues[i], 0);

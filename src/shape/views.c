@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is seen from all over a solid: the histograms of [YL11, section 5.1], of very many points.
+/* Views from all over a solid: the histograms of [YL11, section 5.1], from very many points.
  *
- * Problem: where guards stand, and how many, changes with the pose and with the smallest change of
- * the surface. What is seen from a point drawn evenly from the pieces by volume does not depend on
- * how they were cut.
+ * Problem: positions and number of guards change with the pose and with tiny changes of the
+ * surface. What is seen from points uniform in the volume of the pieces does not depend on the
+ * cuts.
  *
- * Stages: points, as many in each equal share of the volume, in the order of the tetrahedra; the
- * sorted distances to the boundary from each in a few directions, which no rotation changes much;
- * of each rank in them, its distribution over the points.
+ * Stages: points, equally many per share of the volume, in the order of the tetrahedra; from each,
+ * the sorted distances to the boundary in a few directions, which rotations change little; for each
+ * rank, its distribution over the points.
  *
- * Invariants: a point depends on the seed and its number only. Cost: POINTS x DIRECTIONS rays. */
+ * Invariants: a point depends only on the seed and its number. Cost: POINTS x DIRECTIONS rays. */
 #include "shape/views.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ enum {
 typedef struct viewer {
     const starg_tetmesh *mesh;
     const ray_caster *caster;
-    const double *volumes; /* of the tetrahedra up to each, cumulated */
+    const double *volumes; /* cumulative volumes of the tetrahedra */
     uint64_t seed;
     double *ranks; /* VIEW x POINTS */
 } viewer;
@@ -65,7 +65,7 @@ done:
     return status;
 }
 
-/* The first tetrahedron up to which there is more than that. */
+/* The first tetrahedron whose cumulative volume exceeds `volume`. */
 static size_t find_tetrahedron(const viewer *v, double volume) {
     size_t low = 0, high = v->mesh->count - 1;
     while (low < high) {
@@ -78,7 +78,7 @@ static size_t find_tetrahedron(const viewer *v, double volume) {
     return low;
 }
 
-/* Uniform in its share of the volume: weights of the corners from exponential numbers. */
+/* Uniform in its share of the volume: barycentric weights from exponential numbers. */
 static void choose_point(const viewer *v, size_t item, double out[3]) {
     starg_rng rng = starg_rng_make(v->seed, RNG_STAGE, item);
     double all = v->volumes[v->mesh->count - 1], weights[4], sum = 0;

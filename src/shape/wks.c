@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The wave kernel signatures of all points of a surface [ASC11], as distributions.
+/* Wave kernel signatures of all points of a surface [ASC11], as distributions.
  *
- * Problem: a spectrum tells at which energies a surface vibrates, but not where. Ears, tails and
- * limbs are where some energies are strong and others are not, in any pose.
+ * Problem: a spectrum contains the energies at which a surface vibrates, but not where. On ears,
+ * tails and limbs some energies are strong and others weak, in any pose.
  *
- * A particle on the surface of about the energy e (a normal distribution of its logarithm) is at a
- * point x with the density sum_k g(e, k) phi_k(x)^2 / sum_k g(e, k), phi_k being the eigenfunctions
- * of the Laplacian: 1 on average. Points are not matched; of each energy the quantiles over the
- * surface are taken, so that the difference of two rows is what it costs to transport one
- * distribution into the other.
+ * A particle on the surface with energy about e (normally distributed in its logarithm) is at a
+ * point x with density sum_k g(e, k) phi_k(x)^2 / sum_k g(e, k), where phi_k are the eigenfunctions
+ * of the Laplacian: 1 on average. Points are not matched; for each energy the quantiles over the
+ * surface are taken, so the difference of two rows is the cost of transporting one distribution
+ * into the other.
  *
- * Energies are in units of what eigenvalues grow by on average from one to the next, so that the
- * scale is the spectrum's own, and differ by equal factors.
+ * Energies are in units of the mean increment of the eigenvalues, so the scale is the spectrum's
+ * own, and in geometric progression.
  *
  * Stages: weights of the eigenfunctions at an energy; densities; quantiles by mass.
  *
- * Invariants: weights depend on eigenvalues only, so that it does not matter which basis of an
- * eigenspace is given, as long as it is all of it; what is 0 for rounding (a function for each
- * component) has no energy and no weight.
+ * Invariants: weights depend on eigenvalues only, so any basis of a complete eigenspace gives the
+ * same result; eigenvalues that are 0 up to rounding (one per component) have no energy and no
+ * weight.
  *
  * Cost: ENERGIES x (MODES x rows + a sort of the rows). */
 #include "shape/wks.h"
@@ -31,8 +31,8 @@ static const char STAGE[] = "wave kernel";
 
 enum { ENERGIES = STARG_DESCRIPTOR_ENERGIES, SPREAD = STARG_DESCRIPTOR_SPREAD };
 
-/* The first and the last energy in units of the growth; the standard deviation of their logarithm;
- * up to which part of the growth an eigenvalue is 0. */
+/* First and last energy in units of the increment; standard deviation of their logarithm; fraction
+ * of the increment up to which an eigenvalue counts as 0. */
 static const double LOWEST = 1.5, HIGHEST = 35, WIDTH = 0.35, NOTHING = 1e-6;
 
 typedef struct place {
@@ -44,7 +44,7 @@ static int by_density(const void *left, const void *right) {
     return (a > b) - (a < b);
 }
 
-/* Weyl's law: eigenvalues grow in proportion to their place. */
+/* Mean increment: by Weyl's law eigenvalues grow in proportion to their index. */
 static double growth_of(const double *eigenvalues) {
     double sum = 0;
     for (size_t k = 1; k <= WKS_MODES; k++)
@@ -52,7 +52,7 @@ static double growth_of(const double *eigenvalues) {
     return sum / WKS_MODES;
 }
 
-/* Of the eigenfunctions but the first, summing to 1. All 0, where no eigenvalue is near. */
+/* Weights of all eigenfunctions but the first, summing to 1; all 0 if no eigenvalue is near. */
 static void weigh(const double *eigenvalues, double growth, size_t energy, double *weights) {
     double step = log(HIGHEST / LOWEST) / (ENERGIES - 1), sum = 0;
     double middle = log(LOWEST) + step * (double)energy;
@@ -65,7 +65,7 @@ static void weigh(const double *eigenvalues, double growth, size_t energy, doubl
         weights[k] = sum > 0 ? weights[k] / sum : 0;
 }
 
-/* Even, where nothing vibrates. */
+/* Uniform where nothing vibrates. */
 static void spread(const laplacian *l, const double *functions, const double *weights,
                    place *places) {
     double sum = 0;
@@ -80,7 +80,7 @@ static void spread(const laplacian *l, const double *functions, const double *we
         }
 }
 
-/* At the middles of SPREAD equal shares of the mass. Masses sum to 1. */
+/* At the midpoints of SPREAD equal shares of the mass. Masses sum to 1. */
 static void take_quantiles(place *places, size_t count, double *out) {
     double before = 0;
     size_t next = 0;

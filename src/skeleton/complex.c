@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The dual complex of the tetrahedra inside [DS06, section 3: the medial axis as Voronoi facets].
- * The open region made of those simplices whose cofaces are all inside is a union of open stars, so
- * the complex dual to these simplices is homotopy equivalent to it.
+/* Dual complex of the interior tetrahedra [DS06, section 3: the medial axis as Voronoi facets]. The
+ * simplices whose cofaces are all inside form an open region, a union of open stars; the complex
+ * dual to these simplices is homotopy equivalent to it.
  *
  * The combinatorics follow from the tetrahedra alone. Centres only give measures and positions, so
- * that no rounding of them can change the topology: a circumcentre beyond the border of the region
- * (coarse samples) is replaced by the centroid, that of a flat tetrahedron by a neighbour's.
+ * rounding cannot change the topology: a circumcentre outside the region (coarse samples) is
+ * replaced by the centroid, that of a flat tetrahedron by a neighbour's.
  *
  * Cost: linear, and an inside test where a centre is replaced. */
 #include "skeleton/complex.h"
@@ -20,7 +20,7 @@ static const char STAGE[] = "medial complex";
 
 enum { BLOCK = 256 };
 
-/* Six times the volume over the cube of the longest edge. */
+/* Threshold on six times the volume over the cubed longest edge. */
 static const double FLAT = 1e-4;
 
 typedef struct builder {
@@ -28,10 +28,10 @@ typedef struct builder {
     const starg_solid *solid;
     const double *points;
     const delaunay *tetrahedra;
-    uint32_t *node_of; /* of each tetrahedron, or EDGE_NONE */
-    uint8_t *borders;  /* of each node: bit k, the face opposite corner k bounds the region */
-    bool *poor;        /* of each node: its tetrahedron is flat */
-    double limit;      /* radius that no ball inside has */
+    uint32_t *node_of; /* per tetrahedron, or EDGE_NONE */
+    uint8_t *borders;  /* per node: bit k: the face opposite corner k bounds the region */
+    bool *poor;        /* per node: its tetrahedron is flat */
+    double limit;      /* upper bound on radii of interior balls */
     edge_table edges;
     medial_complex *complex;
 } builder;
@@ -60,8 +60,8 @@ done:
     return status;
 }
 
-/* Does p lie beyond a face of the tetrahedron that bounds the region? (Rounded: no decision about
- * topology.) */
+/* Is p beyond a face of the tetrahedron that bounds the region? Rounded: it does not affect
+ * topology. */
 static bool is_beyond_border(const builder *b, size_t node, const double *const v[4],
                              const double p[3]) {
     for (int k = 0; k < 4; k++) {
@@ -78,7 +78,7 @@ static bool is_beyond_border(const builder *b, size_t node, const double *const 
     return false;
 }
 
-/* Flat: four points next to one circle, whose sphere rounding could put anywhere. */
+/* Flat: four nearly concyclic points, whose circumsphere is ill-conditioned. */
 static bool is_flat(const double *const v[4]) {
     double u[3][3], longest = 0;
     for (int k = 0; k < 3; k++) {
@@ -88,8 +88,8 @@ static bool is_flat(const double *const v[4]) {
     return !(fabs(vec3_triple(u[0], u[1], u[2])) > FLAT * longest * longest * longest);
 }
 
-/* A ball inside has no more volume than the solid. Spheres of nearly flat tetrahedra, whose centres
- * lie far outside, would else pass for the thickest place of all. */
+/* A ball inside has at most the volume of the solid. Otherwise spheres of nearly flat tetrahedra,
+ * whose centres are far outside, would count as the thickest place. */
 static double limit_of_radii(const starg_solid *solid) {
     const double pi = 3.14159265358979323846;
     return solid->check->embedded ? 1.01 * cbrt(0.75 / pi * solid->check->volume) : INFINITY;
@@ -114,8 +114,8 @@ static void place_node(const builder *b, size_t node) {
     c->radii[node] = ball.radius;
 }
 
-/* A flat tetrahedron takes the largest ball of its neighbours: their spheres pass through three of
- * its points, and next to the fourth. */
+/* A flat tetrahedron gets the largest ball of its neighbours: their spheres pass through three of
+ * its points and close to the fourth. */
 static void place_flat_nodes(const builder *b) {
     medial_complex *c = b->complex;
     for (size_t l = 0; l < c->link_count; l++)
@@ -147,7 +147,7 @@ static void number_triangle(builder *b, const uint32_t corners[4], int k, uint32
         edges[j] = edge_table_number(&b->edges, v[j], v[(j + 1) % 3]);
 }
 
-/* Triangles between two nodes become links; those at the border mark their edges and points. */
+/* Makes links of triangles between two nodes; marks the edges and points of border triangles. */
 static starg_status take_links(builder *b) {
     starg_status status = STARG_OK;
     medial_complex *c = b->complex;
@@ -204,13 +204,13 @@ done:
     return status;
 }
 
-/* The links of each edge, by counting. */
+/* The links of each edge, by counting sort. */
 static starg_status invert_links(builder *b) {
     starg_status status = STARG_OK;
     medial_complex *c = b->complex;
     STARG_NEW_ZERO(b->context, STAGE, c->first_link, c->edge_count + 2);
     STARG_NEW(b->context, STAGE, c->edge_links, 3 * c->link_count);
-    uint32_t *next = c->first_link + 1; /* moves up to where it belongs as the lists fill */
+    uint32_t *next = c->first_link + 1; /* advances to its final value as the lists fill */
     for (size_t l = 0; l < c->link_count; l++)
         for (int k = 0; k < 3; k++)
             next[c->link_edges[l][k] + 1]++;

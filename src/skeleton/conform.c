@@ -1,30 +1,29 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Conforming samples: a closed triangle mesh is changed by moves that keep it a closed manifold of
- * the same topology, until all of its faces are faces of the Delaunay tetrahedra of its points. The
- * mesh then bounds a set of whole tetrahedra, and that set has the topology of the solid for
- * certain, without a tolerance.
+/* Conforming samples: modifies a closed triangle mesh, preserving manifoldness and topology, until
+ * all of its faces are faces of the Delaunay tetrahedra of its points. The mesh then bounds a set
+ * of whole tetrahedra, which provably has the topology of the solid, without a tolerance.
  *
- * Rounds of moves, each only where an edge or a face is not one of the tetrahedra (is lost):
+ * Rounds of moves, each at an edge or a face that is missing in the tetrahedra (is lost):
  *
- *   - flip: a lost edge between faces u v w and v u x gives way to w x where it is not Delaunay in
- *     its plane, or where u w x and v w x are faces of tetrahedra and the fold is no sharp one.
- *     Most lost edges of scanned models are of this kind, and cost no point.
- *   - unfold, once nothing else flips: an edge at which a lost face leans to its neighbour by less
- *     than a certain angle is flipped, which closes a crack or takes a fin away.
- *   - points: the middle of a lost edge, and where an edge of tetrahedra pierces a lost face; or
- *     the middle of the terminal longest edge, which keeps angles from getting small [Rivara 1997].
+ *   - flip: a lost edge between faces u v w and v u x becomes w x if it is not Delaunay in its
+ *     plane, or if u w x and v w x are faces of tetrahedra and the fold is not sharp. Most lost
+ *     edges of scanned models are of this kind and need no points.
+ *   - unfold, once no other flip applies: flips an edge at which the angle between a lost face and
+ *     its neighbour is small, which closes a crack or removes a fin.
+ *   - points: the midpoint of a lost edge, and where an edge of tetrahedra pierces a lost face; or
+ *     the midpoint of the terminal longest edge, which keeps angles from getting small [Rivara
+ *     1997].
  *
- * Manners differ in how they put points and in what they take for a fold. All start from the same
- * state, which flips alone have led to, and one after another is tried until no face is lost.
+ * Strategies differ in how they insert points and in what they consider a fold. All start from the
+ * state after flips alone, and are tried one after another until no face is lost.
  *
- * That a flip sweeps over no other part of the surface need not be proven: when all faces are faces
- * of tetrahedra in the end, the surface is embedded. Only points whose tetrahedra have changed are
- * looked at again. Edges that meet at next to no angle, and surfaces that cross themselves, may
- * never be followed: points, their depth and work are bounded, and what is still lost is counted.
- * There a manner gets further than another by chance rather than by merit, so that several are
- * worth more than one that is tried for longer.
+ * It is not necessary to prove that a flip does not sweep over other parts of the surface: once all
+ * faces are faces of tetrahedra, the surface is embedded. Only points whose tetrahedra changed are
+ * re-examined. Edges that meet at tiny angles, and surfaces that intersect themselves, may never
+ * conform: points, their depth and work are bounded, and the faces still lost are counted. Which
+ * strategy gets further there is largely chance, so several short attempts beat a long one.
  *
- * Cost: that of the Delaunay tetrahedra, and linear for each round in what has changed. */
+ * Cost: the Delaunay tetrahedra, and per round linear in what has changed. */
 #include "skeleton/conform.h"
 
 #include "core/memory.h"
@@ -34,61 +33,62 @@
 
 static const char STAGE[] = "surface samples";
 
-/* Flips of the two kinds could answer one another for ever, and so could points. WORK is for each
- * point: some thirty times what looking at all of them once takes. */
+/* Bounds on flips of the two kinds undoing each other, and on points. WORK is per point: some
+ * thirty times the cost of examining all of them once. */
 enum { MAX_PASSES = 20, WORK = 1000 };
 
-/* Rounds are given up when so many times the least number of faces ever lost are, or when so many
- * rounds have not brought fewer: points then only call for more points. */
+/* Rounds end when the number of lost faces exceeds SETBACK times its minimum, or after PATIENCE
+ * rounds without a new minimum: points then only cause more points. */
 enum { SETBACK = 4, PATIENCE = 20 };
 
-/* When so many faces for a number of points are always lost, they are lost all over the surface,
- * and not in single spots that another manner might do better with. */
+/* With more lost faces than one per HOPELESS points, faces are lost all over the surface and not in
+ * single spots that another strategy might handle. */
 enum { HOPELESS = 20 };
 
-/* By its ends, as moves nearby renumber halfedges. */
+/* Identified by its ends, since nearby moves renumber halfedges. */
 typedef struct mesh_edge {
     uint32_t u, v;
-    uint32_t halfedge; /* where it was */
+    uint32_t halfedge; /* its last known number */
 } mesh_edge;
 
 typedef STARG_ARRAY(mesh_edge) lost_list;
 
-/* A halfedge that leaves the point looked at: which of it and the face on its left are found? */
+/* A halfedge from the examined point: have it and the face on its left been found? */
 typedef struct spoke {
     uint32_t halfedge, head;
     bool edge, face;
 } spoke;
 
-/* Cosine of the bend that still counts as flat: eight degrees. */
+/* Cosine of a bend that still counts as flat: eight degrees. */
 static const double FLAT = 0.99;
-/* And of the angle below which two faces lie on one another: eleven degrees. */
+/* Cosine of the angle below which two faces overlap: eleven degrees. */
 #define NARROW (-0.98)
 
-/* A manner of treating what flips cannot find. */
-typedef struct manner {
-    bool pierces; /* points where faces are pierced, or by bisection                  */
-    double fold;  /* cosine of the angle below which an edge is a fold; -1: none is */
-} manner;
+/* A strategy for what flips cannot resolve. */
+typedef struct strategy {
+    bool pierces; /* inserts points where faces are pierced, otherwise by bisection */
+    double fold;  /* cosine of the angle below which an edge is a fold; -1: none */
+} strategy;
 
-enum { MANNER_COUNT = CONFORM_RESULTS - 1 };
+enum { STRATEGY_COUNT = CONFORM_RESULTS - 1 };
 
-/* No manner does best on all meshes. The first changes the surface least and adds the fewest
- * points; the last two take every edge sharper than a right angle for a fold. */
-static const manner MANNERS[MANNER_COUNT] = {{false, -1}, {true, NARROW}, {false, 0}, {true, 0}};
+/* No strategy is best for all meshes. The first changes the surface least and adds the fewest
+ * points; the last two treat every edge sharper than a right angle as a fold. */
+static const strategy STRATEGIES[STRATEGY_COUNT] = {
+    {false, -1}, {true, NARROW}, {false, 0}, {true, 0}};
 
 typedef struct conformer {
     starg_context *context;
     delaunay_builder *builder;
     sample_mesh mesh;
-    STARG_ARRAY(spoke) ring;          /* of the point looked at, in turn */
-    lost_list lost_edges, last_edges; /* now, and in the search before */
+    STARG_ARRAY(spoke) ring;          /* of the examined point, in cyclic order */
+    lost_list lost_edges, last_edges; /* now, and in the previous search */
     lost_list lost_faces, last_faces; /* each by its halfedge from its lowest corner */
-    uint32_t *place; /* of each point: its number in the ring looked at, from 1, or 0 */
+    uint32_t *place;                  /* per point: its number in the current ring, from 1, or 0 */
     size_t place_capacity;
-    size_t least;                  /* faces lost, ever since the rounds began */
-    size_t work;                   /* corners of tetrahedra looked at, by all manners so far */
-    size_t most_points, most_work; /* the rounds end beyond */
+    size_t least;                  /* least number of lost faces since the rounds began */
+    size_t work;                   /* corners of tetrahedra examined by all strategies so far */
+    size_t most_points, most_work; /* limits of the rounds */
 } conformer;
 
 static size_t point_count(const conformer *c) {
@@ -125,9 +125,9 @@ static bool is_mesh_edge(const conformer *c, uint32_t v, uint32_t w) {
     return halfedges_find(&c->mesh.net, v, w) != TOPOLOGY_NONE;
 }
 
-/* ---- what is lost ---- */
+/* ---- lost edges and faces ---- */
 
-/* The halfedges that leave v, counter-clockwise; nothing of them is found yet. */
+/* The halfedges from v, counter-clockwise, all marked as not found. */
 static starg_status find_ring(conformer *c, uint32_t v) {
     starg_status status = STARG_OK;
     uint32_t first = c->mesh.net.leaving.data[v], h = first;
@@ -140,7 +140,7 @@ done:
     return status;
 }
 
-/* Marks those edges and faces of the ring that tetrahedra of the star have. */
+/* Marks the edges and faces of the ring that occur in tetrahedra of the star. */
 static void find_in_star(conformer *c, uint32_t (*star)[3], size_t count) {
     spoke *ring = c->ring.data;
     uint32_t n = (uint32_t)c->ring.count;
@@ -161,9 +161,9 @@ static void find_in_star(conformer *c, uint32_t (*star)[3], size_t count) {
         c->place[ring[i].head] = 0;
 }
 
-/* Looks for the edges and faces at v among the tetrahedra at v. Each edge is asked for at its lower
- * end and each face at its lowest corner. */
-static starg_status look_at(conformer *c, uint32_t v) {
+/* Searches the edges and faces at v in the tetrahedra at v: each edge at its lower end, each face
+ * at its lowest corner. */
+static starg_status examine_point(conformer *c, uint32_t v) {
     starg_status status = STARG_OK;
     uint32_t(*star)[3];
     size_t count;
@@ -183,9 +183,9 @@ done:
     return status;
 }
 
-/* Is there anything new to find at v? All points of a tetrahedron that goes or comes have changed,
- * so that an edge whose other end has not is where it was. */
-static bool is_to_look_at(conformer *c, uint32_t v) {
+/* Must v be examined again? Creating or deleting a tetrahedron changes all of its points, so an
+ * edge whose other end has not changed is still there. */
+static bool needs_examination(conformer *c, uint32_t v) {
     uint32_t first = c->mesh.net.leaving.data[v], h = first;
     bool changed = delaunay_take_change(c->builder, v), dirty = c->mesh.dirty.data[v];
     c->mesh.dirty.data[v] = false;
@@ -199,8 +199,8 @@ static bool is_to_look_at(conformer *c, uint32_t v) {
     return false;
 }
 
-/* Takes over what was lost at v in the search before and, as nothing has changed there, still is.
- * The lists are in the order of points; *next is where those of v start. */
+/* Keeps what was lost at v in the previous search, since nothing changed there. The lists are
+ * sorted by point; *next is where those of v start. */
 static inline starg_status keep_lost(conformer *c, const lost_list *last, uint32_t v, size_t *next,
                                      lost_list *lost) {
     starg_status status = STARG_OK;
@@ -230,10 +230,10 @@ static starg_status find_lost(conformer *c) {
     for (uint32_t v = 0; v < point_count(c); v++) {
         if (c->mesh.net.leaving.data[v] == TOPOLOGY_NONE)
             continue;
-        if (is_to_look_at(c, v)) {
+        if (needs_examination(c, v)) {
             skip_lost(&c->last_edges, v, &next_edge);
             skip_lost(&c->last_faces, v, &next_face);
-            STARG_TRY(look_at(c, v));
+            STARG_TRY(examine_point(c, v));
         } else {
             STARG_TRY(keep_lost(c, &c->last_edges, v, &next_edge, &c->lost_edges));
             STARG_TRY(keep_lost(c, &c->last_faces, v, &next_face, &c->lost_faces));
@@ -261,8 +261,8 @@ static starg_status is_face(conformer *c, uint32_t a, uint32_t b, uint32_t d, bo
 
 /* ---- flips ---- */
 
-/* The old faces lean to one another by less than a quarter turn (or one has next to no area), and
- * the new ones face the same way. */
+/* The dihedral angle of the old faces is flatter than a right angle (or one has nearly no area),
+ * and the new faces have consistent normals. */
 static bool is_flat_enough(const conformer *c, uint32_t h) {
     uint32_t t = twin(c, h);
     const double *u = at(c, tail(c, h)), *v = at(c, head(c, h)), *w = at(c, apex(c, h)),
@@ -278,8 +278,8 @@ static bool is_flat_enough(const conformer *c, uint32_t h) {
            vec3_dot(m[1], sum) >= 0;
 }
 
-/* Is the edge of two faces in one plane, but for rounding or a slight bend, and is it no Delaunay
- * edge in that plane (the angles opposite add up to more than a half turn)? */
+/* Are the two faces coplanar up to rounding or a slight bend, and is their edge not Delaunay in
+ * that plane (the opposite angles sum to more than pi)? */
 static bool is_flat_and_poor(const conformer *c, uint32_t h) {
     uint32_t t = twin(c, h);
     const double *u = at(c, tail(c, h)), *v = at(c, head(c, h)), *w = at(c, apex(c, h)),
@@ -325,7 +325,7 @@ done:
     return status;
 }
 
-/* Do the two faces of an edge lean to one another by less than a fold's angle? */
+/* Is the angle between the two faces of an edge below a fold's? */
 static bool is_fold(const conformer *c, uint32_t h, double fold) {
     const double *u = at(c, tail(c, h)), *v = at(c, head(c, h));
     double m[2][3];
@@ -334,8 +334,8 @@ static bool is_fold(const conformer *c, uint32_t h, double fold) {
     return vec3_dot(m[0], m[1]) < fold * vec3_length(m[0]) * vec3_length(m[1]);
 }
 
-/* Closes the crack between the face and one of its neighbours, or takes the fin away. A face that
- * has not been cut yet may still be found as it is. */
+/* Closes the crack between the face and one of its neighbours, or removes the fin. A face that has
+ * not been cut yet may still be found unchanged. */
 static void unfold(conformer *c, uint32_t f, double fold, size_t *flips) {
     if (sample_mesh_depth(&c->mesh, f) == 0)
         return;
@@ -349,9 +349,9 @@ static void unfold(conformer *c, uint32_t f, double fold, size_t *flips) {
     }
 }
 
-/* Folds wait until nothing else flips: what is lost beside them for another reason would else be
- * taken for a part of them. */
-static starg_status flip_lost(conformer *c, const manner *how, size_t *flips) {
+/* Folds wait until no other flip applies: faces lost nearby for another reason could be mistaken
+ * for folds. */
+static starg_status flip_lost(conformer *c, const strategy *how, size_t *flips) {
     starg_status status = STARG_OK;
     *flips = 0;
     for (size_t i = 0; i < c->lost_edges.count; i++) {
@@ -401,7 +401,7 @@ static bool pierces(const double *const t[3], const double *p, const double *q) 
     return true;
 }
 
-/* The edge of tetrahedra that pierces the face of h lies opposite one of the face's own edges. */
+/* The edge of tetrahedra that pierces the face of h is opposite to one of the face's own edges. */
 static starg_status find_piercing(conformer *c, uint32_t h, double place[3], bool *found) {
     starg_status status = STARG_OK;
     const uint32_t v[3] = {tail(c, h), head(c, h), apex(c, h)};
@@ -426,7 +426,7 @@ done:
     return status;
 }
 
-/* Faces with a lost edge have been cut with it: their corners have changed, or wait. */
+/* Skips faces with a lost edge, which were cut with it: their corners changed or wait. */
 static starg_status pierce_lost_faces(conformer *c, const bool *cut) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < c->lost_faces.count; i++) {
@@ -453,8 +453,8 @@ static uint32_t longest_edge(const conformer *c, uint32_t h) {
     return a >= b && a >= d ? h : b >= d ? next : last;
 }
 
-/* The edge that ends the path of ever longer edges from the face of h [Rivara 1997]: it is the
- * longest of both of its faces. */
+/* The edge that ends the longest-edge path from the face of h [Rivara 1997]: it is the longest edge
+ * of both its faces. */
 static uint32_t terminal_edge(const conformer *c, uint32_t h) {
     h = longest_edge(c, h);
     for (;;) {
@@ -511,8 +511,8 @@ done:
     return status;
 }
 
-/* Flips until nothing flips any more. */
-static starg_status settle(conformer *c, const manner *how) {
+/* Flips until no flip applies. */
+static starg_status settle(conformer *c, const strategy *how) {
     starg_status status = STARG_OK;
     STARG_TRY(reserve_places(c));
     for (int pass = 0;; pass++) {
@@ -528,13 +528,13 @@ done:
     return status;
 }
 
-/* The next points would be about as many as there are faces lost. */
+/* The next round would insert about as many points as there are lost faces. */
 static bool is_spent(const conformer *c) {
     return point_count(c) + c->lost_faces.count > c->most_points || c->work > c->most_work;
 }
 
-/* Points and flips in turn, from a state that is settled. */
-static starg_status run_rounds(conformer *c, const manner *how) {
+/* Alternates points and flips, from a settled state. */
+static starg_status run_rounds(conformer *c, const strategy *how) {
     starg_status status = STARG_OK;
     size_t least_round = 0;
     c->least = c->lost_faces.count;
@@ -572,14 +572,14 @@ static void conformer_free(conformer *c) {
     *c = (conformer){.context = c->context};
 }
 
-/* What all manners start from: flips alone. */
+/* The common start of all strategies: flips alone. */
 static starg_status start(conformer *c, surface_samples *samples) {
     starg_status status = STARG_OK;
     STARG_TRY(sample_mesh_take(c->context, samples, &c->mesh));
     STARG_TRY(delaunay_begin(c->context, c->mesh.points.data, point_count(c), &c->builder));
     c->most_points = 3 * point_count(c) / 2 + 2000;
     c->most_work = WORK * point_count(c);
-    STARG_TRY(settle(c, &MANNERS[0]));
+    STARG_TRY(settle(c, &STRATEGIES[0]));
 done:
     return status;
 }
@@ -614,8 +614,7 @@ done:
     return status;
 }
 
-/* Puts the last result among those before it, which are in order; of equals the earlier is first.
- */
+/* Inserts the last result into the sorted ones before it; stable. */
 static void sort_in(conformed *results, size_t count) {
     conformed last = results[count - 1];
     size_t i = count - 1;
@@ -624,9 +623,9 @@ static void sort_in(conformed *results, size_t count) {
     results[i] = last;
 }
 
-/* Goes on from a state that stays as it is but for the work. */
-static starg_status try_manner(conformer *from, const manner *how, conformed *result,
-                               bool *hopeless) {
+/* Continues from a state that stays unchanged except for its work counter. */
+static starg_status try_strategy(conformer *from, const strategy *how, conformed *result,
+                                 bool *hopeless) {
     starg_status status = STARG_OK;
     conformer c = {.context = from->context};
     STARG_TRY(conformer_copy(from, &c));
@@ -647,12 +646,12 @@ starg_status conform_samples(starg_context *context, surface_samples *samples,
     *count = 0;
     memset(results, 0, CONFORM_RESULTS * sizeof *results);
     STARG_TRY(start(&first, samples));
-    for (const manner *how = MANNERS; how < MANNERS + MANNER_COUNT && !over; how++) {
-        STARG_TRY(try_manner(&first, how, &results[(*count)++], &over));
+    for (const strategy *how = STRATEGIES; how < STRATEGIES + STRATEGY_COUNT && !over; how++) {
+        STARG_TRY(try_strategy(&first, how, &results[(*count)++], &over));
         sort_in(results, *count);
         over = over || results[0].lost == 0;
     }
-    /* Points may only have made more faces lost. */
+    /* points may have made more faces lost */
     if (results[0].lost > 0) {
         STARG_TRY(hand_out(&first, &results[(*count)++]));
         sort_in(results, *count);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Resampling. The kept nodes fall into branches between joints and ends (a loop without either is
- * one branch from a node to itself). Each branch is smoothed and gets nodes at equal steps of arc
- * length over radius, so that thin parts have as many nodes for their width as thick ones. Joints
- * and ends stay, and every branch gets the nodes without which two edges would join the same pair.
+/* Resampling. The kept nodes form branches between joints and ends (a loop without either is one
+ * branch from a node to itself). Each branch is smoothed and sampled at equal steps of arc length
+ * over radius, so that thin parts have as many nodes for their width as thick ones. Joints and ends
+ * stay, and branches get extra nodes where two edges would otherwise join the same pair.
  *
  * Every position is tested exactly: one outside the solid is replaced by the nearest unsmoothed
  * one, which is known to be inside.
  *
- * Cost: linear, and some inside tests for each node. */
+ * Cost: linear, and some inside tests per node. */
 #include "skeleton/curve.h"
 
 #include "core/memory.h"
@@ -18,7 +18,7 @@ static const char STAGE[] = "curve skeleton";
 
 enum { TRAIL_PASSES = 10, NODE_PASSES = 3 };
 
-/* A branch: part of the array of trails, both special nodes among it. */
+/* A branch: a range of the trails, both special nodes included. */
 typedef struct branch {
     size_t first, count;
     double length; /* in radii */
@@ -32,13 +32,13 @@ typedef struct curve {
     const pruned_graph *pruned;
     starg_skeleton *skeleton;
     double (*places)[3]; /* of kept nodes: strictly inside */
-    bool *special;       /* joints, ends, lone nodes, one node of each plain loop */
-    bool *walked;        /* is on a branch */
+    bool *special;       /* joints, ends, isolated nodes, one node of each simple loop */
+    bool *walked;        /* is it on a branch? */
     uint32_t *node_of;   /* skeleton node of each kept node */
     STARG_ARRAY(uint32_t) trails;
     STARG_ARRAY(branch) branches;
-    double (*smooth)[3]; /* of each entry of the trails */
-    double *arcs;        /* length in radii from the start of its branch */
+    double (*smooth)[3]; /* per entry of the trails */
+    double *arcs;        /* arc length in radii from the start of its branch */
     double radius_floor;
     STARG_ARRAY(double) positions;
     STARG_ARRAY(uint32_t) edges;
@@ -51,8 +51,8 @@ static uint32_t kept_degree(const curve *c, uint32_t v) {
     return degree;
 }
 
-/* Takes a place from a neighbour that has one inside. Else the neighbours are to look on: true as
- * well. */
+/* Copies a place from a neighbour that has one inside. Otherwise the neighbours are searched next;
+ * returns true then too. */
 static bool borrow_place(curve *c, bool *placed, bool *tried, uint32_t v) {
     bool spread = false;
     for (uint32_t i = c->graph->first[v]; i < c->graph->first[v + 1]; i++) {
@@ -69,7 +69,7 @@ static bool borrow_place(curve *c, bool *placed, bool *tried, uint32_t v) {
     return spread;
 }
 
-/* Whole branches outside, as of surfaces that cross themselves, shrink to a place inside. */
+/* Branches entirely outside, as on self-intersecting surfaces, collapse to a place inside. */
 static starg_status place_rest(curve *c, const bool *placed) {
     size_t count = c->graph->node_count, some = 0;
     while (some < count && !placed[some])
@@ -83,8 +83,8 @@ static starg_status place_rest(curve *c, const bool *placed) {
     return STARG_OK;
 }
 
-/* Centres that rounding has put outside (of tetrahedra flat to the last digit) are replaced by
- * those of neighbours. */
+/* Replaces centres that rounding put outside (of extremely flat tetrahedra) by those of
+ * neighbours. */
 static starg_status place_kept(curve *c) {
     starg_status status = STARG_OK;
     bool *placed = NULL, *tried = NULL, changed = true;
@@ -122,8 +122,8 @@ static uint32_t step_on(const curve *c, uint32_t v, uint32_t from) {
     return EDGE_NONE;
 }
 
-/* Follows a branch from the special node v by its neighbour w. Each is met from both of its ends
- * and kept from one of them. */
+/* Follows a branch from the special node v by its neighbour w. Each branch is met from both ends
+ * and kept once. */
 static starg_status walk(curve *c, uint32_t v, uint32_t w) {
     starg_status status = STARG_OK;
     branch found = {.first = c->trails.count};
@@ -175,7 +175,7 @@ done:
     return status;
 }
 
-/* Moves the inner points of a trail halfway to the middle of their neighbours, some times. */
+/* Repeatedly moves the inner points of a trail halfway to the midpoint of their neighbours. */
 static void smooth_trail(curve *c, const branch *b) {
     double(*p)[3] = c->smooth + b->first;
     for (size_t i = 0; i < b->count; i++)
@@ -203,7 +203,7 @@ static void measure_trail(curve *c, branch *b) {
     b->length = c->arcs[b->first + b->count - 1];
 }
 
-/* Balls at tips may be arbitrarily small; steps follow them down to a twentieth of the mean. */
+/* Balls at tips may be arbitrarily small; steps shrink down to a twentieth of the mean. */
 static double mean_radius(const curve *c) {
     double sum = 0;
     size_t count = 0;
@@ -215,7 +215,7 @@ static double mean_radius(const curve *c) {
     return sum / (double)count;
 }
 
-static starg_status lay_trails(curve *c) {
+static starg_status prepare_trails(curve *c) {
     starg_status status = STARG_OK;
     STARG_NEW(c->context, STAGE, c->smooth, c->trails.count);
     STARG_NEW(c->context, STAGE, c->arcs, c->trails.count);
@@ -255,7 +255,7 @@ done:
     return status;
 }
 
-/* Nodes between the special ones of a branch. */
+/* Number of nodes between the special ones of a branch. */
 static size_t inner_count(const curve *c, const branch *b, double step) {
     uint32_t v = c->trails.data[b->first], w = c->trails.data[b->first + b->count - 1];
     size_t least = v == w ? 2 : kept_degree(c, v) > 2 && kept_degree(c, w) > 2;
@@ -264,7 +264,7 @@ static size_t inner_count(const curve *c, const branch *b, double step) {
     return count > least ? count : least;
 }
 
-/* The point at `arc` behind entry i of the trails, or that entry's own place. */
+/* The point at `arc` after entry i of the trails, or the entry's own place if that is outside. */
 static void point_at(const curve *c, size_t i, double arc, double p[3]) {
     double gap = c->arcs[i + 1] - c->arcs[i];
     double t = gap > 0 ? (arc - c->arcs[i]) / gap : 0.5;
@@ -274,8 +274,8 @@ static void point_at(const curve *c, size_t i, double arc, double p[3]) {
         vec3_copy(c->places[c->trails.data[t < 0.5 ? i : i + 1]], p);
 }
 
-/* Lays the nodes of a branch, and tells each kept node on it the nearest of them. */
-static starg_status lay_branch(curve *c, const branch *b, double step) {
+/* Places the nodes of a branch and assigns each of its kept nodes to the nearest one. */
+static starg_status place_branch(curve *c, const branch *b, double step) {
     starg_status status = STARG_OK;
     size_t inner = inner_count(c, b, step), at = b->first, last = b->first + b->count - 1;
     uint32_t base = (uint32_t)(c->positions.count / 3), node = 0;
@@ -302,20 +302,20 @@ done:
     return status;
 }
 
-static starg_status lay_branches(curve *c, size_t wanted) {
+static starg_status place_branches(curve *c, size_t wanted) {
     starg_status status = STARG_OK;
     double total = 0;
     for (size_t i = 0; i < c->branches.count; i++)
         total += c->branches.data[i].length;
     for (size_t i = 0; i < c->branches.count; i++) {
         STARG_TRY(starg_check_cancel(c->context, STAGE));
-        STARG_TRY(lay_branch(c, &c->branches.data[i], total / (double)wanted));
+        STARG_TRY(place_branch(c, &c->branches.data[i], total / (double)wanted));
     }
 done:
     return status;
 }
 
-/* Nodes of two edges move towards the middle of their neighbours, where that is inside. */
+/* Moves nodes of degree two towards the midpoint of their neighbours if that is inside. */
 static starg_status smooth_nodes(curve *c) {
     starg_status status = STARG_OK;
     size_t count = c->positions.count / 3;
@@ -356,8 +356,8 @@ static uint32_t nearest_node(const curve *c, const double p[3]) {
 }
 
 /* A vertex belongs to the largest ball through it (its inner pole [Amenta, Choi, Kolluri 2001]),
- * the ball to the kept node it was pruned to, that one to the nearest on its branch. Vertices
- * without a ball take the nearest node. */
+ * the ball to the kept node it was pruned to, and that one to the nearest node on its branch.
+ * Vertices without a ball use the nearest node. */
 static starg_status assign_vertices(curve *c) {
     starg_status status = STARG_OK;
     const medial_complex *complex = c->complex;
@@ -411,9 +411,9 @@ starg_status curve_create(starg_context *context, const starg_solid *solid,
                .skeleton = skeleton};
     STARG_TRY(place_kept(&c));
     STARG_TRY(find_branches(&c));
-    STARG_TRY(lay_trails(&c));
+    STARG_TRY(prepare_trails(&c));
     STARG_TRY(take_special(&c));
-    STARG_TRY(lay_branches(&c, wanted));
+    STARG_TRY(place_branches(&c, wanted));
     STARG_TRY(smooth_nodes(&c));
     STARG_TRY(assign_vertices(&c));
     STARG_TRY(finish(&c));

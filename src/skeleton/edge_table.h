@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Numbers for edges: a hash table from pairs of vertices, in the order in which they come. */
+/* Edge numbering: a hash table from vertex pairs to numbers, in order of insertion. */
 #ifndef STARG_SKELETON_EDGE_TABLE_H
 #define STARG_SKELETON_EDGE_TABLE_H
 
@@ -9,7 +9,7 @@
 #define EDGE_NONE UINT32_MAX
 
 typedef struct edge_table {
-    uint64_t *keys; /* 0: free; no edge has the key 0, because its ends differ */
+    uint64_t *keys; /* 0: free; key 0 never occurs, since the ends differ */
     uint32_t *numbers;
     size_t mask;
     uint32_t count;
@@ -48,7 +48,7 @@ static inline uint32_t edge_table_find(const edge_table *table, uint32_t u, uint
     return table->keys[slot] != 0 ? table->numbers[slot] : EDGE_NONE;
 }
 
-/* The number of an edge, which is the next free one if it is new. */
+/* The number of an edge; a new edge gets the next number. */
 static inline uint32_t edge_table_number(edge_table *table, uint32_t u, uint32_t v) {
     size_t slot = edge_table_slot(table, u, v);
     if (table->keys[slot] == 0) {

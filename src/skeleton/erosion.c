@@ -2,22 +2,22 @@
 /* Erosion in the order of the medial geodesic function [DS06, section 4].
  *
  * A sheet is the Voronoi facet between two sample points; its function value is the length of the
- * shortest way on the surface between them. A link that bounds one remaining sheet only is free:
- * removing both is a collapse and keeps the homotopy type, exactly, as no coordinate takes part.
- * The graph is what remains when no sheet is left.
+ * shortest path on the surface between them. A link that bounds exactly one remaining sheet is
+ * free: removing both is a collapse and preserves the homotopy type, exactly, since no coordinates
+ * are involved. The graph is what remains when no sheet is left.
  *
- * The values are found while eroding. In the triangle dual to a free link the two other edges are
- * known, at first because they lie on the surface; going along them is a way between the ends of
- * the third. Taking free links by the smallest sum is Dijkstra's algorithm in Knuth's generalised
- * form (edges as facts, triangles as rules), so that every sheet gets the shortest way that
- * triangles allow, and no search over the surface from each point is needed. On a plate the value
- * is twice the distance to the rim, on a tube half the girth.
+ * Values are computed during erosion. In the triangle dual to a free link the other two edges have
+ * values, initially because they lie on the surface; together they are a path between the ends of
+ * the third. Taking free links by the smallest sum is Dijkstra's algorithm in Knuth's generalized
+ * form (edges as facts, triangles as rules), so every sheet gets the shortest path through
+ * triangles, without a search over the surface from each point. On a plate the value is twice the
+ * distance to the rim, on a tube half the girth.
  *
- * Points inside (of shells that overlap) are dual to volumes; those are first opened one after the
- * other through a sheet that bounds one volume only, again collapses.
+ * Interior points (of overlapping shells) are dual to 3-cells; those are first opened one by one
+ * through a sheet that bounds only one of them, also a collapse.
  *
- * A closed wall about a cavity has no free link, nor have some knotted pieces. Then the first
- * sheet that is left is cut away, which is counted: it is no collapse.
+ * A closed wall around a cavity has no free link, nor have some knotted parts. Then the first
+ * remaining sheet is cut, which is counted: this is not a collapse.
  *
  * Cost: O(n log n) for n links. */
 #include "skeleton/erosion.h"
@@ -35,9 +35,9 @@ typedef struct free_link {
 typedef struct eroder {
     starg_context *context;
     const medial_complex *complex;
-    bool *sheet;        /* is it left? */
-    double *values;     /* of edges that are not */
-    uint8_t *remaining; /* sheets at each link */
+    bool *sheet;        /* has it not been removed? */
+    double *values;     /* of removed edges */
+    uint8_t *remaining; /* per link: number of sheets */
     bool *link_left;
     STARG_ARRAY(free_link) heap;
 } eroder;
@@ -76,7 +76,7 @@ static free_link pop(eroder *e) {
     return first;
 }
 
-/* A link with one sheet left waits with the sum of the values of its two other edges. */
+/* A link with one sheet left is queued by the sum of the values of its other two edges. */
 static starg_status push_if_free(eroder *e, uint32_t link) {
     if (e->remaining[link] != 1 || !e->link_left[link])
         return STARG_OK;
@@ -120,7 +120,7 @@ done:
     return status;
 }
 
-/* Opens volumes until a sweep finds none beside an open one. */
+/* Opens volumes until a sweep finds none next to an open one. */
 static starg_status open_volumes(eroder *e) {
     starg_status status = STARG_OK;
     const medial_complex *c = e->complex;

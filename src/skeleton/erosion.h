@@ -6,9 +6,9 @@
 #include "skeleton/complex.h"
 
 typedef struct erosion {
-    bool *link_left;  /* of each link: is it in the graph that remains? */
-    double *values;   /* of each edge: its medial geodesic function */
-    size_t cut_count; /* sheets that had to be cut open, because no order of collapses goes on */
+    bool *link_left;  /* per link: is it in the remaining graph? */
+    double *values;   /* per edge: its medial geodesic function */
+    size_t cut_count; /* sheets cut because no collapse was possible */
 } erosion;
 
 /* Errors: MEMORY, CANCELLED. */

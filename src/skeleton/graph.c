@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Lists of neighbours by counting; each list in the order of the links. Linear. */
+/* Adjacency lists by counting sort; each list in the order of the links. Linear. */
 #include "skeleton/graph.h"
 
 #include "core/memory.h"

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where samples are coarse, a hole in the region inside may remain at a lost face; it gives a loop
- * of a few tetrahedra. How many loops are real is known from the surface (its genus), so that the
- * shortest ones above that number are taken for such holes and cut.
+/* With coarse samples, a lost face may leave a hole in the interior region, which makes a loop of a
+ * few tetrahedra. The number of real loops is known from the surface (its genus), so the shortest
+ * loops in excess of it are taken for such holes and cut.
  *
- * The shortest loop of a graph leaves any spanning forest, so it is the shortest way between the
- * ends of some link outside one; breadth-first searches no longer than the best so far find it.
+ * The shortest loop of a graph leaves any spanning forest, so it is the shortest path between the
+ * ends of some link outside one; breadth-first searches bounded by the best length so far find it.
  *
- * A cut leaves the forest as it is and makes no way shorter, so that what a search has found is a
- * bound for later ones; most links need none.
+ * A cut leaves the forest unchanged and shortens no path, so earlier search results remain lower
+ * bounds; most links need no new search.
  *
  * Cost: linear, plus the searches, which end early, and for each loop cut the number of loops. */
 #include "skeleton/graph_repair.h"
@@ -21,7 +21,7 @@ static const char STAGE[] = "skeleton loops";
 /* A link outside the forest. */
 typedef struct closing_link {
     uint32_t link;
-    uint32_t least; /* links that the way around it has at least */
+    uint32_t least; /* lower bound on the links of the path around it */
 } closing_link;
 
 typedef struct searcher {
@@ -31,7 +31,8 @@ typedef struct searcher {
     uint32_t stamps;
 } searcher;
 
-/* Links on the shortest way from a to b besides the link between them; `limit` if not fewer. */
+/* Number of links on the shortest path from a to b besides the link between them; `limit` if not
+ * shorter. */
 static uint32_t way_around(searcher *s, uint32_t a, uint32_t b, uint32_t limit) {
     size_t count = 0;
     s->stamp[a] = ++s->stamps;
@@ -92,7 +93,7 @@ static size_t find_shortest(searcher *s, const medial_complex *complex) {
     return best;
 }
 
-/* A node that is its own neighbour is passed by, as it has been seen. */
+/* A node listed as its own neighbour is ignored: it was visited already. */
 static void part_from(curve_graph *graph, uint32_t v, uint32_t w) {
     uint32_t j = graph->first[v];
     while (graph->next[j] != w)

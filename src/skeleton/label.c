@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Labels by the surface itself: a tetrahedron on a face of the samples lies on the side that an
- * exact predicate tells, and labels spread to neighbours across all other faces, the widest first.
- * That is a statement about how cells join and so exact, however flat a tetrahedron is, as long as
- * no face is lost. Where faces are lost, an inside and an outside that meet are left apart.
+/* Labels tetrahedra by the surface: a tetrahedron at a face of the samples lies on the side given
+ * by an exact predicate, and labels spread to neighbours across all other faces, widest first. This
+ * uses only adjacency and is exact, however flat tetrahedra are, as long as no face is lost. Where
+ * faces are lost, an inside and an outside that meet are kept apart.
  *
  * Cost: O(n log n). */
 #include "skeleton/label.h"
@@ -19,7 +19,7 @@ static const char STAGE[] = "skeleton labels";
 enum { UNKNOWN = 0, INSIDE = 1, OUTSIDE = -1, BLOCK = 256 };
 static const uint32_t NOTHING = UINT32_MAX;
 
-/* A face of the samples by its other two corners. */
+/* A face of the samples, by its other two corners. */
 typedef struct face_key {
     uint32_t middle, highest, face;
 } face_key;
@@ -51,7 +51,7 @@ static uint32_t find_face(const labelling *l, const uint32_t sorted[3]) {
     return NOTHING;
 }
 
-/* Lists the faces at their lowest corners, by counting. */
+/* Lists the faces at their lowest corners, by counting sort. */
 static starg_status enter_faces(labelling *l) {
     starg_status status = STARG_OK;
     const surface_samples *samples = l->samples;
@@ -80,7 +80,7 @@ static const double *sample(const labelling *l, uint32_t index) {
     return l->samples->points + 3 * (size_t)index;
 }
 
-/* Labels tetrahedron t where its face opposite corner k is one of the samples'. */
+/* Labels tetrahedron t if its face opposite corner k is one of the samples'. */
 static void match_face(labelling *l, size_t t, int k) {
     const uint32_t *corners = l->tetrahedra->tetrahedra[t];
     uint32_t v[3] = {0};
@@ -109,9 +109,9 @@ static void match_faces(labelling *l) {
         l->labels->lost_count += !l->labels->found[f];
 }
 
-/* A passage between two tetrahedra: a triangle that is no wall. */
+/* A triangle between two tetrahedra that is not a wall. */
 typedef struct passage {
-    double width; /* square of the triangle's circumradius */
+    double width; /* squared circumradius of the triangle */
     uint32_t t, side;
 } passage;
 
@@ -137,8 +137,8 @@ static double width_of(const labelling *l, uint32_t t, uint32_t side) {
     return isfinite(width) ? width : 0;
 }
 
-/* Walls without a gap leave no choice, and so the order does not matter: the sides of an embedded
- * surface do not meet. */
+/* Without gaps in the walls the order does not matter: the two sides of an embedded surface never
+ * meet. */
 static bool is_tight(const labelling *l) {
     return l->labels->lost_count == 0 && l->solid->check->embedded;
 }
@@ -159,8 +159,8 @@ done:
     return status;
 }
 
-/* Joins tetrahedra through passages, the widest first, but never an inside to an outside: where
- * walls have gaps, the two sides so meet in the narrowest triangles of the gap. */
+/* Joins tetrahedra through passages, widest first, but never an inside to an outside: at gaps the
+ * two sides meet in the narrowest triangles. */
 static starg_status spread(labelling *l) {
     starg_status status = STARG_OK;
     uint32_t *sets = NULL;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Centres of maximal balls [YL11, section 3; Dey and Zhao 2004]: where the vertices of the surface
- * sample it densely, the Voronoi vertices inside the solid lie near its medial axis (or near the
- * surface, between vertices that are almost cospherical with their neighbours).
+/* Centres of maximal balls [YL11, section 3; Dey and Zhao 2004]: where the surface vertices are a
+ * dense sample, the Voronoi vertices inside the solid lie near its medial axis (or near the
+ * surface, between almost cospherical neighbouring vertices).
  *
- * Stages: Delaunay tetrahedra of the vertices, their circumcentres, the exact inside test.
- * Cost: that of the Delaunay tetrahedra, plus O(log n) for each.
+ * Stages: Delaunay tetrahedra of the vertices, their circumcentres, the exact inside test. Cost:
+ * that of the Delaunay tetrahedra, plus O(log n) each.
  *
- * Thinning is farthest-point sampling with distances measured in radii: the next ball is the one
- * whose centre is most radii away from the chosen ones. Large balls so stand for a wide
- * neighbourhood, thin parts keep their samples. O(count x wanted). */
+ * Thinning is farthest-point sampling with distances in radii: the next ball is the one whose
+ * centre is most radii away from the chosen ones. Large balls then represent a wide neighbourhood,
+ * and thin parts keep their samples. O(count x wanted). */
 #include "skeleton/medial.h"
 
 #include <math.h>
@@ -110,7 +110,7 @@ static void swap_balls(medial_ball *a, medial_ball *b) {
     *b = swap;
 }
 
-/* The ball after `last` that is farthest from those that are chosen. */
+/* The ball after `last` that is farthest from the chosen ones. */
 static size_t farthest(const double *scratch, size_t last, size_t count) {
     size_t best = last;
     for (size_t i = last + 1; i < count; i++)
@@ -123,7 +123,7 @@ starg_status medial_thin(starg_context *context, medial_ball *balls, size_t coun
                          double *scratch, size_t *chosen) {
     size_t done = 0;
     for (size_t i = 0; i < count; i++)
-        scratch[i] = balls[i].radius; /* the first is the largest */
+        scratch[i] = balls[i].radius; /* start with the largest */
     *chosen = 0;
     while (done < wanted && done < count) {
         size_t best = farthest(scratch, done, count);

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Erosion leaves a graph with a twig to nearly every tetrahedron. Trees are peeled from their
- * leaves down to the loops, or to the largest ball of a part without loops; thus each node knows
- * the one below it. Among the branches that meet in a node the one with the longest way up goes on,
- * the others end there, so that the trees fall into paths from a joint to a tip.
+ * leaves down to the loops, or to the largest ball of a component without loops; each node then
+ * knows the one below it. Of the branches that meet in a node the one with the longest path up
+ * continues, the others end there, which decomposes the trees into paths from a joint to a tip.
  *
- * A path is kept when it leaves its joint as a limb. Noise of the samples and ridges give paths as
- * long as short limbs are, so that length alone does not tell; the medial geodesic function does,
- * which is half the girth on a limb, twice the height on a ridge, and less than the ball is wide
- * where a ball touches nearly one place. All measures are ratios, and do not depend on the size of
- * the model; only what is no longer than some steps of the samples is their noise in any case.
+ * A path is kept if it leaves its joint as a limb. Sampling noise and ridges give paths as long as
+ * short limbs, so length alone does not decide; the medial geodesic function does: it is half the
+ * girth on a limb, twice the height on a ridge, and less than the ball's diameter where a ball
+ * touches nearly one place. All measures are ratios, independent of the model's size; except that
+ * anything below some sample spacings counts as noise.
  *
- * The joint is the nearest kept node below, so that limbs count that meet in a large ball. A ball
- * keeps a point only. Kept paths end at the first ball that reaches nearly as far as any on them.
+ * The joint is the nearest kept node below, so that limbs that meet in a large ball count. A ball
+ * keeps only a point. Kept paths end at the first ball that reaches nearly as far as any on them.
  *
  * Cost: linear. */
 #include "skeleton/prune.h"
@@ -24,8 +24,8 @@ static const char STAGE[] = "pruning";
 
 static const double WIDTH_SHARE = 0.3;
 static const double SLENDER = 0.9;
-static const double SEPARATION = 2.5; /* in radii; it is pi on a tube */
-enum { SPACINGS = 3 };                /* what samples cannot tell from their own unevenness */
+static const double SEPARATION = 2.5; /* in radii; pi on a tube */
+enum { SPACINGS = 3 };                /* lengths within the unevenness of the samples */
 
 typedef struct pruner {
     starg_context *context;
@@ -33,15 +33,15 @@ typedef struct pruner {
     const curve_graph *graph;
     const bool *node_left;
     double reach, spacing;
-    double *girths;   /* half the girth: the largest medial geodesic function at a node */
-    double *widths;   /* of the solid at nodes: see measure_widths */
-    double *radii;    /* of balls about the centres that lie in those of neighbours, or their own */
-    bool *root;       /* not to be peeled */
-    uint32_t *degree; /* in what is left */
-    uint32_t *below;  /* of peeled nodes; EDGE_NONE for others */
+    double *girths; /* half the girth: the largest medial geodesic function at a node */
+    double *widths; /* of the solid at nodes: see measure_widths */
+    double *radii;  /* of balls about the centres, inside of the node's own ball or a neighbour's */
+    bool *root;     /* not peeled */
+    uint32_t *degree; /* in the remaining graph */
+    uint32_t *below;  /* of peeled nodes; otherwise EDGE_NONE */
     uint32_t *order;  /* peeled nodes, leaves first */
-    uint32_t *up;     /* the node that goes on the longest way, or EDGE_NONE at a tip */
-    double *height;   /* of that way, with the radius at its tip */
+    uint32_t *up;     /* next node of the longest path up, or EDGE_NONE at a tip */
+    double *height;   /* length of that path, plus the radius at its tip */
     size_t peeled;
     pruned_graph *pruned;
 } pruner;
@@ -50,8 +50,8 @@ static double distance(const pruner *p, uint32_t a, uint32_t b) {
     return vec3_distance(p->complex->centres[a], p->complex->centres[b]);
 }
 
-/* A value at v that falls no faster than the way to a neighbour with a larger one: a node near a
- * large ball's centre has a large ball too, even where its own centre is a poor one. */
+/* Makes values fall no faster than the distance to a neighbour with a larger one: a node near a
+ * large ball's centre has a large ball too, even if its own centre is poor. */
 static void level(const pruner *p, double *values) {
     enum { PASSES = 32 };
     bool changed = true;
@@ -60,7 +60,7 @@ static void level(const pruner *p, double *values) {
         for (uint32_t v = 0; v < p->graph->node_count; v++)
             for (uint32_t j = p->graph->first[v]; j < p->graph->first[v + 1]; j++) {
                 uint32_t w = p->graph->next[j];
-                if (!(values[w] > values[v])) /* most, and no way need be measured */
+                if (!(values[w] > values[v])) /* the common case, which needs no distance */
                     continue;
                 double value = values[w] - distance(p, v, w);
                 if (value > values[v]) {
@@ -71,8 +71,8 @@ static void level(const pruner *p, double *values) {
     }
 }
 
-/* On a tube the medial geodesic function is half the girth, on a plate the width: a share of it
- * stands for the radius where the ball only knows the thickness. */
+/* On a tube the medial geodesic function is half the girth, on a plate the width: a fraction of it
+ * serves as the radius where the ball only measures the thickness. */
 static void measure_widths(pruner *p, const double *values) {
     const medial_complex *c = p->complex;
     memcpy(p->radii, c->radii, p->graph->node_count * sizeof *p->radii);
@@ -88,7 +88,7 @@ static void measure_widths(pruner *p, const double *values) {
     level(p, p->widths);
 }
 
-/* Visits the part of `start` and returns its largest ball if the part is a tree, else EDGE_NONE.
+/* Visits the component of `start`; returns its largest ball if it is a tree, else EDGE_NONE.
  * `order` serves as the queue. */
 static uint32_t root_of_part(pruner *p, uint32_t start, bool *seen) {
     size_t count = 0, ends = 0;
@@ -149,7 +149,7 @@ static void peel(pruner *p) {
     p->peeled = count;
 }
 
-/* In the order of peeling, so that what is above a node is known first. */
+/* In peeling order, so that what is above a node is known first. */
 static void find_ways_up(pruner *p) {
     for (size_t i = 0; i < p->peeled; i++) {
         uint32_t v = p->order[i], w = p->below[v];
@@ -161,7 +161,8 @@ static void find_ways_up(pruner *p) {
     }
 }
 
-/* How far from a joint the balls of the path that starts with `first` reach, as the crow flies. */
+/* Largest straight-line distance from a joint that the balls of the path starting with `first`
+ * reach. */
 static double reach_of(const pruner *p, uint32_t joint, uint32_t first) {
     double farthest = 0;
     for (uint32_t v = first; v != EDGE_NONE; v = p->up[v])
@@ -169,10 +170,10 @@ static double reach_of(const pruner *p, uint32_t joint, uint32_t first) {
     return farthest;
 }
 
-/* Does the path that starts with `first` leave the ball of its joint as a limb? From some node
- * beyond that ball it goes on far enough for the solid's width at the joint and for its own girth
- * (a ridge is half as high as it is round, however high), and that node's ball touches two sides
- * that lie apart, where those of noise touch nearly one place. */
+/* Does the path starting with `first` leave the ball of its joint as a limb? From some node beyond
+ * that ball it continues far enough compared with the solid's width at the joint and its own girth
+ * (the height of a ridge is half its girth, however high), and that node's ball touches two
+ * separate sides, where balls of noise touch nearly one place. */
 static bool is_feature(const pruner *p, uint32_t joint, uint32_t first) {
     double least = fmax((p->reach - 1) * p->widths[joint], SPACINGS * p->spacing);
     double farthest = reach_of(p, joint, first);
@@ -185,7 +186,7 @@ static bool is_feature(const pruner *p, uint32_t joint, uint32_t first) {
     return false;
 }
 
-/* Keeps a path up to the first ball that reaches as far as any but for a tenth of its radius. */
+/* Keeps a path up to the first ball that reaches as far as any, up to a tenth of its radius. */
 static void keep_path(pruner *p, uint32_t joint, uint32_t first) {
     double farthest = 0, way = 0;
     uint32_t last = joint;
@@ -203,14 +204,14 @@ static void keep_path(pruner *p, uint32_t joint, uint32_t first) {
     }
 }
 
-/* Keeps the way from v down to what is kept. */
+/* Keeps the path from v down to the kept nodes. */
 static void keep_way_down(pruner *p, uint32_t v) {
     for (; !p->pruned->kept[v]; v = p->below[v])
         p->pruned->kept[v] = true;
 }
 
-/* From the roots up. A node starts a path unless the node below goes on with it. Paths may part on
- * one that is none itself (as where many limbs meet); the kept node below is the joint then. */
+/* From the roots up. A node starts a path unless the node below continues with it. Paths may branch
+ * off one that is not kept (as where many limbs meet); the joint is then the kept node below. */
 static void choose_paths(pruner *p) {
     uint32_t *owner = p->pruned->owner;
     for (uint32_t v = 0; v < p->graph->node_count; v++) {
@@ -228,7 +229,7 @@ static void choose_paths(pruner *p) {
     }
 }
 
-/* Again, as ways down have been kept later than what stands on them. */
+/* Runs again because paths down are kept later than what stands on them. */
 static void find_owners(pruner *p) {
     for (size_t i = p->peeled; i-- > 0;) {
         uint32_t v = p->order[i];

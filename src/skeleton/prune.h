@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pruning: which branches of an eroded medial axis are features of the shape. */
+/* Pruning: decides which branches of an eroded medial axis are features. */
 #ifndef STARG_SKELETON_PRUNE_H
 #define STARG_SKELETON_PRUNE_H
 
@@ -8,13 +8,13 @@
 
 typedef struct pruned_graph {
     bool *kept;
-    uint32_t *owner; /* the kept node that each node stands behind; itself when kept */
+    uint32_t *owner; /* the kept node that represents each node; itself if kept */
 } pruned_graph;
 
 /* `values`: the medial geodesic function of the complex's edges. Keeps all loops, and branches that
- * go beyond their joint's ball as limbs do, at least `reach` - 1 half widths of the solid at the
- * joint and some `spacing`s of the samples. Every connected part keeps a node, unless it is one of
- * nodes that are not left, which all are dropped. Errors: MEMORY. */
+ * leave their joint's ball as limbs do, by at least `reach` - 1 half widths of the solid at the
+ * joint and some `spacing`s of the samples. Every component keeps a node, except components of
+ * nodes that are not left, which are dropped. Errors: MEMORY. */
 starg_status prune_graph(starg_context *context, const medial_complex *complex,
                          const curve_graph *graph, const bool *node_left, const double *values,
                          double reach, double spacing, pruned_graph *pruned);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Skeleton files, as write.c writes them: OBJ (v and l, from 1), CG (v and e, from 1), and VTK
- * (legacy polydata as text, from 0, with the points' radii). What the numbers say about the graph
- * is counted anew; whether it lies in a solid is not asked. Cost: linear. */
+/* Skeleton files in the formats of write.c: OBJ (v and l, from 1), CG (v and e, from 1), and VTK
+ * (legacy polydata as text, from 0, with radii). Counts of the graph are recomputed; whether it
+ * lies in a solid is not checked. Cost: linear. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -36,7 +36,7 @@ done:
     return status;
 }
 
-/* An end of an edge, counted from `base`. */
+/* Appends an end of an edge, counted from `base`. */
 static starg_status push_end(reader *r, int64_t node, int64_t base) {
     starg_status status = STARG_OK;
     if (node < base || (uint64_t)(node - base) >= UINT32_MAX)
@@ -48,7 +48,7 @@ done:
 
 /* ---- OBJ and CG ---- */
 
-/* The nodes of a polyline, or of an edge: as many edges as it has steps. */
+/* Reads the nodes of a polyline or an edge, and appends an edge per step. */
 static starg_status read_line(reader *r) {
     starg_status status = STARG_OK;
     starg_word word;
@@ -95,7 +95,8 @@ static starg_status expect(reader *r, const char *keyword) {
     return status;
 }
 
-/* A count of things of two bytes at least, which the file must have room for. */
+/* Reads a count of items of at least two bytes each; the rest of the file must have room for
+ * them. */
 static starg_status read_count(reader *r, const char *what, int64_t *count) {
     starg_status status = starg_scan_integer(&r->scan, what, count);
     if (status == STARG_OK && (*count < 0 || (uint64_t)*count > r->source->size / 2))
@@ -115,7 +116,7 @@ done:
     return status;
 }
 
-/* LINES (edges) or VERTICES (which say nothing new): each is a count and that many points. */
+/* LINES (edges) or VERTICES (ignored): each is a count and that many points. */
 static starg_status read_vtk_cells(reader *r, bool edges) {
     starg_status status = STARG_OK;
     int64_t cells, numbers, size, node, before = 0;
@@ -188,7 +189,7 @@ static uint32_t root_of(uint32_t *parents, uint32_t v) {
     return v;
 }
 
-/* Counts parts, loops, joints and ends. */
+/* Counts components, loops, joints and ends. */
 static starg_status count_graph(starg_context *context, starg_skeleton *s) {
     starg_status status = STARG_OK;
     uint32_t *parents = NULL, *degrees = NULL;
@@ -215,7 +216,7 @@ done:
     return status;
 }
 
-/* Hands the arrays over. */
+/* Moves the arrays into the skeleton. */
 static starg_status finish(reader *r, starg_skeleton *s) {
     s->node_count = r->points.count / 3;
     s->edge_count = r->edges.count / 2;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Samples under the moves of mesh/halfedges.h.
  *
- * Invariants: every point has a depth, which grows by one with each cut and never beyond MAX_DEPTH;
- * points whose faces change become dirty. */
+ * Invariants: every point has a depth, which grows by one per cut, up to MAX_DEPTH; points whose
+ * faces change become dirty. */
 #include "skeleton/sample_mesh.h"
 
 static const char STAGE[] = "surface samples";
@@ -82,15 +82,15 @@ void sample_mesh_flip(sample_mesh *m, uint32_t h) {
     halfedges_flip(&m->net, h);
 }
 
-static uint8_t deeper(uint8_t a, uint8_t b) {
+static uint8_t max_depth(uint8_t a, uint8_t b) {
     return a > b ? a : b;
 }
 
 starg_status sample_mesh_split_edge(sample_mesh *m, uint32_t h, const double place[3]) {
     starg_status status = STARG_OK;
     uint32_t p;
-    uint8_t depth = deeper(m->depth.data[halfedges_start(&m->net, h)],
-                           m->depth.data[halfedges_end(&m->net, h)]);
+    uint8_t depth = max_depth(m->depth.data[halfedges_start(&m->net, h)],
+                              m->depth.data[halfedges_end(&m->net, h)]);
     if (depth == MAX_DEPTH)
         return STARG_OK;
     mark_face(m, h / 3);
@@ -103,7 +103,7 @@ done:
 
 uint8_t sample_mesh_depth(const sample_mesh *m, uint32_t f) {
     const uint32_t *v = m->net.corners.data + 3 * (size_t)f;
-    return deeper(deeper(m->depth.data[v[0]], m->depth.data[v[1]]), m->depth.data[v[2]]);
+    return max_depth(max_depth(m->depth.data[v[0]], m->depth.data[v[1]]), m->depth.data[v[2]]);
 }
 
 starg_status sample_mesh_split_face(sample_mesh *m, uint32_t f, const double place[3]) {

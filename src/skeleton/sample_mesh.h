@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The samples of a surface as a mesh that moves: halfedges, with what a sample carries besides. */
+/* Samples of a surface as a changing mesh: halfedges with the attributes of samples. */
 #ifndef STARG_SKELETON_SAMPLE_MESH_H
 #define STARG_SKELETON_SAMPLE_MESH_H
 
@@ -9,9 +9,9 @@
 typedef struct sample_mesh {
     starg_context *context;
     mesh_halfedges net;
-    STARG_ARRAY(double) points; /* x, y, z, one after the other */
-    STARG_ARRAY(uint8_t) depth; /* of each point: how often what it lies on was cut     */
-    STARG_ARRAY(bool) dirty;    /* of each point: have faces there changed?             */
+    STARG_ARRAY(double) points; /* x, y, z of each */
+    STARG_ARRAY(uint8_t) depth; /* per point: how often its edge or face was cut */
+    STARG_ARRAY(bool) dirty;    /* per point: have its faces changed? */
 } sample_mesh;
 
 static inline size_t sample_mesh_points(const sample_mesh *m) {
@@ -22,18 +22,18 @@ static inline const double *sample_mesh_at(const sample_mesh *m, uint32_t v) {
     return m->points.data + 3 * (size_t)v;
 }
 
-/* Takes the samples over; all points are dirty. Errors: MEMORY. */
+/* Takes ownership of the samples; all points are dirty. Errors: MEMORY. */
 starg_status sample_mesh_take(starg_context *context, surface_samples *samples, sample_mesh *m);
-/* Hands the points and faces out. */
+/* Returns the points and faces. */
 void sample_mesh_give(sample_mesh *m, surface_samples *samples);
-/* `copy` is empty or freed. Errors: MEMORY. */
+/* `copy` must be empty or freed. Errors: MEMORY. */
 starg_status sample_mesh_copy(const sample_mesh *m, sample_mesh *copy);
 void sample_mesh_free(sample_mesh *m);
 
 /* As halfedges_flip. */
 void sample_mesh_flip(sample_mesh *m, uint32_t h);
-/* Puts a point on an edge, or into a face, unless what it lies on was cut a dozen times before.
- * Errors: MEMORY. */
+/* Inserts a point into an edge or a face, unless that was cut MAX_DEPTH times before. Errors:
+ * MEMORY. */
 starg_status sample_mesh_split_edge(sample_mesh *m, uint32_t h, const double place[3]);
 starg_status sample_mesh_split_face(sample_mesh *m, uint32_t f, const double place[3]);
 

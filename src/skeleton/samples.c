@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Surface samples by subdivision: edges are split in the middle, each decided by itself, and a face
- * is cut into two, three or four by the edges of it that are. So the result is again a closed mesh
+/* Surface samples by subdivision: edges are split at their midpoints, each independently, and a
+ * face is cut into two, three or four according to its split edges. So the result is a closed mesh
  * of the same topology, whatever is split.
  *
- * Cost: linear in the result for each round; a round halves what is too long. */
+ * Cost: linear in the result for each round; a round halves long edges. */
 #include "skeleton/samples.h"
 
 #include "geometry/vec3.h"
@@ -11,17 +11,19 @@
 
 static const char STAGE[] = "surface samples";
 
-/* Long thin faces would ask for far more points than wanted. */
+/* Long thin faces would need far more points than wanted. */
 enum { MAX_ROUNDS = 24, MOST_ADDED = 2 };
 
-/* Numbers the edges to be split; each appears in two faces and is asked for once. */
+/* Numbers the edges to split, those longer than `longest`; each occurs in two faces and is tested
+ * once. */
 static starg_status number_splits(starg_context *context, const surface_samples *samples,
-                                  samples_split *split, void *user, edge_table *table) {
+                                  double longest, edge_table *table) {
     starg_status status = edge_table_make(context, STAGE, samples->face_count * 3 / 2, table);
     for (size_t f = 0; status == STARG_OK && f < samples->face_count; f++)
         for (size_t k = 0; k < 3; k++) {
             uint32_t u = samples->faces[3 * f + k], v = samples->faces[3 * f + (k + 1) % 3];
-            if (u < v && split(user, u, v))
+            if (u < v && vec3_distance(samples->points + 3 * (size_t)u,
+                                       samples->points + 3 * (size_t)v) > longest)
                 edge_table_number(table, u, v);
         }
     return status;
@@ -47,7 +49,7 @@ static uint32_t *push_face(uint32_t *out, uint32_t a, uint32_t b, uint32_t c) {
     return out + 3;
 }
 
-/* A quadrilateral is cut along its shorter diagonal. */
+/* Cuts a quadrilateral along its shorter diagonal. */
 static uint32_t *push_quad(uint32_t *out, const double *points, const uint32_t q[4]) {
     double first = vec3_distance_squared(points + 3 * (size_t)q[0], points + 3 * (size_t)q[2]);
     double second = vec3_distance_squared(points + 3 * (size_t)q[1], points + 3 * (size_t)q[3]);
@@ -75,7 +77,7 @@ static uint32_t *cut_face(uint32_t *out, const double *points, const uint32_t v[
         out = push_face(out, v[k], m[k], v[(k + 2) % 3]);
         return push_face(out, m[k], v[(k + 1) % 3], v[(k + 2) % 3]);
     }
-    while (m[k] != EDGE_NONE) /* the edge that stays */
+    while (m[k] != EDGE_NONE) /* to the edge that is not split */
         k++;
     uint32_t next = m[(k + 1) % 3], last = m[(k + 2) % 3];
     out = push_face(out, next, v[(k + 2) % 3], last);
@@ -98,13 +100,14 @@ static size_t cut_faces(const surface_samples *samples, const edge_table *table,
     return (size_t)(out - faces) / 3;
 }
 
-starg_status samples_refine(starg_context *context, surface_samples *samples, samples_split *split,
-                            void *user, size_t *splits) {
+/* Splits long edges at their midpoints, and their faces; *splits is their number. */
+static starg_status refine(starg_context *context, surface_samples *samples, double longest,
+                           size_t *splits) {
     starg_status status = STARG_OK;
     edge_table table = {0};
     surface_samples finer = {0};
     *splits = 0;
-    STARG_TRY(number_splits(context, samples, split, user, &table));
+    STARG_TRY(number_splits(context, samples, longest, &table));
     if (table.count == 0)
         goto done;
     finer.point_count = samples->point_count + table.count;
@@ -136,29 +139,18 @@ done:
     return status;
 }
 
-typedef struct length_rule {
-    const surface_samples *samples;
-    double longest;
-} length_rule;
-
-static bool is_long(void *user, uint32_t u, uint32_t v) {
-    const length_rule *rule = user;
-    return vec3_distance(rule->samples->points + 3 * (size_t)u,
-                         rule->samples->points + 3 * (size_t)v) > rule->longest;
-}
-
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
                             surface_samples *samples) {
     starg_status status = STARG_OK;
     *samples = (surface_samples){0};
     STARG_TRY(copy_mesh(context, solid->mesh, samples));
-    /* Twice the edge of equilateral triangles that share the area evenly. */
-    length_rule rule = {samples, 2 * sqrt(1.1547 * solid->check->area / (double)wanted)};
+    /* twice the edge of equilateral triangles that share the area evenly */
+    double longest = 2 * sqrt(1.1547 * solid->check->area / (double)wanted);
     size_t splits = 1;
     size_t most = solid->mesh->vertex_count + MOST_ADDED * wanted;
     for (int round = 0; splits > 0 && samples->point_count < most && round < MAX_ROUNDS; round++) {
         STARG_TRY(starg_check_cancel(context, STAGE));
-        STARG_TRY(samples_refine(context, samples, is_long, &rule, &splits));
+        STARG_TRY(refine(context, samples, longest, &splits));
     }
 done:
     if (status != STARG_OK)

@@ -5,25 +5,17 @@
 
 #include "mesh/solid.h"
 
-/* A closed mesh that follows the solid's faces. Its first points are the vertices of the solid. */
+/* A closed mesh on the solid's faces. Its first points are the vertices of the solid. */
 typedef struct surface_samples {
     size_t point_count, face_count;
     double *points;
     uint32_t *faces;
 } surface_samples;
 
-/* Subdivides until no edge is much longer than it would be if at least `wanted` points lay evenly
- * on the surface. Errors: MEMORY, CANCELLED. */
+/* Subdivides until no edge is much longer than with at least `wanted` points evenly on the surface.
+ * Errors: MEMORY, CANCELLED. */
 starg_status samples_create(starg_context *context, const starg_solid *solid, size_t wanted,
                             surface_samples *samples);
 void samples_free(starg_context *context, surface_samples *samples);
-
-/* Is the edge from u to v to be split? */
-typedef bool samples_split(void *user, uint32_t u, uint32_t v);
-
-/* Splits edges in the middle and their faces with them; *splits is their number.
- * Errors: MEMORY. */
-starg_status samples_refine(starg_context *context, surface_samples *samples, samples_split *split,
-                            void *user, size_t *splits);
 
 #endif

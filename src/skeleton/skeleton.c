@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Curve skeletons by erosion of the medial axis [DS06], homotopic by construction.
  *
- * Stages: samples of the surface; moves that make them follow their own Delaunay tetrahedra
- * (conform.c); which tetrahedra are inside, exact when no face is lost; the dual complex, which is
+ * Stages: samples of the surface; moves that make them conform to their Delaunay tetrahedra
+ * (conform.c); labels of inside tetrahedra, exact if no face is lost; the dual complex, which is
  * the medial axis; its erosion to a graph by collapses; pruning; resampling.
  *
- * When the samples conform, every stage after that keeps the homotopy type, as no coordinate takes
- * part in it. Conforming may fail at cracks and fins of next to no width; then of the manners that
- * it has tried, the one whose parts and loops are nearest to those that the surface demands is
- * taken. What it has in excess is cut and counted as mended.
+ * If the samples conform, every later stage preserves the homotopy type, since no coordinates are
+ * involved. Conforming may fail at very thin cracks and fins; then the strategy whose components
+ * and loops are closest to those of the surface is used. Excess ones are cut and counted as mended.
  *
- * Cost: O(n log n) in practice for n samples, for each manner that loses faces. */
+ * Cost: O(n log n) in practice for n samples, per strategy that loses faces. */
 #include "core/fields.h"
 #include "skeleton/complex.h"
 #include "skeleton/conform.h"
@@ -32,15 +31,15 @@ static const char STAGE[] = "skeleton";
 
 enum { LEAST_SAMPLES = 4000, MAX_MENDS = 600, MAX_NODES = 10000000 };
 
-/* What one manner of conforming leads to. */
+/* Result of one strategy of conforming. */
 typedef struct attempt {
     medial_complex *complex;
     inside_labels labels;
     erosion eroded;
     size_t parts, loops; /* of the eroded graph */
-    double spacing;      /* of the samples, were they even */
-    bool *node_left;     /* nodes of parts that are kept */
-    size_t mends;        /* parts and loops cut from it after that */
+    double spacing;      /* of the samples if they were even */
+    bool *node_left;     /* nodes of kept components */
+    size_t mends;        /* components and loops cut afterwards */
 } attempt;
 
 static void attempt_free(starg_context *context, attempt *a) {
@@ -51,7 +50,7 @@ static void attempt_free(starg_context *context, attempt *a) {
     *a = (attempt){0};
 }
 
-/* Parts and loops of a graph of pairs; `marked` may be NULL for all of them. */
+/* Components and loops of a graph of pairs; `marked` may be NULL for all of them. */
 static starg_status count_topology(starg_context *context, size_t node_count, const uint32_t *links,
                                    const bool *marked, size_t link_count, size_t *parts,
                                    size_t *loops) {
@@ -80,7 +79,7 @@ static starg_status count_attempt(starg_context *context, attempt *a) {
                           a->eroded.link_left, a->complex->link_count, &a->parts, &a->loops);
 }
 
-/* Labels, complex and erosion of what conforming has led to. */
+/* Labels, complex and erosion of conformed samples. */
 static starg_status make_attempt(starg_context *context, const starg_solid *solid,
                                  const conformed *from, attempt *a) {
     starg_status status = STARG_OK;
@@ -95,13 +94,13 @@ done:
     return status;
 }
 
-/* The topology that the surface demands: half its Euler characteristic is the solid's. */
+/* The topology required by the surface: half its Euler characteristic is the solid's. */
 static bool is_as_expected(const starg_check *check, size_t parts, size_t loops) {
     return parts == check->components - check->cavities && loops == (size_t)check->genus;
 }
 
-/* How far an attempt is from the topology demanded; what is missing weighs more than what is too
- * much, as it cannot be repaired. */
+/* Distance of an attempt from the required topology; missing parts weigh more than excess ones,
+ * since they cannot be repaired. */
 static size_t count_faults(const starg_check *check, const attempt *a) {
     enum { MISSING = 1000 };
     size_t parts = check->components - check->cavities, loops = (size_t)check->genus;
@@ -113,15 +112,15 @@ static starg_status find_best(starg_context *context, const starg_solid *solid, 
     starg_status status = STARG_OK;
     attempt a = {0};
     surface_samples samples = {0};
-    conformed manners[CONFORM_RESULTS] = {0};
+    conformed results[CONFORM_RESULTS] = {0};
     size_t count;
     STARG_TRY(samples_create(context, solid, LEAST_SAMPLES, &samples));
-    STARG_TRY(conform_samples(context, &samples, manners, &count));
-    /* Counts decide between manners that lose faces. Where a surface crosses itself none is right.
-     */
-    size_t judged = manners[0].lost > 0 && solid->check->embedded ? count : 1;
+    STARG_TRY(conform_samples(context, &samples, results, &count));
+    /* Counts decide between strategies that lose faces. If the surface intersects itself, none is
+     * right. */
+    size_t judged = results[0].lost > 0 && solid->check->embedded ? count : 1;
     for (size_t i = 0; i < judged; i++) {
-        STARG_TRY(make_attempt(context, solid, &manners[i], &a));
+        STARG_TRY(make_attempt(context, solid, &results[i], &a));
         if (best->complex == NULL ||
             count_faults(solid->check, &a) < count_faults(solid->check, best)) {
             attempt_free(context, best);
@@ -136,12 +135,12 @@ done:
     attempt_free(context, &a);
     samples_free(context, &samples);
     for (size_t i = 0; i < CONFORM_RESULTS; i++)
-        conformed_free(context, &manners[i]);
+        conformed_free(context, &results[i]);
     return status;
 }
 
-/* Takes away parts and loops that the solid has not. */
-static starg_status mend(starg_context *context, const starg_solid *solid, attempt *a) {
+/* Removes components and loops that the solid does not have. */
+static starg_status repair_topology(starg_context *context, const starg_solid *solid, attempt *a) {
     starg_status status = STARG_OK;
     const starg_check *check = solid->check;
     size_t parts = check->components - check->cavities, loops = (size_t)check->genus;
@@ -167,7 +166,7 @@ static starg_status find_graph(starg_context *context, const starg_solid *solid,
     if (a->complex->node_count == 0)
         STARG_TRY(starg_fail(context, STARG_ERROR_MESH, STAGE,
                              "the solid is too flat for interior tetrahedra"));
-    STARG_TRY(mend(context, solid, a));
+    STARG_TRY(repair_topology(context, solid, a));
 done:
     return status;
 }
@@ -192,7 +191,7 @@ static starg_status describe(starg_context *context, const starg_solid *solid, c
                              skeleton->edge_count, &skeleton->components, &skeleton->loops));
     skeleton->cuts = a->eroded.cut_count;
     skeleton->mends = a->mends;
-    /* What collapses to a graph is a handlebody; what was cut or mended need not be one. */
+    /* what collapses to a graph is a handlebody; what was cut or mended need not be one */
     skeleton->homotopic = solid->check->cavities == 0 && skeleton->cuts == 0 &&
                           skeleton->mends == 0 &&
                           is_as_expected(solid->check, skeleton->components, skeleton->loops);

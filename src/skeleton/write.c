@@ -44,7 +44,7 @@ static void write_vtk(FILE *stream, const starg_skeleton *s) {
         fprintf(stream, " %zu", v);
     fprintf(stream, "\nLINES %zu %zu\n", s->edge_count, 3 * s->edge_count);
     write_edges(stream, s, "2", 0);
-    if (s->radii == NULL) /* read from a file that has none */
+    if (s->radii == NULL) /* read from a file without radii */
         return;
     fprintf(stream, "POINT_DATA %zu\nSCALARS radius double 1\nLOOKUP_TABLE default\n",
             s->node_count);

@@ -7,7 +7,7 @@
  * A piece is star-shaped, seen from its guard, if the guard is strictly on the inner side of each
  * face of the piece's boundary and the boundary winds around it once. Each closed part of such a
  * boundary winds around the guard at least once, so that there is one part, which is embedded
- * (star/kernel.c): a ball, whose tetrahedra hang together by faces.
+ * (visibility/kernel.c): a ball, whose tetrahedra hang together by faces.
  *
  * Invariants: star is decided exactly; volumes, radii and areas are rounded sums in the order of
  * the mesh. Cost: O(n) and a sort of the inner faces between pieces; sight: star/sight.c. */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which tetrahedra share a face.
+/* Adjacency of tetrahedra across faces.
  *
- * Stages: the faces are filed under their lowest vertex (counting sort) with their two others as a
- * key, sorted within each vertex, and equal neighbours in that order are joined. Two positive
- * tetrahedra lie on different sides of a face exactly if they see its vertices turn in different
- * senses, which is combinatorial: no arithmetic here.
+ * Stages: group faces by their lowest vertex (counting sort) with the other two as key; sort within
+ * each vertex; join equal neighbours. Two positive tetrahedra lie on different sides of a face
+ * exactly if its vertices have opposite orientation in them, which is combinatorial: no arithmetic
+ * here.
  *
  * Cost: O(n log d) for vertices of degree d. */
 #include <stdlib.h>
@@ -14,15 +14,15 @@
 
 static const char STAGE[] = "tetrahedra";
 
-/* A face under its lowest vertex: the others in order, where it stands, and its sense. */
+/* A face at its lowest vertex: the others in order, its place, and its orientation. */
 typedef struct entry {
     uint32_t middle, highest;
-    uint32_t face; /* 4 x tetrahedron + vertex opposite; in its top bit: an odd permutation */
+    uint32_t face; /* 4 x tetrahedron + opposite vertex; top bit: odd permutation */
 } entry;
 
 typedef struct sorted_face {
     uint32_t v[3]; /* ascending */
-    bool odd;      /* the way there takes an odd number of swaps */
+    bool odd;      /* sorting takes an odd number of swaps */
 } sorted_face;
 
 static void order_pair(sorted_face *f, int i, int j) {
@@ -78,7 +78,7 @@ static void file_faces(const starg_tetmesh *mesh, size_t *start, entry *entries)
     }
 }
 
-/* Folded: the two lie on the same side of the face, so that their insides overlap. */
+/* Folded: both tetrahedra are on the same side of the face and overlap. */
 static starg_status fail_face(const starg_tetmesh *mesh, const entry *first, size_t count) {
     uint64_t tetrahedra[STARG_ERROR_INDICES];
     for (size_t i = 0; i < count && i < STARG_ERROR_INDICES; i++)

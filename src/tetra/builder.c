@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The tetrahedral mesh that a reader builds up, and the numbers that it reads. */
+/* The tetrahedral mesh under construction by a reader, and the reader's numbers. */
 #include "tetra/io.h"
 
 #include "core/memory.h"
@@ -97,7 +97,7 @@ size_t tet_least_bytes(const tet_numbers *numbers, tet_type type) {
     return numbers->encoding == TET_TEXT ? 2 : type_bytes(type);
 }
 
-/* The next bytes as a number of 64 bits, zero above. */
+/* The next bytes as a 64-bit number, zero extended. */
 static starg_status take_bits(tet_numbers *numbers, tet_type type, const char *what,
                               uint64_t *bits) {
     size_t size = type_bytes(type);
@@ -114,7 +114,7 @@ static starg_status take_bits(tet_numbers *numbers, tet_type type, const char *w
     return STARG_OK;
 }
 
-static double as_real(uint64_t bits, tet_type type) {
+static double decode_real(uint64_t bits, tet_type type) {
     double wide;
     float narrow;
     uint32_t half = (uint32_t)bits;
@@ -132,7 +132,7 @@ starg_status tet_real(tet_numbers *numbers, tet_type type, const char *what, dou
         return starg_scan_real(&numbers->scan, what, value);
     starg_status status = take_bits(numbers, type, what, &bits);
     if (status == STARG_OK)
-        *value = as_real(bits, type);
+        *value = decode_real(bits, type);
     return status;
 }
 
@@ -152,7 +152,7 @@ starg_status tet_integer(tet_numbers *numbers, tet_type type, const char *what, 
 
 starg_status tet_check_count(const tet_numbers *numbers, int64_t count, size_t bytes,
                              const char *what) {
-    /* the last number of a text needs no blank behind it */
+    /* the last number of a text needs no blank after it */
     size_t left = (size_t)(numbers->scan.end - numbers->scan.at) + 1;
     if (count >= 0 && (uint64_t)count <= left / bytes)
         return STARG_OK;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rows of the tetrahedra options, which the table of decompositions shares. */
+/* Rows of the tetrahedra options, shared with the table of decompositions. */
 #ifndef STARG_TETRA_FIELDS_H
 #define STARG_TETRA_FIELDS_H
 
@@ -11,7 +11,7 @@
 
 extern const char *const tetra_generator_words[];
 
-/* All but the density, for a struct T that has the options as PREFIX. */
+/* All but the density, for a struct T with the options at PREFIX. */
 #define TETRA_FIELDS(T, PREFIX)                                                                    \
     {.key = "generator",                                                                           \
      .kind = STARG_FIELD_CHOICE,                                                                   \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How flat tetrahedra are: the least height over the longest edge, 0.816 for the regular one and 0
- * for one without volume. Rounded; decides nothing. */
+/* Flatness of tetrahedra: least height over longest edge, 0.816 for the regular one and 0 without
+ * volume. Rounded; decides nothing. */
 #include <math.h>
 
 #include "geometry/vec3.h"
@@ -16,7 +16,7 @@ static double flatness(const starg_tetmesh *mesh, size_t tetrahedron) {
             longest = fmax(longest, vec3_distance(p[i], p[k]));
     if (longest == 0)
         return 0;
-    /* in units of the longest edge, so that nothing under- or overflows */
+    /* in units of the longest edge, to avoid overflow and underflow */
     for (int k = 0; k < 3; k++)
         for (int c = 0; c < 3; c++)
             edge[k][c] = (p[k + 1][c] - p[0][c]) / longest;

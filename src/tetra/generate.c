@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One interface for the generators: choice, density and report. */
+/* Common interface of the generators: choice, density and report. */
 #include "tetra/generate.h"
 #include "tetra/fields.h"
 
@@ -11,10 +11,10 @@
 
 static const char STAGE[] = TETRA_STAGE;
 
-static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, in mean volumes       */
-static const double LATTICE_DENSITY = 12; /* tetrahedra of the lattice per cube            */
-static const double THIN = 1e-4;          /* thickness, of the extent: worth a word         */
-static const double STEPS_PER_CUBE = 4;   /* of the measurement of distances               */
+static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, relative to the mean volume */
+static const double LATTICE_DENSITY = 12; /* lattice tetrahedra per cube */
+static const double THIN = 1e-4;          /* thickness over extent that is worth a message */
+static const double STEPS_PER_CUBE = 4;   /* for measuring distances */
 
 const char *const tetra_generator_words[] = {"auto", "tetgen", "stuffing", NULL};
 
@@ -40,7 +40,7 @@ void starg_tetra_options_default(starg_tetra_options *options) {
     starg_fields_default(&OPTIONS_TABLE, options);
 }
 
-/* Tetrahedra to aim at; 0: as few as may be. */
+/* Wanted number of tetrahedra; 0: as few as possible. */
 static double wanted(const starg_mesh *mesh, const starg_tetra_options *o) {
     return o->target > 0 ? (double)o->target : o->density * (double)mesh->vertex_count;
 }
@@ -73,8 +73,8 @@ done:
     return status;
 }
 
-/* What the program crashes on. What it changes in silence (vertices at equal positions) shows when
- * its boundary is compared. */
+/* Inputs that crash the program. What it changes silently (coincident vertices) is found by
+ * comparing the boundary. */
 static const char *unfit_for_tetgen(const starg_solid *solid) {
     const starg_finding *found = solid->check->findings;
     if (found[STARG_FINDING_SELF_INTERSECTION].count > 0 ||
@@ -96,8 +96,7 @@ static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
     return by_tetgen(context, solid, o, report, out);
 }
 
-/* Twice the volume over the area: the thickness of a plate, and about half the width of a needle.
- */
+/* Twice the volume over the area: the thickness of a plate, about half the width of a needle. */
 static double thickness_of(const starg_solid *solid) {
     return 2 * solid->check->volume / starg_mesh_area(solid->mesh);
 }
@@ -106,8 +105,8 @@ static bool is_thin(const starg_solid *solid) {
     return thickness_of(solid) < THIN * ldexp(1, starg_mesh_exponent(solid->mesh));
 }
 
-/* Why the surface is not kept: what is wrong with the model before what the program said of it. */
-static void tell_stuffing(starg_context *context, const starg_solid *solid) {
+/* Reports why the surface is not kept: defects of the model before messages of the program. */
+static void log_stuffing(starg_context *context, const starg_solid *solid) {
     char thin[96];
     snprintf(thin, sizeof thin, "the solid is very thin (about %.2g)", thickness_of(solid));
     starg_log(context, STARG_LOG_WARNING,
@@ -139,7 +138,7 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
         status = try_tetgen(context, solid, options, report, out);
         if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
             goto done;
-        tell_stuffing(context, solid);
+        log_stuffing(context, solid);
     }
     const tetra_shape shape = {
         .mesh = solid->mesh, .tree = solid->tree, .volume = solid->check->volume};
@@ -155,7 +154,7 @@ done:
 
 /* ---- open meshes ---- */
 
-/* Signed volume, which holes make a guess; kept within sense, so that the spacing is. */
+/* Signed volume, only an estimate if there are holes; bounded so that the spacing is. */
 static double guess_volume(const starg_mesh *mesh) {
     double lower[3], upper[3], volume = starg_mesh_volume(mesh);
     starg_mesh_bounds(mesh, lower, upper);

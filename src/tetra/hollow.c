@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Surfaces that enclose nothing.
+/* Detects surfaces that enclose nothing.
  *
- * Problem: the winding number of some meshes is at most 1/2 everywhere: of those that lie in a
- * plane, and of those whose every face has a counterpart with the opposite orientation. A lattice
- * would be refined uselessly until memory runs out.
+ * Problem: some meshes have winding number at most 1/2 everywhere: planar ones, and those whose
+ * every face has a counterpart of opposite orientation. A lattice would be refined until memory
+ * runs out.
  *
- * Stages: a plane through three positions that are not on one line, and all others against it;
- * then faces as triples of positions in ascending order with the sign of the permutation, sorted:
- * the signs of equal ones have to add up to zero.
+ * Stages: find three non-collinear positions and test all others against their plane; then sort the
+ * faces as triples of positions with the sign of the permutation: the signs of equal triples must
+ * sum to zero.
  *
- * Invariants: positions count, not vertices; both decisions are exact. Cost: O(faces log faces). */
+ * Invariants: uses positions, not vertex numbers; both decisions are exact. Cost: O(faces log
+ * faces). */
 #include "tetra/hollow.h"
 
 #include <stdlib.h>

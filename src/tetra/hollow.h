@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Does a surface enclose nothing at all, whatever its size? */
+/* Decides whether a surface encloses nothing, whatever its size. */
 #ifndef STARG_TETRA_HOLLOW_H
 #define STARG_TETRA_HOLLOW_H
 
 #include "mesh/mesh.h"
 
-/* *hollow is true when the mesh lies in a plane, or when its faces cancel: as many lie one way
- * round as the other on any three positions. Exact. Errors: MEMORY. */
+/* *hollow is true if the mesh is planar, or if its faces cancel: on any three positions, equally
+ * many have either orientation. Exact. Errors: MEMORY. */
 starg_status tetra_is_hollow(starg_context *context, const starg_mesh *mesh, bool *hollow);
 
 #endif

@@ -1,20 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The lattice of isosurface stuffing [LS07]: insides, cuts, and the warp.
+/* Lattice of isosurface stuffing [LS07]: inside points, cuts, and the warp.
  *
- * A point is inside if its winding number is at least one, as for all solids; the winding number is
- * exact, and all points of a column share the triangles that the vertical line through them meets.
- * For open surfaces: if the generalized winding number exceeds 1/2. A cut is where, on
- * the way from the inside end of an edge, the winding number falls to zero first; a rounded
- * position on the edge is all that is needed.
+ * A point is inside if its winding number is at least one, as for all solids, or above 1/2 for open
+ * surfaces (generalized winding number). The former is exact; all points of a column share the
+ * triangles that meet the vertical line through them. A cut is the first place on an edge, from its
+ * inside end, where the winding number falls to zero; a rounded position is enough.
  *
- * The warp: a point that has a cut nearer than a fraction of the edge's length moves there, and all
- * cuts of its edges vanish. What cuts remain are far enough from both ends that no tetrahedron made
- * of them is flat: the fractions are those of [LS07] that bound the dihedral angles by 10.78 and
- * 164.74 degrees.
+ * Warp: a point with a cut closer than a fraction of the edge's length moves there, and all cuts of
+ * its edges disappear. The remaining cuts are far enough from both ends that no tetrahedron made of
+ * them is flat: the fractions of [LS07] bound the dihedral angles by 10.78 and 164.74 degrees.
  *
  * Invariants: points at the border of the lattice are outside; an edge between an inside and an
- * outside point has a living cut. Cost: O(points) for the insides, O(surface / spacing^2) beyond.
- */
+ * outside point has a live cut. Cost: O(points) for the inside test, O(surface / spacing^2) for the
+ * rest. */
 #include "tetra/lattice.h"
 
 #include <math.h>
@@ -115,7 +113,7 @@ static void free_column(starg_context *context, void *scratch) {
     starg_release(context, c);
 }
 
-/* Runs on any thread: no error detail is recorded here. */
+/* Runs on any thread, so it records no error detail. */
 static bool add_triangle(void *user, uint32_t triangle) {
     column *c = user;
     if (c->triangles.count == c->triangles.capacity) {
@@ -142,7 +140,7 @@ static size_t column_start(const lattice *l, size_t item, lattice_point *first) 
     return (size_t)(l->cubes[2] + !odd);
 }
 
-/* For an open mesh: where the generalized winding number exceeds 1/2. */
+/* For an open mesh: is the generalized winding number above 1/2? */
 static bool winds_around(const lattice *l, const double x[3]) {
     double sense = l->shape->volume < 0 ? -1 : 1;
     for (int k = 0; k < 3; k++)
@@ -151,7 +149,7 @@ static bool winds_around(const lattice *l, const double x[3]) {
     return sense * winding_number(l->shape->field, x) > 0.5;
 }
 
-static starg_status do_open_column(lattice *l, lattice_point p, size_t number, size_t count) {
+static starg_status classify_open_column(lattice *l, lattice_point p, size_t number, size_t count) {
     for (size_t i = 0; i < count; i++, p.x[2] += 2) {
         double x[3];
         lattice_position(l, &p, x);
@@ -160,7 +158,8 @@ static starg_status do_open_column(lattice *l, lattice_point p, size_t number, s
     return STARG_OK;
 }
 
-static starg_status do_column(starg_context *context, void *shared, void *scratch, size_t item) {
+static starg_status classify_column(starg_context *context, void *shared, void *scratch,
+                                    size_t item) {
     lattice *l = shared;
     column *c = scratch;
     lattice_point p;
@@ -168,7 +167,7 @@ static starg_status do_column(starg_context *context, void *shared, void *scratc
     (void)context;
     size_t count = column_start(l, item, &p), number = lattice_number(l, &p);
     if (l->shape->field != NULL)
-        return do_open_column(l, p, number, count);
+        return classify_open_column(l, p, number, count);
     lattice_position(l, &p, x);
     const bvh_box line = {{x[0], x[1], -INFINITY}, {x[0], x[1], INFINITY}};
     c->triangles.count = 0;
@@ -193,7 +192,7 @@ static starg_status find_insides(lattice *l) {
     starg_parallel_loop loop = {.stage = STAGE,
                                 .count = columns,
                                 .shared = l,
-                                .item = do_column,
+                                .item = classify_column,
                                 .make_scratch = make_column,
                                 .free_scratch = free_column};
     STARG_TRY(starg_parallel_for(l->context, &loop));
@@ -241,7 +240,7 @@ void lattice_free(lattice *l) {
 
 /* ---- cuts ---- */
 
-/* Where triangles cross a segment from its inside end. */
+/* Crossings of triangles with a segment from its inside end. */
 typedef struct crossing {
     double t;
     int change; /* of the winding number */
@@ -252,7 +251,7 @@ enum { MOST_CROSSINGS = 64, HALVINGS = 24 };
 typedef struct segment {
     const bvh *tree;
     double p[3], q[3];
-    crossing crossings[MOST_CROSSINGS]; /* by t; of more, those nearest to p */
+    crossing crossings[MOST_CROSSINGS]; /* sorted by t; if there are more, those nearest to p */
     size_t count;
 } segment;
 
@@ -284,7 +283,7 @@ static bool look_at_triangle(void *user, size_t rank) {
     return true;
 }
 
-/* Where an edge leaves an open mesh through a hole: found by halving. */
+/* Where an edge leaves an open mesh through a hole, by bisection. */
 static double find_gap(const lattice *l, const segment *s) {
     double inside = 0, outside = 1;
     for (int round = 0; round < HALVINGS; round++) {
@@ -299,8 +298,8 @@ static double find_gap(const lattice *l, const segment *s) {
     return 0.5 * (inside + outside);
 }
 
-/* The first place on the way from the inside point p to q where the surface is left for good;
- * the middle, should rounding hide it. */
+/* The first place on the way from the inside point p to q where the segment leaves the solid; the
+ * midpoint if rounding hides it. */
 static double find_cut(const lattice *l, size_t inside, const lattice_point *p,
                        const lattice_point *q) {
     segment s = {.tree = l->shape->tree};
@@ -318,7 +317,7 @@ static double find_cut(const lattice *l, size_t inside, const lattice_point *p,
     return s.count > 0 ? s.crossings[s.count - 1].t : 0.5;
 }
 
-/* The node of a point, made when it is asked for first. */
+/* The node of a point, created on first use. */
 static starg_status add_node(lattice *l, const lattice_point *p, size_t number, uint32_t *out) {
     starg_status status = STARG_OK;
     if (l->node[number] == UINT32_MAX) {
@@ -378,7 +377,7 @@ done:
 
 /* ---- warp ---- */
 
-/* The living cut at a step from a node, or NULL. */
+/* The live cut at a step from a node, or NULL. */
 static lattice_cut *cut_at(const lattice *l, const lattice_node *n, int step) {
     const lattice_node *owner = n;
     if (step >= LATTICE_OWNED) {
@@ -391,8 +390,8 @@ static lattice_cut *cut_at(const lattice *l, const lattice_node *n, int step) {
     return &l->nodes.data[owner - l->nodes.data].cuts[step % LATTICE_OWNED];
 }
 
-/* The step to the nearest cut that is too near; -1 if none is. Nearness counts in lengths of the
- * edge's own limit. */
+/* The step to the closest cut that is too close; -1 if there is none. Distances are relative to the
+ * limit of each edge. */
 static int nearest_violation(const lattice *l, const lattice_node *n) {
     double best = 1;
     int found = -1;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A body-centred cubic lattice around a solid: which of its points are inside, where the surface
- * cuts its edges, and the points that have moved onto the surface. */
+/* A body-centred cubic lattice around a solid: which points are inside, where the surface cuts
+ * edges, and the points moved onto the surface. */
 #ifndef STARG_TETRA_LATTICE_H
 #define STARG_TETRA_LATTICE_H
 
@@ -16,60 +16,61 @@ typedef struct lattice_point {
 
 enum { LATTICE_EDGES = 14, LATTICE_OWNED = 7 };
 
-/* Steps to the neighbours; the first LATTICE_OWNED lead to edges that a point owns, the others, in
- * the same order, are their opposites. Steps 0 to 2 of each half are long. */
+/* Steps to the neighbours; the first LATTICE_OWNED lead along edges that a point owns, the others
+ * are their opposites in the same order. Steps 0 to 2 of each half are long. */
 extern const int LATTICE_STEP[LATTICE_EDGES][3];
 
 typedef enum lattice_side { LATTICE_OUTSIDE = -1, LATTICE_ON = 0, LATTICE_INSIDE = 1 } lattice_side;
 
-/* Where the surface cuts an edge. A cut whose edge has lost an end to the surface is dead. */
+/* Where the surface cuts an edge. A cut is dead once an end of its edge has moved onto the
+ * surface. */
 typedef struct lattice_cut {
     double position[3];
-    uint32_t vertex; /* of the mesh that is made; UINT32_MAX: none yet */
+    uint32_t vertex; /* of the output mesh; UINT32_MAX: none yet */
     bool alive;
 } lattice_cut;
 
 /* A point with an edge that the surface cuts. */
 typedef struct lattice_node {
     lattice_point point;
-    double position[3]; /* moved, if the point is on the surface */
+    double position[3]; /* moved if the point is on the surface */
     lattice_cut cuts[LATTICE_OWNED];
 } lattice_node;
 
 typedef struct lattice {
     starg_context *context;
     const tetra_shape *shape;
-    double lower[3], upper[3]; /* box of the mesh: beyond it all is outside */
+    double lower[3], upper[3]; /* box of the mesh: everything beyond is outside */
     double origin[3], half;    /* position of point 0, half the side of a cube */
     int64_t cubes[3];
     size_t corners, points; /* numbers: corners first, then centres */
     int16_t *winding;       /* of the surface about each point, within [-100, 100] */
-    int8_t *side;           /* lattice_side of each point */
-    uint32_t *node;         /* of each point: index into nodes, or UINT32_MAX */
+    int8_t *side;           /* lattice_side per point */
+    uint32_t *node;         /* per point: index into nodes, or UINT32_MAX */
     STARG_ARRAY(lattice_node) nodes;
     size_t inside; /* points inside */
 } lattice;
 
-/* The largest number of points; about 0.7 GB. */
+/* Largest number of points; about 0.7 GB. */
 #define LATTICE_LIMIT ((size_t)1 << 26)
 
-/* Side of the cubes, or a larger one, for which the lattice has no more points than it may. */
+/* Side of the cubes: `spacing`, or larger to respect LATTICE_LIMIT. */
 double lattice_spacing(const tetra_shape *shape, double spacing);
 
-/* Finds what is inside. Errors: MEMORY, CANCELLED. */
+/* Finds the inside points. Errors: MEMORY, CANCELLED. */
 starg_status lattice_create(starg_context *context, const tetra_shape *shape, double spacing,
                             lattice *out);
 void lattice_free(lattice *l);
 
-/* Finds the cuts, then moves points that have one too near onto it. Errors: MEMORY, CANCELLED. */
+/* Finds the cuts and warps points to cuts that are too close. Errors: MEMORY, CANCELLED. */
 starg_status lattice_cut_edges(lattice *l);
 void lattice_warp(lattice *l);
 
-/* Number of a point, or SIZE_MAX outside of the lattice. */
+/* Number of a point, or SIZE_MAX outside the lattice. */
 size_t lattice_number(const lattice *l, const lattice_point *p);
 void lattice_position(const lattice *l, const lattice_point *p, double out[3]);
 
-/* The cut on the edge between two neighbours, dead or alive; NULL if there never was one. */
+/* The cut on the edge between two neighbours, live or dead; NULL if there never was one. */
 lattice_cut *lattice_cut_between(const lattice *l, const lattice_point *p, const lattice_point *q);
 
 #endif

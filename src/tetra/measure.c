@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How far two surfaces are from one another. A triangle is halved at its longest edge until no edge
- * is longer than the step, and the distance taken at the middle of that edge: each point of a part
- * is nearer than the step to it, and the distance to a surface changes no faster than the point
- * moves. For the same reason a part is left alone that cannot hold more than the greatest distance
- * so far.
+/* Distance between two surfaces. A triangle is bisected at its longest edge until no edge is longer
+ * than the step, and the distance is measured at that edge's midpoint: every point of a part is
+ * closer than the step to it, and the distance to a surface changes no faster than the point moves.
+ * For the same reason, parts that cannot exceed the largest distance so far are skipped.
  *
- * Invariant: what is left alone is no greater than the result, so that the result does not depend
- * on the order in which threads come by. Cost: look-ups of O(log n), in the number of parts whose
- * size is about the greatest distance, at most area / step^2. */
+ * Invariant: skipped parts do not exceed the result, so it does not depend on the order of the
+ * threads. Cost: look-ups of O(log n), in the number of parts of about the size of the largest
+ * distance, at most area / step^2. */
 #include <math.h>
 #include <stdatomic.h>
 

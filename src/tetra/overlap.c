@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Do tetrahedra overlap that share no face?
+/* Detects overlaps between tetrahedra that share no face.
  *
  * A point off all faces lies in as many positive tetrahedra as the boundary winds around it: both
- * numbers change by one across a boundary face and by nothing across an inner one, and both vanish
- * far away. So there is overlap exactly where the boundary winds twice or more. Where two boundary
- * faces pass through one another, or lie on one another, there is: on the inner side of both it
- * winds at least twice (or the faces are two walls between parts that should share them, which is
- * not conforming). Where none do, the number is the same all through each part whose tetrahedra
- * are connected by faces, unless the part holds another; then that other has the higher one. One
- * point of each part decides.
+ * numbers change by one across a boundary face and not across an inner face, and both vanish far
+ * away. So there is an overlap exactly where the boundary winds twice or more. If two boundary
+ * faces cross or coincide, there is one: on the inner side of both it winds at least twice (or the
+ * faces are two walls between parts that should share them, which is not conforming). If none do,
+ * the number is constant in each face-connected part, unless the part contains another; that one
+ * then has the higher number. So one point per part decides.
  *
- * Stages: the boundary; pairs of its faces that cross; parts; a point in each. All exact.
- * Cost: O(n) for n tetrahedra, and O(m log m) for m boundary faces that hardly touch. */
+ * Stages: the boundary; pairs of its faces that cross; parts; a point in each. All exact. Cost:
+ * O(n) for n tetrahedra, and O(m log m) for m boundary faces with few contacts. */
 #include "core/memory.h"
 #include "geometry/bvh.h"
 #include "geometry/predicates.h"
@@ -27,9 +26,9 @@ typedef struct checker {
     const starg_tetmesh *mesh;
     size_t face_count;
     uint32_t *faces; /* of the boundary, outward, 3 each */
-    uint32_t *owner; /* the tetrahedron of each */
+    uint32_t *owner; /* the tetrahedron of each face */
     bvh *tree;
-    uint32_t crossing[2]; /* two faces of the boundary, if found */
+    uint32_t crossing[2]; /* two crossing boundary faces, if found */
     bool found;
     bool cancelled;
     size_t pairs;
@@ -90,7 +89,7 @@ static starg_status check_crossings(checker *c) {
 
 /* ---- parts inside others ---- */
 
-/* The rounded centre, if it is strictly inside. */
+/* The rounded centroid, if it is strictly inside. */
 static bool inner_point(const starg_tetmesh *mesh, size_t t, double out[3]) {
     const double *p[4];
     for (int k = 0; k < 4; k++)
@@ -119,7 +118,7 @@ static starg_status fail_winding(const checker *c, size_t t, int winding) {
         t, winding);
 }
 
-/* Looks at the first tetrahedron of each part that has an inner point. */
+/* Tests the first tetrahedron of each part that has an inner point. */
 static starg_status check_parts(checker *c) {
     starg_status status = STARG_OK;
     const starg_tetmesh *mesh = c->mesh;

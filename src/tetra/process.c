@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Child processes by fork and exec. Between the two the child calls async-signal-safe functions
- * only, since other threads of the parent may hold locks. It leads a process group of its own, so
- * that what it starts is killed with it, and a terminal's interrupt reaches it through the parent
- * only. */
+/* Child processes by fork and exec. Between the two the child calls only async-signal-safe
+ * functions, since other threads of the parent may hold locks. It leads its own process group, so
+ * that its children are killed with it, and terminal interrupts reach it only through the
+ * parent. */
 #include "tetra/process.h"
 
 #include <dirent.h>
@@ -25,8 +25,8 @@
 
 enum { NOT_FOUND = 127, FIRST_NAP = 1000000, LONGEST_NAP = 20000000 }; /* naps in nanoseconds */
 
-/* The child's half; never returns. Where the system can, it dies with its parent. */
-static void become(const char *const *arguments) {
+/* Runs in the child; never returns. Where supported, the child dies with its parent. */
+static void exec_child(const char *const *arguments) {
     setpgid(0, 0);
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -37,7 +37,7 @@ static void become(const char *const *arguments) {
         dup2(nothing, stream);
     signal(SIGPIPE, SIG_DFL);
     signal(SIGXFSZ, SIG_DFL);
-    union { /* exec takes what it does not change as if it might */
+    union { /* exec takes non-const pointers but does not write */
         const char *const *given;
         char *const *taken;
     } words = {.given = arguments};
@@ -59,9 +59,9 @@ static starg_status explain(starg_context *context, const char *stage, const cha
     return STARG_OK;
 }
 
-/* Why to stop waiting: cancellation, or time. */
-static starg_status look_around(starg_context *context, const char *stage, const char *program,
-                                double deadline) {
+/* Checks cancellation and time while waiting. */
+static starg_status check_stop(starg_context *context, const char *stage, const char *program,
+                               double deadline) {
     starg_status status = starg_check_cancel(context, stage);
     if (status == STARG_OK && (starg_clock() > deadline || starg_time_is_over(context)))
         status = starg_fail(context, STARG_ERROR_SOLVER, stage,
@@ -81,10 +81,10 @@ static starg_status await(starg_context *context, const char *stage, const char 
         if (ended < 0 && errno != EINTR)
             return starg_fail(context, STARG_ERROR_SOLVER, stage, "'%s' was lost: %s", program,
                               strerror(errno));
-        starg_status reason = look_around(context, stage, program, deadline);
+        starg_status reason = check_stop(context, stage, program, deadline);
         if (reason != STARG_OK) {
             kill(-child, SIGKILL);
-            kill(child, SIGKILL); /* in case it has no group yet */
+            kill(child, SIGKILL); /* it may have no group yet */
             while (waitpid(child, &status, 0) < 0 && errno == EINTR)
                 continue;
             return reason;
@@ -102,7 +102,7 @@ starg_status starg_process_run(starg_context *context, const char *stage,
         return starg_fail(context, STARG_ERROR_SOLVER, stage, "cannot start '%s': %s", arguments[0],
                           strerror(errno));
     if (child == 0)
-        become(arguments);
+        exec_child(arguments);
     return await(context, stage, arguments[0], child, seconds);
 }
 

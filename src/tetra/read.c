@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading a tetrahedral mesh of any format; the format is recognized by content. TetGen's pair
- * of files has none, and is known by its name. */
+/* Reads a tetrahedral mesh of any format, recognized by content; TetGen's pair of files by name. */
 #include "core/file.h"
 #include "core/memory.h"
 #include "tetra/io.h"
@@ -30,16 +29,7 @@ bool starg_tetmesh_recognized(const void *bytes, size_t size, const char *name) 
     return is_tetgen(name) || detect(&source) != NULL;
 }
 
-/* Long names are shown by their ends, so that a message has room for what it says. */
-static void show_name(const char *name, char *shown, size_t size) {
-    size_t length = strlen(name);
-    if (length < size)
-        memcpy(shown, name, length + 1);
-    else
-        snprintf(shown, size, "...%s", name + length - (size - 4));
-}
-
-/* Runs one reader on sources whose names are short enough to be shown. */
+/* Runs a reader on sources with shortened names. */
 static starg_status read_source(const starg_source *source, const starg_source *elements,
                                 starg_tetmesh **out) {
     starg_status status = STARG_OK;
@@ -73,7 +63,7 @@ starg_status starg_tetmesh_read_memory(starg_context *context, const void *bytes
                                        const char *name, starg_tetmesh **out) {
     char shown[256];
     *out = NULL;
-    show_name(name, shown, sizeof shown);
+    starg_source_shorten(name, shown, sizeof shown);
     const starg_source source = {context, shown, bytes, size};
     return read_source(&source, NULL, out);
 }
@@ -98,7 +88,7 @@ static starg_status read_pair(starg_context *context, const char *path, starg_te
     STARG_TRY(with_extension(context, path, ".ele", &names[1]));
     for (int i = 0; i < 2; i++) {
         STARG_TRY(starg_file_read(context, STARG_MESH_FILE, names[i], &bytes[i], &size[i]));
-        show_name(names[i], shown[i], sizeof shown[i]);
+        starg_source_shorten(names[i], shown[i], sizeof shown[i]);
     }
     const starg_source points = {context, shown[0], bytes[0], size[0]};
     const starg_source elements = {context, shown[1], bytes[1], size[1]};

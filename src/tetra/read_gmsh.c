@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Gmsh .msh, versions 2 and 4.1, text or binary. Nodes have tags of their own, which need not be
- * consecutive; elements come in blocks of one type. Other sections are skipped.
+/* Gmsh .msh, versions 2 and 4.1, text or binary. Nodes have tags, not necessarily consecutive;
+ * elements come in blocks of one type. Other sections are skipped.
  *
- * Version 2 in binary: element blocks of (type, count, tags), numbers of four bytes; in text one
- * line an element. Version 4: entity blocks in both, tags as size_t. */
+ * Version 2 binary: element blocks of (type, count, tags), four-byte numbers; text: one element a
+ * line. Version 4: entity blocks in both, tags as size_t. */
 #include <stdlib.h>
 
 #include "core/memory.h"
@@ -58,7 +58,7 @@ static void begin_data(gmsh_reader *gmsh) {
 
 /* ---- sections ---- */
 
-/* Version, 0 or 1 for binary, size of a size_t; binary: a one that tells the order of bytes. */
+/* Version, 0 or 1 for binary, size of a size_t; binary: a one that reveals the byte order. */
 static starg_status read_format(gmsh_reader *gmsh) {
     starg_status status = STARG_OK;
     starg_scan *scan = &gmsh->numbers.scan;
@@ -124,7 +124,7 @@ done:
     return status;
 }
 
-/* One entity's nodes: all tags, then all positions (with parameters, if it has them). */
+/* Nodes of one entity: all tags, then all positions (with parameters if present). */
 static starg_status read_node_block(gmsh_reader *gmsh) {
     starg_status status = STARG_OK;
     int64_t dimension, entity, parametric, count, *tags = NULL;
@@ -153,7 +153,7 @@ done:
     return status;
 }
 
-/* Blocks, items, least and greatest tag: how sections of version 4 begin. */
+/* Header of version 4 sections: blocks, items, least and greatest tag. */
 static starg_status read_blocks(gmsh_reader *gmsh, starg_status (*read)(gmsh_reader *)) {
     starg_status status = STARG_OK;
     int64_t header[4];
@@ -171,7 +171,7 @@ done:
 
 /* ---- elements ---- */
 
-/* Number of nodes of the first types; 0 for what is not known. */
+/* Number of nodes of the first types; 0 if unknown. */
 static int64_t type_nodes(int64_t type) {
     static const uint8_t nodes[] = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                     8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
@@ -201,7 +201,7 @@ static int compare_nodes(const void *left, const void *right) {
     return (a->tag > b->tag) - (a->tag < b->tag);
 }
 
-/* Tags are mostly 1, 2, 3, ...; else by bisection, once they are sorted. */
+/* Tags are mostly 1, 2, 3, ...; otherwise binary search after sorting. */
 static starg_status find_node(gmsh_reader *gmsh, int64_t tag, int64_t *index) {
     const node key = {tag, 0}, *found = NULL;
     if (tag >= 1 && (uint64_t)tag <= gmsh->nodes.count && gmsh->nodes.data[tag - 1].tag == tag)
@@ -215,7 +215,7 @@ static starg_status find_node(gmsh_reader *gmsh, int64_t tag, int64_t *index) {
     return STARG_OK;
 }
 
-/* The nodes of one element, whose tag and other tags have been read. */
+/* Reads the nodes of an element, after its tag and other tags. */
 static starg_status read_corners(gmsh_reader *gmsh, tet_type number, int64_t type, int64_t region) {
     starg_status status = STARG_OK;
     int64_t corner[4] = {0}, tag;
@@ -296,7 +296,7 @@ done:
 
 /* ---- the file ---- */
 
-/* Passes over lines up to the one that ends the section. */
+/* Skips lines up to the one that ends the section. */
 static starg_status skip_section(gmsh_reader *gmsh, starg_word name) {
     starg_scan *scan = &gmsh->numbers.scan;
     starg_word word;

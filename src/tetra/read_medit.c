@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* MEDIT .mesh, INRIA's text format: keywords, each with a count and as many entries. Vertices and
- * tetrahedra carry a reference, which is the region. Sections of no concern are numbers up to the
- * next keyword, and are skipped as such. */
+/* MEDIT .mesh, INRIA's text format: keywords, each with a count and that many entries. Vertices and
+ * tetrahedra carry a reference, which is the region. Other sections are numbers up to the next
+ * keyword and are skipped. */
 #include "tetra/io.h"
 
 bool tet_medit_matches(const starg_source *source) {
@@ -85,7 +85,7 @@ static bool is_keyword(starg_word word) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
 }
 
-/* A section whose name means solid cells may be there only if it is empty. */
+/* Sections of other solid cells are accepted only if empty. */
 static starg_status check_cells(tet_builder *builder, tet_numbers *numbers, starg_word keyword) {
     static const char *const cells[][2] = {{"Hexahedra", "a hexahedron"},
                                            {"Prisms", "a prism"},

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* TetGen's pair of text files: .node (points) and .ele (tetrahedra). Lines begin with their number,
- * the first of which is 0 or 1. The first attribute of a tetrahedron is its region. */
+/* TetGen's pair of text files: .node (points) and .ele (tetrahedra). Lines start with their number,
+ * beginning at 0 or 1. The first attribute of a tetrahedron is its region. */
 #include "tetra/io.h"
 
 static starg_status read_points(tet_builder *builder, int64_t *first) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords are text
- * lines in both. Version 5.1 replaced the list of cells (count, then indices, cell by cell) by
- * offsets and connectivity. Cells become tetrahedra when their types are known, which comes last.
- * The first integer array of the cells, if it follows at once, gives the regions. */
+/* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords are text in
+ * both. Version 5.1 replaced the cell list (count, then indices, cell by cell) by offsets and
+ * connectivity. Cell types come last, so tetrahedra are selected at the end. The first integer
+ * array of the cells, if it follows at once, gives the regions. */
 #include <strings.h>
 
 #include "core/memory.h"
@@ -18,7 +18,7 @@ typedef struct vtk_reader {
     STARG_ARRAY(size_t) cells;    /* those that are tetrahedra */
 } vtk_reader;
 
-/* Lines without words before the magic are forgiven. */
+/* Accepts blank lines before the magic. */
 bool tet_vtk_matches(const starg_source *source) {
     static const char *const magic[] = {"#", "vtk", "DataFile"};
     starg_scan scan = starg_scan_make(source);
@@ -55,12 +55,12 @@ static starg_status tick(vtk_reader *vtk) {
                               (size_t)(vtk->numbers.scan.at - source_of(vtk)->bytes));
 }
 
-/* Counts in lines of keywords are text in binary files, too. */
+/* Counts in keyword lines are text, in binary files too. */
 static starg_status read_count(vtk_reader *vtk, const char *what, int64_t *count) {
     return starg_scan_integer(&vtk->numbers.scan, what, count);
 }
 
-/* Binary data begins behind the line's end, which is one byte (a reader of lines made it). */
+/* Binary data begins after the line end, which is one byte. */
 static void begin_data(vtk_reader *vtk) {
     starg_scan *scan = &vtk->numbers.scan;
     if (vtk->numbers.encoding != TET_TEXT)
@@ -246,7 +246,7 @@ done:
 
 enum { POINT = 1, TETRAHEDRON = 10 };
 
-/* Types that are skipped: points, lines, triangles, polygons, quadrilaterals of all orders. */
+/* Skipped types: points, lines, triangles, polygons, quadrilaterals of all orders. */
 static bool is_flat(int64_t type) {
     static const uint8_t flat[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34, 35, 36};
     for (size_t i = 0; i < sizeof flat; i++)
@@ -293,7 +293,7 @@ done:
     return status;
 }
 
-/* Some writers leave the types out: then cells of four corners are tetrahedra. */
+/* Some writers omit types: cells of four corners are then tetrahedra. */
 static starg_status guess_types(vtk_reader *vtk) {
     starg_status status = STARG_OK;
     starg_log(source_of(vtk)->context, STARG_LOG_WARNING,
@@ -313,7 +313,7 @@ static bool at_end(const vtk_reader *vtk) {
     return !starg_scan_word(&ahead, &word);
 }
 
-/* CELL_DATA n, SCALARS name type [1], LOOKUP_TABLE name: false when something else stands here. */
+/* CELL_DATA n, SCALARS name type [1], LOOKUP_TABLE name: false if anything else follows. */
 static bool begin_labels(vtk_reader *vtk, tet_type *type) {
     starg_scan *scan = &vtk->numbers.scan;
     starg_word word;

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Isosurface stuffing: tetrahedra of bounded angles in any solid.
+/* Isosurface stuffing: tetrahedra with bounded angles in any solid.
  *
  * Source: F. Labelle, J. R. Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good
- * dihedral angles, 2007, with a lattice of one size.
+ * dihedral angles, 2007, with a uniform lattice.
  *
  * Stages: a lattice fine enough to have points inside; its cuts and its warp (lattice.c); then each
- * tetrahedron of the lattice that has an inside corner is cut down to its inside part:
+ * lattice tetrahedron with an inside corner is cut down to its inside part:
  *
- *   corners outside   what is left
- *   0                 the tetrahedron
- *   all but one       a tetrahedron: outside corners move to the cuts of their edges to the inside
- * one 1, and 1 on it    a pyramid over the quadrilateral that is left of a face, two tetrahedra 1,
- * or 2 and 2     a triangular prism, three tetrahedra
+ *   corners outside       inside part
+ *   0                     the tetrahedron
+ *   all but one           a tetrahedron: outside corners move to their edges' cuts
+ *   1, and 1 on it        a pyramid over the quadrilateral left of a face, two tetrahedra
+ *   1, or 2 and 2         a triangular prism, three tetrahedra
  *
- * A quadrilateral that is left of a face is shared with the next tetrahedron, so its diagonal
- * depends on the face alone. If its two cuts lie on a long and a short edge, the diagonal ends in
+ * The quadrilateral left of a face is shared with the neighbouring tetrahedron, so its diagonal
+ * depends on the face only. If its two cuts lie on a long and a short edge, the diagonal ends in
  * the cut of the long one; otherwise in the cut of the inside corner with the higher number. With
- * this choice the three diagonals of a prism are never cyclic, so that it can be cut.
+ * this choice the three diagonals of a prism are never cyclic, so it can be cut.
  *
- * The tetrahedra of the lattice join two neighbouring cubes' centres (a long edge) to two ends of
- * an edge of the square between them (the other long edge). Cost: linear in the lattice. */
+ * A lattice tetrahedron joins the centres of two neighbouring cubes (a long edge) to two ends of an
+ * edge of the square between them (the other long edge). Cost: linear in the lattice. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -30,22 +30,21 @@
 
 static const char STAGE[] = TETRA_STAGE;
 
-enum { FINEST = 24 }; /* halvings of the spacing before a solid counts as too thin */
-static const double TOO_THIN =
-    8; /* times that the finest lattice is wider than the solid is thick */
+enum { FINEST = 24 };             /* halvings of the spacing before a solid counts as too thin */
+static const double TOO_THIN = 8; /* limit for the cube side over the solid's thickness */
 
 /* A corner of a lattice tetrahedron. */
 typedef struct corner {
     lattice_point point;
     size_t number;
     lattice_side side;
-    bool odd; /* a centre */
+    bool odd; /* is it a centre? */
 } corner;
 
 typedef struct stuffer {
     starg_context *context;
     lattice lattice;
-    uint32_t *vertex; /* of each lattice point: of the mesh, or UINT32_MAX */
+    uint32_t *vertex; /* per lattice point: vertex of the mesh, or UINT32_MAX */
     STARG_ARRAY(double) vertices;
     STARG_ARRAY(uint32_t) tetrahedra;
 } stuffer;
@@ -100,8 +99,8 @@ static bool is_long(const corner *a, const corner *b) {
     return a->odd == b->odd;
 }
 
-/* In the face of the inside corners a and b and the outside corner o: does the diagonal of what is
- * left go from a to the cut of b? */
+/* In the face of the inside corners a and b and the outside corner o: does the diagonal of the
+ * quadrilateral go from a to the cut of b? */
 static bool diagonal_from(const corner *a, const corner *b, const corner *o) {
     if (is_long(a, o) != is_long(b, o))
         return is_long(b, o);
@@ -145,8 +144,8 @@ done:
 }
 
 /* The rails are the edge a b and, for each outside corner, its cuts to a and to b. The third
- * quadrilateral lies inside, and takes the diagonal that makes no cycle: if the first rail is
- * before one and after the other, that decides; else either will do. */
+ * quadrilateral is interior and takes the diagonal that avoids a cycle: determined if the first
+ * rail is before one and after the other; otherwise either will do. */
 static starg_status stuff_two(stuffer *s, const corner *a, const corner *b,
                               const corner *const out[2]) {
     starg_status status = STARG_OK;
@@ -184,7 +183,7 @@ done:
     return status;
 }
 
-/* One inside corner, or none outside: what is left is a tetrahedron. */
+/* One inside corner, or none outside: the inside part is a tetrahedron. */
 static starg_status stuff_tetrahedron(stuffer *s, const corner c[4], const corner *inside) {
     starg_status status = STARG_OK;
     uint32_t v[4];
@@ -248,7 +247,7 @@ done:
     return status;
 }
 
-/* Pairs of centres; those at the border of the lattice have nothing inside. */
+/* Pairs of centres; those at the lattice border contain nothing inside. */
 static starg_status stuff_all(stuffer *s) {
     starg_status status = STARG_OK;
     const int64_t *cubes = s->lattice.cubes;
@@ -273,14 +272,14 @@ static starg_status fail_thin(stuffer *s) {
         LATTICE_LIMIT);
 }
 
-/* Is the solid far thinner than the finest lattice is wide? Then at most stray points are inside.
- * Twice the volume over the area is the thickness of a plate. */
+/* Is the solid much thinner than the lattice spacing? Then at most stray points are inside. Twice
+ * the volume over the area is the thickness of a plate. */
 static bool is_below_lattice(const tetra_shape *shape, double spacing) {
     double finest = lattice_spacing(shape, ldexp(spacing, -FINEST));
     return 2 * fabs(shape->volume) < finest / TOO_THIN * starg_mesh_area(shape->mesh);
 }
 
-/* Halves the spacing until a point stays inside after the warp. */
+/* Halves the spacing until a point remains inside after the warp. */
 static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *spacing) {
     starg_status status = STARG_OK;
     if (is_below_lattice(shape, *spacing))
@@ -298,7 +297,7 @@ static starg_status make_lattice(stuffer *s, const tetra_shape *shape, double *s
                 }
         }
         lattice_free(&s->lattice);
-        if (taken > *spacing) /* no finer lattice fits into memory */
+        if (taken > *spacing) /* a finer lattice does not fit into memory */
             break;
         *spacing *= 0.5;
     }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The boundary of a tetrahedral mesh: the faces that one tetrahedron alone has. */
+/* The boundary of a tetrahedral mesh: the faces of a single tetrahedron. */
 #include "core/memory.h"
 #include "mesh/mesh.h"
 #include "tetra/tetmesh.h"
 
 static const char STAGE[] = "tetrahedra";
 
-/* Faces with the mesh's vertex numbers; marks the vertices in use. */
+/* Lists boundary faces with the mesh's vertex numbers; marks the vertices used. */
 static size_t collect_faces(const starg_tetmesh *mesh, uint32_t *faces, uint32_t *numbers) {
     size_t count = 0;
     for (size_t f = 0; f < 4 * mesh->count; f++) {
@@ -29,7 +29,7 @@ static size_t count_faces(const starg_tetmesh *mesh) {
     return count;
 }
 
-/* Numbers the marked vertices in order; `map` gets their old numbers. */
+/* Numbers the marked vertices in order; `map` receives their old numbers. */
 static size_t number_vertices(const starg_tetmesh *mesh, uint32_t *numbers, uint32_t *map) {
     size_t count = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tetrahedra by the program TetGen [Si 2015], run as a child, whose licence and crashes stay
- * outside.
+/* Tetrahedra by the program TetGen [Si 2015], run as a child process, which keeps its licence and
+ * its crashes separate.
  *
- * Stages: the vertices that faces use, numbered; the surface as a .smesh in a private folder,
- * scaled to unit size by a power of two; the run; its .node and .ele; regions that are not in the
- * solid (the cavities) dropped; the check of all that is asked of it.
+ * Stages: number the vertices used by faces; write the surface as .smesh to a private folder,
+ * scaled to unit size by a power of two; run; read .node and .ele; drop regions outside the solid
+ * (cavities); check all requirements.
  *
- * TetGen prints 16 digits, one too few: the vertices that it was given keep their own coordinates.
- * Nothing that it says is believed: orientation, neighbours and the boundary are checked, exactly,
- * and whatever is wrong is a refusal. */
+ * TetGen prints 16 digits, one too few: input vertices keep their own coordinates. Nothing in its
+ * output is trusted: orientation, neighbours and the boundary are checked exactly, and any
+ * deviation is an error. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,7 +86,7 @@ static void write_surface(const run *r, FILE *stream) {
         fprintf(stream, "3 %lu %lu %lu\n", (unsigned long)r->numbers[mesh->faces[3 * f]],
                 (unsigned long)r->numbers[mesh->faces[3 * f + 1]],
                 (unsigned long)r->numbers[mesh->faces[3 * f + 2]]);
-    fputs("0\n0\n", stream); /* no holes, no regions: those are found afterwards */
+    fputs("0\n0\n", stream); /* no holes, no regions: those are determined afterwards */
 }
 
 static starg_status write_input(run *r) {
@@ -100,8 +100,8 @@ done:
     return status;
 }
 
-/* p: from a surface, Y: whose faces stay as they are, q: no needles, a: greatest volume, A: regions
- * are labelled, F: no face files, Q: no talk. */
+/* p: from a surface, Y: keep its faces, q: no needles, a: largest volume, A: label regions, F: no
+ * face files, Q: quiet. */
 static starg_status run_program(run *r, double volume) {
     char switches[64];
     const char *program = r->options->tetgen != NULL ? r->options->tetgen : "tetgen";
@@ -135,7 +135,7 @@ done:
     return status;
 }
 
-/* Back to the model's size; what was given to the program gets its own coordinates again. */
+/* Undoes the scaling; input vertices get their own coordinates again. */
 static starg_status restore_vertices(run *r) {
     const starg_mesh *mesh = r->solid->mesh;
     double *out = r->builder.points.vertices.data;
@@ -169,8 +169,8 @@ static double corner_volume(const tet_builder *b, size_t t, double center[3]) {
     return fabs(vec3_triple(edge[0], edge[1], edge[2]));
 }
 
-/* The largest tetrahedron of each region tells whether the region is in the solid. Regions are
- * numbered from 1; tetrahedra outside are dropped. */
+/* The largest tetrahedron of each region decides whether the region is in the solid. Regions are
+ * numbered from 1; drops tetrahedra outside. */
 static starg_status drop_cavities(run *r) {
     starg_status status = STARG_OK;
     tet_builder *b = &r->builder;
@@ -205,9 +205,9 @@ done:
     return status;
 }
 
-/* ---- is the boundary the surface? ---- */
+/* ---- comparison of the boundary with the surface ---- */
 
-/* A face that begins with its lowest vertex; its sense is kept. */
+/* A face rotated to start with its lowest vertex. */
 typedef struct turned_face {
     uint32_t v[3];
 } turned_face;
@@ -262,8 +262,8 @@ done:
     return status;
 }
 
-/* Positive tetrahedra whose boundary is embedded cannot overlap, so that they are trusted to be a
- * mesh; that they fit together is checked. */
+/* Positive tetrahedra with an embedded boundary cannot overlap, so the overlap check is skipped;
+ * adjacency is checked. */
 static starg_status adopt(run *r, starg_tetmesh **out) {
     starg_status status = STARG_OK;
     tet_builder *b = &r->builder;
@@ -276,8 +276,8 @@ done:
     return status;
 }
 
-/* Everything but memory, time and cancellation is the program's fault. */
-static starg_status blame(run *r, starg_status status) {
+/* Everything but memory, time and cancellation counts as a failure of the program. */
+static starg_status as_solver_error(run *r, starg_status status) {
     char message[384];
     if (status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ||
         status == STARG_ERROR_TIME || status == STARG_ERROR_SOLVER)
@@ -287,7 +287,7 @@ static starg_status blame(run *r, starg_status status) {
 }
 
 static void clean_up(run *r, const starg_source *points, const starg_source *elements) {
-    union { /* blocks that were filled here, and are read-only since */
+    union { /* blocks filled here and read-only since */
         const char *read;
         char *owned;
     } blocks[2] = {{.read = points->bytes}, {.read = elements->bytes}};
@@ -328,5 +328,5 @@ done:
     }
     clean_up(&r, &points, &elements);
     starg_c_locale_leave(&locale);
-    return blame(&r, status);
+    return as_solver_error(&r, status);
 }

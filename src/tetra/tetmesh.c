@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Making a tetrahedral mesh: counts, coordinates, indices, orientation, neighbours, overlap. Every
- * check names the elements that fail it. */
+/* Creates a tetrahedral mesh after checking counts, coordinates, indices, orientation, neighbours
+ * and overlap. Every check names the elements that fail it. */
 #include "tetra/tetmesh.h"
 
 #include <math.h>
@@ -52,8 +52,8 @@ static starg_status check_indices(const starg_tetmesh *mesh) {
     return STARG_OK;
 }
 
-/* Turns what is wrong-way; collects what has no volume. orient3d is 1 where the fourth vertex lies
- * below the first three, which is the negative orientation here. */
+/* Reverses negative tetrahedra; collects those without volume. orient3d is 1 if the fourth vertex
+ * lies below the first three, which is the negative orientation here. */
 static starg_status orient(starg_tetmesh *mesh) {
     uint64_t flat[STARG_ERROR_INDICES];
     size_t flat_count = 0;
@@ -80,7 +80,7 @@ static starg_status orient(starg_tetmesh *mesh) {
     return STARG_OK;
 }
 
-/* Labels that are all the same say nothing. */
+/* Identical labels carry no information. */
 static void drop_uniform_regions(starg_tetmesh *mesh) {
     for (size_t t = 0; mesh->regions != NULL && t < mesh->count; t++)
         if (mesh->regions[t] != mesh->regions[0])

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of a tetrahedral mesh. */
+/* Internals of a tetrahedral mesh. */
 #ifndef STARG_TETRA_TETMESH_H
 #define STARG_TETRA_TETMESH_H
 
@@ -16,7 +16,7 @@ struct starg_tetmesh {
     int32_t *regions;     /* count, or NULL */
 };
 
-/* Four faces a tetrahedron are numbered in 32 bits, and one number stands for none. */
+/* Faces (four per tetrahedron) are numbered in 32 bits, with one number reserved for none. */
 #define TETMESH_LIMIT ((size_t)1 << 29)
 
 /* Vertices of the face opposite vertex k of a positive tetrahedron, counter-clockwise seen from
@@ -27,18 +27,18 @@ static inline const double *tetmesh_corner(const starg_tetmesh *mesh, size_t tet
     return mesh->vertices + 3 * (size_t)mesh->tetrahedra[4 * tetrahedron + (size_t)k];
 }
 
-/* Takes over blocks of the context (on success only) after the checks of starg_tetmesh_create;
- * `regions` may be NULL. `trusted`: the maker knows that tetrahedra that share no face do not
- * overlap, which is the one check that takes more than linear time. */
+/* Takes ownership of blocks of the context (on success only) after the checks of
+ * starg_tetmesh_create; `regions` may be NULL. `trusted`: the caller knows that tetrahedra without
+ * a common face do not overlap, which skips the one check that takes more than linear time. */
 starg_status tetmesh_adopt(starg_context *context, double *vertices, size_t vertex_count,
                            uint32_t *tetrahedra, size_t count, int32_t *regions, bool trusted,
                            starg_tetmesh **out) STARG_PRIVATE(tetmesh_adopt);
 
-/* A copy with vertices, tetrahedra and neighbours of its own, without regions. Errors: MEMORY. */
+/* Copies vertices, tetrahedra and neighbours, without regions. Errors: MEMORY. */
 starg_status tetmesh_copy(starg_context *context, const starg_tetmesh *mesh, starg_tetmesh **out);
 
-/* The power of two of the mesh's extent: differences of coordinates times 2^-exponent are at most 1
- * in magnitude, so that their products neither over- nor underflow as a whole. */
+/* Exponent of the mesh's extent: differences of coordinates times 2^-exponent are at most 1 in
+ * magnitude, so that products of them neither overflow nor underflow as a whole. */
 int tetmesh_exponent(const starg_tetmesh *mesh) STARG_PRIVATE(tetmesh_exponent);
 
 /* Six times the volume of a tetrahedron, in units of 2^exponent cubed. */
@@ -48,7 +48,7 @@ double tetmesh_scaled_volume(const starg_tetmesh *mesh, size_t tetrahedron, int 
  */
 starg_status tetmesh_connect(starg_tetmesh *mesh);
 
-/* The least height over the longest edge of any tetrahedron. */
+/* The least height over the longest edge among all tetrahedra. */
 double tetmesh_flattest(const starg_tetmesh *mesh);
 
 /* Errors: MESH (two tetrahedra overlap), MEMORY, CANCELLED. */

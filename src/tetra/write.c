@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writing a legacy VTK unstructured grid of tetrahedra, as text or binary (big endian), with a
- * label for each. The file appears under its name when it is complete. */
+/* Writes a legacy VTK unstructured grid of tetrahedra, as text or binary (big endian), with a label
+ * for each. The file gets its name once it is complete. */
 #include <ctype.h>
 
 #include "core/file.h"
@@ -42,7 +42,7 @@ static void put_integer(const writer *w, int32_t value, char behind) {
         fprintf(w->stream, "%ld%c", (long)value, behind);
 }
 
-/* Binary blocks end with a line of their own. */
+/* Ends a binary block with a line end. */
 static void end_block(const writer *w) {
     if (w->binary)
         fputc('\n', w->stream);

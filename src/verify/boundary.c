@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is the boundary of a decomposition the surface of the model?
+/* Checks that the boundary of a decomposition is the surface of the model.
  *
- * An outer face must be a face of the model, corner for corner, or have its corners on one within
- * a billionth of the diagonal (which leaves room for the rounding of points that were put on it)
- * and look the same way. The model's face is searched near the outer face's centre.
+ * An outer face must be a face of the model, corner for corner, or have its corners on one within a
+ * billionth of the diagonal (which allows for rounding of points constructed on it) with the same
+ * orientation. The model's face is searched near the outer face's centroid.
  *
- * Why that is enough, with the area of each shell: the boundary is closed (verify/facets.c) and
- * lies on the model, so on each shell of it, it is a whole multiple of that shell: what covers one
- * face n times must cover its neighbour across an edge of two faces as often (verify/shells.h). All
- * faces look the way of the model, so areas add up without cancelling, and the area says that the
- * multiple is one.
+ * Why this is enough together with the area of each shell: the boundary is closed (verify/facets.c)
+ * and lies on the model, so on each shell it is an integer multiple of that shell: whatever covers
+ * one face n times must cover its neighbour across an edge of two faces as often (verify/shells.h).
+ * All faces are oriented like the model, so areas add up without cancelling, and the area shows
+ * that the multiple is one.
  *
  * Cost: O(n log n). Signs do not depend on tolerances here; only "on" does. */
 #include <math.h>
@@ -33,10 +33,10 @@ typedef struct matcher {
     const verify_surface *outer, *model;
     const verify_tree *tree;
     int scale;
-    double near;  /* how far "on" reaches, in the model's unit */
-    double close; /* the same squared, in scaled units         */
+    double near;  /* tolerance of "on", in the model's unit */
+    double close; /* the same squared, in scaled units */
 
-    size_t face; /* of the boundary, being placed; and where it is so far */
+    size_t face; /* the boundary face being placed; and its best place so far */
     place best;
     uint32_t on;
 } matcher;
@@ -53,7 +53,7 @@ static bool is_equal(const double *const s[3], const double *const t[3]) {
     return false;
 }
 
-/* Sum of the sides of a triangle's box, scaled: no edge is longer. */
+/* Sum of the sides of a triangle's box, scaled: an upper bound for its edges. */
 static double extent_of(const double *const t[3], int scale) {
     double sum = 0;
     for (int k = 0; k < 3; k++)
@@ -61,8 +61,8 @@ static double extent_of(const double *const t[3], int scale) {
     return ldexp(sum, scale);
 }
 
-/* Does the outer face look the way of the model's? One so thin that its corners' rounding may have
- * turned it looks any way. */
+/* Is the outer face oriented like the model's? True for faces so thin that rounding of the corners
+ * may have flipped them. */
 static bool looks_alike(const matcher *own, uint32_t face, const double *const s[3]) {
     double n[3], m[3], along = 0, length = 0;
     verify_normal(own->outer, own->face, own->scale, n);
@@ -108,7 +108,7 @@ static void find_place(matcher *own, size_t face) {
 
 /* ---- shells ---- */
 
-/* Areas of the model's shells, each kept at its lowest face. */
+/* Areas of the model's shells, each stored at its lowest face. */
 typedef struct shell {
     double area, covered, slack;
 } shell;
@@ -141,7 +141,8 @@ static void compare_shells(const shells *all, const verify_surface *model, verif
 
 /* ---- all faces ---- */
 
-static void take_down(const matcher *own, const shells *all, double rounding, verify_match *match) {
+static void record_face(const matcher *own, const shells *all, double rounding,
+                        verify_match *match) {
     const double *s[3];
     verify_corners(own->outer, own->face, s);
     match->equal += own->best == EQUAL;
@@ -178,7 +179,7 @@ starg_status verify_match_boundary(const verify_pieces *pieces, const verify_sur
         if (f % CANCEL_STEP == 0)
             STARG_TRY(starg_check_cancel(context, STAGE));
         find_place(&own, f);
-        take_down(&own, &all, rounding, match);
+        record_face(&own, &all, rounding, match);
     }
     compare_shells(&all, model, match);
 done:

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Star-shapedness about a guard: the guard is strictly on the inner side of every wall, and the
- * walls wind around it once. Both are exact.
+/* Star-shapedness with respect to a guard: the guard is strictly on the inner side of every wall,
+ * and the walls wind around it once. Both are exact.
  *
- * Why that is enough: the walls are closed (verify/facets.c). Seen from the guard every wall turns
- * the same way, so each ray from it meets as many walls as the winding number says, one: the piece
- * is all that lies before that wall, and every point of it is seen. Tetrahedra that are positive
- * contain every point as often as the walls wind around it; here once or never: within a piece
- * none overlap. */
+ * Why this is enough: the walls are closed (verify/facets.c). Seen from the guard every wall has
+ * the same orientation, so each ray from it meets as many walls as the winding number says, one:
+ * the piece is everything before that wall, and every point of it is visible. Positive tetrahedra
+ * contain every point as often as the walls wind around it; here once or never: tetrahedra of a
+ * piece do not overlap. */
 #include "verify/pieces.h"
 #include "verify/signs.h"
 

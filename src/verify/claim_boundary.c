@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The claims about boundary and volume. A boundary that is the model's surface is laid on it
- * (verify/boundary.c), and the volumes agree; of one that is only near it the distance is measured
- * (verify/nearness.c), and volumes are not compared. */
+/* Claims about boundary and volume. If the boundary is the model's surface, it is matched with it
+ * (verify/boundary.c), and the volumes agree; if it only approximates the surface, the distance is
+ * measured (verify/nearness.c) and volumes are not compared. */
 #include <math.h>
 
 #include "verify/context.h"
 
 static const double TOLERANCE = 1e-9; /* relative */
 
-/* Of the diagonal: no distance beyond that is called near. What a surface winds around lies within
- * its convex hull, whose points are hardly farther from it than that. */
+/* Relative to the diagonal: larger distances do not count as near. A surface winds only around
+ * points of its convex hull, which are hardly farther from it. */
 static const double FARTHEST = 0.5;
 
 /* ---- the boundary ---- */
@@ -119,7 +119,7 @@ static void claim_volume(const verify_context *own) {
                  ldexp(verify_volume_value(&tetrahedra), -3 * scale), ldexp(expected, -3 * scale));
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 static starg_status claim_nearness(const verify_context *own) {
     verify_nearness nearness;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The claims that a report makes in numbers: tetrahedra, volumes, contacts and radii of the pieces,
- * and how flat tetrahedra are. Cost: O(n). */
+/* The report's numeric claims: tetrahedra, volumes, contacts and radii of the pieces, and flatness
+ * of tetrahedra. Cost: O(n). */
 #include <math.h>
 
 #include "core/memory.h"
@@ -38,7 +38,8 @@ static starg_status claim_volumes(const verify_context *own) {
     const starg_pieces_report *report = own->report;
     verify_volume *volumes = NULL;
     int scale = own->pieces->scale;
-    double lost = ldexp(0x1p-1022, 3 * scale); /* where a volume in the model's unit underflows */
+    double lost =
+        ldexp(0x1p-1022, 3 * scale); /* largest volume that underflows in the model's unit */
     size_t bad = 0, first = 0;
     STARG_NEW_ZERO(own->context, STAGE, volumes, report->piece_count);
     for (size_t t = 0; t < own->mesh->count; t++)
@@ -80,8 +81,8 @@ done:
 
 /* ---- radius ---- */
 
-/* Between what bounds is the distance of a piece's guard to the nearest plane of a wall, for all
- * that rounding does to normals? Thin walls leave the most room. */
+/* Bounds for the distance from a piece's guard to the nearest plane of a wall, given the rounding
+ * of normals. Thin walls leave the widest interval. */
 static void bound_radius(const verify_context *own, size_t piece, double *least, double *most) {
     const verify_pieces *pieces = own->pieces;
     const double *guard = own->report->pieces[piece].guard;
@@ -185,7 +186,7 @@ static void claim_margins(const verify_context *own) {
 
 /* ---- flatness ---- */
 
-/* Least height over longest edge of a tetrahedron, which scaling does not change. */
+/* Least height over longest edge of a tetrahedron, which is independent of scale. */
 static double flatness_of(const verify_context *own, size_t tetrahedron) {
     const uint32_t *corners = own->mesh->tetrahedra + 4 * tetrahedron;
     const double *t[4];
@@ -199,7 +200,7 @@ static double flatness_of(const verify_context *own, size_t tetrahedron) {
                            hypot(hypot(t[i][0] - t[j][0], t[i][1] - t[j][1]), t[i][2] - t[j][2]));
     if (!(longest > 0))
         return 0;
-    int scale = -ilogb(longest); /* in a unit near the longest edge */
+    int scale = -ilogb(longest); /* unit near the longest edge */
     for (int i = 0; i < 4; i++)
         largest = fmax(largest, verify_triangle_area(t[i], t[(i + 1) % 4], t[(i + 2) % 4], scale));
     verify_add_volume(&volume, t, scale);

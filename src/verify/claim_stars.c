@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The claims about guards: star-shaped pieces by their certificates (verify/certificate.c), and
- * what share of its vertices each guard sees (verify/seen.c). */
+/* Claims about guards: star-shaped pieces by their certificates (verify/certificate.c), and the
+ * fraction of its vertices that each guard sees (verify/seen.c). */
 #include <math.h>
 
 #include "core/memory.h"
@@ -53,8 +53,8 @@ static void claim_star(const verify_context *own, const verify_certificate *cert
                      report->piece_count, proven);
 }
 
-/* All vertices but those drawn at random leave no doubt; a share that was drawn is allowed five
- * times its standard error. */
+/* If all vertices were tested the fraction must match; a sampled fraction may deviate by five times
+ * its standard error. */
 static bool agrees(const verify_seen *seen, double claimed) {
     double open = (double)(seen->pairs - seen->proven), all = (double)seen->pairs;
     if (seen->looked == seen->pairs - seen->proven)
@@ -86,7 +86,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 starg_status verify_claim_stars(const verify_context *own) {
     starg_status status = STARG_OK;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The claims that hold for any labelled tetrahedra: each is positive, triangles fit together,
- * labels are complete, pieces are connected. Signs are exact. Cost: O(n). */
+/* Claims for any labelled tetrahedra: each is positive, triangles fit together, labels are
+ * complete, pieces are connected. Signs are exact. Cost: O(n). */
 #include <stdio.h>
 
 #include "core/memory.h"
@@ -12,7 +12,7 @@ static const char STAGE[] = "verify";
 
 enum { CANCEL_STEP = 1 << 16 };
 
-/* ---- words for elements ---- */
+/* ---- names of elements ---- */
 
 verify_words verify_facet_words(const verify_context *own, uint32_t facet) {
     verify_words name;
@@ -129,7 +129,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 starg_status verify_claim_tetrahedra(const verify_context *own) {
     starg_status status = STARG_OK;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Contacts of pieces. For one piece after the other the areas of its walls towards later pieces are
- * added up, compared with what the report lists for that piece, and cleared again. Cost: O(walls +
- * contacts listed). */
+/* Contacts of pieces. For each piece the areas of its walls towards later pieces are summed,
+ * compared with the report's list for that piece, and reset. Cost: O(walls + contacts listed). */
 #include <math.h>
 
 #include "core/memory.h"
@@ -15,10 +14,10 @@ typedef struct ledger {
     const verify_pieces *pieces;
     const starg_pieces_report *report;
     size_t *start;                 /* of each piece's contacts in `listed`, by first piece */
-    uint32_t *listed;              /* contacts of the report                               */
-    double *area;                  /* towards each piece, from the one at hand             */
-    uint8_t *open;                 /* 1: touched, and not yet found in the report          */
-    STARG_ARRAY(uint32_t) touched; /* pieces whose area is not 0                           */
+    uint32_t *listed;              /* contacts of the report */
+    double *area;                  /* towards each piece, from the current one */
+    uint8_t *open;                 /* 1: touched, and not yet found in the report */
+    STARG_ARRAY(uint32_t) touched; /* pieces with nonzero area */
     verify_contacts *result;
 } ledger;
 
@@ -28,7 +27,7 @@ static void note(ledger *own, uint32_t first, uint32_t second, double listed, do
         *result = (verify_contacts){1, first, second, listed, found};
 }
 
-/* Is it a pair of pieces in order? */
+/* Is this a pair of distinct pieces in ascending order? */
 static bool is_pair(const ledger *own, const starg_piece_contact *contact) {
     return contact->first < contact->second && contact->second < own->pieces->piece_count;
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verification context of a decomposition: what it is checked against, and the claims that are
- * checked. */
+/* Verification context of a decomposition: the model, the report, and the claims to check. */
 #ifndef STARG_VERIFY_CONTEXT_H
 #define STARG_VERIFY_CONTEXT_H
 
@@ -18,18 +17,17 @@ typedef struct verify_context {
     starg_verdict *verdict;
 } verify_context;
 
-/* What the tetrahedra are: positive, conforming, labelled, connected by piece. Errors: MEMORY,
+/* Claims about the tetrahedra: positive, conforming, labelled, connected by piece. Errors: MEMORY,
  * CANCELLED. */
 starg_status verify_claim_tetrahedra(const verify_context *own);
 
 /* The boundary and the volume are those of the model. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_boundary(const verify_context *own);
 
-/* The report's numbers. Without good labels nothing can be said about pieces. Errors: MEMORY,
- * CANCELLED. */
+/* The report's numbers. Requires valid labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_numbers(const verify_context *own);
 
-/* Star-shapedness, and what guards see; only with good labels. Errors: MEMORY, CANCELLED. */
+/* Star-shapedness, and what guards see. Requires valid labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_stars(const verify_context *own);
 
 /* Dihedral angles. Errors: MEMORY. */
@@ -38,7 +36,7 @@ starg_status verify_claim_angles(const verify_context *own);
 /* No fewer star-shaped pieces are possible. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_fewest(const verify_context *own);
 
-/* ---- words for elements ---- */
+/* ---- names of elements ---- */
 
 typedef struct verify_words {
     char text[96];

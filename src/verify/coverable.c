@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Elements that no guard sees, but that a guard could see: each refutes that it cannot.
+/* Elements that no guard sees but that a guard could see: each refutes the claim that it is not
+ * coverable.
  *
- * From a point p strictly inside that sees a face whole, nothing is in the tetrahedron (p, face),
- * so every point of that tetrahedron sees the face whole as well. Hence the line above the centroid
- * says all: if a point at height h above any place of the face sees it whole, so do those above the
- * centroid up to h / 3. Heights double from the least one; the first at which something is in the
- * way ends the search.
+ * If a point p strictly inside sees a whole face, nothing is in the tetrahedron (p, face), so every
+ * point of that tetrahedron sees the whole face as well. Hence the line above the centroid is
+ * enough: if a point at height h above any place of the face sees all of it, so do those above the
+ * centroid up to h / 3. Heights double from the least one; the first at which the view is blocked
+ * ends the search.
  *
- * A guard must also be admissible, and a whole interval of heights is asked for, from 0.7 h to h,
- * so that no search by geometric series, which augmentation is, can have missed it: range      the
- * corners are within the range from h, and nearer from below clearance  the middle of the interval
- * keeps it with half the interval to spare cone       looking at the centroid, it holds the corners
- * from 0.6 h, and from above Faces that are so thin that rounding moves the centroid across them
- * are left out. What sees a face whole sees its vertices, so this holds for both rules, and for
- * vertices as the target.
+ * A guard must also be admissible, and this must hold for a whole interval of heights, from 0.7 h
+ * to h, so that augmentation, which searches in geometric series, cannot have missed it:
+ *
+ *   range      the corners are within the range from h, and closer from below
+ *   clearance  the middle of the interval keeps it with half the interval to spare
+ *   cone       looking at the centroid, it contains the corners from 0.6 h, and from above
+ *
+ * Skips faces so thin that rounding moves the centroid across them. What sees a whole face sees its
+ * vertices, so this holds for both rules, and for vertices as the target.
  *
  * Cost: at most MOST_TESTS visits of the tree, mostly of tiny boxes. Signs are exact. */
 #include <math.h>
@@ -29,17 +32,17 @@ static const char STAGE[] = "verify";
 
 enum { MOST_TESTS = 20000, CANCEL_STEP = 256 };
 
-static const double LEAST_HEIGHT = 0x1p-28; /* of the diagonal */
+static const double LEAST_HEIGHT = 0x1p-28; /* relative to the diagonal */
 static const double LEAST_WIDTH = 1e-6;     /* of a face, likewise */
-static const double MARGIN = 1e-12;         /* of ranges and clearances */
+static const double MARGIN = 1e-12;         /* for ranges and clearances */
 
 typedef struct prover {
     const verify_facts *known;
     verify_view view;
     double diagonal, least;
-    size_t tests; /* that are left */
+    size_t tests; /* remaining */
 
-    uint32_t face; /* whose corners these are */
+    uint32_t face; /* the current face */
     const double *corner[3];
     double centroid[3], normal[3]; /* of unit length, inward */
 } prover;
@@ -147,7 +150,7 @@ static bool prove_face(prover *own, uint32_t face, double p[3]) {
         own->tests--;
         along(own, height, p);
         if (verify_side(own->corner[0], own->corner[1], own->corner[2], p) <= 0)
-            continue; /* by rounding */
+            continue; /* because of rounding */
         if (!sees_whole(own, p) || !in_range(own, p))
             return false;
         if (keeps_clearance(own, height) && in_cone(own, height))
@@ -163,7 +166,7 @@ static void begin(prover *own) {
     own->least = fmax(own->least, own->known->guards->options.clearance);
 }
 
-/* Does the face hold something that is to be seen, that no guard sees and that is not proven? */
+/* Does the face have a target element that no guard sees and that is not proven yet? */
 static bool is_open(const verify_facts *known, const uint8_t *proven, size_t face) {
     const uint32_t *corner = known->surface->faces + 3 * face;
     if (!verify_targets_vertices(known))

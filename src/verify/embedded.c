@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is a surface embedded? Its faces have area and meet where they share corners, edges or nothing,
- * and the faces about each vertex are one fan.
+/* Checks that a surface is embedded: its faces have area and meet only in shared corners and edges,
+ * and the faces at each vertex form one fan.
  *
- * Two triangles have a point in common exactly if an edge of one meets the other. If they share one
- * corner, then any other common point lies on a common segment from that corner, which can be
- * prolonged to the opposite edge of one of them; if they share an edge, they have more in common
- * only in one plane, and on the same side of the edge. All by exact signs. Cost: O(n log n) for
- * surfaces as they are. */
+ * Two triangles have a common point exactly if an edge of one meets the other. If they share one
+ * corner, any other common point lies on a common segment from that corner, which extends to the
+ * opposite edge of one of them; if they share an edge, they have more in common only if coplanar
+ * and on the same side of the edge. All by exact signs. Cost: O(n log n) for ordinary surfaces. */
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "verify/hidden.h"
@@ -18,7 +17,7 @@ static bool segment_meets(const double p[3], const double q[3], const double *co
     return verify_on_triangle(p, t) || verify_on_triangle(q, t) || verify_blocks(p, q, t);
 }
 
-/* An axis along which the triangle keeps its area, or -1. */
+/* An axis along which the triangle's projection has area, or -1. */
 static int broad_axis(const double *const t[3]) {
     for (int axis = 0; axis < 3; axis++)
         if (verify_turn(t[0], t[1], t[2], axis) != 0)
@@ -26,8 +25,8 @@ static int broad_axis(const double *const t[3]) {
     return -1;
 }
 
-/* Corners of s that t shares: *own and *other are the corners opposite of what is shared by two, or
- * the ones that are shared by one. */
+/* Number of corners of s shared with t: *own and *other are the opposite corners if two are shared,
+ * or the shared ones if one is. */
 static int shared_corners(const uint32_t *s, const uint32_t *t, int *own, int *other) {
     int count = 0, own_sum = 0, other_sum = 0;
     for (int i = 0; i < 3; i++)
@@ -99,7 +98,7 @@ static starg_status examine_face(starg_context *context, void *shared, void *scr
     return STARG_OK;
 }
 
-/* Do the faces about each vertex hang together around it? The walk from one edge passes all. */
+/* Do the faces at each vertex form one fan? Walks around from one edge must reach all. */
 static bool has_single_fans(const verify_scene *scene, uint32_t *count) {
     const verify_surface *surface = scene->surface;
     for (size_t e = 0; e < 3 * surface->face_count; e++)

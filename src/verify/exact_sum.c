@@ -12,7 +12,7 @@ enum {
     LOWEST_EXPONENT = -1074 /* of a mantissa taken as an integer */
 };
 
-/* A double is mantissa x 2^exponent, with the sign apart. */
+/* A double as mantissa x 2^exponent, with a separate sign. */
 typedef struct parts {
     uint64_t mantissa;
     int exponent;
@@ -34,7 +34,7 @@ void exact_sum_clear(exact_sum *sum) {
     memset(sum, 0, sizeof *sum);
 }
 
-/* words += value << (64 x at), carried on as far as it goes. */
+/* words += value << (64 x at), with carry propagation. */
 static void add_at(uint64_t *words, int at, starg_uint128 value) {
     for (; value != 0 && at < EXACT_SUM_WORDS; at++) {
         starg_uint128 total = (starg_uint128)words[at] + (uint64_t)value;
@@ -49,7 +49,7 @@ void exact_sum_add(exact_sum *sum, double a, double b, double c) {
     int shift = x.exponent + y.exponent + z.exponent - 3 * LOWEST_EXPONENT;
     int at = shift / 64, bits = shift % 64;
 
-    /* 53 x 53 x 53 bits: the product of two in two words, each of them times the third */
+    /* 53 x 53 x 53 bits: the product of two factors in two words, each times the third */
     starg_uint128 two = (starg_uint128)x.mantissa * y.mantissa;
     starg_uint128 product[2] = {(starg_uint128)(uint64_t)two * z.mantissa,
                                 (two >> 64) * z.mantissa};

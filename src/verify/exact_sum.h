@@ -2,10 +2,10 @@
 /* Exact sums of products of three doubles, and their signs.
  *
  * A long accumulator [Kulisch, Miranker: Computer Arithmetic in Theory and Practice, 1981]: a
- * fixed-point number wide enough for every product of three doubles below 2^340, the smallest
- * subnormals included, so that adding is never rounded. One for positive and one for negative
- * products: the sign is a comparison of the two. No scaling, no differences, no cases: a
- * polynomial is written out in its coordinates, term by term. Allocates nothing. */
+ * fixed-point number wide enough for every product of three doubles below 2^340, subnormals
+ * included, so that additions are never rounded. One for positive and one for negative products:
+ * comparing the two gives the sign. No scaling, no differences, no cases: a polynomial is expanded
+ * in its coordinates, term by term. Allocates nothing. */
 #ifndef STARG_VERIFY_EXACT_SUM_H
 #define STARG_VERIFY_EXACT_SUM_H
 

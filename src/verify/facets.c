@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A hash table of triangles by their three vertices. The first facet of a triangle takes a slot,
- * the second one becomes its mate if it runs around the triangle the other way; a facet that finds
- * its triangle taken otherwise is counted as misuse and stays alone.
+/* Matches facets in a hash table of triangles, keyed by their three vertices. The first facet of a
+ * triangle takes a slot, the second becomes its mate if its orientation is opposite; any other
+ * facet of the triangle counts as misuse and stays unmatched.
  *
- * Invariant: mates name one another, and the sum of the facets without mates, as a chain of
- * oriented triangles, is the boundary of the sum of the tetrahedra. So it is closed (the boundary
- * of a boundary is zero), whatever the tetrahedra are. Cost: O(n). */
+ * Invariant: mates are mutual, and the sum of the facets without mates, as a chain of oriented
+ * triangles, is the boundary of the sum of the tetrahedra. So it is closed (the boundary of a
+ * boundary is zero), whatever the tetrahedra are. Cost: O(n). */
 #include "verify/facets.h"
 
 #include "core/memory.h"
@@ -17,7 +17,7 @@ enum { CANCEL_STEP = 1 << 16 };
 
 typedef struct triangle {
     uint32_t least, middle, most;
-    int parity; /* 1: the corners run least, middle, most */
+    int parity; /* 1: the corners are in the cyclic order least, middle, largest */
 } triangle;
 
 static void exchange(uint32_t *a, uint32_t *b, int *parity) {

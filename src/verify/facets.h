@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The triangles of tetrahedra: which two tetrahedra share each of them, and which stay alone. */
+/* Triangles of tetrahedra: those shared by two tetrahedra, and those of a single one. */
 #ifndef STARG_VERIFY_FACETS_H
 #define STARG_VERIFY_FACETS_H
 
@@ -10,10 +10,10 @@
 
 #define VERIFY_NONE UINT32_MAX
 
-/* Tetrahedra at most, so that a facet has a number below VERIFY_NONE. */
+/* Limit on tetrahedra, so that facet numbers are below VERIFY_NONE. */
 #define VERIFY_TETRAHEDRA ((size_t)1 << 29)
 
-/* A wrong use of a triangle: how often, and the first two facets that do not go together. */
+/* An invalid use of a triangle: how often, and the first two conflicting facets. */
 typedef struct verify_misuse {
     size_t count;
     uint32_t facet, other;
@@ -24,9 +24,9 @@ typedef struct verify_facets {
     starg_context *context;
     const uint32_t *tetrahedra;
     size_t count;            /* of tetrahedra */
-    uint32_t *mate;          /* of each facet the one of the same triangle, or VERIFY_NONE */
-    verify_misuse third;     /* a triangle of more than two tetrahedra    */
-    verify_misuse same_side; /* of two that run around it in the same way */
+    uint32_t *mate;          /* per facet: the other one of its triangle, or VERIFY_NONE */
+    verify_misuse third;     /* a triangle with more than two tetrahedra */
+    verify_misuse same_side; /* a triangle with two facets of the same orientation */
 } verify_facets;
 
 /* `tetrahedra` (count x 4) must outlive the facets. Errors: MEMORY, CANCELLED. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the guards of a result see, found anew, and what is concluded from it. */
+/* What the guards of a result see, recomputed, and conclusions from it. */
 #ifndef STARG_VERIFY_FACTS_H
 #define STARG_VERIFY_FACTS_H
 
@@ -13,17 +13,17 @@ typedef struct verify_facts {
     const verify_surface *surface;
     const starg_guards *guards;
     int scale;
-    bool *inside;         /* each guard                                             */
-    double *distance;     /* from each guard to the surface; only with a clearance  */
-    double *standoff;     /* from each guard to the model; where that matters       */
-    starg_bits *faces;    /* a row for each guard: the faces that it sees           */
-    starg_bits *vertices; /* likewise; only where vertices are the target           */
-    uint8_t *vertex;      /* 1: some guard sees the vertex; likewise                */
-    uint8_t *face;        /* 1: some guard sees the face                            */
-    uint8_t *wanted;      /* 1: the face is to be seen; others have the area 0 and count as seen */
-    uint8_t *used;        /* vertices that such faces name                          */
-    double *area;         /* of each face, in scaled units                          */
-    verify_tree *tree;    /* of the surface                                         */
+    bool *inside;         /* per guard */
+    double *distance;     /* per guard its distance to the surface; only with a clearance */
+    double *standoff;     /* per guard its distance to the model; if needed */
+    starg_bits *faces;    /* per guard a row: the faces that it sees */
+    starg_bits *vertices; /* likewise; only if vertices are the target */
+    uint8_t *vertex;      /* 1: some guard sees the vertex; likewise */
+    uint8_t *face;        /* 1: some guard sees the face */
+    uint8_t *wanted;      /* 1: the face is a target; others have area 0 and count as seen */
+    uint8_t *used;        /* vertices of target faces */
+    double *area;         /* per face, in scaled units */
+    verify_tree *tree;    /* of the surface */
 
     size_t wanted_faces, covered_faces, used_vertices, covered_vertices;
     double covered_area, total_area;
@@ -33,50 +33,50 @@ static inline bool verify_targets_vertices(const verify_facts *known) {
     return known->guards->options.visibility.target == STARG_TARGET_VERTICES;
 }
 
-/* May guards stand in a part of the free space only? */
+/* Does the space restrict guards to a part of the free space? */
 bool verify_space_is_narrow(const starg_space_options *space);
 
-/* What must be seen: faces, or vertices. */
+/* Rows of the target elements: faces, or vertices. */
 static inline const starg_bits *verify_rows(const verify_facts *known) {
     return verify_targets_vertices(known) ? known->vertices : known->faces;
 }
 
-/* In how many rows each column is; the caller releases `held`. Errors: MEMORY. */
+/* Number of rows that contain each column; the caller releases `held`. Errors: MEMORY. */
 starg_status verify_count_held(const verify_facts *known, uint32_t **held);
 
-/* The view of a guard that looks this way; NULL: all around. */
+/* The view of a guard in this direction; NULL: all around. */
 verify_view verify_view_of(const starg_guards *guards, const double *direction);
 
-/* How many of the elements that no guard sees could be seen (verify/coverable.c)? The search ends
- * once there are more than `enough`. */
+/* Number of unseen elements that could be seen (verify/coverable.c). The search ends when it
+ * exceeds `enough`. */
 typedef struct verify_coverable {
     size_t proven; /* elements that a guard at some place would see */
-    size_t first;  /* the first of them                             */
+    size_t first;  /* the first of them */
     double place[3];
 } verify_coverable;
 starg_status verify_find_coverable(const verify_facts *known, size_t enough,
                                    verify_coverable *found);
 
-/* How many guards of the result, chosen among them, are as good as all (verify/needed.c)? */
+/* Number of guards of the result, chosen among them, that are as good as all (verify/needed.c). */
 starg_status verify_find_needed(const verify_facts *known, size_t *needed);
 
-/* Points that are drawn for that. */
+/* Number of points sampled for redundancy. */
 enum { VERIFY_PLACES = 12 };
 
-/* Columns that fewer guards see than redundancy asks for (verify/redundancy.c). */
+/* Columns seen by fewer guards than redundancy requires (verify/redundancy.c). */
 typedef struct verify_lack {
-    size_t lacking; /* seen by some guard, but by too few                   */
-    size_t points;  /* places inside that were looked from; 0: none needed  */
-    size_t meeting; /* of them those that see something that is lacking     */
+    size_t lacking; /* seen by some guard, but by too few */
+    size_t points;  /* sampled interior points; 0: none needed */
+    size_t meeting; /* those of them that see a lacking column */
 } verify_lack;
 starg_status verify_find_lack(const verify_facts *known, verify_lack *found);
 
-/* Which level or guard contradicts the others (verify/levels.c)? */
+/* Consistency of levels and guards (verify/levels.c). */
 typedef struct verify_levels {
-    bool grow;   /* each has more vertices than the one before, the last those of the model */
-    bool kept;   /* guards that are kept were guards of the level before                   */
-    bool inside; /* all of their guards are strictly inside of the model                   */
-    bool named;  /* a guard is among those of its level and of all that follow              */
+    bool grow;   /* each has more vertices than the one before; the last has those of the model */
+    bool kept;   /* guards that are kept were guards of the level before */
+    bool inside; /* all their guards are strictly inside the model */
+    bool named;  /* a guard is listed in its level and in all later ones */
 } verify_levels;
 verify_levels verify_check_levels(const verify_facts *known);
 

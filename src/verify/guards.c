@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Verification of a guards result. First, visibility is recomputed for each guard (verify/sight.h),
- * in parallel. Then the claims of the result are compared with it, one by one. Claims that depend
- * on the candidates, which a result does not contain, are refuted by counterexamples: faces that
- * could be seen (verify/coverable.c), guards of the result that suffice (verify/needed.c),
- * redundancy (verify/redundancy.c). What remains is listed as not checked.
+/* Verification of a guards result. First recomputes visibility for each guard in parallel
+ * (verify/sight.h), then compares the claims of the result with it, one by one. Claims that depend
+ * on the candidates, which a result does not contain, can only be refuted by counterexamples: faces
+ * that could be seen (verify/coverable.c), guards of the result that suffice (verify/needed.c),
+ * redundancy (verify/redundancy.c). The rest is listed as not checked.
  *
- * Invariant: each guard has a row of its own, so that the order in which threads work does not
- * show. Cost: see verify/sight.h for each guard. */
+ * Invariant: each guard has its own row, so the order of threads does not matter. Cost: see
+ * verify/sight.h for each guard. */
 #include <math.h>
 #include <stdio.h>
 
@@ -49,7 +49,7 @@ static void free_sight(starg_context *context, void *scratch) {
     verify_sight_free(scratch);
 }
 
-/* Notes those that are wanted; NULL: all. */
+/* Stores the wanted ones; NULL: all. */
 static void note_row(starg_bits *rows, size_t row, const uint8_t *seen, const uint8_t *wanted) {
     uint64_t *bits = starg_bits_row_mutable(rows, row);
     for (size_t j = 0; j < rows->columns; j++)
@@ -67,7 +67,7 @@ verify_view verify_view_of(const starg_guards *guards, const double *direction) 
     return view;
 }
 
-/* Finds out about one guard. One that is not inside sees nothing. */
+/* Examines one guard. A guard that is not inside sees nothing. */
 static starg_status examine_guard(starg_context *context, void *shared, void *scratch, size_t g) {
     (void)context;
     verify_facts *known = shared;
@@ -143,7 +143,7 @@ static void sum_up(verify_facts *known) {
     }
 }
 
-/* What is to be seen: faces, and the vertices that these name. */
+/* Marks the target faces and their vertices. */
 static void mark_wanted(verify_facts *known) {
     const verify_surface *surface = known->surface;
     for (size_t f = 0; f < surface->face_count; f++) {
@@ -318,7 +318,7 @@ static void claim_seen(starg_verdict *verdict, const verify_facts *known) {
 
 /* ---- claims about coverage ---- */
 
-/* A list of elements that should be exactly those that are relevant and not seen, ascending. */
+/* A list that should contain exactly the relevant unseen elements, ascending. */
 typedef struct unseen_list {
     const char *name;
     const uint32_t *listed;
@@ -452,9 +452,9 @@ static void claim_levels(starg_verdict *verdict, const verify_facts *known) {
     verify_leave(verdict, "what guards see of coarser levels: their meshes are not in the file");
 }
 
-/* ---- claims about what could be seen ---- */
+/* ---- claims about coverable elements ---- */
 
-/* What the options ask to be seen. */
+/* The target of the options. */
 typedef struct target {
     const char *name;
     size_t all, covered, coverable;
@@ -468,9 +468,9 @@ static target target_of(const verify_facts *known) {
     return (target){"faces", known->wanted_faces, known->covered_faces, guards->coverable_faces};
 }
 
-/* Why is nothing above the faces that no guard sees looked at? NULL: it is. Where a part is to be
- * seen, the search for candidates may end before the last faces; the part is then one of all. */
-static const char *excuse_of(const verify_facts *known) {
+/* The reason for not looking above the unseen faces; NULL: none. With a partial goal, the search
+ * for candidates may end before the last faces; the goal is then relative to everything. */
+static const char *reason_unchecked(const verify_facts *known) {
     const starg_guard_options *o = &known->guards->options;
     if (o->candidates == STARG_CANDIDATES_GIVEN)
         return "the candidates were given, and are not in the file";
@@ -494,7 +494,7 @@ static starg_status claim_coverable(starg_verdict *verdict, const verify_facts *
                  goal.all, goal.name, goal.covered);
     if (goal.coverable < goal.covered || goal.coverable >= goal.all)
         return STARG_OK;
-    const char *excuse = excuse_of(known);
+    const char *excuse = reason_unchecked(known);
     if (excuse != NULL) {
         verify_leave(verdict, "that the other %zu %s cannot be seen: %s", goal.all - goal.coverable,
                      goal.name, excuse);
@@ -540,8 +540,7 @@ static starg_status claim_redundancy(starg_verdict *verdict, const verify_facts 
     return STARG_OK;
 }
 
-/* The least area that a number of faces that no guard sees can have: that number times the area of
- * the smallest of them. */
+/* Lower bound on the area of a number of unseen faces: that number times the smallest area. */
 static double least_unseen_area(const verify_facts *known, size_t count) {
     double smallest = INFINITY;
     for (size_t f = 0; f < known->surface->face_count; f++)
@@ -550,8 +549,8 @@ static double least_unseen_area(const verify_facts *known, size_t count) {
     return count != 0 && smallest < INFINITY ? (double)count * smallest : 0;
 }
 
-/* Guards without a limit to their number reach the coverage that was asked for. Which of the faces
- * unseen are coverable is not known; the smallest possible area is compared with the claim. */
+/* Guards without a limit on their number reach the requested coverage. Which unseen faces are
+ * coverable is unknown; the smallest possible area is compared with the claim. */
 static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
     const starg_guard_options *options = &known->guards->options;
     target goal = target_of(known);
@@ -573,9 +572,9 @@ static void claim_goal(starg_verdict *verdict, const verify_facts *known) {
 
 /* ---- claims about the number of guards ---- */
 
-/* Guards that would do are candidates, and refute a bound above their number. Not in files of morph
- * --guards, whose option `count` is that of the guards: there they must do in another shape, too.
- */
+/* A sufficient subset of the guards, which are candidates, refutes a larger lower bound. Not in
+ * files of morph --guards, where `count` is the number of guards: those must suffice in another
+ * shape, too. */
 static starg_status claim_bound(starg_verdict *verdict, const verify_facts *known,
                                 const starg_certificate *certificate) {
     const starg_guards *guards = known->guards;
@@ -609,7 +608,7 @@ static starg_status claim_numbers(starg_verdict *verdict, const verify_facts *kn
     starg_status status = STARG_OK;
     const starg_guards *guards = known->guards;
     target goal = target_of(known);
-    /* fewer than are to see each face may see none of them often enough */
+    /* with fewer guards than required per face, none may suffice */
     bool too_few =
         guards->options.max_guards != 0 && guards->options.max_guards < guards->options.redundancy;
     verify_claim(verdict, guards->count > 0 || goal.coverable == 0 || too_few,

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Checks one by one why something is hidden from a box; docs/verification.md has the proofs.
- * Written apart from the engine that finds reasons (visibility/box.h): nothing is rounded but one
- * box, the rest of a box behind the plane of a face, and exact signs then say whether it holds all
- * of that rest. What the engine calls apart for certain is apart here, so that its reasons pass.
+/* Checks stated reasons why something is hidden from a box; docs/verification.md has the proofs.
+ * Independent of the engine that finds reasons (visibility/box.h): only one box is rounded, the
+ * part of a box behind the plane of a face, and exact signs then show that it contains all of that
+ * part. Whatever the engine decides with certainty is decided the same way here, so its reasons
+ * pass.
  *
  * The shaft of a vertex v and a box is the union of the segments between them. An edge misses it if
- * a plane keeps them apart: across an axis; through v and parallel to an axis, along the outline of
- * the box as seen from v in that projection; or through v and the edge, with all of the box
+ * a plane separates them: across an axis; through v and parallel to an axis, along the silhouette
+ * of the box as seen from v in that projection; or through v and the edge, with all of the box
  * strictly on one side.
  *
  * Cost of a reason: the faces of a patch within the shaft, some 100 ns each. */
@@ -17,13 +18,13 @@
 #include "core/memory.h"
 #include "verify/signs.h"
 
-/* Two lines through v at most in each projection. */
+/* At most two lines through v per projection. */
 enum { LINES = 6 };
 
 typedef struct outline {
     int axis;
     const double *through; /* with v: the line */
-    int outer;             /* the turn of points that are beyond it */
+    int outer;             /* the turn of points beyond it */
 } outline;
 
 typedef struct shaft {
@@ -37,11 +38,11 @@ typedef struct shaft {
 
 struct verify_watch {
     const verify_scene *scene;
-    verify_box box;            /* what is looked at: no point of the solid is lost */
-    bool empty;                /* nothing of it is within the bounds of the surface */
+    verify_box box; /* the current box; contains every point of the solid in the original one */
+    bool empty;     /* none of it is within the bounds of the surface */
     STARG_ARRAY(uint32_t) met; /* faces that meet the box; valid if `met_known` */
-    bool met_known, failed;    /* memory was out: nothing is proven then */
-    uint32_t *visit;           /* by face: number of the last flood that came here */
+    bool met_known, failed;    /* out of memory: nothing is proven then */
+    uint32_t *visit;           /* by face: number of the last flood that visited it */
     uint32_t flood;
     uint32_t *stack; /* faces */
 };
@@ -68,7 +69,7 @@ static bool bounds_apart(const double *const t[3], const verify_box *box) {
     return false;
 }
 
-/* On which side of a b c are all corners strictly? 0: not all on one. */
+/* The side of a b c that strictly contains all corners, or 0. */
 static int side_of_box(const double a[3], const double b[3], const double c[3],
                        const double corner[24]) {
     int side = verify_side(a, b, c, corner);
@@ -78,7 +79,7 @@ static int side_of_box(const double a[3], const double b[3], const double c[3],
     return side;
 }
 
-/* Corners of a box that are all of its outline along an axis. */
+/* Corners of a box that form its outline along an axis. */
 static const int RECTANGLE[3][4] = {{0, 2, 4, 6}, {0, 1, 4, 5}, {0, 1, 2, 3}};
 
 /* Along an axis, is the box strictly beyond the line of an edge of the triangle? */
@@ -95,8 +96,9 @@ static bool edge_keeps_apart(const double *const t[3], const double corner[24], 
     return false;
 }
 
-/* Two convex bodies are apart exactly if an axis across a face of one or along two edges keeps them
- * apart; the latter are the sides of the triangle seen along the edges of the box. */
+/* Separating axis test: two convex bodies are disjoint exactly if an axis normal to a face of one
+ * or to two edges separates them; the latter are the sides of the triangle projected along the
+ * edges of the box. */
 static bool face_meets_box(const double *const t[3], const verify_box *box) {
     double corner[24];
     if (bounds_apart(t, box))
@@ -132,8 +134,8 @@ static bool add_met(void *data, uint32_t face) {
     return true;
 }
 
-/* Lists the faces that meet the box; false: memory is out. */
-static bool know_met(verify_watch *w) {
+/* Lists the faces that meet the box; false when out of memory. */
+static bool list_met(verify_watch *w) {
     if (!w->met_known) {
         w->met.count = 0;
         verify_tree_visit(w->scene->tree, w->box.lower, w->box.upper, add_met, w);
@@ -159,7 +161,7 @@ static bool no_corner_is_inner(const double *const t[3], const verify_box *box) 
     return true;
 }
 
-/* Cuts away what is beyond `at` on one side of axis k, if nothing of that is on the inner side. */
+/* Cuts away what is beyond `at` on one side of axis k, if none of it is on the inner side. */
 static void cut(const double *const t[3], const verify_box *whole, int k, bool upper, double at,
                 verify_box *out) {
     verify_box away = *whole;
@@ -170,9 +172,9 @@ static void cut(const double *const t[3], const verify_box *whole, int k, bool u
         *(upper ? &out->upper[k] : &out->lower[k]) = at;
 }
 
-/* *out holds all of the box that is on the inner side. With the outward normal n the function
- * n . (x - a) is negative there; on an axis the inner side reaches to where it is 0 if it is as low
- * as can be on the others. The margins keep the signs from failing. */
+/* *out contains all of the box that is on the inner side. With the outward normal n the function n
+ * . (x - a) is negative there; along an axis the inner side extends to the zero of its minimum over
+ * the other axes. Margins keep the exact signs from failing. */
 static void clip(const double *const t[3], const verify_box *box, verify_box *out) {
     double normal[3], least[3], u[3], v[3], sum = 0, size = 0;
     for (int k = 0; k < 3; k++) {
@@ -201,8 +203,8 @@ static void clip(const double *const t[3], const verify_box *box, verify_box *ou
 
 /* ---- the shaft ---- */
 
-/* The lines through v along the outline of the box, as seen along an axis; none if v is within it.
- */
+/* The lines through v along the silhouette of the box, as seen along an axis; none if v is inside
+ * it. */
 static void add_lines(shaft *s, int axis) {
     int u = (axis + 1) % 3, w = (axis + 2) % 3;
     if (s->v[u] >= s->box->lower[u] && s->v[u] <= s->box->upper[u] && s->v[w] >= s->box->lower[w] &&
@@ -247,7 +249,7 @@ static bool line_keeps_apart(const shaft *s, const double a[3], const double b[3
     return false;
 }
 
-/* Does the segment from a to b, which does not hold v, miss the shaft? */
+/* Does the segment from a to b, which does not contain v, miss the shaft? */
 static bool misses(const shaft *s, const double a[3], const double b[3]) {
     for (int k = 0; k < 3; k++) {
         double lower = fmin(s->v[k], s->box->lower[k]), upper = fmax(s->v[k], s->box->upper[k]);
@@ -257,7 +259,7 @@ static bool misses(const shaft *s, const double a[3], const double b[3]) {
     return line_keeps_apart(s, a, b) || side_of_box(s->v, a, b, s->corner) != 0;
 }
 
-/* Do the directions from v to the points between a and b miss those to the box? */
+/* Do the directions from v to the points of segment a b miss those to the box? */
 static bool directions_miss(const shaft *s, const double a[3], const double b[3]) {
     for (int k = 0; k < 3; k++)
         if ((s->box->lower[k] > s->v[k] && a[k] <= s->v[k] && b[k] <= s->v[k]) ||
@@ -268,7 +270,7 @@ static bool directions_miss(const shaft *s, const double a[3], const double b[3]
 
 /* ---- patches ---- */
 
-/* Where a flood fails, or stops: see docs/verification.md. */
+/* How a flood fails, or stops: see docs/verification.md. */
 typedef enum flood_kind { PATCH, FOLD, ENTRY } flood_kind;
 
 static bool has_corner(const verify_surface *surface, uint32_t face, uint32_t vertex) {
@@ -293,8 +295,8 @@ static void begin_flood(verify_watch *w) {
     w->flood++;
 }
 
-/* Spreads from the seed over edges that do not miss the shaft. True: v is strictly on `side` of all
- * faces of the patch, and none of them meets the box (but for entries). */
+/* Floods from the seed across edges that meet the shaft. True: v is strictly on `side` of all faces
+ * of the patch, and none of them meets the box (except for entries). */
 static bool closes(verify_watch *w, const shaft *s, uint32_t seed, int side, flood_kind kind) {
     const verify_scene *scene = w->scene;
     size_t depth = 0;
@@ -319,7 +321,7 @@ static bool closes(verify_watch *w, const shaft *s, uint32_t seed, int side, flo
     return true;
 }
 
-/* A patch with a face that the segment from v to the centre of the box meets. */
+/* A patch with a face that meets the segment from v to the centre of the box. */
 static bool patch_hides(verify_watch *w, const shaft *s, uint32_t seed, flood_kind kind) {
     const double *t[3];
     double centre[3];
@@ -332,10 +334,10 @@ static bool patch_hides(verify_watch *w, const shaft *s, uint32_t seed, flood_ki
            closes(w, s, seed, side, kind);
 }
 
-/* All faces that meet the box turn their outer side to v, in patches that close. */
+/* All faces that meet the box face away from v, in closed patches. */
 static bool entry_hides(verify_watch *w, const shaft *s) {
     bool any = false;
-    if (!know_met(w))
+    if (!list_met(w))
         return false;
     for (size_t i = 0; i < w->met.count; i++) {
         const double *t[3];
@@ -351,7 +353,7 @@ static bool entry_hides(verify_watch *w, const shaft *s) {
 
 /* ---- where segments begin ---- */
 
-/* The corners of the face of directed edge e, which begins at v, that follow v. */
+/* The other corners of the face of directed edge e, which starts at v, in order. */
 static void beyond_vertex(const verify_scene *scene, uint32_t e, const double *ends[2]) {
     const double *t[3];
     verify_corners(scene->surface, e / 3, t);
@@ -363,8 +365,8 @@ static uint32_t turn_about(const verify_scene *scene, uint32_t e) {
     return scene->twin[e % 3 == 0 ? e + 2 : e - 1];
 }
 
-/* Does the arc of directions from d to e cross only arcs of the faces about v that have d on their
- * outer side, and at least one, each of them properly? */
+/* Does the arc of directions from d to e cross only arcs of faces at v that have d on their outer
+ * side, at least one, and each of them properly? */
 static bool leads_in(const verify_scene *scene, const shaft *s, const double d[3],
                      const double e[3]) {
     uint32_t first = scene->outgoing[s->vertex], edge = first;
@@ -387,7 +389,7 @@ static bool leads_in(const verify_scene *scene, const shaft *s, const double d[3
     return any;
 }
 
-/* A point somewhat beyond the middle of a b, as seen from v along the arc from d. */
+/* A point a little beyond the middle of a b, as seen from v along the arc from d. */
 static void overshoot(const double v[3], const double d[3], const double *const end[2],
                       double e[3]) {
     double to_d[3], to_middle[3], long_d = 0, long_middle = 0;
@@ -447,7 +449,7 @@ static bool start_hides(const verify_scene *scene, const shaft *s) {
 
 /* ---- folds ---- */
 
-/* Does a patch that closes go on, on the inner side, beyond the face of this edge, whose directions
+/* Does a closed patch continue on the inner side, beyond the face of this edge, whose directions
  * may meet those to the box? */
 static bool goes_on(verify_watch *w, const shaft *s, uint32_t edge) {
     const verify_scene *scene = w->scene;
@@ -535,7 +537,7 @@ bool verify_box_outside(verify_watch *w) {
     bool on_surface;
     if (w->empty)
         return true;
-    if (!know_met(w) || w->met.count > 0)
+    if (!list_met(w) || w->met.count > 0)
         return false;
     centre_of(&w->box, centre);
     int winding = verify_tree_winding(w->scene->tree, centre, &on_surface);
@@ -548,7 +550,7 @@ bool verify_watch_failed(const verify_watch *w) {
     return w->failed;
 }
 
-/* Outside of the bounds of the surface nothing is in the solid. */
+/* Nothing outside the bounds of the surface is in the solid. */
 void verify_watch_box(verify_watch *w, const verify_box *box) {
     const verify_surface *surface = w->scene->surface;
     w->met_known = w->empty = false;

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is a vertex or a face hidden from all points of a box, for a stated reason? */
+/* Checks that a vertex or a face is hidden from all points of a box, for a stated reason. */
 #ifndef STARG_VERIFY_HIDDEN_H
 #define STARG_VERIFY_HIDDEN_H
 
 #include "starguard/visibility.h"
 #include "verify/surface.h"
 #include "verify/tree.h"
-
-#define VERIFY_NO_FACE UINT32_MAX
 
 typedef struct verify_box {
     double lower[3], upper[3];
@@ -16,22 +14,23 @@ typedef struct verify_box {
 /* Why a witness is hidden from a box. */
 typedef struct verify_reason {
     uint32_t witness;
-    uint32_t vertex, seed; /* UINT32_MAX: none                                             */
-    char kind;             /* n, r, s, p, f, e (docs/formats.md)                           */
-    bool clipped;          /* from the part of the box on the inner side of the face alone */
+    uint32_t vertex, seed; /* UINT32_MAX: none */
+    char kind;             /* n, r, s, p, f, e (docs/formats.md) */
+    bool clipped;          /* only from the part of the box on the inner side of the face */
 } verify_reason;
 
-/* A surface with its neighbours. */
+/* A surface with adjacency. */
 typedef struct verify_scene {
     const verify_surface *surface;
     const verify_tree *tree;
-    uint32_t *twin; /* by directed edge 3 f + k: the same edge in the neighbour                   */
-    uint32_t *outgoing; /* by vertex: a directed edge that begins there, or UINT32_MAX */
-    bool embedded; /* no two faces meet but where they share corners, the faces about a vertex are
-                      one fan, and all have area */
+    uint32_t *twin;     /* by directed edge 3 f + k: the same edge in the adjacent face */
+    uint32_t *outgoing; /* by vertex: a directed edge that starts there, or UINT32_MAX */
+    bool embedded; /* faces meet only in shared corners and edges, the faces at each vertex form one
+                      fan, and all have area */
 } verify_scene;
 
-/* `embedding`: find out about it; else it is taken for false. Errors: MEMORY, CANCELLED. */
+/* `embedding`: check whether it is embedded; otherwise it counts as not embedded. Errors: MEMORY,
+ * CANCELLED. */
 starg_status verify_scene_create(const verify_surface *surface, const verify_tree *tree,
                                  bool embedding, verify_scene *out);
 void verify_scene_free(verify_scene *scene);
@@ -41,22 +40,22 @@ typedef struct verify_watch verify_watch;
 starg_status verify_watch_create(const verify_scene *scene, verify_watch **out);
 void verify_watch_free(verify_watch *watch);
 
-/* Begins with another box. */
+/* Starts with another box. */
 void verify_watch_box(verify_watch *watch, const verify_box *box);
 
-/* Has memory been out? Then nothing was found to be outside or hidden that needed it. */
+/* Has memory run out? Then nothing that needed it was found to be outside or hidden. */
 bool verify_watch_failed(const verify_watch *watch);
 
 /* Is no point of the box in the solid? */
 bool verify_box_outside(verify_watch *watch);
 
 /* Is it certain that no point of the box in the solid sees the target, a vertex or a face, within
- * the range? Only what the reason says is tried. */
+ * the range? Only the stated reason is tried. */
 bool verify_box_hides(verify_watch *watch, starg_target kind, uint32_t target, double range,
                       const verify_reason *reason);
 
-/* Does no face of the surface meet another one but where they share corners, and are the faces
- * about each vertex one fan (verify/embedded.c)? Errors: MEMORY, CANCELLED. */
+/* Do faces meet only in shared corners and edges, and do the faces at each vertex form one fan
+ * (verify/embedded.c)? Errors: MEMORY, CANCELLED. */
 starg_status verify_find_embedded(const verify_scene *scene, bool *embedded);
 
 #endif

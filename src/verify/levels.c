@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Levels of detail against one another, the model and the guards. Their meshes are not in the file,
- * so that what their guards see of them cannot be checked. Their guards are candidates of the
- * model, and so inside of it. A guard keeps the level that first asked for it, as long as all that
- * follow choose it; refinement may add guards of the last level. */
+/* Checks levels of detail for consistency with one another, the model and the guards. Their meshes
+ * are not in the file, so what their guards see of them cannot be checked. Their guards are
+ * candidates of the model, and so inside it. A guard belongs to the first level that chose it, as
+ * long as all later ones choose it; refinement may add guards of the last level. */
 #include "verify/facts.h"
 
 static bool is_among(const double p[3], const starg_guard_level *level) {
@@ -24,7 +24,7 @@ static bool is_inside(const verify_facts *known, const double p[3]) {
     return !on_surface && winding + known->surface->ambient >= 1;
 }
 
-/* Is the guard among those of its level, and of the finer ones? */
+/* Is the guard listed in its level and in the finer ones? */
 static bool is_named(const starg_guards *guards, size_t guard) {
     int level = guards->levels[guard];
     if (level < 0 || (size_t)level >= guards->level_count)

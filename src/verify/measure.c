@@ -39,7 +39,7 @@ static void scaled_difference(const double a[3], const double b[3], int scale, d
         out[k] = ldexp(a[k] - b[k], scale);
 }
 
-/* Of a tetrahedron, negative when it is inverted. */
+/* Of a tetrahedron; negative if inverted. */
 static double volume_of(const double a[3], const double b[3], const double c[3], const double d[3],
                         int scale) {
     double u[3], v[3], w[3], n[3];
@@ -76,7 +76,7 @@ double verify_area(const verify_surface *surface, size_t face, int scale) {
     return verify_triangle_area(t[0], t[1], t[2], scale);
 }
 
-/* A sum that keeps its rounding errors aside [Neumaier 1974]. */
+/* Compensated summation [Neumaier 1974]. */
 static void add(verify_volume *own, double x) {
     double sum = own->sum + x;
     own->rest += fabs(own->sum) >= fabs(x) ? (own->sum - sum) + x : (x - sum) + own->sum;
@@ -107,8 +107,8 @@ static double squared_to_segment(const double a[3], const double e[3]) {
     return dot(foot, foot);
 }
 
-/* Squared distance from the origin to a triangle: to its plane where the foot is in the triangle,
- * else to its edges. */
+/* Squared distance from the origin to a triangle: to its plane if the foot is in the triangle,
+ * otherwise to its edges. */
 static double squared_to_triangle(double a[3][3]) {
     double e[3][3], n[3], side[3], least = INFINITY;
     for (int i = 0; i < 3; i++)

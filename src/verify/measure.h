@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Lengths and areas in doubles, in a unit near the size of the model, so that neither huge nor
- * tiny coordinates leave the range. They decide nothing but claims with a tolerance. */
+/* Lengths and areas in doubles, in a unit near the size of the model, so that neither huge nor tiny
+ * coordinates overflow or underflow. They decide only claims with a tolerance. */
 #ifndef STARG_VERIFY_MEASURE_H
 #define STARG_VERIFY_MEASURE_H
 
@@ -9,7 +9,7 @@
 /* The power of two that brings the model's extent to about 1. */
 int verify_scale(const verify_surface *surface);
 
-/* How far the rounding of coordinates may move a point of the surface, generously. */
+/* Generous bound on the displacement of a surface point by rounding of coordinates. */
 double verify_rounding(const verify_surface *surface);
 
 /* Of the bounds. */
@@ -18,14 +18,13 @@ double verify_diagonal(const verify_surface *surface);
 /* Area of a face in units of 2^(-2 scale). */
 double verify_area(const verify_surface *surface, size_t face, int scale);
 
-/* The same of any triangle. */
+/* Same for any triangle. */
 double verify_triangle_area(const double a[3], const double b[3], const double c[3], int scale);
 
-/* Twice the area, outward: the normal of a face in the same units. */
+/* Area vector, doubled, outward: the normal of a face in the same units. */
 void verify_normal(const verify_surface *surface, size_t face, int scale, double n[3]);
 
-/* A sum of volumes of tetrahedra in units of 2^(-3 scale), and how far rounding may have moved it.
- */
+/* A sum of volumes of tetrahedra in units of 2^(-3 scale), and a bound on its rounding error. */
 typedef struct verify_volume {
     double sum, rest, slack;
 } verify_volume;
@@ -37,7 +36,7 @@ static inline double verify_volume_value(const verify_volume *own) {
     return own->sum + own->rest;
 }
 
-/* Is it the volume that is claimed, but for a billionth of it, rounding, and `slack`? */
+/* Does it match the claimed volume, up to a billionth, rounding, and `slack`? */
 bool verify_same_volume(const verify_volume *own, double claimed, double slack);
 
 /* Squared distance from p to a face, in units of 2^(-2 scale). */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A boundary that is only near the model: how near, and does it bound its tetrahedra once? Points
- * of up to 20,000 faces of either surface (drawn at random when there are more) are compared with
- * the other: corners, centre, and one at random of each. The model need not be closed.
+/* A boundary that approximates the model: how close is it, and does it bound its tetrahedra once?
+ * Points of up to 20,000 faces of either surface (a random sample if there are more) are compared
+ * with the other: corners, centroid, and a random point of each. The model need not be closed.
  *
- * Overlap: a point lies in as many tetrahedra as the boundary winds around it (verify/facets.c,
- * when all are positive). That number changes only across the boundary. So no two outer faces may
- * pass through one another, and for each shell it must be one at a point just behind it, in a
- * tetrahedron of that shell. Exact; faces that cross along edges and corners alone, none of them
- * strictly on both sides of another, are not found as crossing.
+ * Overlap: a point lies in as many tetrahedra as the boundary winds around it (verify/facets.c, if
+ * all are positive). That number changes only across the boundary. So no two outer faces may cross,
+ * and for each shell it must be one at a point just behind it, in a tetrahedron of that shell.
+ * Exact; faces that cross only along edges and corners, none of them strictly on both sides of
+ * another, are not detected.
  *
  * Cost: typically O(n log n). */
 #include <math.h>
@@ -25,7 +25,7 @@ enum { MOST_FACES = 20000, POINTS = 5, RNG_STAGE = 0x6e656172, CANCEL_STEP = 256
 
 /* ---- distance ---- */
 
-/* Corners, centre, and a random point of a face. */
+/* Corners, centroid, and a random point of a face. */
 static void sample_face(const double *const t[3], starg_rng *rng, double points[POINTS][3]) {
     double u = starg_rng_unit(rng), v = starg_rng_unit(rng);
     if (u + v > 1) {
@@ -40,7 +40,7 @@ static void sample_face(const double *const t[3], starg_rng *rng, double points[
     }
 }
 
-/* How far are points of `surface` from what the tree holds? */
+/* How far are points of `surface` from the tree's surface? */
 static starg_status measure_reach(const verify_surface *surface, const verify_tree *tree, int scale,
                                   verify_reach *reach) {
     starg_status status = STARG_OK;
@@ -112,7 +112,7 @@ done:
 
 /* ---- winding ---- */
 
-/* The centre of a tetrahedron; false when rounding puts it on a side or beyond. */
+/* The centroid of a tetrahedron; false if rounding puts it on a side or beyond. */
 static bool center_of(const starg_pieces_mesh *mesh, uint32_t tetrahedron, double center[3]) {
     const uint32_t *corners = mesh->tetrahedra + 4 * (size_t)tetrahedron;
     for (int k = 0; k < 3; k++) {

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Fewer guards of a result that are as good as all of them: a lower bound above their number is
- * wrong, for guards are candidates.
+/* Finds fewer guards of a result that are as good as all of them: this refutes a lower bound above
+ * their number, since guards are candidates.
  *
- * As good: each column is in as many of their rows as redundancy asks for, or in as many as in the
- * beginning; or, where a part is enough, the columns that are seen often enough are that part of
- * all columns (what can be seen is no more than all). Guards are taken away one after the other as
- * long as the rest is good, once those that see least first, once the last first (what is left is
- * then no more than the curve says). The smaller number counts: an upper bound of the fewest, found
- * without a search.
+ * As good: each column is in as many of their rows as redundancy requires, or in as many as with
+ * all guards; or, with a partial goal, the columns seen often enough have that share of all columns
+ * (what can be seen is no more than all). Guards are removed one by one while the rest stays good,
+ * once those that see least first, once the last first (the result is then no more than the curve
+ * says). The smaller number counts: an upper bound on the fewest, found without a search.
  *
  * Cost: the bits of all rows, twice. */
 #include <math.h>
@@ -21,11 +20,11 @@ static const char STAGE[] = "verify";
 typedef struct removal {
     const verify_facts *known;
     const starg_bits *rows;
-    const uint32_t *held; /* rows of each column, of all guards     */
-    uint32_t *count;      /* the same of those that are left        */
+    const uint32_t *held; /* rows of each column, for all guards */
+    uint32_t *count;      /* the same for the remaining ones */
     uint32_t *order;
     uint32_t redundancy;
-    double goal, reached; /* weight; a goal of infinity: none */
+    double goal, reached; /* weight; infinite goal: none */
 } removal;
 
 static double weight_of(const removal *own, size_t column) {
@@ -50,7 +49,7 @@ static bool can_go(const removal *own, uint32_t guard) {
     return same || own->reached - lost >= own->goal;
 }
 
-static void take_away(removal *own, uint32_t guard) {
+static void remove_guard(removal *own, uint32_t guard) {
     const uint64_t *row = starg_bits_row(own->rows, guard);
     for (size_t w = 0; w < own->rows->words; w++)
         STARG_FOR_BITS (bit, row[w]) {
@@ -60,7 +59,7 @@ static void take_away(removal *own, uint32_t guard) {
         }
 }
 
-static size_t take_away_all(removal *own) {
+static size_t remove_guards(removal *own) {
     size_t left = own->known->guards->count;
     own->reached = 0;
     for (size_t j = 0; j < own->rows->columns; j++) {
@@ -69,14 +68,14 @@ static size_t take_away_all(removal *own) {
     }
     for (size_t i = 0; i < own->known->guards->count; i++)
         if (can_go(own, own->order[i])) {
-            take_away(own, own->order[i]);
+            remove_guard(own, own->order[i]);
             left--;
         }
     return left;
 }
 
 /* The weight that is enough whatever can be seen, with room for the rounding of areas and for the
- * weights of the solver, which are whole multiples of 2^-40 of all. */
+ * solver's weights, which are integer multiples of 2^-40 of the total. */
 static double find_goal(const verify_facts *known) {
     const starg_guard_options *options = &known->guards->options;
     if (!(options->coverage < 1))
@@ -91,7 +90,7 @@ static void order_guards(removal *own, bool by_sight) {
     size_t count = own->known->guards->count;
     for (uint32_t i = 0; i < count; i++)
         own->order[i] = (uint32_t)(count - 1 - i);
-    for (size_t i = 1; by_sight && i < count; i++) { /* stable, by insertion */
+    for (size_t i = 1; by_sight && i < count; i++) { /* stable insertion sort */
         uint32_t guard = own->order[i];
         size_t at = i, seen = starg_bits_count(own->rows, guard);
         for (; at > 0 && starg_bits_count(own->rows, own->order[at - 1]) > seen; at--)
@@ -116,7 +115,7 @@ starg_status verify_find_needed(const verify_facts *known, size_t *needed) {
     STARG_NEW(context, STAGE, own.order, known->guards->count);
     for (int by_sight = 0; by_sight < 2; by_sight++) {
         order_guards(&own, by_sight == 1);
-        size_t left = take_away_all(&own);
+        size_t left = remove_guards(&own);
         *needed = left < *needed ? left : *needed;
     }
 done:

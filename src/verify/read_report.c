@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* PIECES.json, read for the verifier (docs/formats.md). Types and shapes are checked here; whether
- * the numbers are true is checked by verification. Unknown keys are skipped.
+/* PIECES.json, read for the verifier (docs/formats.md). Checks types and shapes here; verification
+ * checks the numbers. Skips unknown keys.
  *
- * The reader of starg_decomposition_read is another one, by the table that also writes the file.
- * This one shares no more with it than the parser of JSON: a mistake in the table shows here. */
+ * Independent of starg_decomposition_read, which uses the same field table as the writer. The two
+ * share only the JSON parser, so a mistake in the table shows here. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 
 static const char STAGE[] = "pieces file";
 
-/* A reader in the middle of a file: the first thing that does not fit ends it. */
+/* State of the reader: the first error ends it. */
 typedef struct reader {
     starg_context *context;
     const char *name;
@@ -127,7 +127,7 @@ done:
         r->status = status;
 }
 
-/* How the boundary relates to the model; files without the keys keep the surface. */
+/* Relation of the boundary to the model; files without the keys keep the surface. */
 static void read_surface(reader *r, const json_t *root, starg_pieces_report *report) {
     if (json_object_get(root, "surface") != NULL)
         report->approximated = read_word(r, root, "surface", "kept", "approximated") == 1;

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* PIECES.vtk, read for the verifier: a legacy VTK file of this form, and no other
- * (docs/formats.md):
+/* PIECES.vtk, read for the verifier: a legacy VTK file of this form only (docs/formats.md):
  *
  *     # vtk DataFile Version 2.0 to 4.2      CELLS m 5m          of "4 a b c d"
  *     a title                                CELL_TYPES m        of 10
@@ -8,9 +7,8 @@
  *     DATASET UNSTRUCTURED_GRID              SCALARS piece int 1
  *     POINTS n float or double               LOOKUP_TABLE default
  *
- * Binary numbers are big-endian, integers of 32 bits. What begins with a word behind the labels is
- * skipped. Declared counts are compared with the bytes that are left before any memory is asked
- * for. */
+ * Binary numbers are big-endian, integers of 32 bits. Further sections after the labels are
+ * skipped. Declared counts are compared with the remaining bytes before allocating. */
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -36,7 +34,7 @@ typedef struct reader {
 
 /* ---- failures ---- */
 
-/* What is wrong, where the reader stands. */
+/* Reports what is wrong at the reader's position. */
 static starg_status reject(const reader *r, const char *what) {
     uint64_t place = 1;
     if (r->binary) {
@@ -68,8 +66,8 @@ static void skip_blanks(reader *r) {
         r->at++;
 }
 
-/* Copies the next word; false when there is none, or when it is longer than any that may stand
- * there (then the reader stays before it). */
+/* Copies the next word; false if there is none, or if it is longer than any valid word (the reader
+ * then stays before it). */
 static bool next_word(reader *r, char word[WORD]) {
     size_t length = 0;
     skip_blanks(r);
@@ -97,7 +95,7 @@ static starg_status expect(reader *r, const char *wanted) {
     return reject(r, message);
 }
 
-/* Passes the rest of the line; binary numbers begin right behind it. */
+/* Skips the rest of the line; binary numbers start right after it. */
 static void skip_line(reader *r) {
     while (r->at < r->end && *r->at != '\n')
         r->at++;
@@ -144,7 +142,7 @@ static uint64_t big_endian(reader *r, int bytes) {
     return bits;
 }
 
-/* The bytes of all numbers of a section have been counted before. */
+/* The caller has checked that the bytes of the section exist. */
 static starg_status read_integer(reader *r, int64_t *value) {
     if (!r->binary)
         return text_integer(r, value);
@@ -169,7 +167,7 @@ static starg_status read_real(reader *r, double *value) {
 
 /* ---- sections ---- */
 
-/* A count that was declared: its numbers must fit into what is left of the file. */
+/* A declared count: its numbers must fit into the rest of the file. */
 static starg_status read_count(reader *r, size_t numbers_each, size_t bytes_each, size_t *count) {
     int64_t declared;
     starg_status status = text_integer(r, &declared);
@@ -192,7 +190,7 @@ static starg_status expect_same(reader *r, size_t expected, const char *what) {
     return status;
 }
 
-/* Is a binary section of so many bytes there? */
+/* Does the file have that many more bytes for a binary section? */
 static starg_status expect_bytes(const reader *r, size_t bytes) {
     if (r->binary && (size_t)(r->end - r->at) < bytes)
         return reject(r, "the file is truncated in the section that begins here");
@@ -323,7 +321,7 @@ static starg_status read_labels(reader *r, starg_pieces_mesh *mesh) {
     STARG_TRY(expect(r, "SCALARS"));
     STARG_TRY(expect(r, "piece"));
     STARG_TRY(expect(r, "int"));
-    skip_line(r); /* the number of components, 1, may be left out */
+    skip_line(r); /* the number of components, 1, is optional */
     STARG_TRY(expect(r, "LOOKUP_TABLE"));
     skip_line(r);
     STARG_TRY(expect_bytes(r, mesh->count * sizeof(int32_t)));
@@ -339,7 +337,7 @@ done:
     return status;
 }
 
-/* More numbers than were declared are no accident that one may pass over. */
+/* Rejects numbers beyond the declared count. */
 static starg_status read_end(reader *r) {
     skip_blanks(r);
     if (r->at == r->end || (*r->at >= 'A' && *r->at <= 'Z'))

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Redundancy: what fewer guards see than was asked for must be seen by no other candidate. The
- * candidates are not known, but their number is, and that they come from all over the solid.
+/* Redundancy: what fewer guards see than requested must be seen by no other candidate. The
+ * candidates are unknown, except for their number and that they are spread over the whole solid.
  *
- * If more than a tenth of what is seen lacks guards, points are drawn at random in the solid. Every
- * candidate that is no guard must see nothing that lacks guards. Where three points of four do, no
- * set of at least MANY others stands clear of it: a single cover that is called a double one. Where
- * fewer guards than asked are a matter of few candidates, the places that lack are hard to see and
- * few points see any.
+ * If more than a tenth of what is seen lacks guards, points are sampled at random in the solid.
+ * Every candidate that is not a guard must see nothing that lacks guards. If three of four sample
+ * points see some, no set of at least MANY other candidates avoids it: a single cover posing as a
+ * double one. If guards are lacking only because candidates are few, the lacking places are hard to
+ * see and few points see any.
  *
- * Cost: that of VERIFY_PLACES guards, where it is needed. */
+ * Cost: that of VERIFY_PLACES guards, if needed. */
 #include <math.h>
 
 #include "core/memory.h"
@@ -27,7 +27,7 @@ static bool is_place(const verify_facts *known, const double p[3]) {
            verify_tree_distance(known->tree, p, known->scale) >= known->guards->options.clearance;
 }
 
-/* Are there other candidates, and is nothing in the options that excuses the lack? */
+/* Are there other candidates, and do the options give no excuse for the lack? */
 static bool must_hold(const verify_facts *known) {
     const starg_guards *guards = known->guards;
     const starg_guard_options *o = &guards->options;

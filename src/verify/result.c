@@ -9,7 +9,7 @@
 
 static const char STAGE[] = "result file";
 
-/* Is it JSON whose "format" is this? */
+/* Is it JSON with this "format"? */
 static bool has_format(const char *bytes, size_t size, const char *format) {
     json_t *root = json_loadb(bytes, size, JSON_REJECT_DUPLICATES, NULL);
     const char *found = json_string_value(json_object_get(root, "format"));

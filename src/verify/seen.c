@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How many vertices of its piece each guard sees. A star-shaped piece has all of them seen: that
- * is its certificate. For the others the line from guard to vertex is tested exactly against the
- * boundary of all tetrahedra, which may be touched at the vertex only; a guard that is not strictly
- * inside sees nothing. Where there are too many pairs, some are drawn at random, with
+/* Counts the vertices of its piece that each guard sees. In a star-shaped piece it sees all: that
+ * is its certificate. For other pieces the segment from guard to vertex is tested exactly against
+ * the boundary of all tetrahedra, which it may touch only at the vertex; a guard that is not
+ * strictly inside sees nothing. If there are too many pairs, a random sample is drawn with
  * replacement. */
 #include "core/memory.h"
 #include "core/rng.h"
@@ -21,11 +21,11 @@ typedef struct search {
     const verify_pieces *pieces;
     const starg_pieces_report *report;
     const verify_certificate *certificates;
-    size_t *start; /* of each piece's tetrahedra in `members`   */
+    size_t *start; /* of each piece's tetrahedra in `members` */
     uint32_t *members;
-    uint32_t *last;         /* of each vertex: the piece it was last counted for, plus 1 */
-    STARG_ARRAY(pair) open; /* pairs of pieces that are not proven       */
-    uint8_t *inside;        /* of each piece: may its guard see anything? */
+    uint32_t *last;         /* per vertex: the last piece that counted it, plus 1 */
+    STARG_ARRAY(pair) open; /* pairs of unproven pieces */
+    uint8_t *inside;        /* per piece: can its guard see anything? */
     verify_tree *tree;
 } search;
 
@@ -45,7 +45,7 @@ done:
     return status;
 }
 
-/* Counts the vertices of a piece, and lists them unless they are known to be seen. */
+/* Counts the vertices of a piece, and lists them unless they are known to be visible. */
 static starg_status gather_pairs(search *own, uint32_t piece, verify_seen *seen) {
     starg_status status = STARG_OK;
     bool proven = own->certificates[piece].proof == VERIFY_PROVEN;

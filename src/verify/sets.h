@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Disjoint sets: parent[i] names another member of the set of i, or i where i is the lowest one. */
+/* Disjoint sets: parent[i] is another member of the set of i, or i if it is the lowest one. */
 #ifndef STARG_VERIFY_SETS_H
 #define STARG_VERIFY_SETS_H
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Union-find over faces. A hash table holds the first directed edge of every pair of vertices; the
- * second one becomes its partner, a third one spoils the pair. Faces that touch in a vertex only,
- * or in an edge of more than two faces, stay apart: what is known of one says nothing of the other.
- * Cost: O(n). */
+/* Union-find over faces. A hash table holds the first directed edge of every vertex pair; the
+ * second one becomes its partner, a third one invalidates the pair. Faces that touch only in a
+ * vertex, or in an edge of more than two faces, stay separate: facts about one say nothing about
+ * the other. Cost: O(n). */
 #include "verify/shells.h"
 
 #include "core/memory.h"

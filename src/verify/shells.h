@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shells: the parts of a surface that hang together through edges of exactly two faces. */
+/* Shells: components of a surface connected through edges of exactly two faces. */
 #ifndef STARG_VERIFY_SHELLS_H
 #define STARG_VERIFY_SHELLS_H
 

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Visibility by a map of directions.
  *
- * The directions from p are divided like the sides of a cube about it, each side into 2^levels
+ * The directions from p are divided like the sides of a cube around it, each side into 2^levels
  * squares a row: a cell is the cone of all points q with u0 w <= u <= u1 w and v0 w <= v <= v1 w,
  * where (u, v, w) are the coordinates of q - p in the order of the side. Every triangle is listed
- * in every cell that it may meet: it is left out only where its corners are certainly all beyond
- * one of the four planes, by more than rounding, which proves it to be outside of the cone. A
- * point on the way from p to a vertex q lies in the same cones as q; so q is seen exactly if no
- * triangle blocks [p, q) among those listed in the cells in which q itself may lie. The same holds
- * for a face: whatever enters the tetrahedron (p, face) is listed in a cell that the face may meet.
+ * in every cell that it may meet: it is omitted only if its corners are certainly all beyond one of
+ * the four planes, by more than rounding, which proves it to be outside the cone. A point on the
+ * segment from p to a vertex q lies in the same cones as q; so q is seen exactly if no triangle
+ * blocks [p, q) among those listed in the cells that may contain q. The same holds for a face:
+ * whatever enters the tetrahedron (p, face) is listed in a cell that the face may meet.
  *
- * No triangle is left out for facing away, for being hidden or for being far. Cost for each point:
- * about O(n log n) to list, then a short list for each vertex. */
+ * No triangle is omitted for facing away, being hidden or being far. Cost per point: about O(n log
+ * n) to list, then a short list for each vertex. */
 #include "verify/sight.h"
 
 #include <math.h>
@@ -28,13 +28,13 @@ typedef struct listing {
 
 struct verify_sight {
     const verify_surface *surface;
-    uint32_t width;                /* cells in a row of a side           */
-    STARG_ARRAY(listing) listings; /* as they come                       */
-    STARG_ARRAY(uint32_t) cells;   /* of the item that was placed last   */
-    size_t *start;                 /* of each cell's faces in `listed`   */
-    uint32_t *listed;              /* faces by cell                      */
+    uint32_t width;                /* cells in a row of a side */
+    STARG_ARRAY(listing) listings; /* in order of insertion */
+    STARG_ARRAY(uint32_t) cells;   /* of the item placed last */
+    size_t *start;                 /* of each cell's faces in `listed` */
+    uint32_t *listed;              /* faces by cell */
     size_t listed_capacity;
-    uint8_t *vertices, *faces, *used; /* used: vertices that faces name */
+    uint8_t *vertices, *faces, *used; /* used: vertices of faces */
 };
 
 starg_status verify_sight_create(const verify_surface *surface, verify_sight **out) {
@@ -80,14 +80,14 @@ void verify_sight_free(verify_sight *sight) {
 
 /* ---- placing points and triangles in cells ---- */
 
-/* One to three points about p, in the coordinates of one side of the cube. */
+/* One to three points relative to p, in the coordinates of one side of the cube. */
 typedef struct item {
     double x[3][3]; /* u, v, w of each */
     int count;
 } item;
 
 /* Are all points certainly beyond the plane x[k] = limit x w, where limit is in [-1, 1]? The terms
- * come with at most four roundings; the constant covers those of subnormal products. */
+ * have at most four roundings; the constant covers those of subnormal products. */
 static bool beyond(const item *it, int k, double limit, int direction) {
     for (int i = 0; i < it->count; i++) {
         double x = it->x[i][k], along = limit * it->x[i][2];
@@ -98,8 +98,8 @@ static bool beyond(const item *it, int k, double limit, int direction) {
     return true;
 }
 
-/* Appends the cells of a side that the item may meet, of the `size` x `size` ones that start at
- * (column, row): the square is split into four until one cell is left. */
+/* Appends the cells of a side that the item may meet, among the `size` x `size` ones starting at
+ * (column, row): recursively splits the square into four. */
 static starg_status place(verify_sight *sight, const item *it, uint32_t side, uint32_t column,
                           uint32_t row, uint32_t size) {
     starg_status status = STARG_OK;
@@ -128,7 +128,7 @@ static starg_status place(verify_sight *sight, const item *it, uint32_t side, ui
     return status;
 }
 
-/* Sets sight->cells to all cells that the points, taken from p, may meet. */
+/* Sets sight->cells to all cells that the points, relative to p, may meet. */
 static starg_status find_cells(verify_sight *sight, const double p[3], const double *const *points,
                                int count) {
     sight->cells.count = 0;
@@ -200,7 +200,7 @@ static starg_status sort_listings(verify_sight *sight) {
 
 /* ---- looking ---- */
 
-/* Is q seen past everything that is listed in sight->cells? */
+/* Does no face listed in sight->cells block the view to q? */
 static bool sees_point(const verify_sight *sight, const double p[3], const double q[3]) {
     for (size_t c = 0; c < sight->cells.count; c++) {
         uint32_t cell = sight->cells.data[c];
@@ -214,7 +214,7 @@ static bool sees_point(const verify_sight *sight, const double p[3], const doubl
     return true;
 }
 
-/* Does nothing that is listed in sight->cells enter the tetrahedron (p, face)? */
+/* Does nothing listed in sight->cells enter the tetrahedron (p, face)? */
 static bool sees_whole(const verify_sight *sight, const double p[3], uint32_t face) {
     const double *f[3];
     verify_corners(sight->surface, face, f);

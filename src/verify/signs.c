@@ -11,9 +11,9 @@ static bool same(const double a[3], const double b[3]) {
 
 /* ---- signs ----
  *
- * Filter: differences and products in doubles carry a relative error below 8 x 2^-53 of the sum
- * of the absolute products, so 1e-14 of it is safe; where products underflow they lose less than
- * 1e-220, far below the constant term. */
+ * Filter: differences and products in doubles have a relative error below 8 x 2^-53 of the sum of
+ * the absolute products, so 1e-14 of it is safe; products that underflow lose less than 1e-220, far
+ * below the constant term. */
 
 #define ROUNDING  1e-14
 #define UNDERFLOW 1e-200
@@ -28,7 +28,7 @@ static int exact_side(const double a[3], const double b[3], const double c[3], c
     return exact_sum_sign(&sum);
 }
 
-/* The usual reasons for a zero: p is a corner, or all four are in a plane across an axis. */
+/* The common causes of a zero: p is a corner, or all four are in an axis-aligned plane. */
 static bool plainly_flat(const double a[3], const double b[3], const double c[3],
                          const double p[3]) {
     for (int k = 0; k < 3; k++)
@@ -113,7 +113,7 @@ bool verify_on_triangle(const double p[3], const double *const t[3]) {
         return false;
     for (int axis = 0; axis < 3; axis++) {
         int turn = verify_turn(t[0], t[1], t[2], axis);
-        if (turn != 0) /* seen along this axis the triangle keeps its shape */
+        if (turn != 0) /* in this projection the triangle has area */
             return verify_turn(t[0], t[1], p, axis) * turn >= 0 &&
                    verify_turn(t[1], t[2], p, axis) * turn >= 0 &&
                    verify_turn(t[2], t[0], p, axis) * turn >= 0;
@@ -127,7 +127,8 @@ static bool meet_on_line(const double p[3], const double q[3], const double a[3]
     for (int k = 0; k < 3; k++) {
         if (p[k] == q[k])
             continue;
-        double low = fmin(a[k], b[k]), high = fmax(a[k], b[k]); /* order along k is that on it */
+        double low = fmin(a[k], b[k]),
+               high = fmax(a[k], b[k]); /* the order along k is that on the line */
         return p[k] < q[k] ? low < q[k] && high >= p[k] : high > q[k] && low <= p[k];
     }
     return false; /* p is q */
@@ -143,13 +144,13 @@ static bool blocked_by_segment(const double p[3], const double q[3], const doubl
         int p_side = verify_turn(a, b, p, axis), q_side = verify_turn(a, b, q, axis);
         if (a_side == 0 && b_side == 0 && p_side == 0 && q_side == 0)
             continue; /* their plane is seen edge-on */
-        /* On different lines that meet in one point, which is q when q is on the other line. */
+        /* On different lines that meet in one point, which is q if q is on the other line. */
         return a_side * b_side <= 0 && p_side * q_side < 0;
     }
     return meet_on_line(p, q, a, b);
 }
 
-/* Does the line p q, which is not in the plane of t, pass t or its boundary? */
+/* Does the line p q, which is not in the plane of t, pass through t or its boundary? */
 static bool line_meets(const double p[3], const double q[3], const double *const t[3]) {
     int plus = 0, minus = 0;
     for (int i = 0; i < 3; i++) {
@@ -160,7 +161,7 @@ static bool line_meets(const double p[3], const double q[3], const double *const
     return plus == 0 || minus == 0;
 }
 
-/* Do the bounds of some points and of t have nothing in common? */
+/* Are the bounds of some points and of t disjoint? */
 static bool bounds_apart(const double *const *points, int count, const double *const t[3]) {
     for (int k = 0; k < 3; k++) {
         double low = points[0][k], high = points[0][k];
@@ -180,22 +181,22 @@ bool verify_blocks(const double p[3], const double q[3], const double *const t[3
     if (bounds_apart(ends, 2, t))
         return false;
     int p_side = verify_side(t[0], t[1], t[2], p), q_side = verify_side(t[0], t[1], t[2], q);
-    if (p_side != 0) /* then t has area; to stop in its plane at q is no contact */
+    if (p_side != 0) /* then t has area; ending in its plane at q is no contact */
         return p_side * q_side < 0 && line_meets(p, q, t);
     if (q_side != 0)
-        return false; /* the segment is in the plane at p only, and p is not on t */
-    /* All in one plane, or t without area: from p, off t, one gets to t through an edge. */
+        return false; /* the segment meets the plane only at p, which is not on t */
+    /* All coplanar, or t without area: from p, off t, a segment reaches t only through an edge. */
     return blocked_by_segment(p, q, t[0], t[1]) || blocked_by_segment(p, q, t[1], t[2]) ||
            blocked_by_segment(p, q, t[2], t[0]);
 }
 
 /* ---- triangles ----
  *
- * What t and the tetrahedron have in common is the hull of points each of which is a corner of t
- * in the tetrahedron, or where an edge of t meets a side of it, or where an edge of it meets t.
- * Off the face, edges of the tetrahedron are the views from p to its corners, which t does not
- * block; so what remains is a corner of t in the tetrahedron off the face, or an edge of t that
- * passes the open inside of one of the three sides through p. */
+ * The intersection of t and the tetrahedron is the hull of points each of which is a corner of t in
+ * the tetrahedron, or where an edge of t meets a side of it, or where an edge of it meets t. Off
+ * the face, edges of the tetrahedron are the segments from p to its corners, which t does not
+ * block; so there remains a corner of t in the tetrahedron off the face, or an edge of t that
+ * passes through the interior of one of the three sides at p. */
 
 bool verify_enters(const double p[3], const double *const face[3], const double *const t[3]) {
     const double *corners[4] = {p, face[0], face[1], face[2]};
@@ -239,7 +240,7 @@ static bool edge_passes(const double *const s[3], const double *const t[3]) {
     return false;
 }
 
-/* Two triangles of one plane overlap unless a line along an edge of one keeps them apart. */
+/* Coplanar triangles overlap unless a line along an edge of one separates them. */
 static bool overlap(const double *const s[3], const double *const t[3]) {
     int axis = 0;
     while (axis < 3 && verify_turn(s[0], s[1], s[2], axis) == 0)

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The geometric decisions of the verifier, all exact for finite doubles below 1e100. Written apart
- * from the predicates of the engines: other formulas, other arithmetic (verify/exact_sum.h). */
+/* The geometric decisions of the verifier, all exact for finite doubles below 1e100. Independent of
+ * the predicates of the engines: other formulas, other arithmetic (verify/exact_sum.h). */
 #ifndef STARG_VERIFY_SIGNS_H
 #define STARG_VERIFY_SIGNS_H
 
 #include <stdbool.h>
 
-/* 1 when p is strictly on the inner side of the triangle a b c (counter-clockwise seen from
- * outside), -1 strictly outside, 0 in its plane or when the triangle has no area. */
+/* 1 if p is strictly on the inner side of the triangle a b c (counter-clockwise seen from outside),
+ * -1 strictly outside, 0 in its plane or if the triangle has no area. */
 int verify_side(const double a[3], const double b[3], const double c[3], const double p[3]);
 
-/* 1 when a, b, c turn counter-clockwise in the plane seen along `axis`, -1 clockwise, 0 when they
- * are on one line there. */
+/* 1 if a, b, c are counter-clockwise in the projection along `axis`, -1 clockwise, 0 if collinear
+ * there. */
 int verify_turn(const double a[3], const double b[3], const double c[3], int axis);
 
 /* Is |p - q| <= radius (radius >= 0, infinity allowed)? */
@@ -23,12 +23,12 @@ bool verify_on_triangle(const double p[3], const double *const t[3]);
 /* Does [p, q) meet the closed triangle t, on which p does not lie? */
 bool verify_blocks(const double p[3], const double q[3], const double *const t[3]);
 
-/* Has t a point in the tetrahedron (p, face) off the face? Only for a face that has p strictly on
- * its inner side, and whose corners p sees past t. */
+/* Does t have a point in the tetrahedron (p, face) off the face? Requires p strictly on the inner
+ * side of the face, with its corners visible past t. */
 bool verify_enters(const double p[3], const double *const face[3], const double *const t[3]);
 
-/* Do two triangles pass through one another: does an edge of one, with ends strictly on both
- * sides of the other's plane, meet the other, or do they overlap in one plane? */
+/* Do two triangles cross: does an edge of one, with ends strictly on both sides of the other's
+ * plane, meet the other, or do they overlap in one plane? */
 bool verify_cross(const double *const s[3], const double *const t[3]);
 
 #endif

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Shells are components of faces that share edges. The rule of turning is that of the library's
- * solids, written anew: a shell that lies in an even number of others bounds the solid from
- * outside and must have positive volume; one in an odd number bounds a cavity and must have
- * negative volume; "in" means that the other shell has a winding number other than 0 about a
- * corner. A shell that passes through another gets positive volume. Signs of volumes are exact.
+/* Shells are components of faces that share edges. They are oriented by the rule of the library's
+ * solids, reimplemented: a shell inside an even number of others bounds the solid from outside and
+ * must have positive volume; inside an odd number it bounds a cavity and must have negative volume;
+ * "inside" means that the other shell has a nonzero winding number about a corner. A shell that
+ * crosses another gets positive volume. Signs of volumes are exact.
  *
- * Cost: a hash table of directed edges, O(n); for several shells one winding number for each
- * pair whose bounds allow nesting; all pairs of faces for each cavity and a shell around it. */
+ * Cost: a hash table of directed edges, O(n); with several shells one winding number for each pair
+ * whose bounds allow nesting, and all pairs of faces for each cavity and a shell around it. */
 #include "verify/surface.h"
 
 #include <math.h>
@@ -23,8 +23,8 @@ static const char STAGE[] = "verify";
 
 /* ---- edges ---- */
 
-/* Directed edge e runs from corner e % 3 of face e / 3 to the next corner. The table holds
- * e + 1 at the first free slot behind the hash of its ends. */
+/* Directed edge e runs from corner e % 3 of face e / 3 to the next corner. The table holds e + 1 at
+ * the first free slot after the hash of its ends. */
 typedef struct edge_table {
     const uint32_t *faces;
     uint64_t *slots;
@@ -39,7 +39,7 @@ static uint32_t edge_to(const uint32_t *faces, uint64_t e) {
     return faces[e % 3 == 2 ? e - 2 : e + 1];
 }
 
-/* The slot of the edge from a to b, or the free one where it belongs. */
+/* The slot of the edge from a to b, or the free slot for it. */
 static uint64_t *find_edge(const edge_table *table, uint32_t a, uint32_t b) {
     size_t i = (size_t)starg_hash64((uint64_t)a << 32 | b) & table->mask;
     for (;; i = (i + 1) & table->mask) {
@@ -106,7 +106,7 @@ static void widen(shell *own, const double p[3]) {
     }
 }
 
-/* Groups the faces by root. `place` first counts, then gives the next free place of a root. */
+/* Groups the faces by root. `place` first counts, then holds the next free place of each root. */
 static starg_status gather_shells(const verify_surface *surface, uint32_t *parent,
                                   shell_list *shells) {
     starg_context *context = surface->context;
@@ -158,7 +158,7 @@ static bool bounds_meet(const shell *a, const shell *b) {
     return true;
 }
 
-/* Has `other` a winding number about the first corner of `own` that is not on it? */
+/* Does `other` have a nonzero winding number about the first corner of `own` that is not on it? */
 static bool lies_in(const verify_surface *surface, const shell *own, const shell *other) {
     if (!bounds_meet(own, other))
         return false;
@@ -238,7 +238,7 @@ done:
     return status;
 }
 
-/* ---- all of it ---- */
+/* ---- public function ---- */
 
 static starg_status orient(verify_surface *surface, bool turns) {
     starg_context *context = surface->context;
@@ -283,7 +283,7 @@ done:
     return status;
 }
 
-/* Of the vertices that faces name: one that none does may be anywhere. */
+/* Of the vertices in use: others may be anywhere. */
 static void find_bounds(verify_surface *surface) {
     for (size_t k = 0; k < 3; k++) {
         surface->lower[k] = INFINITY;
@@ -316,7 +316,7 @@ static int compare_places(const void *left, const void *right) {
     return order != 0 ? order : (a->vertex > b->vertex) - (a->vertex < b->vertex);
 }
 
-/* Corners at one position name the lowest vertex there, as in the library's solids. */
+/* Maps corners at one position to the lowest vertex there, as in the library's solids. */
 static starg_status weld(verify_surface *surface) {
     starg_status status = STARG_OK;
     place *places = NULL;
@@ -370,7 +370,7 @@ static starg_status create(starg_context *context, const starg_mesh *mesh, bool 
     *out = NULL;
     STARG_TRY(copy_faces(context, mesh, &surface));
     status = orient(surface, turns);
-    if (status == STARG_ERROR_MESH) { /* nothing has been turned yet */
+    if (status == STARG_ERROR_MESH) { /* nothing has been reversed yet */
         STARG_TRY(weld(surface));
         STARG_TRY(orient(surface, turns));
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The model as the verifier sees it: a copy with every shell turned, and winding numbers. */
+/* The verifier's model: a copy with oriented shells, and winding numbers. */
 #ifndef STARG_VERIFY_SURFACE_H
 #define STARG_VERIFY_SURFACE_H
 
@@ -15,40 +15,39 @@ typedef struct verify_surface {
     size_t vertex_count, face_count;
     const double *vertices;    /* of the mesh, which must outlive the surface */
     uint32_t *faces;           /* counter-clockwise seen from outside of the solid */
-    double lower[3], upper[3]; /* bounds of the vertices that faces name */
+    double lower[3], upper[3]; /* bounds of the vertices in use */
 
     /* of scenes (verify/space.h) */
     int ambient;                        /* the winding number far away */
-    size_t model_vertices, model_faces; /* those of obstacles follow   */
-    double *importance;                 /* by face: how much its area counts; NULL: 1 each */
+    size_t model_vertices, model_faces; /* those of obstacles follow */
+    double *importance;                 /* by face: weight of its area; NULL: 1 each */
     double *own_vertices;               /* freed with the surface */
 } verify_surface;
 
-/* Is the face to be seen? */
+/* Is the face a target? */
 static inline bool verify_is_target(const verify_surface *surface, size_t face) {
     return surface->importance == NULL || surface->importance[face] > 0;
 }
 
-/* Checks that every edge has two faces, which run along it in opposite ways (if need be once
- * vertices at one position are one), and turns shells. Errors: MESH, MEMORY, CANCELLED. */
+/* Checks that every edge has two faces of opposite directions (after welding coincident vertices if
+ * necessary), and orients shells. Errors: MESH, MEMORY, CANCELLED. */
 starg_status verify_surface_create(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
-/* The same without turning shells. */
+/* Same without reorienting shells. */
 starg_status verify_surface_as_given(starg_context *context, const starg_mesh *mesh,
                                      verify_surface **out);
-/* The faces of any mesh, with vertices at one position made one; nothing is checked or
- * turned. */
+/* The faces of any mesh, with coincident vertices welded; without checks or reorientation. */
 starg_status verify_surface_welded(starg_context *context, const starg_mesh *mesh,
                                    verify_surface **out);
-/* The same for triangles of any kind, which are taken as they are: nothing is checked or turned.
- * `faces` is a block of the context and taken over, also on failure. Errors: MEMORY. */
+/* Same for arbitrary triangles, unchanged and without checks. Takes ownership of `faces`, a block
+ * of the context, also on failure. Errors: MEMORY. */
 starg_status verify_surface_wrap(starg_context *context, const double *vertices,
                                  size_t vertex_count, uint32_t *faces, size_t face_count,
                                  verify_surface **out);
 void verify_surface_free(verify_surface *surface);
 
-/* By directed edge 3 f + k, from corner k of face f to the next: the one that runs back. `surface`
- * has been checked. *twin is a block of the context. Errors: MEMORY. */
+/* By directed edge 3 f + k, from corner k of face f to the next: the opposite one. `surface` has
+ * been checked. *twin is a block of the context. Errors: MEMORY. */
 starg_status verify_find_twins(const verify_surface *surface, uint32_t **twin);
 
 /* The corners of a face. */
@@ -57,8 +56,8 @@ static inline void verify_corners(const verify_surface *surface, size_t face, co
         t[i] = surface->vertices + 3 * (size_t)surface->faces[3 * face + i];
 }
 
-/* Winding number of `count` faces (NULL: of all), which form a closed surface, about p;
- * *on_surface: p lies on one of them, and the number means nothing. Exact. */
+/* Winding number of `count` faces (NULL: all), which form a closed surface, about p; *on_surface: p
+ * lies on one of them, and the number is undefined. Exact. */
 int verify_winding(const verify_surface *surface, const uint32_t *faces, size_t count,
                    const double p[3], bool *on_surface);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A tree of boxes. The faces are halved again and again at the median of their centres along the
- * longest side of the box of these, down to leaves of a few; node i has the children 2 i and
- * 2 i + 1, and its faces are a range of the order, so that nothing but boxes is stored.
+/* Bounding volume hierarchy. Faces are split recursively at the median of their centres along the
+ * longest side of the centres' box, down to leaves of a few; node i has the children 2 i and 2 i +
+ * 1, and its faces are a range of the order, so only boxes are stored.
  *
- * Boxes are exact. Only the test of a segment against a box is rounded: it says "apart" only when
- * that is certain. Cost: O(n log n) to build, typically O(log n) for what is near a point. */
+ * Boxes are exact. Only the segment test against a box is rounded: it returns "apart" only if
+ * certain. Cost: O(n log n) to build, typically O(log n) per query near a point. */
 #include "verify/tree.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ struct verify_tree {
     const verify_surface *surface;
     uint32_t *order; /* faces */
     box *boxes;      /* of the nodes, from 1 */
-    double *centers; /* of the faces' boxes; while it is built */
+    double *centers; /* of the faces' boxes; only while building */
 };
 
 /* A node and its range of the order. */
@@ -91,8 +91,8 @@ static void exchange(uint32_t *a, uint32_t *b) {
     *b = c;
 }
 
-/* Puts what belongs before the middle of the range there (Hoare's selection). */
-static void part_at_middle(verify_tree *tree, node own, int axis) {
+/* Partitions a range at its middle (Hoare's selection). */
+static void partition_at_median(verify_tree *tree, node own, int axis) {
     uint32_t *order = tree->order;
     size_t middle = own.begin + (own.end - own.begin) / 2, begin = own.begin, last = own.end - 1;
     while (begin < last) {
@@ -124,7 +124,7 @@ static box build(verify_tree *tree, node own) {
             widen(&all, one.lower, one.upper);
         }
     } else {
-        part_at_middle(tree, own, longest_axis(tree, own));
+        partition_at_median(tree, own, longest_axis(tree, own));
         for (int side = 0; side < 2; side++) {
             box half = build(tree, child_of(own, side));
             widen(&all, half.lower, half.upper);
@@ -226,7 +226,7 @@ typedef struct nearest {
     double least; /* squared, in scaled units */
 } nearest;
 
-/* Squared distance from p to a box, a little too small rather than too large. */
+/* Lower bound of the squared distance from p to a box, barely below it. */
 static double squared_to_box(const nearest *own, const box *b) {
     double sum = 0;
     for (int k = 0; k < 3; k++) {
@@ -266,7 +266,7 @@ double verify_tree_distance(const verify_tree *tree, const double p[3], int scal
 
 typedef struct segment {
     double middle[3], half[3]; /* half = (q - p) / 2, rounded */
-    double size;               /* no coordinate of it is larger in magnitude */
+    double size;               /* bound on the magnitude of its coordinates */
 } segment;
 
 static segment segment_of(const double p[3], const double q[3]) {
@@ -279,9 +279,9 @@ static segment segment_of(const double p[3], const double q[3]) {
     return own;
 }
 
-/* Are segment and box certainly apart? Separating axes: those of the box, and their products with
- * the segment. The margins cover the rounding of centres and of products several times over; what
- * underflows gives 0 > 0, which is not apart. */
+/* Are segment and box certainly apart? Separating axes: those of the box, and their cross products
+ * with the segment. The margins cover the rounding of centres and of products several times over;
+ * underflow gives 0 > 0, which is not apart. */
 static bool apart(const segment *own, const box *b) {
     double away[3], reach[3];
     for (int k = 0; k < 3; k++) {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Winding number by the crossings of a segment from p to a random point outside of the bounds:
- * plus one where it leaves through a face, minus one where it enters. All of it by exact signs. A
- * segment that meets a face anywhere but in its open inside is given up for another one, from a
- * range that grows, so that models of very few representable points (subnormal ones) leave room
- * for directions as well; almost every direction is good. */
+/* Winding number by the crossings of a segment from p to a random point outside the bounds: plus
+ * one where it leaves through a face, minus one where it enters. All by exact signs. A segment that
+ * meets a face other than in its interior is replaced by another one, from a growing range, so that
+ * models with very few representable points (subnormal ones) leave room for directions as well;
+ * almost every direction is good. */
 #include <math.h>
 
 #include "core/rng.h"
@@ -13,7 +13,7 @@
 
 enum { RNG_STAGE = 0x77696e64 };
 
-static const double FARTHEST = 1e101; /* exact signs reach that far */
+static const double FARTHEST = 1e101; /* limit of the exact signs */
 
 static bool in_bounds(const verify_surface *surface, const double p[3]) {
     for (int k = 0; k < 3; k++)
@@ -35,7 +35,7 @@ static void outside_point(const verify_surface *surface, uint64_t attempt, doubl
     q[axis] = fmax(surface->upper[axis] + reach, nextafter(surface->upper[axis], INFINITY));
 }
 
-/* Adds the crossing of [p, q] with t, on which neither end lies; false when it grazes t. */
+/* Adds the crossing of [p, q] with t, on which neither end lies; false if it grazes t. */
 static bool add_crossing(const double p[3], const double q[3], const double *const t[3],
                          int *winding) {
     int p_side = verify_side(t[0], t[1], t[2], p), q_side = verify_side(t[0], t[1], t[2], q);
@@ -89,7 +89,7 @@ int verify_winding(const verify_surface *surface, const uint32_t *faces, size_t 
 
 /* ---- by a tree ---- */
 
-/* A point, or a segment from it, on its way through a tree. */
+/* A point, or a segment from it, during a tree traversal. */
 typedef struct ray {
     const verify_surface *surface;
     const double *p;

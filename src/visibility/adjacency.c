@@ -6,7 +6,7 @@
 
 static const char STAGE[] = "visibility";
 
-/* The place in its fan of the face at `slot` that runs from `slot` to `next`. */
+/* Position in the fan of `slot` of the face that runs from `slot` to `next`. */
 static uint32_t find_in_fan(const visibility_adjacency *adjacency, uint32_t slot, uint32_t next) {
     uint32_t i = adjacency->fan_start[slot];
     while (adjacency->neighbour[i] != next)
@@ -14,7 +14,7 @@ static uint32_t find_in_fan(const visibility_adjacency *adjacency, uint32_t slot
     return i;
 }
 
-/* Files the faces under their three corners, by counting. */
+/* Lists the faces at their three corners, by counting sort. */
 static void fill_fans(const visibility_scene *scene, visibility_adjacency *adjacency) {
     uint32_t corners = (uint32_t)(3 * scene->face_count);
     for (uint32_t c = 0; c < corners; c++)
@@ -33,7 +33,7 @@ static uint32_t last_corner(const visibility_scene *scene, uint32_t rank, uint32
     return c[0] == slot ? c[2] : c[1] == slot ? c[0] : c[1];
 }
 
-/* Turns about each slot: the face that follows starts where the one before ends. */
+/* Sorts the faces around each slot: a face starts where the previous one ends. */
 static void order_fans(const visibility_scene *scene, visibility_adjacency *adjacency) {
     for (uint32_t slot = 0; slot < scene->vertex_count; slot++)
         for (uint32_t i = adjacency->fan_start[slot]; i + 1 < adjacency->fan_start[slot + 1]; i++) {
@@ -46,7 +46,7 @@ static void order_fans(const visibility_scene *scene, visibility_adjacency *adja
         }
 }
 
-/* The face before a neighbour in the fan is on the other side of the edge to it. */
+/* The face before a neighbour in the fan is across the edge to it. */
 static void list_edges(const visibility_scene *scene, visibility_adjacency *adjacency) {
     for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
         uint32_t before = adjacency->fan_start[slot + 1] - 1;
@@ -59,7 +59,7 @@ static void list_edges(const visibility_scene *scene, visibility_adjacency *adja
     }
 }
 
-/* Breadth first, so that paths are short. `place` is where each slot stands in the order. */
+/* Breadth first, so that paths are short. `place` is the position of each slot in the order. */
 static void order_slots(const visibility_scene *scene, visibility_adjacency *adjacency,
                         uint32_t *place) {
     uint32_t listed = 0, next = 0;
@@ -91,7 +91,7 @@ static double square_distance(const visibility_scene *scene, uint32_t a, uint32_
     return x * x + y * y + z * z;
 }
 
-/* The nearest of the neighbours that come before the slot. */
+/* The nearest neighbours that come before the slot. */
 static void choose_parents_of(const visibility_scene *scene, visibility_adjacency *adjacency,
                               const uint32_t *place, uint32_t slot) {
     uint32_t *parents = adjacency->parents + CHOICES * (size_t)slot;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Visibility by counting the layers before each vertex, which change at contours only: Appel's
+/* Visibility by counting the layers in front of each vertex, which change only at contours: Appel's
  * quantitative invisibility [A. Appel, The notion of quantitative invisibility and the machine
  * rendering of solids, ACM 1967], made exact.
  *
@@ -9,44 +9,45 @@
  * before x, on the open segment from p to x. By the proof in scene.h, p sees the vertex v exactly
  * if N(v) = 0.
  *
- * How N changes along an edge of M, from w to v, not on one line with p:
- * - Between the ends. A point of K before x off the contours stays when x moves a little: there K
- *   is a surface that the directions from p map one to one (about a vertex because a simple closed
- *   curve on a sphere winds about a point once at most). Points of K near x lie on the two faces of
- *   the edge, by embedding, and their planes hold neither p nor points before x if front-facing. So
- *   N changes only where a contour passes before x. Where the contour (a, b) crosses the plane of
- *   p, w, v there, N grows by one towards the side of its front-facing face, and falls away from
- *   it.
- * - At an end w. Next to w come those points of K that converge to w: on front-facing faces (w, a,
- *   b) off the edge, in whose wedge, seen from p, the edge starts, and before it. With all faces at
- *   w front-facing, or none, there are no such points; otherwise they are counted.
- * So N follows from one vertex of each shell along the edges of a tree. The first is counted by the
- * tree of boxes. Vertices without front-facing faces are hidden; only those tree edges are followed
- * that lead to the others, and of the trees one that has short tree edges and few that start on
- * contours, where points of K would have to be counted (visibility/contours_forest.h).
+ * Change of N along an edge of M from w to v that is not collinear with p:
+ * - Between the ends. A point of K before x that is off the contours persists when x moves a
+ *   little: there K is a surface that the directions from p map injectively (at a vertex because a
+ *   simple closed curve on a sphere winds around a point at most once). Points of K near x lie on
+ *   the two faces of the edge, by embedding, and the planes of front-facing ones contain neither p
+ *   nor points before x. So N changes only where a contour passes before x. Where the contour (a,
+ *   b) crosses the plane of p, w, v there, N grows by one towards the side of its front-facing
+ *   face, and falls on the other side.
+ * - At an end w. Leaving w, N also counts the points of K that converge to w: on front-facing faces
+ *   (w, a, b) off the edge whose wedge, seen from p, contains the start of the edge, and which lie
+ *   before it. If all faces at w are front-facing, or none, there are no such points; otherwise
+ *   they are counted.
+ * So N of one vertex per shell determines N along the edges of a tree. The first is counted by the
+ * BVH. Vertices without front-facing faces are hidden; only tree edges that lead to other vertices
+ * are followed. The tree is chosen to have short edges, few of which start on contours, where
+ * points of K would have to be counted (visibility/contours_forest.h).
  *
- * With det(x, y, z) for vectors relative to p, the contour (a, b), its front-facing face on the
- * left:
+ * With det(x, y, z) for vectors relative to p, and the contour (a, b) with its front-facing face on
+ * the left:
  * - it crosses the tree edge from w to v if det(w, v, a) and det(a, b, v) have one sign and det(w,
- *   v, b) and det(a, b, w) the other (else their planes cross on opposite sides of p, or not
+ *   v, b) and det(a, b, w) the other (otherwise their planes cross on opposite sides of p, or not
  *   between the ends). It lies before the tree edge if orient3d(v, a, b, w) has the sign of det(w,
  *   v, b). The step is the sign of det(a, b, v).
  * - front-facing faces count at w if det(w, v, a) < 0, det(w, v, b) > 0 and v lies beyond their
  *   plane.
- * Signs that floating point does not decide are decided exactly. If one of them is 0 where that
- * matters, p is in a special position (a contour behind or before a vertex, or an edge in a plane
- * with p), and the grid answers for p; likewise if the boundary is not embedded, or tables would
- * grow beyond proportion to the mesh.
+ * Signs that floating point does not decide are decided exactly. If a relevant one is 0, p is in a
+ * special position (a contour behind or before a vertex, or an edge in a plane with p), and the
+ * grid computes p; likewise if the boundary is not embedded, or tables would grow out of proportion
+ * to the mesh.
  *
  * Stages for a point p:
  *   1. find the contours;
  *   2. choose the tree edges;
- *   3. project all vertices to the faces of a cube about p; sort the contours' projections into
+ *   3. project all vertices to the faces of a cube around p; sort the contours' projections into
  *      rows of cells there by counting;
- *   4. follow each tree edge: compare it with the contours in the cells that it touches, in single
- *      precision with an error bound first; count at ends that lie on contours;
+ *   4. follow each tree edge: compare it with the contours in the cells that it touches, first in
+ *      single precision with an error bound; count at ends that lie on contours;
  *   5. sum along the trees.
- * Cells only choose what is compared, with a margin above the rounding of the projection.
+ * Cells only select what is compared, with a margin above the rounding of the projection.
  *
  * Cost per point: O(n), plus the pairs of tree edges and contours in common cells; contours are few
  * on smooth fine meshes, O(sqrt(n)). Memory per thread: 250 bytes a vertex, the grid included. */
@@ -78,7 +79,7 @@ static void free_scratch(const visibility_scene *scene, void *scratch) {
     starg_release(context, s);
 }
 
-/* The columns lie in two blocks, of reals and of numbers. */
+/* The columns are in two blocks, of reals and of integers. */
 static bool make_piece_table(starg_context *context, size_t limit, piece_table *table) {
     float *reals = starg_allocate_zero(context, 8 * limit, sizeof *reals);
     uint32_t *numbers = starg_allocate_zero(context, 3 * limit, sizeof *numbers);
@@ -160,7 +161,7 @@ typedef struct layer_query {
     int32_t layers;
 } layer_query;
 
-/* Does the segment to q pass through the inside of a front-facing face? It may not touch its
+/* Does the segment to q pass through the interior of a front-facing face? It must not touch its
  * border. */
 static bool count_layer(void *user, size_t rank) {
     layer_query *query = user;

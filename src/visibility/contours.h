@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of the engine by contours (visibility/contours.c): its tables, and the stages that are
- * compiled once for each instruction set. */
+/* Internals of the contour engine (visibility/contours.c): its tables, and the stages compiled per
+ * instruction set. */
 #ifndef STARG_VISIBILITY_CONTOURS_H
 #define STARG_VISIBILITY_CONTOURS_H
 
@@ -9,25 +9,25 @@
 #include "visibility/isa.h"
 #include "visibility/scene.h"
 
-/* How good it is for a tree edge to start at a vertex. */
+/* Suitability of a vertex as the start of a tree edge. */
 typedef enum slot_grade {
-    SLOT_FRONT, /* all faces about it are front-facing */
-    SLOT_MIXED, /* it is on a contour: what lies there must be counted */
-    SLOT_BACK   /* no face is front-facing; it is hidden, and its own tree edge goes for nothing */
+    SLOT_FRONT, /* all its faces are front-facing */
+    SLOT_MIXED, /* on a contour: the layers there must be counted */
+    SLOT_BACK   /* no face is front-facing: hidden, and its own tree edge is irrelevant */
 } slot_grade;
 
-/* A row begins so many contours; tables of pieces are longer by what is compared at once. */
+/* Number of contours that start a new row; padding of piece tables for vector reads. */
 enum { ROW_LOAD = 48, PIECE_PADDING = 16 };
 
-/* An edge between a front-facing face, in which it runs from a to b, and one that is not
+/* An edge between a front-facing face, where it runs from a to b, and one that is not
  * front-facing. */
 typedef struct contour {
     double normal[3]; /* a x b, relative to p: positive on the front-facing face's side */
     uint32_t a, b;
-    uint32_t tested_by; /* the last tree edge that was compared with it */
+    uint32_t tested_by; /* the last tree edge compared with it */
 } contour;
 
-/* A row of cells: pieces of contours at nearly the same v, cut evenly by the lower end of u. */
+/* A row of cells: pieces of contours at nearly the same v, divided evenly by the lower end of u. */
 typedef struct contour_row {
     float v_low, v_high;
     float u_low, u_high, scale, last_cell; /* of the lower ends */
@@ -35,39 +35,40 @@ typedef struct contour_row {
     uint32_t first_cell, pieces;
 } contour_row;
 
-/* The part of a contour in a row. The ends are those on the whole cube face, NaN where unknown. */
+/* The part of a contour in a row. The ends are those on the whole cube face, NaN if unknown. */
 typedef struct contour_piece {
     uint32_t row, label;
     float low, high;      /* of u in the row */
     float from[3], to[3]; /* u, v, nearness */
 } contour_piece;
 
-/* A label is the number of the contour and marks. A plain piece is a whole contour on one cube
- * face, in few rows; when it meets a plain tree edge, both meet first in a row where one of them
+/* A label is the number of the contour plus flags. A plain piece is a whole contour on one cube
+ * face, in few rows; a plain piece and a plain tree edge first meet in a row where one of them
  * starts. */
 #define PIECE_COUNTS 0x80000000u /* is not plain, or starts in this row */
 #define PIECE_PLAIN  0x40000000u
 #define PIECE_NUMBER 0x3fffffffu
 
-/* Pieces as the inner loop reads them; PIECE_PADDING more of any value. */
+/* Pieces in the layout of the inner loop, with PIECE_PADDING arbitrary ones behind. */
 typedef struct piece_table {
     float *low, *high, *au, *av, *an, *bu, *bv, *bn;
     uint32_t *a, *b, *label; /* a, b: the slots of its ends */
 } piece_table;
 
-/* Links are followed in blocks. From so many rows on a segment is followed from row to row. */
+/* Tree edges are followed in blocks. Segments of CONTOUR_TALL or more rows are followed row by
+ * row. */
 enum { LINK_BLOCK = 256, CONTOUR_TALL = 8 };
 
-/* What the tree edges of a block cover; by place in the block. */
+/* Extents of the tree edges of a block, by position in the block. */
 typedef struct tree_edge_boxes {
     float u_low[LINK_BLOCK], u_high[LINK_BLOCK], v_low[LINK_BLOCK], v_high[LINK_BLOCK];
     uint32_t row[LINK_BLOCK], last_row[LINK_BLOCK];
-    uint32_t plain[LINK_BLOCK]; /* a tree edge on one cube face; else the rest means nothing */
+    uint32_t plain[LINK_BLOCK]; /* a tree edge on one cube face; otherwise the rest is undefined */
 } tree_edge_boxes;
 
 typedef struct row_visit {
-    uint32_t tree_edge, row, begin, end; /* place in the block; pieces from begin to end */
-    uint32_t others; /* all ones in the first row, where every piece counts; else 0 */
+    uint32_t tree_edge, row, begin, end; /* position in the block; pieces from begin to end */
+    uint32_t others; /* all ones in the first row, where every piece counts; otherwise 0 */
 } row_visit;
 
 typedef struct encounter {
@@ -81,18 +82,18 @@ typedef struct tree_edge_block {
     tree_edge_boxes boxes;
     row_visit visits[CONTOUR_TALL * LINK_BLOCK + 1];
     encounter encounters[LINK_BLOCK];
-    uint32_t ends[2 * LINK_BLOCK][2]; /* a mixed vertex, and the other of the tree edge */
+    uint32_t ends[2 * LINK_BLOCK][2]; /* a mixed vertex, and the other end of the tree edge */
 } tree_edge_block;
 
 struct contours_scratch;
 
-/* All stages for one point. False, and nothing said, where the point lies in a special position
- * or a table is full. */
+/* All stages for one point. Returns false without a result if the point is in a special position or
+ * a table is full. */
 typedef bool contours_run(const visibility_scene *scene, struct contours_scratch *s,
                           const double p[3], const int8_t *side, uint8_t *visible);
 
-/* After the stages have said what is visible: may anything cover a part of the front-facing face,
- * which has its three corners visible? */
+/* After a successful run: may anything cover a part of the front-facing face, whose three corners
+ * are visible? */
 typedef bool contours_face_test(const visibility_scene *scene, struct contours_scratch *s,
                                 size_t rank);
 
@@ -103,32 +104,32 @@ typedef struct contours_variant {
 
 typedef struct contours_scratch {
     const contours_variant *variant;
-    bool decided; /* the last point was by contours */
+    bool decided; /* the last point was decided by contours */
     const double *p;
     const int8_t *side; /* of that point */
-    void *grid;         /* scratch of the grid, for points that contours do not decide */
+    void *grid;         /* scratch of the grid, for points left undecided */
     cube_directions directions;
     uint8_t *grade;       /* by slot: a slot_grade */
     uint8_t *followed;    /* by slot: is its tree edge followed? */
-    uint32_t *parent;     /* by slot: where its tree edge comes from */
+    uint32_t *parent;     /* by slot: start of its tree edge */
     uint32_t *tree_edges; /* slots whose tree edges are followed, one more than slots */
     size_t tree_edge_count;
     contour *contours;
-    uint32_t *contour_edges; /* numbers of the adjacency's edges */
+    uint32_t *contour_edges; /* indices into the adjacency's edges */
     size_t contour_count, contour_limit;
     uint32_t row_of_bin[CUBE_FACES * BINS]; /* by face of the cube, then by bin */
     contour_row *rows;
     size_t row_count, row_limit;
     uint32_t *cell_start; /* cell -> first of its pieces, and the end */
     size_t cell_limit;
-    contour_piece *pieces; /* as they are found */
+    contour_piece *pieces; /* in order of discovery */
     size_t piece_count, piece_limit;
     piece_table sorted; /* by cell */
-    int32_t *layers;    /* by slot: front-facing layers before it, first relative to its parent */
-    tree_edge_block block; /* the tree edges that are being followed; too much for a small stack */
+    int32_t *layers; /* by slot: front-facing layers before it, initially relative to its parent */
+    tree_edge_block block; /* current tree edges; too large for a small stack */
 } contours_scratch;
 
-/* The stages for several instruction sets. */
+/* The stages for each instruction set. */
 extern const contours_variant contours_plain;
 #if defined(__aarch64__)
 extern const contours_variant contours_neon;
@@ -136,11 +137,11 @@ extern const contours_variant contours_neon;
 extern const contours_variant contours_avx2, contours_avx512;
 #endif
 
-/* NULL where the processor does not have what the variant needs. */
+/* NULL if the processor lacks what the variant needs. */
 const contours_variant *contours_choose_variant(visibility_isa wanted);
 
-/* The number of front-facing layers before the vertex, found by the tree. False where the segment
- * from p meets an edge of the front-facing faces. */
+/* The number of front-facing layers before the vertex, by the BVH. False if the segment from p
+ * meets an edge of the front-facing faces. */
 bool contours_count_layers(const visibility_scene *scene, const double p[3], const int8_t *side,
                            uint32_t slot, int32_t *layers);
 

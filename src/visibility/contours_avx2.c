@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The stages of the engine by contours for AVX2 with FMA. */
+/* Stages of the contour engine for AVX2 with FMA. */
 #define CONTOURS_VARIANT contours_avx2
 #define LANES_AVX2
 #include "visibility/contours_stages.h"

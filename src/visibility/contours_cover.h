@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is a face visible as a whole? Part of the stages of visibility/contours.c; what is not plain here
- * is left to whole.c.
+/* Is a face entirely visible? Part of the stages of visibility/contours.c; whole.c decides what is
+ * left open here.
  *
  * Let f be a front-facing face whose three corners are visible. If no contour has a point before f,
- * or at f but for its corners and edges, then N, the number of front-facing layers before x, is the
- * same for all points x of f but its corners: it changes as along an edge (contours.c). Next to a
- * corner without contours it is that of the corner, 0. If all corners have contours, it is what is
- * counted at one of them, along an edge of f: the layers that converge there. So f is wholly
+ * or on f except at its corners and edges, then N, the number of front-facing layers before x, is
+ * the same for all points x of f except its corners: it changes as along an edge (contours.c). Near
+ * a corner without contours it is that of the corner, 0. If all corners have contours, it is
+ * counted at one of them, along an edge of f: the layers that converge there. So f is entirely
  * visible if that is 0.
  *
- * Contours before f are looked for in the cells that f touches. A contour is not before f if its
- * greatest nearness is below the least of f; or if an edge of f has it on the outer side, a common
- * end apart; or if f lies on one side of it; or if the plane of f has no end of it on p's side. */
+ * Contours before f are searched in the cells that f touches. A contour is not before f if its
+ * greatest nearness is below the least of f; or if it is on the outer side of an edge of f, a
+ * common end aside; or if f lies on one side of it; or if none of its ends is on p's side of the
+ * plane of f. */
 
-/* What a contour is compared with: f, or the part of it on one cube face. */
+/* A query for contours: f, or the part of it on one cube face. */
 typedef struct cover_query {
     const visibility_scene *scene;
     const contours_scratch *s;
@@ -21,9 +22,9 @@ typedef struct cover_query {
     size_t rank;
     uint32_t cube_face;
     cube_polygon polygon;
-    bool plain; /* it is all of f */
+    bool plain; /* all of f */
     cube_box box;
-    float nearness; /* least */
+    float nearness; /* least nearness */
 } cover_query;
 
 static void measure_query(cover_query *q) {
@@ -38,10 +39,10 @@ static void measure_query(cover_query *q) {
     q->nearness = (float)(q->s->directions.extent / q->polygon.depth) * (1 - CELL_MARGIN);
 }
 
-/* Which of WIDE pieces from `i` on are certainly apart from f, but for common corners? */
+/* Which of WIDE pieces from `i` on are certainly disjoint from f, except for common corners? */
 static inline uint32_t apart_from_face(const cover_query *q, uint32_t i) {
     const piece_table *t = &q->s->sorted;
-    float turn = q->cube_face % 2 ? -1 : 1; /* so that f is turned counter-clockwise */
+    float turn = q->cube_face % 2 ? -1 : 1; /* makes f counter-clockwise */
     uint32_t apart = 0, left = ~UINT32_C(0), right = ~UINT32_C(0), a_any = 0, b_any = 0;
     for (int k = 0; k < 3; k++) {
         const float *from = q->polygon.corner[k], *to = q->polygon.corner[(k + 1) % 3];

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Stage 2 of the engine by contours (visibility/contours.c): which edges the count follows.
- * Included by the stages.
+/* Stage 2 of the contour engine (visibility/contours.c): which edges the count follows. Included by
+ * the stages.
  *
- * Any neighbour that comes before a vertex in the adjacency's order may be its parent: whatever is
- * chosen, no circle closes, and all paths lead to the root of the shell. Only what the vertices
- * with front-facing faces need for that is followed; the others are hidden anyway. */
+ * Any neighbour that precedes a vertex in the adjacency's order can be its parent: no cycle is
+ * possible, and all paths lead to the root of the shell. Only edges needed for vertices with
+ * front-facing faces are followed; the others are hidden anyway. */
 
 /* The nearest of the best. */
 static void choose_parents(const visibility_scene *scene, contours_scratch *s) {
@@ -21,9 +21,9 @@ static void choose_parents(const visibility_scene *scene, contours_scratch *s) {
     }
 }
 
-/* Marks those that are front or mixed, and what leads from them to their roots. */
+/* Marks front and mixed vertices, and the paths from them to their roots. */
 static void mark_followed(const visibility_scene *scene, contours_scratch *s) {
-    uint32_t *starts = s->tree_edges; /* those whose parents are left, for now */
+    uint32_t *starts = s->tree_edges; /* for now those whose parents are pending */
     size_t start_count = 0;
     for (uint32_t slot = 0; slot < scene->vertex_count; slot++) {
         s->followed[slot] = s->grade[slot] != SLOT_BACK;
@@ -35,7 +35,7 @@ static void mark_followed(const visibility_scene *scene, contours_scratch *s) {
             s->followed[slot] = true;
 }
 
-/* Stage 2: how each vertex with a front-facing face is reached. */
+/* Stage 2: a tree path to each vertex with a front-facing face. */
 static void choose_tree_edges(const visibility_scene *scene, contours_scratch *s) {
     choose_parents(scene, s);
     mark_followed(scene, s);

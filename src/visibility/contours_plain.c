@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The stages of the engine by contours for any processor. */
+/* Stages of the contour engine for any processor. */
 #define CONTOURS_VARIANT contours_plain
 #define LANES_PLAIN
 #include "visibility/contours_stages.h"

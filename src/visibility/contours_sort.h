@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Stage 3 of the engine by contours (visibility/contours.c): what contours cover on the faces of
+/* Stage 3 of the contour engine (visibility/contours.c): the extents of contours on the faces of
  * the cube, in rows of cells. Included by the stages. */
 
-/* What a segment of the boundary covers on one cube face. */
+/* The extent of a boundary segment on one cube face. */
 typedef struct cube_piece {
     uint32_t cube_face;
-    float from[3], to[3]; /* u, v, nearness; NAN where unknown */
-    bool plain;           /* it is all of the segment */
+    float from[3], to[3]; /* u, v, nearness; NaN if unknown */
+    bool plain;           /* all of the segment */
 } cube_piece;
 
-/* The part of a segment, which is not near p, in the frustum of a cube face; false without one. */
+/* The part of a segment not near p in the frustum of a cube face; false if there is none. */
 static bool clip_piece(const cube_directions *d, uint32_t a, uint32_t b, uint32_t cube_face,
                        cube_piece *out) {
     double from[3], to[3], begin = 0, end = 1, corner[2][3];
@@ -39,7 +39,7 @@ static bool clip_piece(const cube_directions *d, uint32_t a, uint32_t b, uint32_
     return true;
 }
 
-/* The segment between two vertices, mostly on one cube face; one that is near p may be anywhere. */
+/* The segment between two vertices, mostly on one cube face; one near p may be anywhere. */
 static inline size_t cut_segment(const cube_directions *d, uint32_t a, uint32_t b,
                                  cube_piece out[CUBE_FACES]) {
     if (d->face[a] == d->face[b] && d->face[a] < RIM) {
@@ -58,7 +58,7 @@ static inline size_t cut_segment(const cube_directions *d, uint32_t a, uint32_t 
     return count;
 }
 
-/* Cuts each cube face into rows of about equally many contours. */
+/* Divides each cube face into rows of about equally many contours. */
 static void cut_rows(contours_scratch *s) {
     const cube_directions *d = &s->directions;
     memset(s->row_of_bin, 0, sizeof s->row_of_bin);
@@ -84,10 +84,10 @@ static void cut_rows(contours_scratch *s) {
     }
 }
 
-/* The rows that a piece touches, and where. */
+/* The rows that a piece touches, and its extent there. */
 typedef struct row_walk {
     uint32_t row, last;
-    float low, high; /* of u in the present row */
+    float low, high; /* of u in the current row */
     bool tall;
 } row_walk;
 
@@ -105,7 +105,7 @@ static inline row_walk walk_begin(const contours_scratch *s, const cube_piece *p
     return w;
 }
 
-/* Narrows a tall piece to the present row. */
+/* Narrows a tall piece to the current row. */
 static inline void walk_narrow(const contours_scratch *s, const cube_piece *piece, row_walk *w) {
     float low = s->rows[w->row].v_low - CELL_MARGIN, high = s->rows[w->row].v_high + CELL_MARGIN;
     float span[2] = {2, -2};
@@ -185,8 +185,8 @@ static void place_piece(contours_scratch *s, const contour_piece *piece) {
     t->label[at] = piece->label;
 }
 
-/* Stage 3: sorts the contours into cells, by counting; cell_start[c] is first the end of cell c,
- * and its start when all are placed. */
+/* Stage 3: counting sort of contours into cells; cell_start[c] is first the end of cell c, and its
+ * start once all are placed. */
 static bool sort_contours(contours_scratch *s) {
     cut_rows(s);
     if (!make_pieces(s))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The stages of the engine by contours (visibility/contours.c), written once and compiled for each
- * instruction set: the including file names the function and chooses the lanes. */
+/* Stages of the contour engine (visibility/contours.c), written once and compiled per instruction
+ * set: the including file names the function and selects the lanes. */
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "visibility/contours.h"
 #include "visibility/lanes.h"
 
-/* Stage 1: the edges that front-facing faces end at. */
+/* Stage 1: the border edges of the front-facing faces. */
 static bool find_contours(const visibility_scene *scene, const int8_t *side, contours_scratch *s) {
     const visibility_adjacency *adjacency = scene->adjacency;
     size_t count = 0;
@@ -51,14 +51,14 @@ static void measure_contours(contours_scratch *s) {
 
 #include "visibility/contours_sort.h"
 
-/* These need what comes before. */
+/* These use the above. */
 #include "visibility/contours_forest.h"
 
 #include "visibility/contours_tree_edges.h"
 
 #include "visibility/contours_cover.h"
 
-/* What the sum is where no layer comes before: by the first vertex that the tree can tell of. */
+/* The count where no layer is in front: from the first vertex that the BVH can decide. */
 static bool find_base(const visibility_scene *scene, const double p[3], const int8_t *side,
                       const contours_scratch *s, const uint32_t *order, size_t count,
                       int32_t *none) {
@@ -76,7 +76,7 @@ static bool find_base(const visibility_scene *scene, const double p[3], const in
     return false;
 }
 
-/* Stage 5: sums the steps from each root on, and sets them right by one vertex of the shell. */
+/* Stage 5: sums the steps from each root, and calibrates them by one vertex of the shell. */
 static bool sum_layers(const visibility_scene *scene, const double p[3], const int8_t *side,
                        contours_scratch *s, uint8_t *visible) {
     const visibility_adjacency *adjacency = scene->adjacency;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Stage 4 of the engine by contours (visibility/contours.c): how the number of front-facing layers
- * changes along each tree edge. Included by the stages. */
+/* Stage 4 of the contour engine (visibility/contours.c): the change of the number of front-facing
+ * layers along each tree edge. Included by the stages. */
 
-/* An edge of the boundary from one vertex to another, and the plane through it and p. */
+/* An edge of the boundary between two vertices, and its plane through p. */
 typedef struct tree_edge {
     const visibility_scene *scene;
     contours_scratch *s;
@@ -10,16 +10,16 @@ typedef struct tree_edge {
     const int8_t *side;
     uint32_t from, to;
     double normal[3]; /* from x to */
-    bool known;       /* the normal is */
+    bool known;       /* is the normal computed? */
     bool special;     /* a sign that must not be 0 is */
-    int32_t step;     /* front-facing layers before `to` less those before `from` */
+    int32_t step;     /* front-facing layers before `to` minus those before `from` */
 } tree_edge;
 
 static const double *position(const tree_edge *l, uint32_t slot) {
     return l->scene->mesh->vertices + 3 * (size_t)l->scene->vertex_of[slot];
 }
 
-/* Sign of det(a, b, c) about p, of which `value` is the rounded value. */
+/* Sign of det(a, b, c) about p, given its rounded value. */
 static inline int sign_of(const tree_edge *l, double value, uint32_t a, uint32_t b, uint32_t c) {
     if (value > l->s->directions.bound)
         return 1;
@@ -28,13 +28,14 @@ static inline int sign_of(const tree_edge *l, double value, uint32_t a, uint32_t
     return orient3d(position(l, a), position(l, b), position(l, c), l->p);
 }
 
-/* A contour that starts where the tree edge does, or ends there: it must leave the plane. */
+/* A contour that shares an end with the tree edge must leave the plane. */
 static void check_shared_end(tree_edge *l, uint32_t other, double value) {
     if (other != l->from && other != l->to && sign_of(l, value, l->from, l->to, other) == 0)
         l->special = true;
 }
 
-/* Counts the crossing of the tree edge and a contour, if it has one and the contour lies before. */
+/* Counts the crossing of the tree edge with a contour, if there is one and the contour is in
+ * front. */
 static void compare(tree_edge *l, contour *c) {
     const cube_directions *d = &l->s->directions;
     uint32_t from = l->from, to = l->to;
@@ -74,8 +75,8 @@ static void compare(tree_edge *l, contour *c) {
         l->step += t;
 }
 
-/* Lies v beyond the plane of the front-facing face (w, a, b)? `sum` is det(w, v, b) - det(w, v, a).
- */
+/* Is v beyond the plane of the front-facing face (w, a, b)? `sum` is det(w, v, b) - det(w, v,
+ * a). */
 static bool is_beyond(tree_edge *l, uint32_t w, uint32_t a, uint32_t b, uint32_t v, double sum) {
     const cube_directions *d = &l->s->directions;
     double normal[3];
@@ -88,9 +89,9 @@ static bool is_beyond(tree_edge *l, uint32_t w, uint32_t a, uint32_t b, uint32_t
     return side < 0;
 }
 
-/* The front-facing layers at `w` that lie before the points of the edge to `v` next to it:
- * front-facing faces (w, a, b), not on the edge, in whose wedge the edge starts, beyond their
- * plane. `normal` is w x v. This is for neighbours in any number and position. */
+/* The front-facing layers at `w` in front of nearby points of the edge to `v`: front-facing faces
+ * (w, a, b), not on the edge, whose wedge contains the start of the edge and whose plane is in
+ * front. `normal` is w x v. Handles neighbours in any number and position. */
 static int32_t count_one_by_one(tree_edge *l, uint32_t w, uint32_t v, const double normal[3]) {
     const visibility_adjacency *adjacency = l->scene->adjacency;
     const cube_directions *d = &l->s->directions;
@@ -110,8 +111,7 @@ static int32_t count_one_by_one(tree_edge *l, uint32_t w, uint32_t v, const doub
     return layers;
 }
 
-/* The same for up to FAN neighbours off the plane of p, w and v: no branch until a wedge is found.
- */
+/* Same for up to FAN neighbours off the plane of p, w and v: branch-free until a wedge is found. */
 static int32_t count_at_end(tree_edge *l, uint32_t w, uint32_t v, const double normal[3]) {
     const visibility_adjacency *adjacency = l->scene->adjacency;
     const cube_directions *d = &l->s->directions;
@@ -142,12 +142,12 @@ static int32_t count_at_end(tree_edge *l, uint32_t w, uint32_t v, const double n
     return layers;
 }
 
-/* What a tree edge's piece covers in a row, with a margin. */
+/* Extent of a tree edge's piece in a row, with a margin. */
 typedef struct cube_box {
     float u_low, u_high, v_low, v_high;
 } cube_box;
 
-/* Which of WIDE pieces from `i` on, before `end`, are not apart from the box in u or v? */
+/* Which of WIDE pieces from `i` on, before `end`, overlap the box in u and v? */
 static inline uint32_t overlapping(const piece_table *t, const cube_box *box, uint32_t i,
                                    uint32_t end) {
     uint32_t among = end - i < WIDE ? (UINT32_C(1) << (end - i)) - 1 : (1 << WIDE) - 1;
@@ -159,25 +159,26 @@ static inline uint32_t overlapping(const piece_table *t, const cube_box *box, ui
                      (wide_above(v_low, av) & wide_above(v_low, bv)));
 }
 
-/* Of two numbers with the same sign the lesser magnitude, else what is not positive. */
+/* Of two numbers with the same sign the one of smaller magnitude; otherwise a nonpositive
+ * number. */
 static inline wide common(wide a, wide b) {
     return wide_max(wide_min(a, b), wide_subtract(wide_set(0), wide_max(a, b)));
 }
 
-/* Of the sum of the differences in a determinant of u and v: more than its error. With errors of
- * 2^-24 in u and v, and differences of at most 2 or so, that is below 2.5 x 2^-22 of the sum; there
- * is room for three determinants. */
+/* Relative to the sum of the differences in a determinant of u and v: more than its error. With
+ * errors of 2^-24 in u and v, and differences of at most about 2, the error is below 2.5 x 2^-22 of
+ * the sum; there is room for three determinants. */
 static const float EPSILON = 0x1p-18f;
 
-/* Compares a tree edge's piece with some of WIDE pieces of contours from `i` on. Told are those
- * that may cross it: not those where the ends of one lie on one side of the other, nor those that
- * start at a common vertex and part there. Crossings of plain pieces that are certain, and of which
- * it is certain what lies before, are counted at once.
+/* Compares a tree edge's piece with some of WIDE pieces of contours from `i` on. Returns those that
+ * may cross it: not those where the ends of one lie on one side of the other, nor those that start
+ * at a common vertex and diverge. Crossings of plain pieces that are certain, including their depth
+ * order, are counted at once.
  *
  * Nearness is linear along a projected segment; where two of them cross, its difference is that of
- * two interpolations, times at_b - at_a = at_from - at_to. Only differences of nearness enter, so
- * that errors common to the determinants fall out but for roundings: with N the sum of the
- * nearness, 2^-19 N size^2. */
+ * two interpolations, times at_b - at_a = at_from - at_to. Only differences of nearness are used,
+ * so errors common to the determinants cancel up to roundings: with N the sum of the nearness,
+ * 2^-19 N size^2. */
 static inline uint32_t compare_pieces(tree_edge *l, const cube_piece *piece, uint32_t i,
                                       uint32_t among) {
     const piece_table *t = &l->s->sorted;
@@ -228,7 +229,7 @@ static void compare_all(tree_edge *l, uint32_t i, uint32_t among) {
     }
 }
 
-/* The pieces that a tree edge's may meet in a row. */
+/* The pieces that a tree edge's piece may meet in a row. */
 static inline uint32_t first_in_cells(const contours_scratch *s, uint32_t row, float low) {
     const contour_row *r = &s->rows[row];
     return s->cell_start[cell_of(r, low - r->widest - CELL_MARGIN)];
@@ -259,8 +260,8 @@ static void cross_contours(tree_edge *l) {
     }
 }
 
-/* Plain tree edges take the following steps, a block of them at a time and one step after the
- * other, so that the processor need not wait for one tree edge before it turns to the next. */
+/* Plain tree edges go through the following steps in blocks, step by step, so that the processor
+ * does not wait for one tree edge before starting the next. */
 
 static tree_edge make_tree_edge(const visibility_scene *scene, contours_scratch *s,
                                 const double p[3], const int8_t *side, uint32_t to) {
@@ -268,7 +269,7 @@ static tree_edge make_tree_edge(const visibility_scene *scene, contours_scratch 
         .scene = scene, .s = s, .p = p, .side = side, .from = s->parent[to], .to = to};
 }
 
-/* Without branches, so that the compiler takes several at a time. */
+/* Branch-free, for vectorization. */
 static void measure_tree_edges(const contours_scratch *s, tree_edge_block *block) {
     const cube_directions *d = &s->directions;
     const uint32_t *rows = s->row_of_bin;
@@ -287,7 +288,7 @@ static void measure_tree_edges(const contours_scratch *s, tree_edge_block *block
     }
 }
 
-/* The rows that a plain tree edge touches: one or two, as a rule. */
+/* The rows that a plain tree edge touches: usually one or two. */
 static inline void visit_rows(tree_edge_block *block, uint32_t edge_place) {
     uint32_t row = block->boxes.row[edge_place], last = block->boxes.last_row[edge_place];
     row_visit *visits = block->visits + block->visit_count;
@@ -298,7 +299,7 @@ static inline void visit_rows(tree_edge_block *block, uint32_t edge_place) {
     block->visit_count += last - row + 1;
 }
 
-/* Keeps the visits that find pieces. */
+/* Keeps the visits with pieces. */
 static void look_up_cells(const contours_scratch *s, tree_edge_block *block) {
     uint32_t count = 0;
     for (uint32_t k = 0; k < block->visit_count; k++) {
@@ -332,7 +333,7 @@ static bool settle_encounters(const visibility_scene *scene, contours_scratch *s
     return true;
 }
 
-/* Finds the pieces that overlap. */
+/* Finds overlapping pieces. */
 static bool meet_pieces(const visibility_scene *scene, contours_scratch *s, const double p[3],
                         const int8_t *side, tree_edge_block *block) {
     for (uint32_t k = 0; k < block->visit_count; k++) {
@@ -407,7 +408,7 @@ static bool follow_block(const visibility_scene *scene, const double p[3], const
     return meet_pieces(scene, s, p, side, block) && settle_ends(scene, s, p, side, block);
 }
 
-/* Stage 4: how the number of layers changes along each tree edge of the trees. */
+/* Stage 4: the change of the number of layers along each tree edge. */
 static bool follow_tree_edges(const visibility_scene *scene, const double p[3], const int8_t *side,
                               contours_scratch *s) {
     memset(s->layers, 0, scene->vertex_count * sizeof *s->layers);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Directions from a point, projected to the six faces of a cube about it. Included by the stages
- * that are compiled once for each instruction set. */
+/* Directions from a point, projected to the six faces of a cube around it. Included by the stages
+ * that are compiled per instruction set. */
 #ifndef STARG_VISIBILITY_CUBE_H
 #define STARG_VISIBILITY_CUBE_H
 
@@ -19,15 +19,16 @@ static const float CELL_MARGIN = 0x1p-20f;
 /* The sides of a widened frustum, as planes through p: axis x SLACK - sign x coordinate k. */
 static const double SLACK = 1 + 0x1p-18;
 
-/* Where directions meet the cube: face 2 k or 2 k + 1 for the largest coordinate k, positive or
- * negative; u and v in [-1, 1] are the next two coordinates over it. All by slot. */
+/* Intersections of directions with the cube: face 2 k or 2 k + 1 for the largest coordinate k,
+ * positive or negative; u and v in [-1, 1] are the next two coordinates divided by it. All by
+ * slot. */
 typedef struct cube_directions {
     double *x, *y, *z; /* relative to p */
     float *u, *v;
-    float *nearness; /* the largest coordinate of all over its own: 1 or more */
-    uint32_t *face;  /* plus RIM where rounding could put it on another face */
-    double extent;   /* the largest coordinate of all */
-    double bound;    /* of the error of determinants; infinite: always exact */
+    float *nearness; /* the largest coordinate of all vertices over its own: 1 or more */
+    uint32_t *face;  /* plus RIM if rounding could put it on another face */
+    double extent;   /* the largest coordinate of all vertices */
+    double bound;    /* error bound of determinants; infinite: always exact */
 } cube_directions;
 
 static inline void cube_free(starg_context *context, cube_directions *d) {
@@ -40,7 +41,7 @@ static inline void cube_free(starg_context *context, cube_directions *d) {
     starg_release(context, d->face);
 }
 
-/* False when memory is out; cube_free is due either way. */
+/* False when out of memory; cube_free is required in any case. */
 static inline bool cube_make(starg_context *context, size_t count, cube_directions *d) {
     d->x = starg_allocate(context, count, sizeof *d->x);
     d->y = starg_allocate(context, count, sizeof *d->y);
@@ -52,8 +53,8 @@ static inline bool cube_make(starg_context *context, size_t count, cube_directio
     return d->x && d->y && d->z && d->u && d->v && d->nearness && d->face;
 }
 
-/* Index among equal parts of which the last has number `last`; what lies outside (and NaN) goes to
- * the ends. Monotone, which is all that correctness asks of it; without branches. */
+/* Index among equal parts, the last of which has number `last`; values outside (and NaN) go to the
+ * ends. Monotone, which is all that correctness requires; branch-free. */
 static inline uint32_t part_of(float distance, float scale, float last) {
     float t = distance * scale;
     t = t > 0 ? t : 0;
@@ -65,11 +66,11 @@ static inline uint32_t bin_of(float v) {
 }
 
 static inline double larger(double a, double b) {
-    return a > b ? a : b; /* unlike fmax, one instruction */
+    return a > b ? a : b; /* a single instruction, unlike fmax */
 }
 
-/* Returns the largest magnitude among the differences. Eight maxima at a time, which the compiler
- * may keep side by side. */
+/* Returns the largest magnitude among the differences, as eight parallel maxima for
+ * vectorization. */
 static inline double subtract_all(const double *restrict from, double by, size_t count,
                                   double *restrict out) {
     enum { SIDE_BY_SIDE = 8 };
@@ -91,7 +92,7 @@ static inline double subtract_all(const double *restrict from, double by, size_t
 }
 
 /* With |x| <= mx, |y| <= my, |z| <= mz a determinant of three differences has a permanent of at
- * most 6 mx my mz and an error of at most 8 roundings of it; the sum of four comes to 30. */
+ * most 6 mx my mz and an error of at most 8 roundings of it; four of them sum to less than 30. */
 static inline void cube_make_relative(const visibility_scene *scene, const double p[3],
                                       cube_directions *d) {
     double mx = subtract_all(scene->x, p[0], scene->vertex_count, d->x);
@@ -103,9 +104,9 @@ static inline void cube_make_relative(const visibility_scene *scene, const doubl
         d->bound = INFINITY;
 }
 
-/* Projects all vertices; without branches and with columns that are known to be apart, so that the
- * compiler takes several at a time. Where the major coordinate is so small that its inverse is
- * infinite, u is no number or infinite, and the rim is told. */
+/* Projects all vertices; branch-free and with restrict pointers, for vectorization. If the major
+ * coordinate is so small that its inverse is infinite, u is NaN or infinite, and the rim flag is
+ * set. */
 static inline void cube_project(size_t count, cube_directions *d) {
     const float rim = 1 - CELL_MARGIN;
     const double *restrict all_x = d->x, *restrict all_y = d->y, *restrict all_z = d->z;
@@ -133,7 +134,7 @@ static inline void cube_project(size_t count, cube_directions *d) {
     }
 }
 
-/* With the cube face's axis first, then u and v. */
+/* Permutes coordinates: the cube face's axis first, then u and v. */
 static inline void cube_turn(const cube_directions *d, uint32_t slot, uint32_t cube_face,
                              double out[3]) {
     const double *const axis[3] = {d->x, d->y, d->z};
@@ -143,8 +144,8 @@ static inline void cube_turn(const cube_directions *d, uint32_t slot, uint32_t c
     out[2] = axis[(k + 2) % 3][slot];
 }
 
-/* What comes nearer to p than about this times its own size may have any direction, as far as
- * rounding can tell: clipping it by a frustum could lose it. */
+/* Anything closer to p than about this times its own size may have any direction, within rounding:
+ * clipping it by a frustum could lose it. */
 static const double NEAR = 0x1p-18;
 
 static inline double size_of(const double v[3]) {
@@ -157,8 +158,8 @@ static inline void cube_relative(const cube_directions *d, uint32_t slot, double
     out[2] = d->z[slot];
 }
 
-/* May the segment from a to b come near p? Its distance is |a x b| / |b - a|, if not more; a short
- * one cannot, for it keeps to its ends. The lower limit of the length guards the quotient. */
+/* May the segment from a to b come near p? Its distance is at least |a x b| / |b - a|; a short one
+ * cannot, since it stays near its ends. The lower bound on the length guards the quotient. */
 static inline bool segment_is_near(const cube_directions *d, uint32_t from, uint32_t to) {
     double a[3], b[3], along[3], area[3];
     cube_relative(d, from, a);
@@ -170,7 +171,7 @@ static inline bool segment_is_near(const cube_directions *d, uint32_t from, uint
            !(size_of(area) > 4 * NEAR * size * larger(length, NEAR * size));
 }
 
-/* The same for a triangle: at most |det(a, b, c)| / |n| away is its plane, of normal n. */
+/* Same for a triangle: the distance of its plane with normal n is |det(a, b, c)| / |n|. */
 static inline bool triangle_is_near(const cube_directions *d, const uint32_t corner[3]) {
     double a[3], b[3], c[3], ab[3], ac[3], normal[3];
     cube_relative(d, corner[0], a);
@@ -190,8 +191,8 @@ static inline double beyond_side(const double v[3], int plane) {
     return SLACK * v[0] - (plane % 2 ? -v[1 + plane / 2] : v[1 + plane / 2]);
 }
 
-/* Bit 4 f + k: the vertex lies outside side k of the frustum of cube face f; bit 24 + f: not
- * before that cube face. */
+/* Bit 4 f + k: the vertex lies outside side k of the frustum of cube face f; bit 24 + f: it is not
+ * in front of that cube face. */
 static inline uint32_t cube_outside(const double v[3]) {
     uint32_t bits = 0;
     for (uint32_t face = 0; face < CUBE_FACES; face++) {
@@ -218,7 +219,7 @@ static inline uint32_t cube_faces_met(const cube_directions *d, const uint32_t c
     return met;
 }
 
-/* A convex polygon on one cube face: a face, or the part of one that lies before the cube face. */
+/* A convex polygon on one cube face: a face, or its part in the frustum. */
 typedef struct cube_polygon {
     int count;
     float corner[8][2]; /* u, v */
@@ -231,7 +232,7 @@ typedef struct cone_polygon {
     double corner[8][3];
 } cone_polygon;
 
-/* Cuts off what lies outside one side. */
+/* Clips by one side. */
 static inline void clip_cone(const cone_polygon *in, int plane, cone_polygon *out) {
     out->count = 0;
     for (int i = 0; i < in->count; i++) {
@@ -248,8 +249,8 @@ static inline void clip_cone(const cone_polygon *in, int plane, cone_polygon *ou
     }
 }
 
-/* The part of a face in the frustum of a cube face that it may meet: mostly what a single side cuts
- * off. */
+/* The part of a face in the frustum of a cube face that it may meet: usually clipped by a single
+ * side. */
 static inline void clip_to_frustum(cone_polygon *polygon) {
     cone_polygon clipped;
     bool cut[4] = {false};
@@ -263,7 +264,7 @@ static inline void clip_to_frustum(cone_polygon *polygon) {
         }
 }
 
-/* The same on a cube face that it may meet, for a face that is not near p. */
+/* Same on a cube face that it may meet, for a face not near p. */
 static inline void cube_clip_triangle(const cube_directions *d, const uint32_t corner[3],
                                       uint32_t cube_face, cube_polygon *polygon) {
     cone_polygon cone = {.count = 3};
@@ -280,7 +281,7 @@ static inline void cube_clip_triangle(const cube_directions *d, const uint32_t c
 }
 
 static inline float lesser(float a, float b) {
-    return a < b ? a : b; /* unlike fminf, one instruction */
+    return a < b ? a : b; /* a single instruction, unlike fminf */
 }
 
 static inline float greater(float a, float b) {
@@ -292,9 +293,9 @@ static inline void widen(float u, float span[2]) {
     span[1] = greater(u, span[1]);
 }
 
-/* Where one edge of a projected triangle lies within a row: its ends there, and where it enters
- * and leaves. The slack covers the rounding of the slope, which counts where an edge is nearly
- * level; the ends bound it. */
+/* Where one edge of a projected triangle lies within a row: its ends there, and where it enters and
+ * leaves. The slack covers the rounding of the slope, which matters for nearly horizontal edges;
+ * the ends bound it. */
 static inline void span_edge(const float from[2], const float to[2], float v_low, float v_high,
                              float span[2]) {
     float u_low = lesser(from[0], to[0]), u_high = greater(from[0], to[0]);

@@ -1,23 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Chooses for each point between the engine by contours and the grid, which give the same bits.
+/* Chooses for each point between the contour engine and the grid, which give the same bits.
  *
- * What the grid does falls with the faces that lie behind others, of which it leaves out most; what
- * the engine by contours does grows with the contours, wherever they lie. So of two points the one
- * that has fewer faces turned to it, or more contours, is for the grid. Both are known before
- * anything is sorted: faces by their sides, contours from a sample of the edges.
+ * The grid's work falls with the number of faces behind others, most of which it skips; the contour
+ * engine's work grows with the contours, wherever they lie. So points with fewer front-facing
+ * faces, or with more contours, go to the grid. Both numbers are known before anything is sorted:
+ * faces by their sides, contours from a sample of the edges.
  *
- * The line between the two is fitted to the cycles that both engines take from nodes of skeletons
- * (37 models of 500 to 100,000 vertices, eight and sixteen lanes). On each model of 600 vertices or
- * more the choice costs at most 5 % more than the better engine alone, in the mean 1 % less, but
- * where points in special positions abound (cad), for which the contours are tried without success.
- * Without lanes the engine by contours, whose work is in comparing, pays only where contours are
- * next to none.
+ * The dividing line is fitted to the cycles of both engines at skeleton nodes (37 models of 500 to
+ * 100,000 vertices, eight and sixteen lanes). On each model of 600 vertices or more the choice
+ * costs at most 5 % more than the better engine alone, on average 1 % less, except where points in
+ * special positions are common (cad), for which the contours are tried in vain. Without lanes the
+ * contour engine, which mainly compares, pays only with almost no contours.
  *
  * Cost: a pass over the sides of the faces, and over some thousand edges. */
 #include "visibility/contours.h"
 
-/* Contours pay where there are fewer of them, for each vertex, than SLOPE times the share of the
- * faces that are front-facing, less an offset. */
+/* The contour engine pays if there are fewer contours per vertex than SLOPE times the fraction of
+ * front-facing faces, minus an offset. */
 static const double SLOPE = 2, OFFSET_WITH_LANES = 1.1, OFFSET_PLAIN = 1.5;
 
 static starg_status make_scratch(const visibility_scene *scene, void **scratch) {

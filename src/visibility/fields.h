@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Field tables of the visibility options: rows that other tables share. */
+/* Field tables of the visibility options: rows shared with other tables. */
 #ifndef STARG_VISIBILITY_FIELDS_H
 #define STARG_VISIBILITY_FIELDS_H
 
@@ -12,8 +12,8 @@ extern const char *const visibility_engine_words[];
 extern const char *const visibility_target_words[];
 extern const char *const visibility_face_rule_words[];
 
-/* Rows for a struct T that has the options as MEMBER. The engine goes by another name in each
- * command; GUARDS.json does not have it, as all of them give the same bits. */
+/* Rows for a struct T that has the options as MEMBER. The engine has a different name in each
+ * command; GUARDS.json omits it, because all engines give the same bits. */
 #define VISIBILITY_ENGINE_FIELD(T, MEMBER, KEY, OPTION)                                            \
     {                                                                                              \
         .key = (KEY), .option = (OPTION), .kind = STARG_FIELD_CHOICE, FIELD_MEMBER(T, MEMBER),     \

@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Visibility on a grid of directions: all segments of a point share their origin, so that a face
- * hides exactly those vertices behind it whose directions lie in its cone.
+/* Visibility on a grid of directions: all segments share the origin p, so a face hides exactly
+ * those vertices behind it whose directions lie in its cone.
  *
  * Stages for a point p:
- *   1. take the front-facing faces, those that have p on their inner side (all, if the boundary is
- *      not embedded; the proof is in scene.h); a vertex without a front-facing face is hidden;
- *   2. project the remaining vertices to the six faces of a cube about p, and sort them by
- *      counting into the cells of a grid there, row by row, so that the cells that a face touches
- *      in one row are one run of vertices;
- *   3. for each front-facing face, near chunks first (grid_faces.h): the vertices in the cells of
- *      its bounding box that are not hidden yet are tested against the planes through p and its
- *      edges, and its own. Faces that lie behind a single one are left out.
+ *   1. select the front-facing faces, those with p on their inner side (all, if the boundary is not
+ *      embedded; the proof is in scene.h); a vertex without a front-facing face is hidden;
+ *   2. project the remaining vertices to the six faces of a cube around p, and counting-sort them
+ *      into the cells of a grid there, row by row, so that the cells that a face touches in one row
+ *      are one run of vertices;
+ *   3. for each front-facing face, near chunks first (grid_faces.h): test the visible vertices in
+ *      the cells of its bounding box against the planes through p and its edges, and its own. Faces
+ *      entirely behind a single other one are skipped.
  *
- * Cells only choose what is tested; they are chosen with a margin above the rounding of the
- * projection. With A, B, C, V the corners and the vertex relative to p and D = det(A, B, C) > 0,
- * V is hidden exactly if w0 = det(B, C, V), w1 = det(C, A, V), w2 = det(A, B, V) are >= 0 and
- * w0 + w1 + w2 > D: the sum is the normal of the face times V, larger than D where V lies beyond
- * its plane. Signs within the static error bound [She97] are decided by the exact segment test.
+ * Cells only select what is tested, with a margin above the rounding of the projection. With A, B,
+ * C, V the corners and the vertex relative to p and D = det(A, B, C) > 0, V is hidden exactly if w0
+ * = det(B, C, V), w1 = det(C, A, V), w2 = det(A, B, V) are >= 0 and w0 + w1 + w2 > D: the sum is
+ * the normal of the face times V, larger than D if V lies beyond its plane. Signs within the static
+ * error bound [She97] are decided by the exact segment test.
  *
- * What a face hides strictly, all signs positive, is a convex set, so that it holds a face if it
- * holds its corners. A face within it may be left out: the first face on the way from p to a hidden
- * vertex has a point there that nothing comes before, and so is tested. Where limbs and folds lie
- * behind each other, two front-facing faces in three are left out.
+ * What a face hides strictly, with all signs positive, is a convex set, so it contains a face if it
+ * contains its corners. A face within it may be skipped: the first face on the segment from p to a
+ * hidden vertex has a point there with nothing in front, and so is tested. Where limbs and folds
+ * overlap, two thirds of the front-facing faces are skipped.
  *
- * Cost per point: O(n) for sorting plus the pairs of faces and vertices in common cells, about
- * ten a face. Memory per thread: about a hundred bytes a vertex. */
+ * Cost per point: O(n) for sorting plus the pairs of faces and vertices in common cells, about ten
+ * a face. Memory per thread: about a hundred bytes a vertex. */
 #include "visibility/grid.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of the direction grid (visibility/grid.c): its tables, and the stages that are compiled
- * once for each instruction set. */
+/* Internals of the direction grid (visibility/grid.c): its tables, and the stages compiled per
+ * instruction set. */
 #ifndef STARG_VISIBILITY_GRID_H
 #define STARG_VISIBILITY_GRID_H
 
@@ -10,11 +10,11 @@
 
 enum { CHUNK = 128, LANES = 8 };
 
-/* Rows of a cube face with m vertices: this times sqrt(m). Flat long cells are best: a face then
+/* Rows of a cube face with m vertices: this times sqrt(m). Wide flat cells are best: a face then
  * touches few rows, and in each of them one run of vertices. */
 static const double ROW_FACTOR = 0.2;
 
-/* A row of cells: vertices of nearly the same v, cut evenly between their extremes of u. */
+/* A row of cells: vertices of nearly the same v, divided evenly between their extremes of u. */
 typedef struct grid_row {
     float u_low, u_high, v_low, v_high, scale, last_cell;
     uint32_t first_cell, cell_count, vertices;
@@ -27,7 +27,7 @@ typedef struct chunk_distance {
 
 struct grid_scratch;
 
-/* All stages for one point: visible[slot] = 1 where p sees the vertex, else 0. */
+/* All stages for one point: visible[slot] = 1 if p sees the vertex, otherwise 0. */
 typedef void grid_run(const visibility_scene *scene, struct grid_scratch *g, const double p[3],
                       const int8_t *side, uint8_t *visible);
 
@@ -37,19 +37,19 @@ typedef struct grid_scratch {
     uint32_t row_of_bin[CUBE_FACES][BINS];
     grid_row *rows; /* row_limit at most */
     size_t row_limit;
-    uint32_t *cell_start; /* two cells a vertex and one a row, and the end */
+    uint32_t *cell_start; /* two cells per vertex and one per row, and the end */
     cube_directions at;
     uint8_t *in_use; /* slot has a front-facing face */
     uint32_t *used;  /* the slots in use */
     size_t used_count;
-    uint32_t *front_facing; /* ranks of the front-facing faces, chunk by chunk, near ones first */
+    uint32_t *front_facing; /* ranks of the front-facing faces, by chunks, near ones first */
     size_t front_facing_count;
     /* Vertices in use, by cell. */
-    uint32_t *place;      /* slot -> position; any value for others */
+    uint32_t *place;      /* slot -> position; undefined for others */
     uint32_t *slot;       /* position -> slot */
-    double *sx, *sy, *sz; /* LANES more than there are vertices, of any value */
+    double *sx, *sy, *sz; /* with LANES extra undefined entries */
     uint32_t *hider;      /* slot -> rank of a face that certainly hides it, or SCENE_NONE */
-    uint64_t *hidden;     /* bits by position, one word more than it takes */
+    uint64_t *hidden;     /* bits by position, with one extra word */
     chunk_distance *chunks;
 } grid_scratch;
 
@@ -57,7 +57,7 @@ static inline uint32_t cell_of(const grid_row *row, float u) {
     return row->first_cell + part_of(u - row->u_low, row->scale, row->last_cell);
 }
 
-/* The stages for several instruction sets. */
+/* The stages for each instruction set. */
 grid_run grid_run_plain;
 #if defined(__aarch64__)
 grid_run grid_run_neon;
@@ -65,7 +65,7 @@ grid_run grid_run_neon;
 grid_run grid_run_avx2, grid_run_avx512;
 #endif
 
-/* NULL where the processor does not have what the variant needs. */
+/* NULL if the processor lacks what the variant needs. */
 grid_run *grid_choose_variant(visibility_isa wanted);
 
 #endif

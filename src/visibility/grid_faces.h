@@ -1,42 +1,41 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Stage 3 of the direction grid (visibility/grid.c): what each front-facing face hides. Included by
- * the stages. Faces are taken a block at a time and one step after the other, so that the compiler
- * can take several faces at once and the processor need not wait for one before it turns to the
- * next. */
+ * the stages. Faces go through the steps in blocks, step by step, so that the compiler can
+ * vectorize and the processor does not wait for one face before starting the next. */
 
-/* Positions that are tested at once: what can be cut out of the bits of `hidden` in one piece. */
+/* Positions tested at once: what can be extracted from the bits of `hidden` in one read. */
 enum { BLOCK = 64, RUN = 56 };
 
-/* From so many rows on a face's edges are followed from row to row. */
+/* Faces of this many rows or more are followed row by row. */
 enum { TALL = 6 };
 
 /* A run of vertices that a face may hide. */
 typedef struct face_visit {
-    uint32_t face, begin, end; /* place in the block; positions */
+    uint32_t face, begin, end; /* position in the block; vertex positions */
 } face_visit;
 
-/* Faces by their place in the block. */
+/* Faces by position in the block. */
 typedef struct face_block {
     uint32_t count;
     uint32_t rank[BLOCK], corner[3][BLOCK], position[3][BLOCK];
     int32_t side[BLOCK];
     float u_low[BLOCK], u_high[BLOCK]; /* with a margin */
     uint32_t row[BLOCK], last_row[BLOCK];
-    uint32_t plain[BLOCK];  /* off the plane of p and on one cube face; else rows mean nothing */
+    uint32_t
+        plain[BLOCK]; /* off the plane of p and on one cube face; otherwise rows are undefined */
     double plane[9][BLOCK]; /* three planes through p and an edge, positive inside the cone */
     double volume[BLOCK];   /* D */
     uint32_t visit_count;
     face_visit visits[TALL * BLOCK + 1];
 } face_block;
 
-/* Does one face certainly hide all three corners, and so the whole face? */
+/* Does a single face certainly hide all three corners, hence the whole face? */
 static inline bool is_behind_one(const grid_scratch *g, const uint32_t corner[3]) {
     uint32_t hider = g->hider[corner[0]];
     return (hider != SCENE_NONE) & (hider == g->hider[corner[1]]) & (hider == g->hider[corner[2]]);
 }
 
-/* Takes the next faces that do not lie behind single ones. Returns the number of those done with.
- */
+/* Takes the next faces not hidden by a single one. Returns the number of faces consumed. */
 static size_t fill_block(const visibility_scene *scene, const int8_t *side, const grid_scratch *g,
                          size_t first, face_block *block) {
     uint32_t count = 0;
@@ -62,7 +61,7 @@ static inline float max3(float a, float b, float c) {
     return greater(greater(a, b), c);
 }
 
-/* What the faces cover on the cube; without branches. */
+/* Extents of the faces on the cube; branch-free. */
 static void measure_faces(const grid_scratch *g, face_block *block) {
     const cube_directions *d = &g->at;
     const uint32_t *rows = g->row_of_bin[0];
@@ -82,7 +81,7 @@ static void measure_faces(const grid_scratch *g, face_block *block) {
     }
 }
 
-/* The planes through p and the edges, and D: all positive, with the sign of the side. */
+/* The planes through p and the edges, and D: all made positive by the sign of the side. */
 static void prepare_faces(const grid_scratch *g, face_block *block) {
     const double *x = g->at.x, *y = g->at.y, *z = g->at.z;
     for (uint32_t k = 0; k < block->count; k++) {
@@ -120,8 +119,8 @@ static inline void hide_bits(grid_scratch *g, size_t begin, uint64_t bits) {
     memcpy(at, &word, sizeof word);
 }
 
-/* Those of `count` vertices from `begin` on that are not hidden yet and that the face may hide:
- * not its own corners, unless p lies in its plane. */
+/* Those of `count` vertices from `begin` on that are not hidden yet and that the face may hide: not
+ * its own corners, unless p lies in its plane. */
 static inline uint64_t open_bits(const grid_scratch *g, const face_block *block, uint32_t k,
                                  size_t begin, size_t count) {
     uint64_t own = 0;
@@ -133,7 +132,7 @@ static inline uint64_t open_bits(const grid_scratch *g, const face_block *block,
     return ~hidden_bits(g, begin) & ~own & ((UINT64_C(1) << count) - 1);
 }
 
-/* The inner loop's part of a face. */
+/* A face in the form of the inner loop. */
 typedef struct blocker {
     double w0[3], w1[3], w2[3], volume;
 } blocker;
@@ -161,7 +160,7 @@ static inline void test_lanes(const grid_scratch *g, const blocker *f, size_t i,
     *maybe = lanes_above(least, -g->at.bound);
 }
 
-/* The same for a face in whose plane p lies: off that plane it hides nothing. */
+/* Same for a face coplanar with p: off that plane it hides nothing. */
 static inline uint64_t test_coplanar_lanes(const grid_scratch *g, const blocker *f, size_t i) {
     lanes x = lanes_load(g->sx + i), y = lanes_load(g->sy + i), z = lanes_load(g->sz + i);
     double e = g->at.bound;
@@ -218,7 +217,7 @@ static inline face_visit find_cells(const grid_scratch *g, uint32_t face, uint32
                         g->cell_start[cell_of(r, u_high) + 1]};
 }
 
-/* In each row only the cells between the polygon's edges. */
+/* In each row, only the cells between the polygon's edges. */
 static void test_polygon(const visibility_scene *scene, const double p[3], grid_scratch *g,
                          const face_block *block, uint32_t k, const cube_polygon *polygon,
                          uint32_t row, uint32_t last_row) {
@@ -277,7 +276,7 @@ static void test_clipped(const visibility_scene *scene, const double p[3], grid_
     }
 }
 
-/* The rows that a plain face touches: one or two, as a rule. */
+/* The rows that a plain face touches: usually one or two. */
 static inline void visit_rows(face_block *block, uint32_t k) {
     uint32_t row = block->row[k], last = block->last_row[k];
     face_visit *visits = block->visits + block->visit_count;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The stages of the direction grid for NEON. */
+/* Stages of the direction grid for NEON. */
 #define GRID_RUN grid_run_neon
 #define LANES_NEON
 #include "visibility/grid_stages.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The stages of the direction grid (visibility/grid.c), written once and compiled for each
- * instruction set: the including file names the function and chooses the lanes. */
+/* Stages of the direction grid (visibility/grid.c), written once and compiled per instruction set:
+ * the including file names the function and selects the lanes. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 #include "visibility/grid.h"
 #include "visibility/lanes.h"
 
-/* Cuts each cube face into rows of about equally many vertices, by a histogram of v. */
+/* Divides each cube face into rows of about equally many vertices, by a histogram of v. */
 static void cut_rows(grid_scratch *g) {
     memset(g->row_of_bin, 0, sizeof g->row_of_bin);
     for (size_t i = 0; i < g->used_count; i++) {
@@ -34,7 +34,7 @@ static void cut_rows(grid_scratch *g) {
         g->rows[r] = (grid_row){.u_low = 1, .u_high = -1, .v_low = 1, .v_high = -1};
 }
 
-/* Gives each row twice as many cells as it has vertices. Returns the number of cells. */
+/* Gives each row twice as many cells as vertices. Returns the number of cells. */
 static uint32_t cut_cells(grid_scratch *g) {
     for (size_t i = 0; i < g->used_count; i++) {
         uint32_t slot = g->used[i];
@@ -60,7 +60,7 @@ static uint32_t cut_cells(grid_scratch *g) {
     return cells;
 }
 
-/* Counting sort; cell_start[c] is first the end of cell c, and its start when all are placed. */
+/* Counting sort; cell_start[c] is first the end of cell c, and its start once all are placed. */
 static void sort_into_cells(const visibility_scene *scene, grid_scratch *g) {
     memset(g->hidden, 0, (starg_bit_words(scene->vertex_count) + 1) * sizeof *g->hidden);
     cut_rows(g);
@@ -91,7 +91,7 @@ static int compare_chunks(const void *left, const void *right) {
     return (a->chunk > b->chunk) - (a->chunk < b->chunk);
 }
 
-/* Near chunks of faces hide most: the far ones then find little left to test. */
+/* Near chunks of faces hide most, which leaves little to test for far ones. */
 static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
     size_t count = (scene->face_count + CHUNK - 1) / CHUNK;
     for (size_t c = 0; c < count; c++) {
@@ -104,7 +104,7 @@ static size_t order_chunks(const visibility_scene *scene, grid_scratch *g) {
     return count;
 }
 
-/* Stage 1: lists the faces that can block first, and the vertices that they use. */
+/* Stage 1: lists the faces that can be the first to block, and the vertices that they use. */
 static void keep_faces(const visibility_scene *scene, const int8_t *side, grid_scratch *g) {
     size_t chunk_count = order_chunks(scene, g);
     g->front_facing_count = g->used_count = 0;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The stages of an engine are compiled once for each instruction set; which of them run is chosen
- * when the program runs. All variants give the same bits: what floating point does not decide
- * beyond its error bound is decided exactly. */
+/* The stages of an engine are compiled once per instruction set and selected at run time. All
+ * variants give the same bits: whatever floating point cannot decide within its error bound is
+ * decided exactly. */
 #ifndef STARG_VISIBILITY_ISA_H
 #define STARG_VISIBILITY_ISA_H
 
 #include <stdbool.h>
 
-/* Those that can be compiled for the processor's kind stand in this order after the plain one. */
+/* Variants for the processor's architecture, in this order after the plain one. */
 typedef enum visibility_isa {
     ISA_PLAIN,
 #if defined(__aarch64__)
@@ -19,7 +19,7 @@ typedef enum visibility_isa {
     ISA_WIDEST
 } visibility_isa;
 
-/* The variant itself, or for ISA_WIDEST the best one that the processor has. */
+/* The given variant, or for ISA_WIDEST the best one that the processor supports. */
 visibility_isa isa_resolve(visibility_isa wanted);
 
 bool isa_is_supported(visibility_isa isa);

@@ -4,19 +4,20 @@
  * Problem: the points strictly on the inner side of every face; of those, one as far as possible
  * from all planes (Chebyshev centre).
  *
- * Stages: every edge has as many faces one way as the other; a row for each face, scaled to unit
- * size; the linear program in (x, y, z, radius) that maximises the radius; then the proof, which
- * does not rely on the program's numbers: either the rounded centre passes the certificate, or the
- * rows that stop the program are half-spaces without a common point in the box of the surface. A
- * program that leads to neither is solved again in another random order, which ends in other rows.
+ * Stages: check that every edge has equally many faces in either direction; make a row for each
+ * face, scaled to unit size; solve the linear program in (x, y, z, radius) that maximizes the
+ * radius; then the proof, which does not rely on the program's numbers: either the rounded centre
+ * passes the certificate, or the tight rows are half-spaces without a common point in the box of
+ * the surface. If neither succeeds, the program is solved again in another random order, which ends
+ * with other tight rows.
  *
- * The certificate: if g is strictly on the inner side of every face of a closed surface, then the
+ * Certificate: if g is strictly on the inner side of every face of a closed surface, then the
  * central projection from g maps faces to the sphere without folds, so each ray from g meets the
  * surface as often as it winds around g. Once means that the surface is the graph of a function
- * over the sphere: embedded, connected, and seen by g as a whole.
+ * over the sphere: embedded, connected, and entirely visible from g.
  *
- * Invariant: the radius alone is rounded. Cost: O(n) expected; a few dozen flops a face for the
- * program, one orient3d and one crossing test a face for the certificate. */
+ * Invariant: only the radius is rounded. Cost: O(n) expected; a few dozen flops per face for the
+ * program, one orient3d and one crossing test per face for the certificate. */
 #include "visibility/kernel.h"
 
 #include <math.h>
@@ -35,16 +36,16 @@ static const char STAGE[] = "kernel";
 
 enum { ROW = 5, TRIES = 3 };
 
-/* Unit size holds every kernel in a ball of radius 1; the centre of an empty one may lie outside.
- */
+/* In unit size every kernel fits in a ball of radius 1; the centre of an empty one may lie
+ * outside. */
 static const double SEARCH_RADIUS = 16;
 
 typedef struct finder {
     const kernel_faces *surface;
-    double lower[3], upper[3]; /* box of the faces, which holds every kernel */
+    double lower[3], upper[3]; /* box of the faces, which contains every kernel */
     double origin[3];          /* unit coordinates are (p - origin) / 2^exponent */
     int exponent;
-    double *rows; /* ROW a face */
+    double *rows; /* ROW per face */
     uint32_t *order;
 } finder;
 
@@ -82,8 +83,8 @@ static void to_unit(const finder *f, const double p[3], double out[3]) {
         out[k] = ldexp(out[k], -f->exponent);
 }
 
-/* n . x + r <= n . a for the unit normal n. A normal too short to be computed is left zero: that
- * row bounds r alone, and the exact tests decide about its face. */
+/* n . x + r <= n . a for the unit normal n. A normal too short to be computed stays zero: that row
+ * only bounds r, and the exact tests decide its face. */
 static void make_row(const finder *f, size_t face, double row[ROW]) {
     double a[3], b[3], c[3], n[3];
     to_unit(f, corner(f->surface, face, 0), a);
@@ -114,7 +115,7 @@ static void solve(const finder *f, uint64_t seed, linear_solution *solution) {
     linear_program_solve(&program, f->order, NULL, solution);
 }
 
-/* The centre as it is written down, and its distance to the nearest plane. */
+/* The rounded centre, and its distance to the nearest plane. */
 static void place_guard(const finder *f, const linear_solution *solution,
                         starg_kernel_result *result) {
     double unit[3], radius = INFINITY;
@@ -139,7 +140,7 @@ bool kernel_sees_all(const kernel_faces *surface, const double point[3]) {
 }
 
 int kernel_winding(const kernel_faces *surface, const double point[3]) {
-    /* a crossing asks a tree for its triangles only */
+    /* crossings read only the triangles of a tree */
     const bvh triangles = {.vertices = surface->vertices, .faces = surface->faces};
     int winding = 0;
     for (size_t face = 0; face < surface->count; face++)
@@ -147,8 +148,8 @@ int kernel_winding(const kernel_faces *surface, const double point[3]) {
     return winding;
 }
 
-/* The points strictly inside all faces form a convex set off the surface, so that the winding
- * number is the same for all of them: more than once is a proof of its own, without a witness. */
+/* The points strictly inside all faces form a convex set off the surface, so the winding number is
+ * the same for all of them: a number above one proves by itself that the kernel is empty. */
 static bool prove_interior(const finder *f, starg_kernel_result *result) {
     if (!kernel_sees_all(f->surface, result->guard))
         return false;
@@ -157,7 +158,7 @@ static bool prove_interior(const finder *f, starg_kernel_result *result) {
     return true;
 }
 
-/* Solves the square system a x = b in place; false when it is singular. */
+/* Solves the square system a x = b in place; false if it is singular. */
 static bool eliminate(double a[4][4], double b[4], int n) {
     for (int c = 0; c < n; c++) {
         int pivot = c;
@@ -186,8 +187,8 @@ static bool eliminate(double a[4][4], double b[4], int n) {
     return true;
 }
 
-/* Factors that combine the rows to the objective, by least squares: then the normals cancel.
- * Divided by the lengths of the faces' normals. */
+/* Factors that combine the rows to the objective, by least squares, so that the normals cancel;
+ * divided by the lengths of the faces' normals. */
 static bool find_weights(const finder *f, const linear_solution *solution, double weights[4]) {
     double gram[4][4];
     int n = solution->tight_count;
@@ -206,7 +207,7 @@ static bool find_weights(const finder *f, const linear_solution *solution, doubl
         to_unit(f, corner(f->surface, solution->tight[i], 2), c);
         vec3_triangle_normal(a, b, c, normal);
         weights[i] = fmax(0, weights[i]) / vec3_length(normal);
-        if (!(weights[i] <= 0x1p900)) /* no normal to speak of */
+        if (!(weights[i] <= 0x1p900)) /* negligible normal */
             return false;
     }
     return true;
@@ -217,7 +218,7 @@ static half_space inner_side(const finder *f, uint32_t face) {
                         corner(f->surface, face, 2)};
 }
 
-/* The inner sides of the tight rows that `subset` has. */
+/* The inner half-spaces of the tight rows in `subset`. */
 static int choose(const finder *f, const linear_solution *solution, int subset,
                   half_space spaces[HALF_SPACES_MOST], uint32_t faces[HALF_SPACES_MOST]) {
     int count = 0;
@@ -229,8 +230,8 @@ static int choose(const finder *f, const linear_solution *solution, int subset,
     return count;
 }
 
-/* The rows that stop the program leave no room in the box of the faces; if they do not by more than
- * rounding errors, one of their subsets may have none anywhere. */
+/* The tight rows have no common point in the box of the faces; if that holds only within rounding,
+ * one of their subsets may have no common point anywhere. */
 static bool prove_empty(const finder *f, const linear_solution *solution,
                         starg_kernel_result *result) {
     half_space spaces[HALF_SPACES_MOST];
@@ -252,8 +253,7 @@ static bool prove_empty(const finder *f, const linear_solution *solution,
     return true;
 }
 
-/* A face without area settles the question; such faces are reported before any program is solved.
- */
+/* A zero-area face settles the question and is reported before any program is solved. */
 static bool find_flat_face(const finder *f, starg_kernel_result *result) {
     for (size_t face = 0; face < f->surface->count; face++) {
         const double *a = corner(f->surface, face, 0);
@@ -297,7 +297,7 @@ done:
 
 /* ---- meshes ---- */
 
-/* Faces along an edge one way less those the other way. */
+/* Number of faces along an edge in one direction minus those in the other. */
 static int edge_balance(const starg_mesh *mesh, const mesh_topology *topology, uint32_t halfedge) {
     int balance = 0;
     uint32_t h = halfedge;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of the kernel: the same for oriented triangles that are no mesh, such as the boundary of a
- * set of tetrahedra. */
+/* Internals of the kernel: the same for oriented triangles that are not a mesh, such as the
+ * boundary of a set of tetrahedra. */
 #ifndef STARG_VISIBILITY_KERNEL_H
 #define STARG_VISIBILITY_KERNEL_H
 
@@ -20,7 +20,7 @@ starg_status kernel_find(starg_context *context, const kernel_faces *surface,
 /* Is `point` strictly on the inner side of every face? Exact. */
 bool kernel_sees_all(const kernel_faces *surface, const double point[3]);
 
-/* How often the faces wind around a point that none of them holds. Exact. */
+/* Winding number of the faces about a point on none of them. Exact. */
 int kernel_winding(const kernel_faces *surface, const double point[3]);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Eight doubles or WIDE floats at a time, in the ISA variant that the including file has chosen by
+/* Eight doubles or WIDE floats at a time, in the ISA variant selected by the including file with
  * LANES_PLAIN, LANES_NEON, LANES_AVX2 or LANES_AVX512. Bit k of a mask stands for lane k;
  * comparisons with NaN are false. */
 #ifndef STARG_VISIBILITY_LANES_H
@@ -48,7 +48,7 @@ static inline lanes lanes_add(lanes a, lanes b) {
     return _mm512_add_pd(a, b);
 }
 
-/* Writes 1 above the limit, -1 below its opposite, else 0. */
+/* Writes 1 above the limit, -1 below its negative, otherwise 0. */
 static inline void lanes_store_signs(lanes a, double limit, int8_t *out) {
     __mmask8 above = _mm512_cmp_pd_mask(a, _mm512_set1_pd(limit), _CMP_GT_OQ);
     __mmask8 below = _mm512_cmp_pd_mask(a, _mm512_set1_pd(-limit), _CMP_LT_OQ);
@@ -252,7 +252,7 @@ static inline lanes lanes_beyond(lanes a, lanes b, lanes c, double d) {
     return a;
 }
 
-/* The second where they do not compare, as the others do. */
+/* The second if unordered, like the others. */
 static inline lanes lanes_min(lanes a, lanes b) {
     for (int k = 0; k < 4; k++)
         a.part[k] = vbslq_f64(vcltq_f64(a.part[k], b.part[k]), a.part[k], b.part[k]);
@@ -287,7 +287,7 @@ static inline lanes lanes_add(lanes a, lanes b) {
     return a;
 }
 
-/* True is -1: below minus above. */
+/* true is -1: below minus above */
 static inline void lanes_store_signs(lanes a, double limit, int8_t *out) {
     for (int k = 0; k < 4; k++) {
         uint64x2_t above = vcgtq_f64(a.part[k], vdupq_n_f64(limit));

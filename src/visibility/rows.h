@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Inside of the visibility matrix: its rows, and how other processes make some of them. */
+/* Internals of the visibility matrix: its rows, some of which other processes can compute. */
 #ifndef STARG_VISIBILITY_ROWS_H
 #define STARG_VISIBILITY_ROWS_H
 
@@ -7,7 +7,7 @@
 #include "core/private.h"
 #include "visibility/scene.h"
 
-/* One matrix under way: row i is what point i sees. */
+/* A matrix under construction: row i is what point i sees. */
 typedef struct visibility_job {
     const visibility_scene *scene;
     const starg_visibility_options *options;
@@ -15,32 +15,32 @@ typedef struct visibility_job {
     size_t count;
     starg_bits *rows;
     uint8_t *finished; /* by point; may be NULL */
-    /* Both follow from the options; visibility_fill sets them. */
+    /* Derived from the options by visibility_fill. */
     const visibility_engine *engine;
     double cosine; /* of half the cone */
 } visibility_job;
 
-/* Makes what the engine of the options needs to work on `count` points. Errors: MEMORY. */
+/* Makes the scene that the options' engine needs for `count` points. Errors: MEMORY. */
 starg_status visibility_scene_for(starg_context *context, const starg_solid *solid,
                                   const starg_visibility_options *options, size_t count,
                                   visibility_scene **out);
 
-/* Fills the rows, which are zero, in this process or, with `remote`, in others as well. Errors:
+/* Fills the rows, initially zero, in this process or, with `remote`, in others as well. Errors:
  * MEMORY, CANCELLED, TIME, RANK. */
 starg_status visibility_fill(starg_context *context, const visibility_job *job,
                              const starg_parallel_remote *remote);
 
-/* Is there so much to do that others are worth asking? */
+/* Is there enough work to share? */
 bool visibility_is_shared(starg_context *context, const visibility_job *job);
 
-/* What a helper has to know of the job. Errors: MEMORY. */
+/* Packs the job for helpers. Errors: MEMORY. */
 starg_status visibility_pack(starg_context *context, const visibility_job *job, starg_bytes *out);
 
 /* A starg_parallel_remote's take, with a visibility_job for `shared`. */
 starg_status visibility_take(starg_context *context, void *shared, size_t first, size_t count,
                              starg_bytes_reader *reply);
 
-/* Makes rows for another process. */
+/* Computes rows for another process. */
 extern const ranks_work visibility_ranks_work STARG_PRIVATE(visibility_ranks_work);
 
 #endif

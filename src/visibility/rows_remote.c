@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Visibility rows that other processes make.
+/* Visibility rows computed by other processes.
  *
- * A job is the solid, as it is after the check, with all points and the options; so helpers read no
- * file, examine nothing again, and take levels of detail, which stand in no file, like any other
- * model. A reply is the rows of a block, and which of them were finished. The bits of a row depend
- * on nothing else, so it does not matter who makes it.
+ * A job contains the examined solid, all points and the options; so helpers read no file, do not
+ * examine again, and handle levels of detail, which are in no file, like any other model. A reply
+ * contains the rows of a block, and which of them are finished. The bits of a row depend on nothing
+ * else, so it does not matter who computes it.
  *
- * Cost: once for each helper 36 bytes a face or so, and its search structures; a bit per column a
+ * Cost: per helper about 36 bytes a face, and its search structures; a bit per column of each
  * row. */
 #include "core/bits.h"
 #include "visibility/columns.h"
@@ -14,7 +14,7 @@
 
 static const char STAGE[] = "visibility";
 
-/* Faces times points below which the search structures of a helper cost more than it brings. */
+/* Faces times points below which a helper's search structures cost more than they save. */
 enum { LEAST_WORK = 1 << 22 };
 
 /* The fixed part of a job. */
@@ -115,7 +115,7 @@ done:
     return status;
 }
 
-/* Is it a job? Counts that are too high for what follows are met there. */
+/* Is this a valid job? Excessive counts are caught later. */
 static bool is_sound(const job_head *head, size_t left) {
     return head->points <= left / 24 && head->vertices <= left / 24 && head->faces <= left / 12 &&
            head->engine <= STARG_VISIBILITY_FASTEST && head->target <= STARG_TARGET_CORNERS &&

@@ -11,7 +11,7 @@
 #include "visibility/adjacency.h"
 #include "visibility/sides.h"
 
-/* Vertices get their slots in the order in which the faces, taken leaf by leaf, name them. */
+/* Numbers the vertices in the order in which the faces use them, leaf by leaf. */
 static void order_vertices(visibility_scene *scene) {
     const starg_mesh *mesh = scene->mesh;
     for (size_t v = 0; v < mesh->vertex_count; v++)
@@ -32,9 +32,9 @@ static void order_vertices(visibility_scene *scene) {
         }
 }
 
-/* The error bound: with e the longest extent of an edge and h that of the box, a normal's
- * components are below 2 e^2 and carry 4 roundings, the products another 4; there are six terms
- * with factors up to h (which itself carries a rounding). 128 covers the sum. */
+/* Error bound: with e the longest extent of an edge and h that of the box, a normal's components
+ * are below 2 e^2 and have 4 roundings, the products another 4; there are six terms with factors up
+ * to h (which itself has a rounding). 128 covers the sum. */
 static void compute_planes(visibility_scene *scene) {
     const bvh_box *all = &scene->all;
     double edge = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The bulk of scene_sides, compiled once for each instruction set. */
+/* The main loop of scene_sides, compiled per instruction set. */
 #ifndef STARG_VISIBILITY_SIDES_H
 #define STARG_VISIBILITY_SIDES_H
 

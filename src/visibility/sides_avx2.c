@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The sides of faces for AVX2 with FMA. */
+/* Sides of faces for AVX2 with FMA. */
 #define SIDES_RUN sides_run_avx2
 #define LANES_AVX2
 #include "visibility/sides_stages.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The sides of faces for any processor. */
+/* Sides of faces for any processor. */
 #define SIDES_RUN sides_run_plain
 #define LANES_PLAIN
 #include "visibility/sides_stages.h"

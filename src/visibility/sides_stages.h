@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The sides of faces (visibility/sides.h), written once and compiled for each instruction set: the
- * including file names the function and chooses the lanes. */
+/* Sides of faces (visibility/sides.h), written once and compiled per instruction set: the including
+ * file names the function and selects the lanes. */
 #include "visibility/lanes.h"
 #include "visibility/sides.h"
 

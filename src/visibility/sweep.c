@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The paper's sweep [YL11, section 3.1], swept by longitude.
+/* The paper's sweep [YL11, section 3.1], by longitude.
  *
  * Each vertex is a direction (longitude phi, latitude theta) from p, each face covers a range of
- * both. The sweep passes the vertices by phi; faces are active while phi lies in their range;
- * the segment test is made where theta lies in the face's range too, condition (1).
+ * both. The sweep passes the vertices by phi; faces are active while phi lies in their range; the
+ * segment test is made if theta also lies in the face's range, condition (1).
  *
  * As printed the method misses blockers; three corrections:
  * - the edges of a spherical triangle bulge poleward, so its latitudes exceed those of its
  *   vertices: the range includes the extremes of the edges' great circles;
  * - longitudes wrap at pi: a face across the seam is active at both ends of the sweep;
- * - a face whose cone holds a pole covers all longitudes: it is active throughout.
- * Sweeping longitude first, the range of the primary key needs only vertices, wrap and poles. The
- * paper's counters (c = 1 at the first swept vertex of a face, removal after the third) come to
- * the same activation, but not for faces across the seam.
+ * - a face whose cone contains a pole covers all longitudes: it is always active.
+ * With longitude as the primary key, its range needs only vertices, wrap and poles. The paper's
+ * counters (c = 1 at the first swept vertex of a face, removal after the third) amount to the same
+ * activation, except for faces across the seam.
  *
- * Angles only choose what is tested: ranges are widened by far more than the error of atan2, and
+ * Angles only select what is tested: ranges are widened by far more than the error of atan2, and
  * the test itself is exact. Cost O(n log n + n m) for m active faces. */
 #include <math.h>
 #include <stdlib.h>
@@ -94,8 +94,8 @@ static void measure_directions(const visibility_scene *scene, const double p[3],
     }
 }
 
-/* Widens the latitudes by the extremes of the great circle of the edge from a to b, where the edge
- * may reach them: it rises at its start and falls at its end, or the reverse. */
+/* Widens the latitudes by the extremes of the great circle of the edge from a to b, if the edge can
+ * reach them: it rises at its start and falls at its end, or the reverse. */
 static void include_bulge(const double a[3], const double b[3], range *r) {
     double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     double rise_a = n[0] * a[1] - n[1] * a[0], rise_b = n[0] * b[1] - n[1] * b[0];
@@ -109,7 +109,7 @@ static void include_bulge(const double a[3], const double b[3], range *r) {
         r->theta_low = fmin(r->theta_low, -extreme);
 }
 
-/* Directions along one line give no great circle that rounding could be trusted with. */
+/* Nearly parallel directions do not determine a great circle reliably. */
 static bool nearly_parallel(const double a[3], const double b[3]) {
     double n = fabs(a[1] * b[2] - a[2] * b[1]) + fabs(a[2] * b[0] - a[0] * b[2]) +
                fabs(a[0] * b[1] - a[1] * b[0]);
@@ -135,9 +135,9 @@ static void measure_latitudes(double d[3][3], const direction *const v[3], range
     }
 }
 
-/* Sorts three longitudes and measures the gaps between them around the circle. A gap larger than
- * pi lies outside the face, whose range is the rest; without one the cone holds a pole (or comes
- * so near that rounding could not tell). Adds one range, or two across the seam. */
+/* Sorts three longitudes and measures the gaps between them around the circle. A gap larger than pi
+ * lies outside the face, whose range is the rest; without one the cone contains a pole (or is too
+ * close to tell). Adds one range, or two across the seam. */
 static size_t measure_range(const visibility_scene *scene, const direction *directions,
                             const double p[3], uint32_t rank, range *out) {
     const direction *v[3];
@@ -192,7 +192,7 @@ static size_t measure_ranges(const visibility_scene *scene, const double p[3], c
     return count;
 }
 
-/* Tests one vertex against the active faces; faces whose range has passed are taken out. */
+/* Tests one vertex against the active faces; drops faces whose range has passed. */
 static bool sees(const visibility_scene *scene, sweep_scratch *s, size_t *active_count,
                  const double p[3], const int8_t *side, const direction *v) {
     size_t i = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Visibility by a bounding volume hierarchy: one query per vertex, O(log n) where little stands
- * between. Uses every face, whatever its side. */
+/* Visibility by a bounding volume hierarchy: one query per vertex, O(log n) if few faces are in
+ * between. Uses every face, on either side. */
 #include "geometry/predicates.h"
 #include "visibility/scene.h"
 
@@ -16,7 +16,7 @@ static bool passes(void *user, size_t rank) {
     return !scene_blocks(query->scene, rank, query->side[rank], query->p, query->slot);
 }
 
-/* For a single vertex the sides are not known beforehand; only those of its own faces matter. */
+/* For a single vertex the sides are not precomputed; only those of its own faces matter. */
 static bool passes_alone(void *user, size_t rank) {
     const tree_query *query = user;
     int side = 0;

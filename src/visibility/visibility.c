@@ -15,14 +15,14 @@ static const char STAGE[] = "visibility";
 
 typedef visibility_job job;
 
-/* What one thread needs to work on a point. */
+/* Per-thread data. */
 typedef struct worker {
     void *engine_scratch;
     const job *job;
     int8_t *side;       /* by rank */
     uint8_t *visible;   /* by slot */
-    uint8_t *within;    /* by slot: visible, and within the cone; only with one */
-    const double *last; /* point that side and visible are for, or NULL */
+    uint8_t *within;    /* by slot: visible, and within the cone; only if there is one */
+    const double *last; /* point for which side and visible are valid, or NULL */
 } worker;
 
 double starg_cone_cosine(double degrees) {
@@ -74,7 +74,7 @@ static void drop_out_of_range(const job *all, const double p[3], uint8_t *visibl
     }
 }
 
-static void look_all_around(const job *all, worker *w, const double p[3]) {
+static void find_visible(const job *all, worker *w, const double p[3]) {
     scene_sides(all->scene, p, w->side);
     all->engine->find(all->scene, w->engine_scratch, p, w->side, w->visible);
     drop_out_of_range(all, p, w->visible);
@@ -131,9 +131,9 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
     (void)context;
     const uint8_t *visible = w->visible;
     if (starg_solid_contains(all->scene->solid, p)) {
-        /* points that look several ways stand one after the other */
+        /* directions at the same point are consecutive */
         if (w->last == NULL || !vec3_equal(w->last, p))
-            look_all_around(all, w, p);
+            find_visible(all, w, p);
         w->last = p;
         if (all->options->cone < 360) {
             narrow(all, w, p, all->options->directions + 3 * item);
@@ -192,7 +192,8 @@ static starg_status check_arguments(starg_context *context, const double *points
     return status;
 }
 
-/* Of those that suit every point only contours tell plainly which faces are wholly visible. */
+/* Of the engines for all points, only contours can tell quickly which faces are entirely
+ * visible. */
 static const visibility_engine *choose_engine(const starg_visibility_options *options) {
     static const visibility_engine *const engines[] = {&visibility_grid, &visibility_tree,
                                                        &visibility_sweep, &visibility_contours,
@@ -207,7 +208,7 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
                                   visibility_scene **out) {
     starg_status status = scene_create(context, solid, out);
     if (status == STARG_OK && options->engine >= STARG_VISIBILITY_CONTOURS &&
-        count > 1) /* one does not pay for it */
+        count > 1) /* does not pay for a single point */
         status = scene_add_adjacency(*out);
     return status;
 }
@@ -227,7 +228,7 @@ starg_status visibility_fill(starg_context *context, const visibility_job *of,
     return starg_parallel_in_time(context, &loop);
 }
 
-/* With the help of other processes where there are any, and enough to do for them. */
+/* With other processes, if there are any and enough work. */
 static starg_status fill_shared(starg_context *context, const job *all) {
     starg_status status = STARG_OK;
     starg_bytes packed = {0};

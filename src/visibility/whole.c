@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Is a face visible as a whole, not only in its corners?
+/* Is a face visible as a whole, not only at its corners?
  *
  * The view to the points of face f = (a, b, c) is blocked by a triangle t exactly if t has a point
- * in conv(p, f) without f itself, that is in the cone K of p over f, strictly before the plane of
- * f. The intersection of t and K is a convex polygon; its points lie strictly before the plane if
- * one of its corners does. Such a corner is
- * - a corner of t that lies in K, or
+ * in conv(p, f) outside f itself, that is in the cone K of p over f, strictly before the plane of
+ * f. The intersection of t and K is a convex polygon; it has points strictly before the plane
+ * exactly if one of its corners is. Such a corner is
+ * - a corner of t in K, or
  * - a point where an edge of t passes through a lateral face of K, or
- * - a point where a ray p a, p b, p c meets t: before the plane that would hide the corner of f.
+ * - a point where a ray p a, p b, p c meets t: before the plane this would hide the corner of f.
  * So, the three corners of f being visible, t blocks exactly if a corner of t lies in K strictly
- * before the plane, or an edge of t properly crosses a lateral triangle, such as (p, a, b), off
- * the line a b. (An edge within a lateral plane has an end in K or crosses one of the rays.)
+ * before the plane, or an edge of t properly crosses a lateral triangle, such as (p, a, b), off the
+ * line a b. (An edge within a lateral plane has an end in K or crosses one of the rays.)
  *
- * Triangles are found by the tree: boxes outside one of the planes of K are left out, with a
- * margin above rounding. Cost O(log n) for each face, times what lies near its cone. */
+ * The BVH finds the triangles: boxes outside one of the planes of K are skipped, with a margin
+ * above rounding. Cost O(log n) per face, times the triangles near its cone. */
 #include <math.h>
 
 #include "geometry/predicates.h"
@@ -26,8 +26,8 @@ typedef struct cone {
     const int8_t *side; /* of p by rank, or NULL */
     const double *corner[3];
     size_t rank;
-    /* Planes that have the cone on their positive side, relative to p: three lateral ones, and
-     * that of the face (positive where p is). */
+    /* Planes with the cone on their positive side, relative to p: three lateral ones, and that of
+     * the face (positive at p). */
     double normal[4][3], offset[4], slack[4];
 } cone;
 
@@ -39,7 +39,7 @@ static void make_cone(cone *k) {
             size = fmax(size, fabs(r[i][j]));
     }
     for (int i = 0; i < 3; i++) {
-        /* a face seen from inside turns clockwise about the view */
+        /* a face seen from inside is clockwise */
         vec3_cross(r[i], r[(i + 1) % 3], k->normal[i]);
         k->offset[i] = 0;
         k->slack[i] = 128 * 0x1p-53 * size * size * range + 0x1p-1000;
@@ -52,7 +52,7 @@ static void make_cone(cone *k) {
     k->slack[3] = 512 * 0x1p-53 * size * size * range + 0x1p-1000;
 }
 
-/* The corner of the box that lies farthest along the normal decides. */
+/* Tests the corner of the box farthest along the normal. */
 static bool box_may_meet(void *user, const bvh_box *box) {
     const cone *k = user;
     for (int i = 0; i < 4; i++) {
@@ -74,7 +74,7 @@ static bool before_face(const cone *k, const double q[3]) {
            orient3d(k->p, c, b, q) >= 0 && orient3d(k->p, a, c, q) >= 0;
 }
 
-/* Does the segment s t pass through the triangle (p, a, b), not on the line a b? */
+/* Does the segment s t pass through the triangle (p, a, b), off the line a b? */
 static bool crosses_lateral(const double p[3], const double a[3], const double b[3],
                             const double s[3], const double t[3]) {
     int at_s = orient3d(p, a, b, s), at_t = orient3d(p, a, b, t);
@@ -84,8 +84,8 @@ static bool crosses_lateral(const double p[3], const double a[3], const double b
     return ab != 0 && pa * ab >= 0 && bp * ab >= 0;
 }
 
-/* Lies the triangle, but for corners that it shares with the face, beyond one of the planes? What
- * it has on that plane is then a corner or an edge of the face, which is not before it. */
+/* Does the triangle, except corners shared with the face, lie beyond one of the planes? Its part on
+ * that plane is then a corner or an edge of the face, which is not before it. */
 static bool is_plainly_outside(const cone *k, size_t rank) {
     const uint32_t *own = k->scene->corners + 3 * k->rank, *other = k->scene->corners + 3 * rank;
     for (int i = 0; i < 4; i++) {

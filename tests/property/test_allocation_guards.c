@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory that fails at every place of the calls about guards: bits, covers, visibility, skeletons,
- * candidates, guards, and what verifies them. */
+/* Memory failures at every place in calls about guards: bits, covers, visibility, skeletons,
+ * candidates, guards, and their verification. */
 #include "failing.h"
 #include "failing_inputs.h"
 
@@ -220,11 +220,11 @@ static starg_guard_options few(void) {
     return options;
 }
 
-/* Guards with `o`, which SETTINGS change. */
+/* Guards with `o`, modified by SETTINGS. */
 #define GUARD(NAME, VARIANT, SETTINGS)                                                             \
     FAILING_MAKES(NAME, VARIANT, starg_guards, starg_guards_free(context, out), in.solid,          \
                   (SETTINGS, &o))
-/* Of a range, so that several are needed. */
+/* With a range, so that several are needed. */
 static starg_guard_options proving(void) {
     starg_guard_options options = few();
     options.prove = true;
@@ -297,8 +297,8 @@ FAILING_TEST(scenes)
 FAILING_TEST(skeletons)
 FAILING_TEST(guards)
 
-/* Steiner's triples on nine points: every row alike, and a bound below the optimum, so that nothing
- * is decided before the search. */
+/* Steiner triples on nine points: all rows are alike, and the bound is below the optimum, so that
+ * the search must decide. */
 static starg_bits *make_triples(starg_context *context) {
     static const int lines[12][3] = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}, {0, 3, 6},
                                      {1, 4, 7}, {2, 5, 8}, {0, 4, 8}, {1, 5, 6},

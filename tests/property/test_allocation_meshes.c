@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory that fails at every place of the calls about surfaces: reading and writing, check, repair,
+/* Memory failures at every place in calls about surfaces: reading and writing, check, repair,
  * levels, solids, kernels, samples, pictures, animations, pages and scenes. */
 #include "failing.h"
 #include "failing_inputs.h"
@@ -24,7 +24,7 @@ static input_bytes animation;
 
 /* ---- contexts ---- */
 
-/* A context of its own, with the same memory. */
+/* A separate context with the same memory. */
 static starg_status context_create(starg_context *context) {
     starg_context_options options;
     starg_context *made = NULL;
@@ -53,7 +53,7 @@ static const starg_mesh_write_options *in_format(starg_mesh_format format) {
     return &options;
 }
 
-/* A polygon that the fan does not cut. */
+/* A polygon that a fan does not triangulate. */
 static const char polygon[] =
     "OFF\n6 1 0\n0 0 0\n4 0 0\n4 4 0\n3 1 0\n2 4 0\n0 4 0\n6 0 1 2 3 4 5\n";
 static const char ply[] =
@@ -81,7 +81,7 @@ static starg_status meshes(starg_context *context) {
     return STARG_OK;
 }
 
-/* ---- what is made of meshes ---- */
+/* ---- results from meshes ---- */
 
 static starg_status repair(starg_context *context, const starg_mesh *mesh, bool unite) {
     starg_repair_report report;
@@ -123,7 +123,7 @@ static starg_status made_of_meshes(starg_context *context) {
     return STARG_OK;
 }
 
-/* ---- what is looked at ---- */
+/* ---- pictures and pages ---- */
 
 static starg_status frames_result(starg_context *context, starg_status status, starg_mesh **frames,
                                   size_t count) {

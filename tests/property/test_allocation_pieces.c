@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory that fails at every place of the calls about tetrahedra, star decompositions and what
- * verifies them. */
+/* Memory failures at every place in calls about tetrahedra, star decompositions and their
+ * verification. */
 #include "failing.h"
 #include "failing_inputs.h"
 
@@ -50,7 +50,7 @@ static starg_status tetrahedra(starg_context *context) {
             starg_tetmesh_count(in.tetmesh), NULL);
     FAILING_BY(starg_tetmesh_surface, "", surface(context));
     FILL(starg_tetmesh_from_solid, "stuffing", STUFFING, NULL);
-    /* a program that is not there: files are written, then stuffing takes over */
+    /* a missing program: files are written, then stuffing takes over */
     FILL(starg_tetmesh_from_solid, "no tetgen, stuffing", AUTO, "/nowhere/tetgen");
     TETMESH(starg_tetmesh_from_open_mesh, "", in.open, filling(STARG_TETRA_AUTO, NULL), NULL);
     TETMESH(starg_tetmesh_read, "medit", failing_input("tets.mesh"));

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory that fails at every place of the calls that compare shapes and turn one into another:
- * signatures, descriptors, the database, maps, morphs. */
+/* Memory failures at every place in calls that compare and morph shapes: signatures, descriptors,
+ * the database, maps, morphs. */
 #include "failing.h"
 #include "failing_inputs.h"
 
@@ -76,7 +76,7 @@ static starg_status descriptors(starg_context *context) {
 
 /* ---- the database ---- */
 
-/* Opens a database with memory that holds; the call that follows has memory that fails. */
+/* Opens a database with working memory; memory fails in the call that follows. */
 static starg_database *opened(starg_context *context, const char *path) {
     starg_database *database = NULL;
     failing_pause();
@@ -85,7 +85,7 @@ static starg_database *opened(starg_context *context, const char *path) {
     return database;
 }
 
-/* A copy of the database in memory, to be changed. */
+/* A copy of the database in memory, for changes. */
 static const char *scratch_database(void) {
     const char *path = failing_input("scratch.db");
     FILE *file = fopen(path, "wb");
@@ -95,7 +95,7 @@ static const char *scratch_database(void) {
     return path;
 }
 
-/* How many models it has; whatever fails, it stays in order. */
+/* Number of models; the database stays consistent whatever fails. */
 static size_t models_in(starg_context *context, starg_database *database) {
     starg_database_models *models = NULL;
     failing_pause();
@@ -106,8 +106,8 @@ static size_t models_in(starg_context *context, starg_database *database) {
     return count;
 }
 
-/* The report tells what became of each file; models that stand in the database already stay there,
- * and new ones may have got there before memory failed. */
+/* The report tells the outcome for each file; existing models stay, and new ones may have been
+ * added before memory failed. */
 static starg_status database_add(starg_context *context) {
     starg_database *database = opened(context, scratch_database());
     starg_database_report *report = NULL;
@@ -142,7 +142,7 @@ static starg_database_models *two_models(void) {
     return &models;
 }
 
-/* NAME(database, ..., &out), of a database that is there. */
+/* NAME(database, ..., &out), with an existing database. */
 #define MODELS(NAME, VARIANT, ...)                                                                 \
     do                                                                                             \
         if (failing_turn(#NAME, VARIANT)) {                                                        \
@@ -211,7 +211,7 @@ static const starg_morph_options *by(starg_morph_method method) {
     return &options;
 }
 
-/* A morph with memory that holds; what is asked of it has memory that fails. */
+/* Makes a morph with working memory; memory fails in later calls on it. */
 static starg_morph *ready(starg_context *context) {
     starg_morph *morph = NULL;
     failing_pause();

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Memory of CBC and Clp that fails: the n-th call of C++'s operator new has none, in a process of
- * its own for each n. Where there is some once the reserve is given up, the cover that comes back
- * is a cover, with a bound that holds, and no memory is lost. Where there is none from then on, the
- * process ends with status 3.
+/* Memory failures of CBC and Clp: the n-th call of C++'s operator new fails, in a separate process
+ * for each n. If memory is available again once the reserve is released, the returned cover is
+ * valid with a valid bound, and there are no leaks. If memory never returns, the process ends with
+ * status 3.
  *
- * The program has an operator new of its own for that, which libraries find before theirs. */
+ * The program defines its own operator new, which libraries find before theirs. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -16,7 +16,7 @@
 enum { OPTIMUM = 18 }; /* of cover_oracle_lines in three dimensions */
 
 static size_t asked, failing; /* 0: none fails */
-static bool for_good;         /* all from then on */
+static bool for_good;         /* all later ones fail as well */
 
 void *_Znwm(size_t size) __attribute__((visibility("default")));
 void _ZdlPv(void *block) __attribute__((visibility("default")));
@@ -59,19 +59,19 @@ static bool is_cover(const starg_bits *bits, const starg_cover *cover) {
     return true;
 }
 
-/* What the process that has failed ends with. */
+/* Exit statuses of the failing process. */
 enum {
     FINE = 0,
     NO_COVER = 1,
     WRONG_COVER = 2,
     WRONG_BOUND = 7,
-    OUT_OF_MEMORY = 3, /* the library's word */
+    OUT_OF_MEMORY = 3, /* the library's own */
     LEAK = 4,
     HANDLER = 5,
     NOT_REACHED = 6
 };
 
-/* Solves, for some n twice; the n-th allocation of the first time fails. */
+/* Solves, for some n twice; the n-th allocation fails the first time. */
 static int solve(size_t n) {
     starg_context *context = test_context(1);
     starg_bits *bits = cover_oracle_lines(context, 3);
@@ -94,7 +94,7 @@ static int solve(size_t n) {
             result = WRONG_BOUND;
         starg_cover_free(cover);
         if (round == 0 && asked < n)
-            break; /* there are not so many */
+            break; /* fewer than n allocations */
     }
     bool reached = asked >= n;
     starg_bits_free(bits);
@@ -102,7 +102,7 @@ static int solve(size_t n) {
         result = LEAK;
     starg_context_free(context);
     if (_ZSt15get_new_handlerv() != NULL)
-        result = HANDLER; /* the process has got its own back */
+        result = HANDLER; /* the process's own handler is restored */
     return result != FINE ? result : reached ? FINE : NOT_REACHED;
 }
 
@@ -112,7 +112,7 @@ static int solve_apart(size_t n) {
     pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0)
-        _exit(solve(n)); /* what the library says of it goes to standard error */
+        _exit(solve(n)); /* the library's message goes to standard error */
     assert_int_equal(waitpid(child, &status, 0), child);
     if (!WIFEXITED(status))
         print_error("allocation %zu: killed by signal %d\n", n, WTERMSIG(status));

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Real solids: no point of a box sees what is said to be hidden from all of it. Points of the
- * boxes, adversarial ones among them, are asked by the point engines; on the smallest solids also
- * by the definition, in rationals where doubles are not certain. Printed is how many of the pairs
- * of a box and a vertex or face that no point sees were found to be hidden. With STARGUARD_LONG up
- * to ten million pairs. */
+/* Real solids: no point of a box sees what is reported as hidden from all of it. Points of the
+ * boxes, including adversarial ones, are tested by the point engines; on the smallest solids also
+ * by the definition, in rationals where doubles are not certain. Prints how many of the pairs of a
+ * box and a vertex or face seen by no point were found to be hidden. Up to ten million pairs with
+ * STARGUARD_LONG. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

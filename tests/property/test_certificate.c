@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Certificates of bounds for guards anywhere: those of searches are found right, and say the same
- * at any number of threads; damaged and forged ones are refused, or say something that is true. */
+/* Certificates of bounds for guards anywhere: those of searches verify, and are the same for any
+ * number of threads; damaged and forged ones are rejected, or prove something true. */
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@
 
 enum { DAMAGED = 10000 };
 
-/* A model, what was proven about it, and what the verifier knows of it. */
+/* A model, what was proven about it, and the verifier's facts about it. */
 typedef struct subject {
     starg_context *context;
     starg_solid *solid;
@@ -37,7 +37,7 @@ static starg_guard_options proving(uint64_t work) {
     return options;
 }
 
-/* What the guards see, by the verifier's word. */
+/* What the guards see, according to the verifier. */
 static void find_known(subject *s) {
     verify_surface *surface = NULL;
     verify_sight *sight = NULL;
@@ -93,7 +93,7 @@ static void subject_free(subject *s) {
     test_context_free(s->context);
 }
 
-/* ---- right ones ---- */
+/* ---- valid ones ---- */
 
 static size_t outlined; /* guards that see more than their share */
 
@@ -184,7 +184,7 @@ static void test_samples(void **state) {
     assert_true(outlined > 0);
 }
 
-/* Real models, by the defaults; the longer ones in check-long. */
+/* Real models with default options; the slower ones in check-long. */
 static void test_shared(void **state) {
     (void)state;
     static const char *const names[] = {"table2/kitten_400", "solids/hand_1197",
@@ -255,7 +255,7 @@ static void test_random_solids(void **state) {
     test_context_free(context);
 }
 
-/* Vertices, a range, whole faces, a distance from the walls, two guards a face, and cones. */
+/* Vertices, a range, whole faces, a distance from the walls, two guards per face, and cones. */
 static void test_questions(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -339,7 +339,7 @@ typedef struct number {
     size_t at, length;
 } number;
 
-/* All runs of digits of the text but those of the first line, which is the format's name. */
+/* All runs of digits in the text except in the first line, which is the format's name. */
 static number *find_numbers(const char *text, size_t *count) {
     number *list = NULL;
     *count = 0;
@@ -359,7 +359,7 @@ static number *find_numbers(const char *text, size_t *count) {
     return list;
 }
 
-/* Another number: near, of the size of those about, or anything. */
+/* Another number: close, of similar size, or arbitrary. */
 static unsigned long long other_number(unsigned long long value, unsigned long long elsewhere,
                                        starg_rng *rng) {
     switch (starg_rng_below(rng, 6)) {
@@ -391,7 +391,7 @@ static char *damage(const char *text, const number *numbers, size_t count, starg
     return out;
 }
 
-/* What a certificate says about a model, and whether all of it is accepted. */
+/* What a certificate claims about a model, and whether all of it is accepted. */
 static bool is_accepted(const subject *s, const char *text, size_t *bound, size_t *unread) {
     starg_certificate *read = NULL;
     starg_verdict *verdict = NULL;
@@ -412,7 +412,7 @@ static bool is_accepted(const subject *s, const char *text, size_t *bound, size_
     return passed;
 }
 
-/* No bound is accepted that is above the proven one: that takes a better proof, not a damage. */
+/* No bound above the proven one is accepted: that would take a better proof, not damage. */
 static void check_damaged(subject *s, size_t rounds) {
     size_t count, accepted = 0, unread = 0, proven = s->guards->lower_bound_everywhere;
     number *numbers = find_numbers(s->text, &count);
@@ -435,7 +435,7 @@ static void check_damaged(subject *s, size_t rounds) {
     free(numbers);
 }
 
-/* Proves something about a small shape, which is taken over, and damages that. */
+/* Proves something about a small shape (consumed), and damages the certificate. */
 static void damage_shape(shape made, size_t rounds) {
     starg_context *context = test_context(2);
     starg_mesh *mesh = test_mesh_of(context, &made);
@@ -464,7 +464,7 @@ static void test_damaged(void **state) {
         damage_shape(random_cells(item), test_rounds(2 * DAMAGED / 10, DAMAGED));
 }
 
-/* ---- what follows from what leaves may see ---- */
+/* ---- conclusions from what leaves may see ---- */
 
 static void put_set(FILE *stream, const char *before, uint64_t set, const char *behind) {
     for (int j = 0; j < 64; j++)
@@ -472,7 +472,7 @@ static void put_set(FILE *stream, const char *before, uint64_t set, const char *
             fprintf(stream, "%s%d%s", before, j, behind);
 }
 
-/* A certificate of random rows, which has no model: each is what one leaf may see. */
+/* A certificate of random rows without a model: each row is what one leaf may see. */
 static char *certificate_of_rows(const witness_row *const *rows, size_t count, size_t witnesses,
                                  size_t bound, const branch_record *record) {
     char *text = NULL;
@@ -515,7 +515,7 @@ static char *certificate_of_rows(const witness_row *const *rows, size_t count, s
     return text;
 }
 
-/* The fewest sets that hold all, by trying. */
+/* The fewest sets that cover everything, by exhaustive search. */
 static size_t fewest(const uint64_t *sets, size_t count, uint64_t left, size_t most) {
     size_t best = SIZE_MAX;
     if (left == 0)
@@ -528,10 +528,10 @@ static size_t fewest(const uint64_t *sets, size_t count, uint64_t left, size_t m
     return best;
 }
 
-/* What the leaves may see; cells follow the x that cuts them, one half a leaf. */
+/* What the leaves may see; cells follow the x that cuts them, and one half is a leaf. */
 static size_t leaf_sets(const starg_certificate *read, uint64_t *sets) {
     size_t count = 0;
-    uint64_t above = 0; /* hidden from the cells around */
+    uint64_t above = 0; /* hidden from the enclosing cells */
     for (size_t i = 0; i < read->cell_count; i++) {
         uint64_t hidden = 0;
         for (size_t k = 0; k < read->cells[i].count; k++)
@@ -544,7 +544,7 @@ static size_t leaf_sets(const starg_certificate *read, uint64_t *sets) {
     return count;
 }
 
-/* Is what follows true? Returns whether it does. */
+/* If the bound is accepted, asserts that it is true; returns whether it is accepted. */
 static bool check_follows(starg_context *context, const char *text) {
     starg_certificate *read = NULL;
     everywhere_words why;
@@ -618,7 +618,7 @@ static void test_rows(void **state) {
     test_context_free(context);
 }
 
-/* Proofs by rows of one or two witnesses: right ones, and others that nearly are. */
+/* Proofs by rows of one or two witnesses: valid ones, and nearly valid ones. */
 static void test_false_proofs(void **state) {
     (void)state;
     static const char APART[] = "rows 2\n0\n1\ncells 3\nx\n=0 1n\n=1 0n\n";
@@ -693,7 +693,7 @@ static void test_too_close(void **state) {
 
 /* ---- forged ones ---- */
 
-/* The text with the first occurrence of some words replaced. */
+/* Replaces the first occurrence of a text. */
 static char *replaced(const char *text, const char *old, const char *new) {
     const char *at = strstr(text, old);
     size_t length = strlen(text) + strlen(new) + 1;
@@ -731,7 +731,7 @@ static void check_unread(const subject *s, char *text, const char *why) {
     free(text);
 }
 
-/* The price of the first witness, ten times. */
+/* The price of the first witness, times ten. */
 static char *with_higher_price(const char *text) {
     char *out = replaced(text, "\nprices ", "\nprices ");
     size_t end = (size_t)(strchr(strchr(strstr(out, "\nprices "), ':'), ' ') - out);
@@ -742,7 +742,7 @@ static char *with_higher_price(const char *text) {
     return longer;
 }
 
-/* The first line behind the number of cells, or of nodes, that begins so becomes another one. */
+/* Replaces the first line after the number of cells, or of nodes, that starts with a character. */
 static char *with_line(const char *text, const char *behind, char begin, const char *line) {
     const char *at = strstr(text, behind) + 1;
     do

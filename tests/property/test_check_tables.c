@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The check against the tables of the shared data, which another program made: closed, oriented,
+/* The check against the tables of the shared data, made by another program: closed, oriented,
  * components, genus; and whether faces cross. */
 #include <stdbool.h>
 #include <stdio.h>
@@ -11,11 +11,11 @@
 
 typedef struct table_row {
     const char *file;
-    long components, genus, crossings; /* -1 where the table has none */
+    long components, genus, crossings; /* -1 if not in the table */
     bool closed, oriented;
 } table_row;
 
-/* Where the table's way of counting differs, and why. */
+/* Known differences from the table's way of counting, with reasons. */
 typedef struct exception {
     const char *file, *why;
     bool closed, crossings; /* the opposite of the table's */
@@ -103,7 +103,7 @@ static void every_table(void **state) {
     }
     fclose(readme);
     test_context_free(context);
-    assert_true(checked >= 200); /* otherwise the tables are not what this test thinks they are */
+    assert_true(checked >= 200); /* otherwise the tables are not what this test expects */
     assert_int_equal(wrong, 0);
 }
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Conforming samples of surfaces with cracks, spikes and fins, against slow counts: what comes out
- * is a closed surface of the same topology, and exactly as many of its faces are lost as is told.
- */
+/* Conforming samples of surfaces with cracks, spikes and fins, against slow counts: the result is a
+ * closed surface of the same topology, and exactly as many of its faces are lost as reported. */
 #include "support.h"
 
 #include <math.h>
@@ -27,7 +26,7 @@ static face_key key_of(uint32_t a, uint32_t b, uint32_t c) {
     return (face_key){{least, a ^ b ^ c ^ least ^ most, most}};
 }
 
-/* Every halfedge has exactly one that runs the other way. */
+/* Every halfedge has exactly one opposite. */
 static void check_closed(const surface_samples *s) {
     size_t count = 3 * s->face_count;
     face_key *halves = malloc(count * sizeof *halves);
@@ -64,7 +63,7 @@ static size_t count_lost(const conformed *result) {
     return lost;
 }
 
-/* The number of results; *lost is the least number of lost faces. */
+/* Returns the number of results; *lost is the least number of lost faces. */
 static size_t conform(const shape *s, size_t wanted, size_t *lost) {
     starg_context *context = test_context(1);
     starg_solid *solid = test_solid_of(context, s);
@@ -95,7 +94,7 @@ static size_t conform(const shape *s, size_t wanted, size_t *lost) {
     return count;
 }
 
-/* Star-shaped about the origin, and so embedded, but of spikes and clefts. */
+/* Star-shaped about the origin, hence embedded, but full of spikes and clefts. */
 static shape spiky(int levels, uint64_t seed, double spread) {
     shape s = shape_blob(levels, seed);
     starg_rng rng = starg_rng_make(11, 1, seed);
@@ -121,7 +120,7 @@ static void test_spikes(void **state) {
     assert_true(several > 0);
 }
 
-/* Two boxes with next to nothing between them. */
+/* Two boxes with almost no gap between them. */
 static void test_cracks(void **state) {
     (void)state;
     for (int power = 1; power < 14; power++) {
@@ -136,7 +135,7 @@ static void test_cracks(void **state) {
     }
 }
 
-/* Lattice faces are Delaunay in their planes as they are. */
+/* Lattice faces are already Delaunay in their planes. */
 static void test_cells(void **state) {
     (void)state;
     shape shapes[] = {shape_cube(1), shape_cube(4), shape_columns(), shape_cavity()};

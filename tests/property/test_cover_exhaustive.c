@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Whole solves of small random problems against exhaustive search, in every mode. */
+/* Complete solves of small random problems against exhaustive search, in every mode. */
 #include "core/rng.h"
 #include "cover_oracle.h"
 #include "support.h"
@@ -17,13 +17,13 @@ static uint64_t random_weight(starg_rng *rng, int kind) {
         return starg_rng_below(rng, 4); /* often 0 */
     case 1:
         return 1 + starg_rng_below(rng, 1000);
-    default: /* huge ones beside small ones */
+    default: /* huge ones next to small ones */
         return starg_rng_below(rng, 2) ? starg_rng_below(rng, (uint64_t)1 << 57)
                                        : starg_rng_below(rng, 5);
     }
 }
 
-/* Rows and columns repeat now and then, so that dominance and merging have work. */
+/* Some rows and columns are repeated, for dominance and merging. */
 static void fill_bits(starg_rng *rng, starg_bits *bits) {
     size_t rows = starg_bits_rows(bits), columns = starg_bits_columns(bits);
     uint64_t density = 5 + starg_rng_below(rng, 55);
@@ -98,7 +98,7 @@ static void check_order(const starg_cover_problem *problem, const starg_cover *c
     }
 }
 
-/* All that holds for every result, exact or not. */
+/* Properties of every result, exact or not. */
 static void check_result(const random_problem *random, const starg_cover *cover,
                          const uint64_t *best, bool exact) {
     const starg_cover_problem *problem = &random->problem;
@@ -134,8 +134,8 @@ static void check_result(const random_problem *random, const starg_cover *cover,
     }
 }
 
-/* What the prices promise: together they pay no more than any row can give, and all but rounding
- * of what the first bound was; a problem that must not be covered whole has none. */
+/* Guarantees of the prices: together they pay at most what any row can give, and the first bound up
+ * to rounding; a problem without full cover has none. */
 static void check_prices(const random_problem *random, const starg_cover *cover) {
     const starg_cover_problem *problem = &random->problem;
     if (cover->prices == NULL) {

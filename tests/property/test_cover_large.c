@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A problem of the usual size: points on a sphere seen by caps, a few of which see far and many of
- * which see little. Solved to proven optimality; the seconds are printed, not asserted. */
+/* A problem of typical size: points on a sphere covered by caps, a few of them large and many
+ * small. Solved to proven optimality; the seconds are printed, not asserted. */
 #include <math.h>
 #include <stdio.h>
 
@@ -29,7 +29,7 @@ static void add_cap(starg_bits *bits, size_t row, const double axis[3], double s
     }
 }
 
-/* The caps gather about a few spots, as views do in the limbs of a body. */
+/* The caps cluster around a few spots, like views in the limbs of a body. */
 static starg_bits *make_caps(starg_context *context) {
     starg_bits *bits;
     test_ok(context, starg_bits_create(context, CAPS, POINTS, &bits));

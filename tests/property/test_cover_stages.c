@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Each stage of the cover alone, on small random instances, against exhaustive search: what the
- * whole solve rarely reaches because an earlier stage has finished the work. */
+/* Each stage of the cover alone, on small random instances, against exhaustive search: this reaches
+ * cases that earlier stages would already have solved. */
 #include <math.h>
 
 #include "core/rng.h"
@@ -18,7 +18,7 @@
 
 enum { NONE = 99 };
 
-/* best[c] of an instance with its own demands; a demand above the supply can never be met. */
+/* best[c] of an instance with its own demands; a demand above the supply cannot be met. */
 static void instance_best(const cover_instance *instance, uint64_t *best) {
     assert_true(instance->rows <= COVER_ORACLE_ROWS);
     for (size_t c = 0; c <= instance->rows; c++)
@@ -36,7 +36,7 @@ static void instance_best(const cover_instance *instance, uint64_t *best) {
     }
 }
 
-/* The fewest rows that cover everything; NONE if that cannot be. */
+/* The fewest rows of a full cover; NONE if there is none. */
 static size_t optimum(const cover_instance *instance) {
     uint64_t best[COVER_ORACLE_ROWS + 1];
     instance_best(instance, best);
@@ -52,7 +52,7 @@ static uint64_t heaviest(const cover_instance *instance, size_t rows) {
     return most;
 }
 
-/* `kind` 0: anything; 1: each column held by two or three rows (few reductions, LP not tight). */
+/* `kind` 0: anything; 1: each column in two or three rows (few reductions, LP not tight). */
 static void make_instance(starg_context *context, starg_rng *rng, int kind, cover_instance *out) {
     size_t rows = 1 + starg_rng_below(rng, 11), columns = 1 + starg_rng_below(rng, 20);
     uint64_t density = 10 + starg_rng_below(rng, 50);
@@ -180,7 +180,7 @@ static void random_multipliers(starg_rng *rng, const cover_instance *instance, i
         out[j] = (int64_t)starg_rng_below(rng, most);
 }
 
-/* Reduced-cost fixing loses no cover of at most `most` rows that would be an optimum. */
+/* Reduced-cost fixing loses no optimal cover of at most `most` rows. */
 static void check_fixing(cover_run *run, const cover_instance *instance, const cover_dual *dual,
                          size_t least, size_t most) {
     uint64_t keep[1], take[1] = {0};
@@ -224,7 +224,7 @@ static void check_dual(cover_run *run, starg_rng *rng, cover_instance *instance)
     cover_dual_free(instance, &dual);
 }
 
-/* A cover of everything from all rows in random order, none of them needless. */
+/* A full cover from all rows in random order, without redundant ones. */
 static void random_cover(starg_rng *rng, const cover_instance *instance, cover_state *out) {
     size_t order[COVER_ORACLE_ROWS];
     for (size_t i = 0; i < instance->rows; i++) {
@@ -237,7 +237,7 @@ static void random_cover(starg_rng *rng, const cover_instance *instance, cover_s
     cover_drop_needless(out, instance->total);
 }
 
-/* Counted afresh: the rows differ and give every column what it demands. */
+/* Recounts: the rows are distinct and meet every column's demand. */
 static void assert_covers(const cover_instance *instance, const cover_state *cover) {
     uint64_t choice = 0;
     for (size_t c = 0; c < cover->count; c++) {
@@ -251,7 +251,7 @@ static void assert_covers(const cover_instance *instance, const cover_state *cov
     assert_true(cover->weight == instance->total);
 }
 
-/* The local search owes no optimum; where it misses one, or what was asked for, is counted. */
+/* The local search need not find an optimum; counts how often it misses one, or its goal. */
 static size_t searches, misses;
 
 static void check_local(cover_run *run, starg_rng *rng, cover_instance *instance) {
@@ -327,7 +327,7 @@ static void make_wide_instance(starg_context *context, starg_rng *rng, cover_ins
     starg_bits_free(bits);
 }
 
-/* The dual's value and reduced costs are the sums that define them, column by column. */
+/* The dual's value and reduced costs equal their defining sums, column by column. */
 static void check_dual_sums(starg_rng *rng, const cover_instance *instance) {
     enum { MOST_ROWS = 14, MOST_COLUMNS = 700 };
     int64_t multipliers[MOST_COLUMNS], reduced[MOST_ROWS], value = 0;
@@ -368,8 +368,8 @@ static void lazy_columns(void **state) {
     test_context_free(context);
 }
 
-/* The linear relaxation written down as it is, in floating point: the most weight of `rows` rows,
- * as a part of the total. */
+/* The linear relaxation in its plain form, in floating point: the most weight of `rows` rows, as a
+ * fraction of the total. */
 static double plain_relaxation(const cover_instance *instance, double rows) {
     enum { MOST_ROWS = COVER_ORACLE_ROWS };
     int n = (int)instance->rows, m = (int)instance->columns, all[MOST_ROWS];
@@ -407,7 +407,7 @@ static double plain_relaxation(const cover_instance *instance, double rows) {
     return most;
 }
 
-/* Both bounds are no worse than the plain relaxation's. */
+/* Both bounds are at least as good as the plain relaxation's. */
 static void check_against_plain(cover_run *run, const cover_instance *instance, size_t rows,
                                 uint64_t goal, cover_weight_bound *bound) {
     double total = (double)instance->total;
@@ -442,8 +442,8 @@ static void check_weight_bound(cover_run *run, starg_rng *rng, cover_instance *i
     cover_weight_bound_free(instance, &bound);
 }
 
-/* Of each column of a wide instance a weight: equal ones, or ones of all magnitudes, up to as much
- * as the scaled sums can hold. */
+/* Weights for the columns of a wide instance: equal, or of all magnitudes up to the limit of the
+ * scaled sums. */
 static void set_weights(starg_rng *rng, bool extreme, cover_instance *instance) {
     instance->total = 0;
     for (size_t j = 0; j < instance->columns; j++) {
@@ -455,8 +455,8 @@ static void set_weights(starg_rng *rng, bool extreme, cover_instance *instance) 
     }
 }
 
-/* More columns than a round takes in; extreme weights, whose small ones the solver does not see:
- * bounds hold, are those of the plain relaxation, and grow with the goal. */
+/* More columns than a round adds; extreme weights, whose small ones the solver does not see: bounds
+ * are valid, equal those of the plain relaxation, and grow with the goal. */
 static void many_columns(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -485,7 +485,7 @@ static void many_columns(void **state) {
     test_context_free(context);
 }
 
-/* Of what the bound is made: each row's score is the sum over its columns, one by one. */
+/* Parts of the bound: each row's score is the sum over its columns. */
 static void check_scores(const cover_instance *instance, const cover_weight_bound *bound) {
     for (size_t k = 0; k < instance->rows; k++) {
         uint64_t sum = 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Exact integers and proofs about half-spaces against GMP: sums, differences and products limb by
- * limb; and that what is proven about half-spaces is true, and what can be proven is. */
+ * limb; whatever is proven about half-spaces is true, and whatever can be proven is. */
 #include <gmp.h>
 #include <math.h>
 #include <string.h>
@@ -45,7 +45,7 @@ static bool equals(const exact *number, const mpz_t expected) {
     return same && lean;
 }
 
-/* value / 2^scale; false if that is no integer. */
+/* value / 2^scale; false if not an integer. */
 static bool scaled(mpz_t out, double value, int scale) {
     mpq_t q;
     mpq_init(q);
@@ -60,7 +60,8 @@ static bool scaled(mpz_t out, double value, int scale) {
     return whole;
 }
 
-/* All values are integers in their scale, one of them is odd, and the largest has so many bits. */
+/* All values are integers in their scale, one of them is odd, and the largest has the reported
+ * number of bits. */
 static void check_scale(point_family family, points x, mpz_t *z, int scale, int bits) {
     size_t longest = 0;
     bool odd = false, any = false;
@@ -167,7 +168,7 @@ static int bits_of(const half_space *spaces, int count) {
     return bits;
 }
 
-/* Any weights will do for a proof in a box, if they happen to be good. */
+/* Any weights can prove disjointness in a box, if they happen to be good. */
 static void check_box(point_family family, starg_rng *rng, points x, const half_space *spaces,
                       const double *const *corners, int count) {
     double lower[3], upper[3], weights[4];
@@ -185,7 +186,7 @@ static void check_box(point_family family, starg_rng *rng, points x, const half_
         refute("half_spaces_apart_in_box", family, x);
 }
 
-/* All subsets: what is proven holds, and the least subsets without a common point are proven. */
+/* All subsets: what is proven holds, and minimal subsets without a common point are proven. */
 static void check_half_spaces(point_family family, starg_rng *rng, points x) {
     const half_space all[4] = {
         {x[0], x[1], x[2]}, {x[3], x[4], x[5]}, {x[6], x[7], x[8]}, {x[9], x[10], x[11]}};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* All field tables, of options and of results: a random record, written, read and written again, is
- * the same; each key that is missing, or of another type, is named or has its default; and the
- * range check, the JSON reader and the setter agree about every number. */
+/* All field tables, of options and of results: a random record stays the same when written, read
+ * and written again; each key that is missing or of another type is reported or gets its default;
+ * and the range check, the JSON reader and the setter agree about every number. */
 #include "support.h"
 
 #include <float.h>
@@ -70,7 +70,7 @@ static void put_size(void *record, size_t offset, size_t value) {
     memcpy((char *)record + offset, &value, sizeof value);
 }
 
-/* Does a list say that its columns are as long as this member? Then it has to be small. */
+/* Is this member the length of a list's columns? Then it must be small. */
 static bool is_length(const starg_fields *fields, size_t offset) {
     for (size_t k = 0; k < fields->count; k++) {
         const starg_field *f = &fields->fields[k];
@@ -218,7 +218,7 @@ static void fill_field(maker *m, const starg_field *f, void *record) {
     case STARG_FIELD_CONSTANT:
         break;
     default: {
-        starg_field any = *f; /* what null stands for is not within the range */
+        starg_field any = *f; /* the value that stands for null is out of range */
         uint64_t value = random_count(m, f);
         if (!starg_field_set_count(f, record, value)) {
             assert_true((f->flags & STARG_FIELD_NULLABLE) && value == f->none);
@@ -285,13 +285,13 @@ static void test_round_trips(void **state) {
     test_context_free(context);
 }
 
-/* ---- spoilt keys ---- */
+/* ---- corrupted keys ---- */
 
 typedef struct spoiler {
     starg_context *context;
     const starg_fields *file;
     json_t *root;
-    size_t count; /* of what was tried */
+    size_t count; /* number of attempts */
 } spoiler;
 
 static starg_status read_root(spoiler *s) {
@@ -312,7 +312,7 @@ static void expect_named(spoiler *s, const char *key, starg_status status) {
         fail_msg("%s is not named: %s", quoted, starg_context_error(s->context)->message);
 }
 
-/* A key away: an error, or its default; that another one is missed then is an error, too. */
+/* Removes a key: an error that names it, unless it is optional. */
 static void remove_key(spoiler *s, const starg_field *f, json_t *object) {
     json_t *kept = json_incref(json_object_get(object, f->key));
     json_object_del(object, f->key);
@@ -376,7 +376,7 @@ static void test_spoilt_keys(void **state) {
             char *text = write_text(s.file, &made, 0, &size);
             test_ok(context, starg_json_parse(context, "test", "text", text, size, &s.root));
             spoil(&s, s.file, s.root);
-            assert_int_equal(read_root(&s), STARG_OK); /* all is as it was */
+            assert_int_equal(read_root(&s), STARG_OK); /* unchanged */
             json_decref(s.root);
             record_release(context, s.file, &made);
             free(text);
@@ -387,7 +387,7 @@ static void test_spoilt_keys(void **state) {
 
 /* ---- ranges ---- */
 
-/* The field alone in a struct of nothing else. */
+/* The field alone in a struct. */
 typedef struct single {
     starg_field field;
     starg_fields fields;
@@ -423,12 +423,12 @@ static void check_count(starg_context *context, const single *one, uint64_t valu
     any.most = UINT64_MAX;
     any.kind = STARG_FIELD_COUNT;
     if (value > INT64_MAX || value == f->initial || value == f->none)
-        return; /* no number of JSON, or what stands for something */
+        return; /* not a JSON number, or a value that stands for something */
     bool set = starg_field_set_count(f, &wide, value);
     if (!set)
         starg_field_set_count(&any, &wide, value);
     if (set)
-        assert_true(value <= all); /* nothing is cut off */
+        assert_true(value <= all); /* nothing is truncated */
     agree(context, one, json_integer((json_int_t)value), set, value <= all ? &wide : NULL);
 }
 
@@ -478,7 +478,7 @@ static void check_field(starg_context *context, const starg_field *f) {
         check_real(context, &one, reals[i]);
 }
 
-/* A default is a value like others, or what null stands for. */
+/* A default is a valid value, or the one that stands for null. */
 static void check_default(starg_context *context, const starg_field *f) {
     single one;
     double place = 0, again = 0;
@@ -486,7 +486,7 @@ static void check_default(starg_context *context, const starg_field *f) {
     char *text;
     make_single(f, &one);
     if (f->key == NULL || (f->flags & STARG_FIELD_OPTIONAL))
-        return; /* it is the one that is taken for a missing key */
+        return; /* it is the value used for a missing key */
     starg_fields_default(&one.fields, &place);
     test_ok(context, fields_check(context, "test", &one.fields, &place));
     test_ok(context, starg_fields_json(context, &one.fields, &place, &text, &size));

@@ -22,7 +22,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
     test_ok(context, starg_guard(context, solid, &options, &best));
     test_verified(context, name, mesh, best);
     assert_true(best->lower_bound <= best->count);
-    /* an embedded boundary can be seen wherever it has area */
+    /* every face with area of an embedded boundary can be seen */
     if (starg_solid_check(solid)->embedded)
         assert_int_equal(best->uncovered_count, 0);
 
@@ -70,8 +70,8 @@ static void check_folder(const char *folder, size_t *checked) {
     test_context_free(context);
 }
 
-/* Where a surface crosses itself, refinement finds points that see what no candidate saw before:
- * then as many guards as before are not enough. */
+/* If a surface intersects itself, refinement finds points that see what no earlier candidate saw:
+ * then the earlier number of guards is not enough. */
 static void test_refined_crossing(void **state) {
     (void)state;
     const char *data = test_shared_data();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verifier's check of reasons why a box sees something not: what the engine of boxes gives is
- * accepted; of any reasons at all, most of them wrong, those that are accepted are held against
- * points of the box, which may not see what is hidden from it. */
+/* The verifier's check of reasons why something is hidden from a box: reasons of the box engine are
+ * accepted; accepted ones among arbitrary reasons, most of them wrong, are tested at points of the
+ * box, none of which may see the target. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,7 +23,7 @@ typedef struct setting {
     box_worker *worker;
     verify_surface *surface;
     verify_tree *tree;
-    verify_scene *scene; /* stays where it is: the watch points to it */
+    verify_scene *scene; /* must not move: the watch points to it */
     verify_watch *watch;
     double range;
 } setting;
@@ -77,7 +77,7 @@ static void begin_box(const setting *s, const bvh_box *box) {
     verify_watch_box(s->watch, &same);
 }
 
-/* ---- what the engine says ---- */
+/* ---- reasons of the engine ---- */
 
 typedef struct agreement {
     size_t reasons, outside;
@@ -114,7 +114,7 @@ static void check_engine(const setting *s, starg_target kind, const bvh_box *box
     free(reasons);
 }
 
-/* ---- any reasons ---- */
+/* ---- arbitrary reasons ---- */
 
 typedef struct tally {
     size_t tried, accepted[6], outside;
@@ -130,7 +130,7 @@ static verify_reason random_reason(const setting *s, starg_target kind, uint32_t
         .clipped = starg_rng_below(rng, 2) != 0};
 }
 
-/* A face that the segment from the vertex to the middle of the box may meet: random ones hardly
+/* A face that may meet the segment from the vertex to the centre of the box: random ones hardly
  * ever do. */
 typedef struct pick {
     starg_rng *rng;
@@ -248,7 +248,7 @@ static void test_curved(void **state) {
     }
 }
 
-/* Nothing may be concluded from where segments begin or surfaces enter. */
+/* The start of a segment or the entry into a surface proves nothing. */
 static void test_not_embedded(void **state) {
     (void)state;
     shape both = shape_room(), other = shape_cube(2);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is inside: winding numbers of the engines and of the verifier, containment, and what a point
- * is in front of, against rationals; from points on vertices, edges and faces, in planes of faces,
- * an ulp beside them, and anywhere. */
+/* Inside tests: winding numbers of the engines and of the verifier, containment, and front-facing
+ * sides, against rationals; from points on vertices, edges and faces, in planes of faces, an ulp
+ * off, and anywhere. */
 #include "support.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static shape make_model(int which) {
     case 2:
         return shape_cavity();
     case 3:
-        return two_cubes(1.5); /* wound around twice, in part */
+        return two_cubes(1.5); /* winding number two, in part */
     case 4:
         return placed(shape_cube(2), 0x1p-290, 0);
     case 5:

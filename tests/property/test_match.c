@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Distances between shapes by their guards: what must not change them, what bounds them, and graphs
- * of every size. */
+/* Distances between shapes by their guards: invariances, bounds, and graphs of every size. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +51,7 @@ static double star_by_definition(const starg_signature *a, const starg_signature
     return sum / 3;
 }
 
-/* The same figure in another pose is nearer than a figure of another kind. */
+/* The same figure in another pose is closer than a figure of another kind. */
 static void poses_are_nearer_than_classes(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -81,7 +80,7 @@ static void poses_are_nearer_than_classes(void **state) {
 
 /* ---- copies ---- */
 
-/* Every coordinate moved at random, by up to half a percent of the diagonal either way. */
+/* Moves every coordinate at random by up to half a percent of the diagonal. */
 static starg_mesh *shaken(starg_context *context, const starg_mesh *mesh) {
     double lower[3], upper[3], diagonal = 0;
     starg_rng rng = starg_rng_make(16, 0, 0);
@@ -101,7 +100,7 @@ static starg_mesh *shaken(starg_context *context, const starg_mesh *mesh) {
     return out;
 }
 
-/* Noise and resolution count for less than the figure. */
+/* Noise and resolution matter less than the figure. */
 static void copies_find_their_original(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -132,10 +131,10 @@ static void copies_find_their_original(void **state) {
     test_context_free(context);
 }
 
-/* ---- moved descriptors ---- */
+/* ---- transformed descriptors ---- */
 
-/* Turned about an axis of the sphere's directions, moved, scaled, its guards in another order. The
- * directions of a turned descriptor are other ones: distances are those of the nearest. */
+/* Rotated about an axis of the sphere's directions, translated, scaled, with guards reordered. A
+ * rotated descriptor has other directions: distances are those of the nearest. */
 static starg_descriptor disguise(const starg_descriptor *d, double angle, double scale) {
     starg_descriptor out = *d;
     size_t n = d->guard_count, width = d->direction_count;
@@ -196,7 +195,7 @@ static void motions_hardly_count(void **state) {
             test_ok(context, starg_signature_of_descriptor(context, &moved, kinds[k], &s[1]));
             test_ok(context, starg_signature_of_descriptor(context, unlike, kinds[k], &s[2]));
             double far = distance(context, s[0], s[2]), near = distance(context, s[0], s[1]);
-            if (i == 0) /* not turned: up to rounding */
+            if (i == 0) /* not rotated: up to rounding */
                 assert_true(near < 1e-9);
             assert_true(2 * near < far);
             for (size_t j = 0; j < 3; j++)
@@ -213,7 +212,7 @@ static void motions_hardly_count(void **state) {
     test_context_free(context);
 }
 
-/* A file may hold any finite numbers: what cannot be compared is refused. */
+/* A file may hold any finite numbers: what cannot be compared is rejected. */
 static void absurd_descriptors(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -245,14 +244,14 @@ static void absurd_descriptors(void **state) {
     test_context_free(context);
 }
 
-/* ---- the paper's distance of graphs made up ---- */
+/* ---- the paper's distance of synthetic graphs ---- */
 
 typedef struct made_up {
     size_t guards, edges;
     double *numbers;
 } made_up;
 
-/* Guards at the first three coordinates with no histograms; valences and edges are filled in. */
+/* Guards at the first three coordinates without histograms; fills in valences and edges. */
 static made_up make_graph(size_t guards, size_t edges) {
     made_up g = {.guards = guards, .edges = edges};
     g.numbers = calloc(PAPER_HEAD + PAPER_GUARD * guards + 2 * edges, sizeof *g.numbers);
@@ -291,7 +290,7 @@ static double paper_distance(starg_context *context, const made_up *a, const mad
     return d;
 }
 
-/* 0.1 times the mean square of the distance to the nearest: the energy when nothing moves. */
+/* 0.1 times the mean squared distance to the nearest: the energy without deformation. */
 static double energy_at_rest(const made_up *a, const made_up *b) {
     const made_up *both[2] = {a, b};
     double sum = 0;
@@ -309,7 +308,7 @@ static double energy_at_rest(const made_up *a, const made_up *b) {
     return sum;
 }
 
-/* A tree with some more edges, or only the first `joined` guards of it in one piece. */
+/* A tree with some more edges, or only its first `joined` guards in one component. */
 static made_up random_graph(starg_rng *rng, size_t guards, size_t joined) {
     size_t edges = joined > 0 ? joined - 1 : 0;
     made_up g = make_graph(guards, edges);
@@ -338,8 +337,7 @@ static void deforming_never_costs_more_than_resting(void **state) {
     test_context_free(context);
 }
 
-/* Guards that nothing joins go all the way; what is left are the differences of valence, which no
- * map changes. */
+/* Isolated guards reach their targets; only differences of valence remain, which no map changes. */
 static void alone_guards_reach_their_counterparts(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -350,14 +348,14 @@ static void alone_guards_reach_their_counterparts(void **state) {
     assert_true(fabs(paper_distance(context, &a, &b) - 0.1 * 0.25) < 1e-9);
     guard_of(&a, 0)[3] = 0;
     for (int k = 0; k < 64; k++)
-        guard_of(&a, 0)[4 + k] = 3; /* and 0.5 times the difference of histograms */
+        guard_of(&a, 0)[4 + k] = 3; /* plus 0.5 times the difference of histograms */
     assert_true(fabs(paper_distance(context, &a, &b) - 0.5 * 3) < 1e-9);
     free(a.numbers);
     free(b.numbers);
     test_context_free(context);
 }
 
-/* A graph moved as a whole needs one map for all of its guards: nearly nothing is left. */
+/* A graph transformed as a whole needs one map for all of its guards: almost no energy is left. */
 static void moving_as_a_whole_is_nearly_free(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -381,7 +379,7 @@ static void moving_as_a_whole_is_nearly_free(void **state) {
     test_context_free(context);
 }
 
-/* ---- damaged numbers ---- */
+/* ---- corrupted numbers ---- */
 
 static void damaged_numbers_are_refused(void **state) {
     (void)state;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every surface file of the shared data: those that the tables of its README give counts for are
- * read with these counts, and those that must be rejected are, with a message that names them. */
+/* Every surface file of the shared data: those with counts in the tables of its README are read
+ * with these counts, and those that must be rejected are, with a message that names them. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 
 #include "models.h"
 
-/* One row of a table: the file and its counts, or -1 where the table has none. */
+/* One row of a table: the file and its counts, or -1 if missing. */
 typedef struct table_row {
     const char *file;
     long vertices, faces;
@@ -29,9 +29,9 @@ static table_row parse_row(const test_row *from) {
                                    strncmp(file, "empty", 5) == 0};
 }
 
-/* The table's maker could not read these; they are fine. */
+/* The program that made the table could not read these; they are valid. */
 static void amend(table_row *row) {
-    if (strcmp(row->file, "whitespace.off") == 0) { /* a cube behind "OFF8 6 12" */
+    if (strcmp(row->file, "whitespace.off") == 0) { /* a cube after "OFF8 6 12" */
         row->vertices = 8;
         row->faces = 12;
     }
@@ -81,7 +81,7 @@ static void every_surface_file(void **state) {
     }
     fclose(readme);
     test_context_free(context);
-    assert_true(read >= 200); /* otherwise the tables are not what this test thinks they are */
+    assert_true(read >= 200); /* otherwise the tables are not what this test expects */
     assert_true(rejected >= 10);
 }
 

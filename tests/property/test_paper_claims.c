@@ -4,9 +4,9 @@
  * a) t is visible if all of its predecessors are visible;
  * b) t can be added to a region without violating its star-property if its predecessors are in it.
  *
- * As theorems, with "visible" for every point of the predecessors: then the four vertices of t are
- * visible; for b) the region with t is the solid. As the paper means them, with "visible" for the
- * four vertices: nearly always. */
+ * They are theorems if "visible" refers to every point of the predecessors: then the four vertices
+ * of t are visible; for b) the region with t is the solid. In the paper's sense, where "visible"
+ * refers to the four vertices, they hold nearly always. */
 #include "support.h"
 
 #include <math.h>
@@ -28,10 +28,10 @@ typedef struct world {
     paper_domain all;
     paper_guard guard;
     paper_guard looking; /* the same, with `toward` also for vertices that it does not see */
-    bool *member;        /* which tetrahedra count as the solid */
+    bool *member;        /* the tetrahedra of the solid */
     uint32_t *faces;     /* its boundary */
     size_t face_count;
-    char *known; /* per tetrahedron, whether all of it is seen: y, n, or 0 */
+    char *known; /* per tetrahedron, is all of it visible: y, n, or 0 (unknown) */
 } world;
 
 static void find_boundary(world *w) {
@@ -95,7 +95,7 @@ static bool sees_vertices(const world *w, uint32_t t) {
 }
 
 /* Every point of a tetrahedron: no boundary face has a point in the hull of the guard and one of
- * its faces, but on that face. */
+ * the tetrahedron's faces, except on that face. */
 static bool sees_hulls(const world *w, uint32_t t) {
     const double *p[4], *b[3];
     for (size_t k = 0; k < 4; k++)
@@ -119,7 +119,7 @@ static bool sees_all_of(const world *w, uint32_t t) {
     return w->known[t] == 'y';
 }
 
-/* No face plane holds the guard: hulls have volume, and segments enter one tetrahedron only. */
+/* No face plane contains the guard: hulls have volume, and segments enter a single tetrahedron. */
 static bool is_general(const world *w) {
     for (size_t t = 0; t < w->state.mesh->count; t++)
         for (int k = 0; k < 4; k++) {
@@ -150,7 +150,7 @@ static void world_create(starg_context *context, starg_tetmesh *mesh, world *w) 
             w->all.vertices[w->all.vertex_count++] = v;
 }
 
-/* A guard in the middle of a tetrahedron, a little off. */
+/* A guard near the centroid of a tetrahedron. */
 static void place_guard(world *w, starg_rng *rng) {
     double p[3], weights[4], sum = 0;
     uint32_t t = (uint32_t)starg_rng_below(rng, w->state.mesh->count);
@@ -186,16 +186,16 @@ static void world_free(world *w) {
     free(w->known);
 }
 
-/* ---- what is stored is what the paper defines ---- */
+/* ---- stored values against the paper's definitions ---- */
 
-/* The predecessor of a vertex is a tetrahedron that the segment to the guard runs through, at the
- * vertex or behind the face opposite it. */
+/* The predecessor of a vertex is the tetrahedron that the segment to the guard passes through, at
+ * the vertex or behind the face opposite it. */
 static void check_predecessors(const world *w, uint32_t t) {
     const uint32_t *v = w->state.mesh->tetrahedra + 4 * (size_t)t;
     for (int k = 0; k < 4; k++) {
         uint32_t p = dependency_predecessor(&w->state, &w->guard, t, k);
         if (p == PAPER_NONE)
-            continue; /* the segment ends in t: */
+            continue; /* the segment ends in t */
         assert_int_not_equal(p, t);
         bool met = false, has_vertex = false;
         const uint32_t *u = w->state.mesh->tetrahedra + 4 * (size_t)p;
@@ -218,7 +218,7 @@ static void check_predecessors(const world *w, uint32_t t) {
 
 typedef struct record {
     size_t theorem;      /* cases in which every point of the predecessors is visible */
-    size_t cases, wrong; /* ... in which their vertices are, and t is not             */
+    size_t cases, wrong; /* ... in which their vertices are, and t is not */
 } record;
 
 /* Does the segment to the guard leave the mesh at a vertex or behind the face opposite it? */
@@ -233,7 +233,7 @@ static bool leaves(const world *w, uint32_t t, int k) {
                            w->guard.position) < 0;
 }
 
-/* Tries one tetrahedron in the solid that the members form. */
+/* Tries one tetrahedron in the solid formed by the members. */
 static void try_claim(const world *w, uint32_t t, record *tally) {
     bool vertices = true, whole = true;
     for (int k = 0; k < 4; k++) {
@@ -283,7 +283,7 @@ static bool is_ready(const world *w, uint32_t t) {
     return true;
 }
 
-/* Grows a region in a random order; each step is a case. */
+/* Grows a region in random order; each step is a case. */
 static void run_b(world *w, starg_rng *rng, record *tally) {
     memset(w->member, false, w->state.mesh->count);
     uint32_t next = w->guard.home;
@@ -330,7 +330,7 @@ static void test_claims(void **state) {
 
 /* ---- guards at vertices, on edges and on faces ---- */
 
-/* The first tetrahedron that holds a guard waits for none, wherever the guard stands. */
+/* The first tetrahedron that contains a guard has no predecessors, wherever the guard is. */
 static void test_homes(void **state) {
     (void)state;
     static const double weights[][4] = {

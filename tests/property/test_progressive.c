@@ -42,8 +42,8 @@ static uint64_t *seen_by(starg_context *context, const starg_solid *solid, const
     return seen;
 }
 
-/* Guards of a level see all that the candidates see; the candidates of the job are not known here,
- * those that it starts with are among them. */
+/* Guards of a level see everything that the candidates see; the job's candidates are unknown here,
+ * except the initial ones. */
 static void check_level(starg_context *context, const char *name, const starg_mesh *mesh,
                         const starg_guard_level *level, const double *candidates, size_t count) {
     starg_solid *solid = NULL;
@@ -83,7 +83,7 @@ static void check_model(starg_context *context, const char *name, const starg_me
                     count);
     assert_int_equal(guards->level_list[levels->count - 1].count, guards->count);
 
-    /* more candidates: never more guards, and their own bound */
+    /* more candidates: never more guards, with their own bound */
     options.refine = true;
     options.refine_lines = 300000;
     test_ok(context, starg_guard(context, solid, &options, &refined));
@@ -141,8 +141,8 @@ static void sample_solid(starg_context *context, const char *name, size_t vertic
     test_ok(context, starg_solid_create(context, *mesh, solid));
 }
 
-/* Where a part is enough, crevices get no candidates of their own: that part is one of the whole
- * area all the same. */
+/* With a partial goal, crevices get no candidates of their own; the goal is still relative to the
+ * whole area. */
 static void test_part(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -157,7 +157,7 @@ static void test_part(void **state) {
         for (size_t k = 0; k < 4; k++) {
             starg_guards *guards = NULL;
             starg_guard_options options = level_options();
-            options.candidate_count = 10; /* see little by themselves */
+            options.candidate_count = 10; /* these alone see little */
             options.coverage = k == 0 ? 1 : parts[k - 1];
             test_ok(context, starg_guard(context, solid, &options, &guards));
             test_verified(context, names[i], mesh, guards);
@@ -175,7 +175,7 @@ static void test_part(void **state) {
     test_context_free(context);
 }
 
-/* The part of the area that all candidates of a curve skeleton see. */
+/* The fraction of the area that all candidates of a curve skeleton see. */
 static double seen_from_skeleton(starg_context *context, size_t vertices) {
     starg_mesh *mesh = NULL;
     starg_solid *solid = NULL;
@@ -197,7 +197,7 @@ static double seen_from_skeleton(starg_context *context, size_t vertices) {
     return seen;
 }
 
-/* Above 100,000 vertices the skeleton is that of a simpler version, and as good. */
+/* Above 100,000 vertices the skeleton is that of a simplified version, and as good. */
 static void test_large(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -255,7 +255,7 @@ static void expect_refuted(starg_context *context, const starg_mesh *mesh,
     starg_verdict_free(context, verdict);
 }
 
-/* The verifier notices a wrong curve, a wrong direction and levels that cannot be. */
+/* The verifier detects a wrong curve, a wrong direction and impossible levels. */
 static void refute_falsifications(starg_context *context, const starg_mesh *mesh,
                                   starg_guards *guards) {
     size_t last = guards->level_count - 1;
@@ -280,7 +280,7 @@ static void refute_falsifications(starg_context *context, const starg_mesh *mesh
         guards->directions[k] = -guards->directions[k];
 }
 
-/* How the file tells the step. */
+/* The step in the file. */
 static void expect_step(starg_context *context, const starg_guards *guards, const char *wanted) {
     char text[2000] = "", found[16] = "";
     test_ok(context, starg_guards_write(context, guards, "human.off", "test_progressive.json"));
@@ -294,7 +294,7 @@ static void expect_step(starg_context *context, const starg_guards *guards, cons
     assert_string_equal(found, wanted);
 }
 
-/* Written and read back, nothing is lost. */
+/* Writing and reading loses nothing. */
 static void test_round_trip(void **state) {
     (void)state;
     starg_context *context = test_context(1);

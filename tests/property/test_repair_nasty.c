@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Repair of every readable file among the nasty ones: a usable solid or a clear message. Also what
- * must be reached for some of them. */
+/* Repair of every readable nasty file: a usable solid or a clear message, and required results for
+ * some of them. */
 #include <dirent.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -12,10 +12,10 @@
 #include "starguard/repair.h"
 #include "support.h"
 
-/* Larger ones are left to whoever asks for them by STARGUARD_ALL_TABLES=1. */
+/* Larger ones only with STARGUARD_ALL_TABLES=1. */
 enum { MOST_FACES = 10000 };
 
-/* No more than this may be left after repair. */
+/* Upper limits on what is left after repair. */
 typedef struct expectation {
     const char *file;
     bool fails, unchanged;

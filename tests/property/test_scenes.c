@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes by their definition: random lattices of rooms, crates that touch, overlap and stand in
- * line with walls, and sheets; from inside and from outside. Free is what is in the room and in no
- * crate; a vertex of the room is seen if nothing meets the segment to it. */
+/* Scenes by their definition: random lattices of rooms, crates that touch, overlap and line up with
+ * walls, and sheets; from inside and from outside. Free space is in the room and in no crate; a
+ * vertex of the room is visible if nothing meets the segment to it. */
 #include "support.h"
 
 #include <math.h>
@@ -25,13 +25,13 @@ typedef struct scene {
     starg_mesh *mesh, *others[MOST_OBSTACLES];
     size_t count;
     bool outside, soup;
-    double *weights; /* by face; NULL: none given */
+    double *weights; /* by face; NULL: none */
     starg_solid *solid;
     double points[3 * POINTS];
     size_t point_count;
 } scene;
 
-/* ---- making them ---- */
+/* ---- construction ---- */
 
 static shape block(int nx, int ny, int nz) {
     char cells[SIDE * SIDE * SIDE + 1];
@@ -161,7 +161,7 @@ static bool blocks(const shape *s, const double p[3], const double q[3]) {
         const double *a = corner(s, f, 0), *b = corner(s, f, 1), *c = corner(s, f, 2);
         if (is_beside(p, q, a, b, c))
             continue;
-        /* off its plane, what ends on the triangle meets it at the end alone */
+        /* off its plane, a segment that ends on the triangle meets it only at the end */
         if (oracle_orient3d(a, b, c, p) != 0 && oracle_point_on_triangle(q, a, b, c))
             continue;
         if (oracle_segment_meets_triangle(p, q, a, b, c))
@@ -177,7 +177,7 @@ static bool sees_vertex(const scene *s, const double p[3], const double q[3]) {
     return seen;
 }
 
-/* By what is known of the vertices. */
+/* From the visibility of the vertices. */
 static bool sees_face(const scene *s, const double p[3], const bool *vertex, size_t f) {
     int side = oracle_orient3d(corner(&s->model, f, 0), corner(&s->model, f, 1),
                                corner(&s->model, f, 2), p);
@@ -188,7 +188,7 @@ static bool sees_face(const scene *s, const double p[3], const bool *vertex, siz
     return seen;
 }
 
-/* Of vertices at one position the first stands for all. */
+/* Of coincident vertices the first one represents all. */
 static bool is_wanted_vertex(const scene *s, uint32_t v) {
     const double *at = s->model.vertices, *q = at + 3 * (size_t)v;
     bool wanted = false;
@@ -203,7 +203,7 @@ static bool is_wanted_vertex(const scene *s, uint32_t v) {
 
 /* ---- comparing ---- */
 
-/* Anywhere, on the half-lattice, and an ulp beside it. */
+/* Anywhere, on the half-lattice, and an ulp off it. */
 static void pick_points(scene *s, uint64_t seed) {
     for (uint64_t attempt = 0; attempt < 300 && s->point_count < POINTS; attempt++) {
         starg_rng rng = starg_rng_make(seed, 42, attempt);
@@ -238,7 +238,7 @@ static void expect(const scene *s, const double p[3], bool vertices, bool *expec
     free(vertex);
 }
 
-/* Obstacles, whose columns come last, are no targets. */
+/* Obstacles, whose columns come last, are not targets. */
 static void check_engines(const scene *s, bool vertices) {
     size_t columns = vertices ? s->model.vertex_count : s->model.face_count;
     bool *expected = malloc(POINTS * columns * sizeof *expected);
@@ -265,7 +265,7 @@ static void check_engines(const scene *s, bool vertices) {
     free(expected);
 }
 
-/* What a point sees is seen from every box that holds it. */
+/* What a point sees must be visible from every box that contains it. */
 static void check_boxes(const scene *s, uint64_t seed) {
     double boxes[6 * POINTS];
     starg_bits *point = NULL, *box = NULL;

@@ -28,8 +28,8 @@ static starg_guard_options proving(uint64_t work) {
     return options;
 }
 
-/* Half of them anywhere in the box, half near a guard; starg_visibility sees nothing from those
- * outside. */
+/* Half of them anywhere in the box, half near a guard; from outside starg_visibility sees
+ * nothing. */
 static void sample_points(const starg_solid *solid, const starg_guards *guards, uint64_t item,
                           double *points) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
@@ -51,7 +51,7 @@ static void sample_points(const starg_solid *solid, const starg_guards *guards, 
     }
 }
 
-/* Do `most` rows hold all columns that are left? By the rows of the column that fewest hold. */
+/* Do `most` rows cover all remaining columns? Tries the rows of the rarest column. */
 static bool covers(const starg_bits *rows, const uint64_t *left, size_t most) {
     size_t rarest = SIZE_MAX, fewest = SIZE_MAX;
     for (size_t j = 0; j < rows->columns; j++) {
@@ -81,7 +81,7 @@ static bool covers(const starg_bits *rows, const uint64_t *left, size_t most) {
     return found;
 }
 
-/* The sample holds the guards, so that some of it sees all that they see. */
+/* The sample includes the guards, so that it sees everything that they see. */
 static void check_bound(starg_context *context, const starg_solid *solid,
                         const starg_guards *guards, uint64_t item) {
     double *points = calloc(3 * SAMPLE, sizeof *points);
@@ -178,7 +178,7 @@ static void test_questions(void **state) {
     test_context_free(context);
 }
 
-/* Witnesses from number `from` to `to`: faces that follow one another by a stride. */
+/* Witnesses from number `from` to `to`: faces at a fixed stride. */
 static void add_faces(starg_context *context, search_scene *scene, search_cells *cells, size_t from,
                       size_t to) {
     size_t faces = starg_mesh_face_count(starg_solid_mesh(scene->solid));
@@ -190,7 +190,7 @@ done:
     test_ok(context, status);
 }
 
-/* The leaf that holds p. */
+/* The leaf that contains p. */
 static const search_cell *leaf_of(const search_cells *cells, const double p[3]) {
     const search_cell *cell = cells->data;
     while (cell->children != 0) {
@@ -205,8 +205,8 @@ static const search_cell *leaf_of(const search_cells *cells, const double p[3]) 
     return cell;
 }
 
-/* No point sees a witness that its leaf is said not to see, whichever came first, the witness or
- * the leaf; and a good part of what is hidden is found to be. */
+/* No point sees a witness that is marked as hidden from its leaf, whichever came first, the witness
+ * or the leaf; and a good part of what is hidden is found. */
 static void test_cells_hold_their_points(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -289,7 +289,7 @@ static void test_same_bytes(void **state) {
     free(first);
 }
 
-/* One guard in the kernel is enough, with or without the search, and is said to be. */
+/* One guard in the kernel is enough, with or without the search, and is reported as such. */
 static void test_star_shaped(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -316,7 +316,7 @@ static bool is_within(const starg_bits *rows, size_t a, size_t b) {
     return outside == 0;
 }
 
-/* Leaves out rows that are within others: these do whatever they do. */
+/* Drops rows contained in others, which can replace them. */
 static void keep_largest(starg_bits *rows) {
     size_t kept = 0;
     for (size_t i = 0; i < rows->rows; i++) {
@@ -332,7 +332,7 @@ static void keep_largest(starg_bits *rows) {
 }
 
 /* A dense sample near and far from the guards, and what its points see in all directions; only
- * points that see something that no other one does. */
+ * points with a maximal view. */
 static starg_bits *sample_rows(starg_context *context, const starg_solid *solid,
                                const starg_guards *guards, uint64_t item) {
     double *points = calloc(3 * SAMPLE, sizeof *points);
@@ -348,7 +348,7 @@ static starg_bits *sample_rows(starg_context *context, const starg_solid *solid,
     return rows;
 }
 
-/* Do `most` rows, some of them perhaps more than once, hold each column as often as is left? */
+/* Can `most` rows, some of them possibly repeated, cover each column as often as still needed? */
 static bool holds_often(const starg_bits *rows, const uint8_t *left, size_t most) {
     size_t rarest = SIZE_MAX, fewest = SIZE_MAX;
     for (size_t j = 0; j < rows->columns; j++) {
@@ -378,7 +378,7 @@ static bool holds_often(const starg_bits *rows, const uint8_t *left, size_t most
     return found;
 }
 
-/* The largest share of the area that one or two of the rows hold. */
+/* The largest fraction of the area that one or two of the rows cover. */
 static double largest_area(const starg_solid *solid, const starg_bits *rows, size_t count) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
     double *areas = calloc(rows->columns, sizeof *areas), total = 0, most = 0;
@@ -410,7 +410,7 @@ static starg_solid *columns_solid(starg_context *context) {
     return solid;
 }
 
-/* So many guards see no more than the bound says, and no two of a dense sample do. */
+/* That many guards see no more than the bound, and neither do any two of a dense sample. */
 static void test_number_given(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -432,7 +432,7 @@ static void test_number_given(void **state) {
     test_context_free(context);
 }
 
-/* Fewer guards than the bound do not see the part that is asked for. */
+/* Fewer guards than the bound do not see the requested part. */
 static void test_part_of_the_area(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -458,7 +458,7 @@ static void test_part_of_the_area(void **state) {
     test_context_free(context);
 }
 
-/* Fewer guards than the bound do not see everything twice that the guards see twice. */
+/* Fewer guards than the bound do not see twice everything that the guards see twice. */
 static void test_several_guards_a_face(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -487,7 +487,7 @@ static void test_several_guards_a_face(void **state) {
     test_context_free(context);
 }
 
-/* The fewest of the given candidates, which are all that guards may be, beside a bound for guards
+/* The fewest of the given candidates, the only places allowed, compared with a bound for guards
  * anywhere; the method does not matter. */
 static void test_given_candidates(void **state) {
     (void)state;
@@ -538,7 +538,7 @@ static void test_given_candidates(void **state) {
     test_context_free(context);
 }
 
-/* What cameras do not do in all directions, they do not do in one. */
+/* What cameras cannot do in all directions, they cannot do in one. */
 static void test_cone(void **state) {
     (void)state;
     starg_context *context = test_context(2);

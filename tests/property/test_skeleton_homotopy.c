@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Skeletons of real models: parts and loops against the Euler characteristic of the model's
- * surface, both counted here by slow and simple means; nodes inside; the same counts
- * after a rigid motion. */
+/* Skeletons of real models: components and loops against the Euler characteristic of the model's
+ * surface, both counted here by slow and simple means; nodes inside; the same counts after a rigid
+ * motion. */
 #include "support.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ static const char *const MODELS[] = {
     "solids/chinese_dragon.off", "retrieval_shrec07/airplane_076.off",
 };
 
-/* Joins the ends of all pairs until nothing changes, and counts what is left. */
+/* Joins the ends of all pairs until nothing changes; counts the components. */
 static size_t count_parts(size_t count, const uint32_t *pairs, size_t pair_count) {
     uint32_t *lowest = malloc(count * sizeof *lowest);
     size_t parts = 0;
@@ -47,7 +47,8 @@ static size_t count_parts(size_t count, const uint32_t *pairs, size_t pair_count
     return parts;
 }
 
-/* Vertices - edges + faces = 2 (parts - genus) on a closed surface without lone vertices. */
+/* Vertices - edges + faces = 2 (components - genus) on a closed surface without isolated
+ * vertices. */
 static size_t genus_of(const starg_mesh *mesh, size_t *parts) {
     size_t faces = starg_mesh_face_count(mesh), vertices = starg_mesh_vertex_count(mesh);
     uint32_t *pairs = malloc(6 * faces * sizeof *pairs);
@@ -109,8 +110,8 @@ static void test_shared_models(void **state) {
     }
 }
 
-/* Boxes a hundredth apart, of faces a thousand times as long: samples cannot follow both sides.
- * Counts are put right, and that is told, as what was cut may have been another loop. */
+/* Boxes a hundredth apart, with faces a thousand times as long: samples cannot follow both sides.
+ * Counts are repaired, and that is reported, since the wrong loop may have been cut. */
 static void test_mended_model(void **state) {
     (void)state;
     const char *folder = test_shared_data();
@@ -132,7 +133,7 @@ static void test_mended_model(void **state) {
     test_context_free(context);
 }
 
-/* Rounded coordinates change every decision of the Delaunay tetrahedra, but no count. */
+/* Rounding of coordinates changes every decision of the Delaunay tetrahedra, but no count. */
 static void test_rigid_motion(void **state) {
     (void)state;
     const char *folder = test_shared_data();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Surfaces spread over the sphere: are they bijections? Landmarks: are they met? */
+/* Spherical embeddings: are they bijections? Are landmarks met? */
 #include <gmp.h>
 #include <math.h>
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static int slow_sign(const double *a, const double *b, const double *c) {
     return sign;
 }
 
-/* All faces positive, and generic directions covered once: together a bijection. */
+/* All faces are positive, and generic directions are covered once: together a bijection. */
 static void assert_bijective(const sphere *s) {
     const uint32_t *faces = starg_mesh_faces(s->mesh);
     starg_rng rng = starg_rng_make(5, 0, 0);
@@ -85,8 +85,8 @@ static void test_samples(void **state) {
     test_context_free(context);
 }
 
-/* The smallest surface, a lattice with flat fans, and a double cone of one vertex of high degree.
- */
+/* The smallest surface, a lattice with flat fans, and a double cone with a vertex of high
+ * degree. */
 static void test_special(void **state) {
     (void)state;
     enum { RIM = 400 };
@@ -130,7 +130,7 @@ static uint32_t nearest_vertex(const starg_mesh *mesh, const double *p) {
     return best;
 }
 
-/* Random pairs of vertices as landmarks, as far as they are met: exactly, and without a fold. */
+/* Random pairs of vertices as landmarks: if met, exactly, and without a fold. */
 static void test_landmarks(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -175,8 +175,8 @@ static void test_landmarks(void **state) {
     test_context_free(context);
 }
 
-/* One shape, meshed twice: with a few landmarks the map comes near to the identity, and is a
- * bijection. Without any relaxation of the composed map, angles are off by far more. */
+/* One shape, meshed twice: with a few landmarks the map is close to the identity, and a bijection.
+ * Without relaxation of the composed map, angles are off by far more. */
 static void test_composed(void **state) {
     (void)state;
     enum { MARKS = 8 };
@@ -227,7 +227,7 @@ static void test_composed(void **state) {
     test_context_free(context);
 }
 
-/* The map meets its landmarks at the very vertices, and its places are those of points of faces. */
+/* The map meets its landmarks exactly at the vertices, and its places are valid points of faces. */
 static void test_map_landmarks(void **state) {
     (void)state;
     static const uint32_t pairs[] = {10, 20, 300, 410, 555, 123};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Strict star decompositions of whole solids: each is verified from outside, by rationals, and what
- * the options promise holds. */
+/* Strict star decompositions of whole solids: each is verified independently, by rationals, and the
+ * options keep their guarantees. */
 #include "support.h"
 
 #include <math.h>
@@ -113,7 +113,7 @@ static void assert_same(const starg_decomposition *a, const starg_decomposition 
 
 /* ---- samples ---- */
 
-/* Verified; and the same bytes again, by five threads. */
+/* Verified; and the same bytes again with five threads. */
 static void test_samples(void **state) {
     (void)state;
     starg_context *one = test_context(1), *five = test_context(5);
@@ -134,7 +134,7 @@ static void test_samples(void **state) {
     test_context_free(five);
 }
 
-/* Twice on one context, which remembers nothing. */
+/* Twice on one context, which keeps no state. */
 static void test_runs(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -159,8 +159,8 @@ static shape two_blobs(void) {
     return s;
 }
 
-/* Four cubes: the second touches the first along an edge, the third in a vertex, the last in a part
- * of an edge only, which is no edge of it, where `apart` is not 2. */
+/* Four cubes: the second touches the first along an edge, the third in a vertex, the last in only a
+ * part of an edge, unless `apart` is 2. */
 static shape touching_cubes(double apart) {
     const double offsets[3][3] = {{2, 2, 0}, {-2, -2, -2}, {2, -2, apart}};
     shape s = shape_cube(2);
@@ -178,8 +178,8 @@ typedef struct shape_case {
     size_t least, most; /* pieces */
 } shape_case;
 
-/* Star-shaped solids are one piece, and parts that hang apart one each at least; where there is a
- * cavity or a column, no point sees all. */
+/* Star-shaped solids are one piece, and separate components at least one each; with a cavity or a
+ * column, no point sees everything. */
 static void test_shapes(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -202,7 +202,7 @@ static void test_shapes(void **state) {
     test_context_free(context);
 }
 
-/* Where they touch otherwise than in common edges and vertices, the surface is not kept as yet. */
+/* If they touch otherwise than in common edges and vertices, the surface is not kept yet. */
 static void test_other_contacts(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -218,8 +218,8 @@ static void test_other_contacts(void **state) {
     test_context_free(context);
 }
 
-/* Any scale and any place: the room lies on a lattice, so that scaled by powers of two it is the
- * same problem. */
+/* Any scale and any place: the room lies on a lattice, so scaling by powers of two gives the same
+ * problem. */
 static void test_scales(void **state) {
     (void)state;
     static const double scales[] = {1e-30, 1e30, 0x1p-100, 0x1p100, 1, 1e-3};
@@ -247,8 +247,8 @@ static void test_scales(void **state) {
 
 /* ---- options ---- */
 
-/* More effort never gives more pieces, for the search goes the same way and on; max_pieces ends it
- * as soon as there are no more, and hints change nothing about what is right. */
+/* More effort never gives more pieces, because the search continues the same path; max_pieces ends
+ * it as soon as the number is reached, and hints do not affect correctness. */
 static void test_options(void **state) {
     (void)state;
     static const uint64_t efforts[] = {1, 64, 256, 1024};
@@ -288,9 +288,9 @@ static void test_options(void **state) {
     test_context_free(context);
 }
 
-/* With no time at all the first start is the result, and says so, also where it has no more pieces
- * than wanted: what could be joined is not. Only where tetrahedra must be made first, there is
- * nothing to show. */
+/* With no time at all the first start is the result, which reports this, even if it has no more
+ * pieces than wanted: possible joins are not made. If tetrahedra must be made first, there is no
+ * result. */
 static void test_time(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -387,7 +387,7 @@ static void test_cancelled(void **state) {
     test_context_free(context);
 }
 
-/* Memory gives out at more and more distant places. */
+/* Memory runs out at later and later places. */
 static void test_memory(void **state) {
     (void)state;
     starg_status status = STARG_ERROR_MEMORY;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Unions of surfaces that intersect: what is inside before and after, by rationals; what meets
- * what, by rationals too; what stays. Volumes of unions of boxes are counted cell by cell. */
+/* Unions of intersecting surfaces: inside tests before and after and intersections, by rationals;
+ * preserved faces. Volumes of unions of boxes are counted cell by cell. */
 #include "starguard/repair.h"
 
 #include <math.h>
@@ -16,11 +16,11 @@
 
 enum { POINTS = 60, PAIRS_LIMIT = 400, MOST_FACES = 6000 };
 
-/* ---- a union and what holds of it ---- */
+/* ---- a union and its properties ---- */
 
 typedef struct united {
     starg_context *context;
-    starg_solid *input; /* the mesh given, its shells turned */
+    starg_solid *input; /* the given mesh, with oriented shells */
     starg_mesh *mesh;
     starg_repair_report report;
 } united;
@@ -61,7 +61,7 @@ static void pick_point(const starg_mesh *mesh, starg_rng *rng, double p[3]) {
     }
 }
 
-/* Winding number 1 or more before exactly where it is 1 after; nowhere anything but 0 or 1. */
+/* Winding number at least 1 before exactly where it is 1 after, and elsewhere 0 after. */
 static void expect_same_inside(const united *u, const char *name) {
     const starg_mesh *before = starg_solid_mesh(u->input);
     starg_rng rng = starg_rng_make(1, starg_mesh_face_count(before), 0);
@@ -79,7 +79,7 @@ static void expect_same_inside(const united *u, const char *name) {
     }
 }
 
-/* The corners of two faces, those first that both have; returns how many these are. */
+/* The corners of two faces, common ones first; returns their number. */
 static int align(const starg_mesh *mesh, size_t a, size_t b, const double *s[3],
                  const double *t[3]) {
     int shared = 0;
@@ -113,7 +113,7 @@ static bool boxes_apart(const double *const s[3], const double *const t[3]) {
     return false;
 }
 
-/* Does a face meet another one away from corners at equal positions? Duplicates do. */
+/* Does a face meet another one away from coincident corners? Duplicates do. */
 static bool meets(const starg_mesh *mesh, size_t a, size_t b) {
     const double *s[3], *t[3];
     int shared = align(mesh, a, b, s, t);
@@ -127,7 +127,7 @@ static bool meets_any(const starg_mesh *mesh, size_t face) {
     return false;
 }
 
-/* Is the face among those of the mesh, from a corner on, bit by bit? */
+/* Is this face in the mesh, starting at any corner, bit by bit? */
 static bool has_face(const starg_mesh *mesh, const double *const corner[3]) {
     for (size_t f = 0; f < starg_mesh_face_count(mesh); f++)
         for (size_t turn = 0; turn < 3; turn++) {
@@ -141,7 +141,7 @@ static bool has_face(const starg_mesh *mesh, const double *const corner[3]) {
     return false;
 }
 
-/* No two faces meet; faces of the input that meet no other are there, or lie within. */
+/* No two faces meet; input faces that meet no other are preserved, or lie inside. */
 static void expect_faces(const united *u, const char *name) {
     const starg_mesh *before = starg_solid_mesh(u->input);
     size_t kept = 0, old = starg_mesh_face_count(before), new = starg_mesh_face_count(u->mesh);
@@ -177,7 +177,7 @@ static void expect_solid(const united *u, const char *name) {
     starg_check_free(u->context, check);
 }
 
-/* Unites a mesh, which is freed, and asserts all of the above. */
+/* Unites a mesh (freed), and asserts all of the above. */
 static united unite_mesh(starg_context *context, starg_mesh *mesh, const char *name) {
     united u = {.context = context};
     test_ok(context, starg_solid_create(context, mesh, &u.input));
@@ -221,7 +221,7 @@ static void random_box(starg_rng *rng, int low[3], int high[3]) {
 }
 
 /* Cells with a winding number of 1 or more. Boxes within others that they do not meet are cavities,
- * or solid again within those: the solid has turned their shells. */
+ * or solid again within those: the solid has reversed their shells. */
 static double count_volume(const united *u) {
     const starg_mesh *mesh = starg_solid_mesh(u->input);
     double volume = 0;
@@ -319,7 +319,7 @@ static shape random_solid(starg_rng *rng) {
     }
 }
 
-/* Solids turned anyhow; some of them twice at one place, some turned inside out. */
+/* Solids in random orientation; some of them twice at one place, some reversed. */
 static void random_soups(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -346,7 +346,7 @@ static void random_soups(void **state) {
     test_context_free(context);
 }
 
-/* Corners on a small lattice: edges through vertices and along edges, faces in one plane. */
+/* Corners on a small lattice: edges through vertices and along edges, coplanar faces. */
 static void lattice_soups(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -384,7 +384,7 @@ static void lattice_soups(void **state) {
     test_context_free(context);
 }
 
-/* A tube along a lemniscate, which passes through itself in the middle. */
+/* A tube along a lemniscate, which intersects itself in the middle. */
 static shape make_tube(void) {
     enum { LENGTH = 40, ROUND = 7 };
     shape s = {.vertex_count = LENGTH * ROUND, .face_count = 2 * LENGTH * ROUND};
@@ -442,7 +442,7 @@ static void expect_touching(const united *u, size_t components, double volume) {
     starg_check_free(u->context, check);
 }
 
-/* A common wall goes; what touches along an edge or in a point stays two. */
+/* A common wall is removed; boxes that touch along an edge or in a point stay separate. */
 static void touching_boxes(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -527,7 +527,8 @@ static void samples(void **state) {
     test_context_free(context);
 }
 
-/* The union of a union is the same, and so is that of what needs none; threads do not matter. */
+/* The union of a union is the same, and so is that of a mesh that needs none; threads do not
+ * matter. */
 static void once_is_enough(void **state) {
     (void)state;
     starg_context *context = test_context(1), *other = test_context(3);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verifier of star decompositions on real models. Every tetrahedron a piece of its own, all of
- * them proven by rationals, is a strict decomposition that must pass, with each way to make
- * tetrahedra; with something wrong somewhere it must not. A whole solid as one piece is star-shaped
- * exactly if the library's own proof, by other means, says so of the same guard. */
+/* The verifier of star decompositions on real models. Every tetrahedron as a separate piece, with
+ * guards proven by rationals, is a strict decomposition that must pass, for each generator of
+ * tetrahedra; with an error anywhere it must fail. A whole solid as one piece is star-shaped
+ * exactly if the library's own, independent proof says so for the same guard. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 
 static const uint8_t SIDES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-/* A decomposition of a tetrahedral mesh in arrays of its own. */
+/* A decomposition of a tetrahedral mesh in separate arrays. */
 typedef struct result {
     starg_pieces_mesh mesh;
     starg_pieces_report report;
@@ -55,7 +55,7 @@ static double area_of(const result *r, size_t t, int side) {
     return (double)(sqrtl(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2);
 }
 
-/* The centre as guard, and whether it is strictly inside after rounding. */
+/* Places the guard at the centroid; is it strictly inside after rounding? */
 static void place_guard(const result *r, size_t t, starg_piece *piece) {
     piece->star = true;
     piece->radius = NAN;
@@ -107,7 +107,7 @@ static void free_result(result *r) {
     free(r->report.contacts);
 }
 
-/* ---- what must pass, and what must not ---- */
+/* ---- verdicts ---- */
 
 static bool passes(starg_context *context, const starg_mesh *model, const result *r, bool tell) {
     starg_verdict *verdict = NULL;
@@ -122,7 +122,7 @@ static bool passes(starg_context *context, const starg_mesh *model, const result
 
 enum { SPOILINGS = 7 };
 
-/* Spoils a copy somewhere at random. */
+/* Corrupts a copy at a random place. */
 static result spoil(const result *truth, int kind, starg_rng *rng) {
     result r = *truth;
     size_t n = r.mesh.count, t = (size_t)starg_rng_below(rng, n), k = starg_rng_below(rng, 3);
@@ -163,7 +163,7 @@ static result spoil(const result *truth, int kind, starg_rng *rng) {
     return r;
 }
 
-/* Moving a coordinate to where it was already changes nothing. */
+/* Moving a coordinate to its old value changes nothing. */
 static bool same_vertices(const result *a, const result *b) {
     return memcmp(a->mesh.vertices, b->mesh.vertices, 3 * a->mesh.vertex_count * sizeof(double)) ==
            0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Both verifiers against slow ones. A result is made, honest or with something changed at random;
- * whether all that it claims holds is found out by brute force in rationals, with code that shares
- * nothing with the verifier: its verdict must be the same. */
+/* Both verifiers against slow ones. A result is made, true or with a random change; brute force in
+ * rationals, sharing no code with the verifier, determines whether all its claims hold, and the
+ * verdict must agree. */
 #include "support.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@ static bool verdict_of(starg_context *context, starg_verdict *verdict) {
     return passed;
 }
 
-/* ---- guards: what is true ---- */
+/* ---- guards: the truth ---- */
 
 enum { GUARDS = 2, FACES = 400, VERTICES = 200 };
 
@@ -42,7 +42,7 @@ typedef struct result {
 /* What the guards of a result see, from their positions and the options alone. */
 typedef struct truth {
     bool inside;
-    size_t seen[GUARDS], covered, needed; /* needed: guards that see what both see */
+    size_t seen[GUARDS], covered, needed; /* needed: guards needed to see what both see */
     bool face[FACES];
     double area, all_area;
 } truth;
@@ -97,7 +97,7 @@ static truth find_truth(const shape *s, const result *r) {
     return t;
 }
 
-/* Writes the truth down. */
+/* Writes the truth into a result. */
 static void fill_in(const shape *s, result *r) {
     truth t = find_truth(s, r);
     starg_guards *g = &r->guards;
@@ -150,7 +150,7 @@ static shape make_shape(starg_rng *rng) {
     }
 }
 
-/* Anywhere about the shape; often on its lattice, in planes of faces, or on it. */
+/* Anywhere around the shape; often on its lattice, in planes of faces, or on it. */
 static void pick_point(starg_rng *rng, const shape *s, double p[3]) {
     const double *v = s->vertices;
     const double *a = v + 3 * starg_rng_below(rng, s->vertex_count);
@@ -216,7 +216,7 @@ static void change_guards(starg_rng *rng, const shape *s, result *r) {
     case 3:
         change_list(rng, s, r);
         break;
-    case 4: /* for which other things may be seen, or the same */
+    case 4: /* which may change what is visible, or not */
         pick_point(rng, s, p);
         break;
     case 5:
@@ -259,7 +259,7 @@ static void test_guards(void **state) {
     test_context_free(context);
 }
 
-/* ---- pieces: what is true ---- */
+/* ---- pieces: the truth ---- */
 
 static bool same_triangle(const uint32_t a[3], const uint32_t b[3]) {
     for (int i = 0; i < 3; i++)
@@ -268,7 +268,7 @@ static bool same_triangle(const uint32_t a[3], const uint32_t b[3]) {
     return true;
 }
 
-/* The side of a tetrahedron that lies on a side of another one (of the same piece), or none. */
+/* The side of another tetrahedron (of the same piece) that coincides with a side, or none. */
 static bool has_mate(const cut *c, size_t t, int side, bool within_piece) {
     uint32_t own[3], other[3];
     cut_side(c, t, side, own);
@@ -281,7 +281,7 @@ static bool has_mate(const cut *c, size_t t, int side, bool within_piece) {
     return false;
 }
 
-/* Positive tetrahedra, no more than two at a triangle, those on opposite sides. */
+/* Positive tetrahedra, at most two per triangle, on opposite sides. */
 static bool is_conforming(const cut *c) {
     for (size_t t = 0; t < c->mesh.count; t++) {
         const uint32_t *v = c->tetrahedra + 4 * t;
@@ -319,8 +319,7 @@ static bool are_neighbours(const cut *c, size_t s, size_t t) {
     return false;
 }
 
-/* Gives the label of each labelled tetrahedron to its neighbours without one, until there are none.
- */
+/* Propagates labels to unlabelled neighbours until none is left. */
 static void spread_labels(const cut *c, int32_t *labels) {
     for (bool grew = true; grew;) {
         grew = false;
@@ -418,7 +417,7 @@ static bool numbers_hold(const cut *c) {
     return hold;
 }
 
-/* Everything that a decomposition of these tetrahedra claims; the model is their boundary. */
+/* All claims of a decomposition of these tetrahedra, with their boundary as the model. */
 static bool decomposition_holds(const cut *c) {
     size_t stars = 0;
     if (!is_conforming(c) || !numbers_hold(c))
@@ -436,7 +435,7 @@ static bool decomposition_holds(const cut *c) {
 
 /* ---- pieces: decompositions ---- */
 
-/* Labels that grow from some tetrahedra; what none of them reaches gets labels of its own. */
+/* Labels grown from some tetrahedra; unreached ones get new labels. */
 static void grow_labels(starg_rng *rng, cut *c) {
     size_t pieces = 1 + starg_rng_below(rng, 4);
     for (size_t t = 0; t < c->mesh.count; t++)
@@ -455,8 +454,8 @@ static void grow_labels(starg_rng *rng, cut *c) {
     }
 }
 
-/* In a tetrahedron of the piece, at a vertex of it or in the middle of two; where the piece has
- * none, in another one. */
+/* In a tetrahedron of the piece, at one of its vertices or the midpoint of two; in another
+ * tetrahedron if the piece is empty. */
 static void place_guard(starg_rng *rng, cut *c, int32_t piece) {
     double *g = c->pieces[piece].guard;
     size_t t = starg_rng_below(rng, c->mesh.count);
@@ -512,7 +511,7 @@ static void change_cut(starg_rng *rng, cut *c) {
         c->report.visible_vertices -= 1e-3;
         break;
     case 5:
-    case 6: /* often leaves a piece that is parted, or none */
+    case 6: /* often leaves a disconnected piece, or an empty one */
         c->labels[t] = (int32_t)p;
         cut_recount(c);
         break;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every engine against visibility by definition, on small solids and points made to break them:
- * lattices, coplanar and cospherical faces, shells within shells, slivers, self-intersection, and
- * points in the planes of faces and of edges or an ulp beside them. */
+/* Every engine against visibility by definition, on small solids and points designed to break them:
+ * lattices, coplanar and cospherical faces, nested shells, slivers, self-intersection, and points
+ * in the planes of faces and of edges or an ulp off. */
 #include "support.h"
 
 #include <math.h>
@@ -15,8 +15,8 @@
 
 enum { POINTS = 12, WHOLE_POINTS = 1 };
 
-/* Five kinds of points, by turns: anywhere; on the half-lattice; means of two and three vertices;
- * and on the line of an edge, moved by an ulp or not. Those inside are taken. */
+/* Five kinds of points, cyclically: anywhere; on the half-lattice; means of two and of three
+ * vertices; and on the line of an edge, some moved by an ulp. Keeps those inside. */
 static size_t pick_points(const starg_solid *solid, uint64_t seed, double *points) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
     const double *v = starg_mesh_vertices(mesh);
@@ -56,7 +56,7 @@ static void compare(const char *name, const char *engine, const starg_bits *bits
         }
 }
 
-/* Vertices and whole faces; what lies between follows from the vertices. */
+/* Vertices and whole faces; the other rule follows from the vertices. */
 static void check_solid(starg_context *context, const char *name, const starg_solid *solid,
                         uint64_t seed) {
     static const char *const engines[] = {"grid", "bvh", "sweep", "contours", "fastest"};
@@ -90,7 +90,7 @@ static void check_solid(starg_context *context, const char *name, const starg_so
     free(expected);
 }
 
-/* Takes over the shape. */
+/* Consumes the shape. */
 static void check_shape(const char *name, shape s, uint64_t seed) {
     starg_context *context = test_context(2);
     starg_solid *solid = NULL;
@@ -114,7 +114,7 @@ static void test_lattice(void **state) {
     check_shape("columns far away", far, 5);
 }
 
-/* Random cells: tunnels, cavities, pillars. Only those whose surface is a manifold are solids. */
+/* Random cells: tunnels, cavities, pillars. Only those with a manifold surface are solids. */
 static void test_random_cells(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -155,7 +155,7 @@ static void test_nested_shells(void **state) {
     check_shape("nested blobs", s, 7);
 }
 
-/* Shells that pass through one another or touch. */
+/* Shells that cross or touch. */
 static void test_not_embedded(void **state) {
     (void)state;
     static const double offsets[][3] = {{1, 1, 1}, {0.5, 0.25, 0}, {2, 0, 0}, {1, 2, 0.5}};
@@ -167,7 +167,7 @@ static void test_not_embedded(void **state) {
     }
 }
 
-/* Flattened until faces are slivers and nearly in one plane, by a linear map and by noise. */
+/* Flattened until faces are slivers and nearly coplanar, by a linear map and by noise. */
 static void test_slivers(void **state) {
     (void)state;
     static const double flat[] = {1e-3, 1e-9, 1e-15};

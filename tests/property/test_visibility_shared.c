@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Real solids: every engine and the verifier see, bit for bit, what the definition says: every
- * segment against every triangle, in rationals where doubles are not certain. With STARGUARD_LONG
- * all solids of the shared data of up to 5,000 vertices, else the smallest of them. */
+/* Real solids: every engine and the verifier agree bit for bit with the definition: every segment
+ * against every triangle, in rationals where doubles are not certain. With STARGUARD_LONG all
+ * solids of the shared data of up to 5,000 vertices, otherwise the smallest of them. */
 #include "support.h"
 
 #include <math.h>
@@ -16,8 +16,8 @@
 
 enum { ENGINES = 5, MOST_POINTS = 4 };
 
-/* Points inside, by turns: a candidate guard; on the line through two corners of a face; the middle
- * of two vertices; a candidate moved into the plane of a vertex across an axis. */
+/* Points inside, cyclically: a candidate guard; on the line through two corners of a face; the
+ * midpoint of two vertices; a candidate moved into the axis-parallel plane of a vertex. */
 static size_t pick_points(starg_context *context, const starg_solid *solid, size_t wanted,
                           double *points) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
@@ -47,7 +47,7 @@ static size_t pick_points(starg_context *context, const starg_solid *solid, size
     return count;
 }
 
-/* What is to be seen, by the definition. */
+/* What is visible by the definition. */
 typedef struct sight {
     bool *vertices, *faces;
 } sight;

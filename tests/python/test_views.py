@@ -54,7 +54,7 @@ class Views(Case):
     def test_a_page_with_a_proof(self):
         if not starguard.page_available():
             self.skipTest("this build has no viewer")
-        room = starguard.sample("gallery", vertices=100)
+        room = starguard.sample("gallery", vertices=500)
         guards = starguard.guard(room, prove=True, prove_work=20000, certificate="why")
         room.write("room.off")
         guards.write("g.json")

@@ -19,7 +19,7 @@ static double integer(starg_rng *rng, int low, int high) {
     return low + (double)starg_rng_below(rng, (uint64_t)(high - low + 1));
 }
 
-/* Moves x by an ulp up, down, or not at all. */
+/* Moves x by one ulp up or down, or not at all. */
 static double shaken(starg_rng *rng, double x) {
     switch (starg_rng_below(rng, 4)) {
     case 0:
@@ -41,14 +41,14 @@ static double any_exponent(starg_rng *rng) {
     return ldexp(between(rng, -1, 1), -1074 + (int)starg_rng_below(rng, 1074 + 329));
 }
 
-/* A few ulps from x, not many. */
+/* A few ulps from x. */
 static double near(starg_rng *rng, double x) {
     for (uint64_t steps = starg_rng_below(rng, 3); steps > 0; steps--)
         x = shaken(rng, x);
     return x;
 }
 
-/* A mean of earlier points with weights that leave no rounding on a lattice. */
+/* A weighted mean of earlier points, exact on a lattice. */
 static void place_between(starg_rng *rng, double (*points)[3], size_t count) {
     static const double weights[6][3] = {{0.5, 0.5, 0}, {0.25, 0.25, 0.5},  {2, -1, 0},
                                          {1, 1, -1},    {0.75, 0.5, -0.25}, {1, 0, 0}};
@@ -62,7 +62,7 @@ static void place_between(starg_rng *rng, double (*points)[3], size_t count) {
     }
 }
 
-/* frame: three points that a family hangs on. */
+/* frame: three points that define a family. */
 static void place(starg_rng *rng, point_family family, double (*frame)[3], double out[3]) {
     double u = between(rng, -1, 1), v = family == POINTS_LINE ? 0 : between(rng, -1, 1);
     double z = between(rng, -1, 1), r = sqrt(1 - z * z);

@@ -117,7 +117,7 @@ static void on_side(const bvh_box *box, starg_rng *rng, double p[3]) {
                                  : box->lower[k];
 }
 
-/* Where the line through two vertices runs through the box: somewhere, or close to an end. */
+/* A point where the line through two vertices crosses the box: anywhere, or close to an end. */
 static void on_line(const starg_mesh *mesh, const bvh_box *box, starg_rng *rng, double p[3]) {
     for (int attempt = 0; attempt < 30; attempt++) {
         const double *a = any_vertex(mesh, rng), *b = any_vertex(mesh, rng);
@@ -137,7 +137,7 @@ static void on_line(const starg_mesh *mesh, const bvh_box *box, starg_rng *rng, 
     }
 }
 
-/* A point of a face that the box holds, moved to the inner side by much or by little. */
+/* A point of a face in the box, moved to the inner side by much or by little. */
 static void under_face(const starg_mesh *mesh, const bvh_box *box, starg_rng *rng, double p[3]) {
     const double *v = starg_mesh_vertices(mesh);
     for (int attempt = 0; attempt < 300; attempt++) {

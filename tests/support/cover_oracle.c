@@ -48,7 +48,7 @@ uint64_t cover_oracle_coverable(const starg_cover_problem *problem) {
     return sum;
 }
 
-/* A column with its rows as the bits of a word. */
+/* A column with its rows as bits of a word. */
 typedef struct oracle_column {
     uint32_t holders, demand;
     uint64_t weight;

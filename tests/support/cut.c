@@ -49,8 +49,8 @@ void cut_add_tetrahedron(cut *c, uint32_t a, uint32_t b, uint32_t d, uint32_t e,
     c->labels[c->mesh.count++] = label;
 }
 
-/* A side of a cell, coned from the guard. The diagonal is that of shape_cells on the surface;
- * inside it is the one of upper sides. */
+/* Cones a side of a cell from the guard. Diagonals on the surface are those of shape_cells, inside
+ * those of upper sides. */
 static void cone_side(cut *c, const int cell[3], int axis, bool upper, bool surface, int32_t label,
                       uint32_t guard) {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -68,7 +68,7 @@ static void cone_side(cut *c, const int cell[3], int axis, bool upper, bool surf
     } else if (surface) { /* 3 2 1 and 3 1 0 */
         cut_add_tetrahedron(c, corner[3], corner[1], corner[2], guard, label);
         cut_add_tetrahedron(c, corner[3], corner[0], corner[1], guard, label);
-    } else { /* the triangles of the upper side of the cell below, seen from here */
+    } else { /* the triangles of the upper side of the cell below, reversed */
         cut_add_tetrahedron(c, corner[0], corner[1], corner[2], guard, label);
         cut_add_tetrahedron(c, corner[0], corner[2], corner[3], guard, label);
     }
@@ -126,7 +126,7 @@ shape grid_model(const grid *g) {
     return s;
 }
 
-/* ---- honest reports, found slowly ---- */
+/* ---- true reports, computed slowly ---- */
 
 static const uint8_t SIDES[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
@@ -196,7 +196,7 @@ void cut_recount(cut *c) {
             }
 }
 
-/* Points the arrays of mesh and report to its own. */
+/* Points the arrays of mesh and report to the cut's own. */
 static void adopt(cut *c) {
     c->mesh.vertices = c->vertices;
     c->mesh.tetrahedra = c->tetrahedra;
@@ -228,7 +228,7 @@ cut *cut_copy(const cut *from) {
     return c;
 }
 
-/* Splits the edge a b at a point: in CUT_ALL tetrahedra that have it, in the CUT_FIRST one only, or
+/* Splits the edge a b at a point: in all of its tetrahedra (CUT_ALL), in one only (CUT_FIRST), or
  * in those of one piece. */
 static void split_edge(cut *c, uint32_t a, uint32_t b, const double p[3], int32_t where) {
     uint32_t middle = cut_add_vertex(c, p);

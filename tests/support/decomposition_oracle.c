@@ -8,8 +8,8 @@
 #include "exact_oracle.h"
 #include "support.h"
 
-/* Outward faces of a positive tetrahedron, derived anew: face k leaves out vertex k, and has that
- * vertex on its inner side. */
+/* Outward faces of a positive tetrahedron, derived independently: face k omits vertex k and has it
+ * on its inner side. */
 static void face_of(const starg_tetmesh *mesh, size_t t, size_t k, uint32_t out[3]) {
     const uint32_t *v = starg_tetmesh_tetrahedra(mesh) + 4 * t;
     const double *p = starg_tetmesh_vertices(mesh);
@@ -35,7 +35,7 @@ static bool close_to(double a, double b, double scale) {
 
 /* ---- star-shaped pieces ---- */
 
-/* Do the tetrahedra of a piece hang together by faces? */
+/* Are the tetrahedra of a piece connected by faces? */
 static bool is_connected(const starg_decomposition *d, int32_t piece) {
     size_t n = starg_tetmesh_count(d->mesh), reached = 0, top = 0, size = 0;
     const uint32_t *next = starg_tetmesh_neighbours(d->mesh);
@@ -66,7 +66,7 @@ static bool is_connected(const starg_decomposition *d, int32_t piece) {
     return reached == size;
 }
 
-/* Is the guard in a tetrahedron of its piece, strictly inside of the piece's outer faces? */
+/* Is the guard in a tetrahedron of its piece, strictly inside the piece's outer faces? */
 static bool is_star(const starg_decomposition *d, int32_t piece) {
     const double *p = starg_tetmesh_vertices(d->mesh), *g = d->pieces[piece].guard;
     bool held = false;

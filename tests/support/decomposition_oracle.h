@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Star decompositions against their definition: by brute force, in rationals where signs decide. */
+/* Checks star decompositions against their definition: by brute force, in rationals where signs
+ * decide. */
 #ifndef TESTS_DECOMPOSITION_ORACLE_H
 #define TESTS_DECOMPOSITION_ORACLE_H
 
@@ -7,14 +8,14 @@
 
 #include "starguard/decompose.h"
 
-/* Asserts everything that a result tells but what guards see: labels, counts, volumes, radii, which
- * pieces are star-shaped, and contacts. */
+/* Asserts everything in a result except what guards see: labels, counts, volumes, radii,
+ * star-shapedness, and contacts. */
 void decomposition_oracle_check(const starg_decomposition *d);
 
-/* Asserts that the tetrahedra of each piece hang together by faces. */
+/* Asserts that the tetrahedra of each piece are connected by faces. */
 void decomposition_oracle_check_connected(const starg_decomposition *d);
 
-/* Asserts the fraction of the vertices that guards see. Takes time vertices x faces. */
+/* Asserts the fraction of the vertices that guards see. Takes O(vertices x faces) time. */
 void decomposition_oracle_check_sight(const starg_decomposition *d);
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Signs are determinants of rationals. Intersections are systems of linear equations and
- * inequalities in the parameters of the shapes, whose solvability is decided by Gauss elimination
- * and then Fourier-Motzkin elimination: no case of position is special, so none can be missed.
- * The winding number counts the crossings of a ray whose random direction is replaced whenever it
- * meets a triangle anywhere but in its open inside. */
+ * inequalities in the parameters of the shapes, decided by Gaussian and then Fourier-Motzkin
+ * elimination: no position is a special case, so none can be missed. The winding number counts the
+ * crossings of a ray with a random direction, replaced whenever it meets a triangle other than in
+ * its interior. */
 #include "exact_oracle.h"
 
 #include <gmp.h>
@@ -159,7 +159,7 @@ int oracle_insphere(const double a[3], const double b[3], const double c[3], con
         determinant(minor, others[0], others[1], others[2]);
         vector_dot(square, &rows[i], &rows[i]);
         mpq_mul(minor, minor, square);
-        if (i % 2 == 1) /* the sign of cofactor (i, 3) is (-1)^(i + 1), turned as a whole */
+        if (i % 2 == 1) /* the sign of cofactor (i, 3) is (-1)^(i + 1), negated overall */
             mpq_sub(sum, sum, minor);
         else
             mpq_add(sum, sum, minor);
@@ -199,7 +199,7 @@ int oracle_compare_cone(const double p[3], const double d[3], double cosine, con
     vector_dot(far, &v, &v);
     vector_dot(length, &axis, &axis);
     mpq_set_d(c, cosine);
-    /* x |x| grows with x, and so compares two numbers by squares that keep their signs */
+    /* x |x| is monotone, so it compares two numbers by signed squares */
     mpq_mul(far, far, length);
     mpq_mul(far, far, c);
     mpq_abs(c, c);
@@ -219,7 +219,7 @@ enum { VARIABLES = 5 }; /* the most that any pair of shapes needs */
 
 typedef enum relation { EQUAL_ZERO, AT_LEAST_ZERO, ABOVE_ZERO } relation;
 
-/* sum of k[i] x[i] over the variables, plus k[VARIABLES], stands in `relation` to zero. */
+/* The relation of (sum of k[i] x[i] over the variables, plus k[VARIABLES]) to zero. */
 typedef struct row {
     mpq_t k[VARIABLES + 1];
     relation relation;
@@ -270,8 +270,8 @@ static void add_multiple(row *out, const mpq_t factor, const row *r) {
 
 /* ---- elimination ----
  *
- * Rows of whole numbers, and only positive multiples of inequalities: no fraction has to be reduced
- * on the way, which is what rational arithmetic spends its time on. */
+ * Integer rows, and only positive multiples of inequalities: no fractions to reduce, which dominate
+ * the cost of rational arithmetic. */
 
 static mpz_ptr whole(row *r, int i) {
     return mpq_numref(r->k[i]);
@@ -289,11 +289,11 @@ static void clear_denominators(row *r) {
     mpq_clear(common);
 }
 
-/* Takes out the powers of two that all numbers of a row have in common. */
+/* Divides a row by its common power of two. */
 static void shorten(row *r) {
     mp_bitcnt_t shift = ~(mp_bitcnt_t)0;
     for (int i = 0; i <= VARIABLES; i++) {
-        mp_bitcnt_t zeros = mpz_scan1(whole(r, i), 0); /* the most there is for 0 */
+        mp_bitcnt_t zeros = mpz_scan1(whole(r, i), 0); /* the maximum for 0 */
         shift = zeros < shift ? zeros : shift;
     }
     if (shift > 0)
@@ -310,7 +310,7 @@ static void combine(row *out, mpz_srcptr a, row *r, mpz_srcptr b, row *q) {
     shorten(out);
 }
 
-/* Takes the equation `from` out of the system and removes `variable` from all others with it. */
+/* Removes the equation `from` from the system, and `variable` from all others by it. */
 static void substitute(linear_system *s, size_t from, int variable) {
     row equation = s->rows[from];
     s->rows[from] = s->rows[--s->count];
@@ -328,7 +328,7 @@ static void substitute(linear_system *s, size_t from, int variable) {
     clear_row(&equation);
 }
 
-/* Fourier-Motzkin: every lower bound of `variable` must lie below every upper bound. */
+/* Fourier-Motzkin: every lower bound of `variable` must be below every upper bound. */
 static void eliminate(linear_system *s, int variable) {
     linear_system rest = {0};
     for (size_t i = 0; i < s->count; i++) {
@@ -359,7 +359,7 @@ static bool is_constant(row *r) {
     return true;
 }
 
-/* Takes out the rows without variables; false when one of them does not hold. */
+/* Removes rows without variables; false if one of them does not hold. */
 static bool constants_hold(linear_system *s) {
     bool hold = true;
     for (size_t i = s->count; i-- > 0;) {
@@ -376,7 +376,7 @@ static bool constants_hold(linear_system *s) {
     return hold;
 }
 
-/* Has the system a solution? Consumes it. */
+/* Is the system solvable? Consumes it. */
 static bool solvable(linear_system *s) {
     for (size_t i = 0; i < s->count; i++)
         clear_denominators(&s->rows[i]);
@@ -397,15 +397,15 @@ static bool solvable(linear_system *s) {
 
 /* ---- shapes as systems ----
  *
- * A simplex takes the variables first, first + 1, ...: its points are corner[0] plus the sum of
- * x[first + i] times (corner[i + 1] - corner[0]), where the variables are at least zero and their
- * sum is at most one. */
+ * A simplex uses the variables first, first + 1, ...: its points are corner[0] plus the sum of
+ * x[first + i] times (corner[i + 1] - corner[0]), where the variables are nonnegative and sum to at
+ * most one. */
 typedef struct simplex {
     const double *corner[4];
     int dimension, first;
 } simplex;
 
-/* Adds the inequalities of a simplex; `open` demands a sum below one, that is, leaves out the face
+/* Adds the inequalities of a simplex; `open` requires a sum below one, which excludes the face
  * opposite corner 0. */
 static void add_simplex(linear_system *s, const simplex *shape, bool open) {
     for (int i = 0; i < shape->dimension; i++)
@@ -431,7 +431,7 @@ static void add_coordinate(row *r, const simplex *shape, int k, int sign) {
     mpq_clears(base, t, (mpq_ptr)NULL);
 }
 
-/* The points that a and b have in common. */
+/* The common points of a and b. */
 static linear_system common_points(const simplex *a, bool open, const simplex *b) {
     linear_system s = {0};
     add_simplex(&s, a, open);
@@ -482,7 +482,7 @@ bool oracle_tetrahedron_meets_triangle(const double p[3], const double *const fa
     return shapes_meet(&tetrahedron, true, &triangle);
 }
 
-/* Have s and t a common point x with direction . (x - origin) > 0? */
+/* Do s and t have a common point x with direction . (x - origin) > 0? */
 static bool meet_beyond(const simplex *s, const simplex *t, const vector *direction,
                         const double origin[3]) {
     linear_system system = common_points(s, false, t);
@@ -506,7 +506,7 @@ static bool meet_beyond(const simplex *s, const simplex *t, const vector *direct
     return solvable(&system);
 }
 
-/* The same for the direction and for its opposite. */
+/* Same for the direction or its opposite. */
 static bool meet_off_plane(const simplex *s, const simplex *t, vector *direction,
                            const double origin[3]) {
     if (meet_beyond(s, t, direction, origin))
@@ -516,7 +516,7 @@ static bool meet_off_plane(const simplex *s, const simplex *t, vector *direction
     return meet_beyond(s, t, direction, origin);
 }
 
-/* Have they a common point other than `point`? */
+/* Do they have a common point other than `point`? */
 static bool meet_off_point(const simplex *s, const simplex *t, const double point[3]) {
     bool found = false;
     vector axis;
@@ -530,8 +530,8 @@ static bool meet_off_point(const simplex *s, const simplex *t, const double poin
     return found;
 }
 
-/* Have they a common point off the segment a b (a is not b)? Off its line means on one side of one
- * of three planes through it; on the line, before a or behind b. */
+/* Do they have a common point off the segment a b (a is not b)? Off its line means on one side of
+ * one of three planes through it; on the line, before a or behind b. */
 static bool meet_off_segment(const simplex *s, const simplex *t, const double a[3],
                              const double b[3]) {
     vector axis, along, side;
@@ -605,8 +605,8 @@ bool oracle_half_spaces_meet(const double *const *corners, int count, const doub
 
 typedef enum crossing { RAY_MISSES, RAY_CROSSES, RAY_GRAZES } crossing;
 
-/* How the ray from p along d meets a triangle that p is not on; *side is 1 when p lies on the
- * inner side. d is in the open cone of the corners when it is a positive combination of them. */
+/* How the ray from p along d meets a triangle off p; *side is 1 if p lies on the inner side. d is
+ * in the open cone of the corners if it is a positive combination of them. */
 static crossing cross_triangle(const double p[3], const vector *d, const double *const t[3],
                                int *side) {
     vector corner[3];
@@ -621,7 +621,7 @@ static crossing cross_triangle(const double p[3], const vector *d, const double 
     for (int i = 0; i < 3; i++)
         vector_clear(&corner[i]);
     if (*side == 0)
-        return RAY_GRAZES; /* the caller looks closer */
+        return RAY_GRAZES; /* the caller decides */
     if (weight[0] < 0 || weight[1] < 0 || weight[2] < 0)
         return RAY_MISSES;
     return weight[0] > 0 && weight[1] > 0 && weight[2] > 0 ? RAY_CROSSES : RAY_GRAZES;

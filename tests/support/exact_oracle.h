@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Slow, exact answers for tests: rationals of GMP and methods that share nothing with the library.
- * Everything works for all finite doubles. Triangles without area count as the segments or points
- * that they are. */
+/* Slow, exact answers for tests: GMP rationals, and methods that share nothing with the library.
+ * All work for all finite doubles. Triangles without area count as the segments or points that they
+ * are. */
 #ifndef TESTS_EXACT_ORACLE_H
 #define TESTS_EXACT_ORACLE_H
 
@@ -26,21 +26,21 @@ bool oracle_point_on_triangle(const double p[3], const double a[3], const double
 bool oracle_segments_meet(const double a[3], const double b[3], const double c[3],
                           const double d[3]);
 
-/* Have the closed triangles s and t, whose first `shared` corners are the same, a common point
- * outside of the simplex that these corners span? */
+/* Do the closed triangles s and t, whose first `shared` corners are the same, have a common point
+ * outside the simplex spanned by these corners? */
 bool oracle_triangles_contact(const double *const s[3], const double *const t[3], int shared);
 
-/* Has the closed triangle t a point in the tetrahedron (p, face) that is not on the face? */
+/* Does the closed triangle t have a point in the tetrahedron (p, face) off the face? */
 bool oracle_tetrahedron_meets_triangle(const double p[3], const double *const face[3],
                                        const double *const t[3]);
 
-/* Have the open half-spaces of the points x with orient3d(a, b, c, x) = 1 a common point (in the
- * closed box, unless lower is NULL)? `corners` are 3 a half-space. */
+/* Do the open half-spaces of the points x with orient3d(a, b, c, x) = 1 have a common point (in the
+ * closed box, unless lower is NULL)? `corners` are 3 per half-space. */
 bool oracle_half_spaces_meet(const double *const *corners, int count, const double lower[3],
                              const double upper[3]);
 
-/* Winding number of a closed mesh about p; *on_surface: p lies on a triangle (then the result is
- * 0 and means nothing). */
+/* Winding number of a closed mesh about p; *on_surface: p lies on a triangle (the result is then 0
+ * and meaningless). */
 int oracle_winding(const double *vertices, const uint32_t *faces, size_t face_count,
                    const double p[3], bool *on_surface);
 

@@ -14,16 +14,16 @@
 
 /* ---- memory ---- */
 
-/* Stands before every block, so that bytes can be counted. */
+/* Precedes every block, to count bytes. */
 typedef union head {
     size_t size;
     max_align_t align;
 } head;
 
-/* The memory of one attempt. `asked` counts allocations while armed. */
+/* Memory of one attempt. `asked` counts allocations while armed. */
 static struct {
     bool armed;
-    bool for_good; /* all allocations behind the n-th fail as well */
+    bool for_good; /* all later allocations fail as well */
     size_t failing;
     atomic_size_t asked, failed, blocks, bytes;
 } memory;
@@ -79,7 +79,7 @@ const char *failing_output(const char *name) {
     return path;
 }
 
-/* Files in the folder, which are removed. */
+/* Removes the files in the folder; returns their number. */
 static size_t clear_folder(void) {
     size_t count = 0;
     if (!folder_made)
@@ -107,11 +107,11 @@ starg_status failing_result(starg_status status, const void *object) {
 
 /* ---- turns ---- */
 
-/* The call that is being tried: the `wanted`-th of those that ask for their turn. */
+/* The call under test: the `wanted`-th of those that ask for their turn. */
 static struct {
     failing_calls *calls;
     size_t wanted, asked;
-    const char *name, *variant; /* NULL behind the last */
+    const char *name, *variant; /* NULL after the last */
 } turn;
 
 bool failing_turn(const char *name, const char *variant) {
@@ -137,26 +137,26 @@ static starg_status make_call(starg_context *context) {
 
 enum { LEAST = 10, MOST = 2000 }; /* n that are tried one by one */
 
-/* How a table is gone through. */
-typedef struct manner {
+/* How a table is processed. */
+typedef struct run_mode {
     int threads;
     bool for_good;
-    double seconds, thorough; /* of processor time for the first n; thorough 0: for every n */
-} manner;
+    double seconds, thorough; /* processor time for the first n; thorough 0: for every n */
+} run_mode;
 
-static const manner manners[] = {{1, false, 0.2, 0}, {1, true, 0.04, 4}, {2, false, 0.04, 4}};
+static const run_mode RUN_MODES[] = {{1, false, 0.2, 0}, {1, true, 0.04, 4}, {2, false, 0.04, 4}};
 
 typedef struct tally {
     size_t allocations, attempts, failed;
 } tally;
 
-static void report_failure(const manner *how, size_t n, const char *what) {
+static void report_failure(const run_mode *how, size_t n, const char *what) {
     print_error("%s (%s), %d threads, allocation %zu%s: %s\n", turn.name, turn.variant,
                 how->threads, n, how->for_good ? " and all later ones" : "", what);
     fail();
 }
 
-static void check_failure(const manner *how, size_t n, const starg_context *context,
+static void check_failure(const run_mode *how, size_t n, const starg_context *context,
                           starg_status status) {
     const starg_error *error = starg_context_error(context);
     if (status != STARG_ERROR_MEMORY) {
@@ -167,8 +167,8 @@ static void check_failure(const manner *how, size_t n, const starg_context *cont
         report_failure(how, n, "no message about memory");
 }
 
-/* Lets the n-th allocation fail; false when the call succeeded without so many. */
-static bool attempt(const manner *how, size_t n, tally *sum) {
+/* Makes the n-th allocation fail; false if the call succeeded with fewer. */
+static bool attempt(const run_mode *how, size_t n, tally *sum) {
     starg_context_options options;
     starg_context *context = NULL;
     starg_context_options_default(&options);
@@ -205,7 +205,7 @@ static bool attempt(const manner *how, size_t n, tally *sum) {
     return reached;
 }
 
-/* What one run without failures tells of a call. */
+/* Measurements of a call without failures. */
 typedef struct extent {
     size_t allocations;
     double seconds; /* of processor time */
@@ -214,31 +214,31 @@ typedef struct extent {
 static extent measure(void) {
     tally sum = {0};
     clock_t began = clock();
-    attempt(&manners[0], SIZE_MAX, &sum);
+    attempt(&RUN_MODES[0], SIZE_MAX, &sum);
     return (extent){sum.allocations, (double)(clock() - began) / CLOCKS_PER_SEC};
 }
 
-/* How many n are tried one by one: as many as there is time for. */
+/* Number of n that are tried one by one, given the time. */
 static size_t choose_limit(double seconds, const extent *whole) {
     double limit = whole->seconds > 0 ? seconds / whole->seconds : MOST;
     return limit < LEAST ? LEAST : limit < MOST ? (size_t)limit : MOST;
 }
 
-static void tell(const manner *how, const tally *sum) {
+static void tell(const run_mode *how, const tally *sum) {
     printf("%-34s %-24s %7d %-6s %11zu %8zu %8zu\n", turn.name, turn.variant, how->threads,
            how->for_good ? "all" : "one", sum->allocations, sum->attempts, sum->failed);
 }
 
-/* Every n, until the call succeeds without so many. */
-static void try_all(const manner *how) {
+/* Every n, until the call succeeds with fewer allocations. */
+static void try_all(const run_mode *how) {
     tally sum = {0};
     for (size_t n = 1; attempt(how, n, &sum);)
         n++;
     tell(how, &sum);
 }
 
-/* All n up to a limit, and then some, about a quarter as many, evenly from somewhere on. */
-static void try_some(const manner *how, double seconds, const extent *whole) {
+/* All n up to a limit, then about a quarter as many, evenly spaced from a random start. */
+static void try_some(const run_mode *how, double seconds, const extent *whole) {
     tally sum = {0};
     size_t limit = choose_limit(seconds, whole), last = whole->allocations, stride = 1;
     starg_rng rng = starg_rng_make(1, limit, last);
@@ -253,7 +253,7 @@ static void try_some(const manner *how, double seconds, const extent *whole) {
     tell(how, &sum);
 }
 
-/* STARGUARD_LONG=1 (make check-long): every n, alone. What earlier tests have lost is theirs. */
+/* STARGUARD_LONG=1 (make check-long): every n. Blocks lost by earlier tests are not counted. */
 void failing_run(failing_calls *calls) {
     const char *asked = getenv("STARGUARD_LONG");
     bool thorough = asked != NULL && strcmp(asked, "1") == 0;
@@ -266,12 +266,12 @@ void failing_run(failing_calls *calls) {
         extent once = measure();
         if (turn.name == NULL)
             break;
-        for (size_t m = 0; m < sizeof manners / sizeof *manners; m++) {
-            double seconds = thorough ? manners[m].thorough : manners[m].seconds;
+        for (size_t m = 0; m < sizeof RUN_MODES / sizeof *RUN_MODES; m++) {
+            double seconds = thorough ? RUN_MODES[m].thorough : RUN_MODES[m].seconds;
             if (seconds == 0)
-                try_all(&manners[m]);
+                try_all(&RUN_MODES[m]);
             else
-                try_some(&manners[m], seconds, &once);
+                try_some(&RUN_MODES[m], seconds, &once);
         }
     }
     remove_folder();

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One of everything, as small as can be: what the tests of failing memory hand to the library. */
+/* Minimal inputs of every type, for the tests of failing memory. */
 #ifndef TESTS_FAILING_INPUTS_H
 #define TESTS_FAILING_INPUTS_H
 
@@ -19,9 +19,9 @@ typedef struct input_bytes {
 } input_bytes;
 
 typedef struct failing_inputs {
-    starg_context *context;               /* whose memory holds */
-    starg_mesh *cube, *box;               /* of the same faces  */
-    starg_mesh *room, *blob, *other_blob; /* an L; two spheres of different faces */
+    starg_context *context;               /* owns the memory */
+    starg_mesh *cube, *box;               /* with the same faces */
+    starg_mesh *room, *blob, *other_blob; /* an L; two spheres with different faces */
     starg_mesh *fine_blob;                /* a sphere of 258 vertices */
     starg_mesh *open, *crossed;           /* a cube without a face; two that intersect */
     starg_solid *solid, *simple;          /* of the room, of the cube */
@@ -37,13 +37,13 @@ typedef struct failing_inputs {
     starg_map *map; /* of the blobs */
 } failing_inputs;
 
-/* Makes them; the test fails if they cannot be made. */
+/* Makes the inputs; fails the test if that fails. */
 void failing_inputs_make(failing_inputs *in);
 void failing_inputs_free(failing_inputs *in);
 
-/* A file among the inputs: room.off, .obj, .ply, .stl; guards.json; skeleton.obj, .cg, .vtk;
+/* Path of an input file: room.off, .obj, .ply, .stl; guards.json; skeleton.obj, .cg, .vtk;
  * pieces.vtk, .json; descriptor.json; map.json; tets.vtk; points.txt; landmarks.txt; classes.txt;
- * shapes.db. Valid until the fourth next call of it. */
+ * shapes.db. Valid for the next three calls. */
 const char *failing_input(const char *name);
 input_bytes failing_input_bytes(const char *name);
 

@@ -13,7 +13,7 @@ starg_mesh *test_mesh_of(starg_context *context, const shape *s) {
     return mesh;
 }
 
-/* Gives the mesh up. */
+/* Consumes the mesh. */
 static starg_solid *solid_from(starg_context *context, starg_mesh *mesh) {
     starg_solid *solid = NULL;
     test_ok(context, starg_solid_create(context, mesh, &solid));

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Models as most tests need them, and what is asserted of results. Whatever fails, fails the test.
- */
+/* Common models of the tests, and common assertions about results. Any failure fails the test. */
 #ifndef TESTS_MODELS_H
 #define TESTS_MODELS_H
 
@@ -17,7 +16,7 @@
 starg_mesh *test_mesh_of(starg_context *context, const shape *s);
 starg_solid *test_solid_of(starg_context *context, const shape *s);
 
-/* A procedural solid, and the same in its first pose. */
+/* A procedural solid in a pose, and in its first pose. */
 starg_mesh *test_pose(starg_context *context, const char *name, int pose, size_t vertices);
 starg_mesh *test_sample_mesh(starg_context *context, const char *name, size_t vertices);
 starg_solid *test_sample(starg_context *context, const char *name, size_t vertices);
@@ -25,12 +24,12 @@ starg_solid *test_sample(starg_context *context, const char *name, size_t vertic
 /* The same bytes. */
 bool test_same_mesh(const starg_mesh *a, const starg_mesh *b);
 
-/* Asserts that the independent verifier finds every claim of a result to hold; prints those that
- * do not, with the model's name. */
+/* Asserts that the independent verifier confirms every claim of a result; prints those that fail,
+ * with the model's name. */
 void test_verified(starg_context *context, const char *name, const starg_mesh *mesh,
                    const starg_guards *guards);
 
-/* Guards that test_verified has found right. */
+/* Guards that test_verified has confirmed. */
 starg_guards *test_guard(starg_context *context, const starg_solid *solid,
                          const starg_guard_options *options);
 
@@ -41,14 +40,14 @@ starg_morph *test_morph(starg_context *context, const starg_mesh *a, const doubl
 /* A row about a surface file in the tables of the shared data. */
 typedef struct test_row {
     char folder[64], file[128];
-    char cells[7][32]; /* what stands behind the file; empty where the row is shorter */
+    char cells[7][32]; /* cells after the file; empty where the row is shorter */
     char path[4400];
 } test_row;
 
-/* The README that holds the tables, which the caller closes. */
+/* The README with the tables; the caller closes it. */
 FILE *test_tables(const char *data);
 
-/* The next row about a surface file; false at the end. The row comes zeroed at first. */
+/* The next row about a surface file; false at the end. The row must initially be zero. */
 bool test_next_row(FILE *readme, const char *data, test_row *row);
 
 #endif

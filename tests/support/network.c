@@ -40,7 +40,7 @@ static bool send_message(void *user, int to, const void *bytes, size_t size) {
     return sent;
 }
 
-/* The first message to `to` from `from`, -1: from anyone. */
+/* The first message to `to` from `from`, -1: from any sender. */
 static network_message **find(network *net, int to, int from) {
     network_message **place = &net->first;
     while (*place != NULL && !((*place)->to == to && (from < 0 || (*place)->from == from)))
@@ -86,7 +86,7 @@ static void break_way(network *net) {
     mtx_unlock(&net->lock);
 }
 
-/* A helper that cannot go on ends the run, as a launcher would. */
+/* A helper that cannot continue ends the run, as a launcher would. */
 static int serve(void *user) {
     network_end *self = user;
     if (starg_database_ranks_serve(self->context, &self->ranks) != STARG_OK)
@@ -94,7 +94,7 @@ static int serve(void *user) {
     return 0;
 }
 
-/* Fails once, when *left has come down to 0. */
+/* Fails once, when *left reaches 0. */
 static void *allocate_but_once(void *user, size_t size) {
     size_t *left = user;
     return *left > 0 && --*left == 0 ? NULL : malloc(size);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Processes that share work, as threads of the test: rank 0 is the test itself, the helpers serve
- * on threads with contexts of their own, and messages go through queues. */
+/* Processes that share work, simulated by threads: rank 0 is the test itself, helpers serve on
+ * threads with their own contexts, and messages go through queues. */
 #ifndef TESTS_NETWORK_H
 #define TESTS_NETWORK_H
 
@@ -32,24 +32,24 @@ struct network {
     mtx_t lock;
     cnd_t changed;
     network_message *first;
-    bool broken;         /* every function says so from now on */
-    long messages_left;  /* before it breaks; below 0: any number */
+    bool broken;         /* every function fails from now on */
+    long messages_left;  /* messages until it breaks; negative: unlimited */
     atomic_bool garbles; /* replies lose their last byte */
     network_end ends[NETWORK_MOST];
     int count;
 };
 
-/* Starts count - 1 helpers with some threads each. */
+/* Starts count - 1 helpers with several threads each. */
 void network_begin(network *net, int count, int threads);
 
-/* The same, but the *left-th allocation of one helper, rank 1, fails. */
+/* Same, but the *left-th allocation of one helper, rank 1, fails. */
 void network_begin_failing(network *net, int count, size_t *left);
 
-/* What rank 0 gives to starg_context_set_ranks. */
+/* Rank 0's argument for starg_context_set_ranks. */
 const starg_ranks *network_ranks(network *net);
 
-/* Sends the helpers home or, if that cannot be, breaks the way to them; waits for them, and asserts
- * that they have no memory left. */
+/* Releases the helpers or, if that fails, breaks the connections; waits for them, and asserts that
+ * they have no memory left. */
 void network_end_all(network *net);
 
 #endif

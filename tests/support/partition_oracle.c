@@ -13,7 +13,7 @@
 
 /* ---- facets ---- */
 
-/* Corners of a facet as seen from outside of the piece on a side. */
+/* Corners of a facet as seen from outside the piece on a side. */
 static void outward(const facet *f, int side, uint32_t out[3]) {
     for (int k = 0; k < 3; k++)
         out[k] = f->corners[side == FACET_INNER ? k : 2 - k];
@@ -132,7 +132,7 @@ static void check_index(const partition *p) {
             assert_int_equal(p->index.data[p->start.data[owner] + next[owner]++], i);
     }
     for (size_t i = 0; i < p->pieces.count; i++) {
-        assert_true(next[i] >= 4); /* no number is unused, none of less than a tetrahedron */
+        assert_true(next[i] >= 4); /* every number is in use, by at least a tetrahedron's facets */
         assert_int_equal(p->start.data[i] + next[i], p->start.data[i + 1]);
     }
     assert_int_equal(p->start.data[0], 0);
@@ -217,7 +217,7 @@ static long double area_of(const partition *p, const facet *f) {
     return sqrtl(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
-/* Is q in the triangle of a facet, by the areas that it spans with its edges? */
+/* Is q in the triangle of a facet, by the areas of q with its edges? */
 static bool is_on(const partition *p, const facet *f, const double q[3]) {
     long double sum = 0, whole = area_of(p, f);
     for (int k = 0; k < 3; k++) {

@@ -62,7 +62,7 @@ static bool same_bytes(const void *a, const void *b, size_t size) {
            (a != NULL && b != NULL && memcmp(a, b, size) == 0);
 }
 
-/* Columns: whole blocks; what is in structs is compared with the structs. */
+/* Columns: compares whole blocks; members of structs are compared with the structs. */
 static bool equal_columns(const starg_field *f, const void *a, const void *b) {
     for (size_t k = 0; k < f->of->count; k++) {
         const starg_field *c = &f->of->fields[k];

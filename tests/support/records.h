@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Records of any field table: written, freed and compared by their tables. */
+/* Writes, frees and compares records of any field table. */
 #ifndef TESTS_RECORDS_H
 #define TESTS_RECORDS_H
 
@@ -22,7 +22,7 @@ void record_release(starg_context *context, const starg_fields *fields, void *re
 starg_status record_parse(starg_context *context, const starg_fields *fields, const char *text,
                           size_t size, void *record);
 
-/* Is each member of one record that has a key what it is in the other one? */
+/* Are all members with keys equal in both records? */
 bool record_equal(const starg_fields *fields, const void *a, const void *b);
 
 #endif

@@ -32,7 +32,7 @@ static void add_face(shape *s, uint32_t a, uint32_t b, uint32_t c) {
     face[2] = c;
 }
 
-/* The side of a cell across `axis`, at its upper or lower end. */
+/* Adds the side of a cell across `axis`, at its upper or lower end. */
 static void add_side(shape *s, const int cell[3], int axis, bool upper) {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
     uint32_t corner[4];
@@ -111,7 +111,7 @@ shape shape_columns(void) {
                        5, 5, 2);
 }
 
-/* Splits every face into four and leaves the middle points on the unit sphere. */
+/* Splits every face into four, with the midpoints projected to the unit sphere. */
 static shape subdivide(const shape *s) {
     shape fine = {0};
     for (size_t f = 0; f < s->face_count; f++) {

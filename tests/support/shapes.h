@@ -12,19 +12,20 @@ typedef struct shape {
     uint32_t *faces;
 } shape;
 
-/* The surface of nx x ny x nz unit cells, of which cells[x + nx * (y + ny * z)] == '#' are solid:
- * two triangles a cell side, vertices on the integers, shared. */
+/* The surface of nx x ny x nz unit cells, where cells[x + nx * (y + ny * z)] == '#' are solid: two
+ * triangles per cell side, shared integer vertices. */
 shape shape_cells(const char *cells, int nx, int ny, int nz);
 
 /* Named shapes, all but the blob on a lattice. */
 shape shape_tetrahedron(void);
-shape shape_cube(int sides);                 /* sides^3 cells                                */
-shape shape_room(void);                      /* an L of cells, one high                      */
-shape shape_cavity(void);                    /* 3 x 3 x 3 cells without the middle one       */
-shape shape_columns(void);                   /* a hall of 5 x 5 x 2 with columns             */
-shape shape_blob(int levels, uint64_t seed); /* a sphere of random radii: star-shaped at 0   */
+shape shape_cube(int sides); /* sides^3 cells */
+shape shape_room(void);      /* an L of cells, one cell high */
+shape shape_cavity(void);    /* 3 x 3 x 3 cells without the middle one */
+shape shape_columns(void);   /* a hall of 5 x 5 x 2 with columns */
+shape shape_blob(int levels,
+                 uint64_t seed); /* a sphere with random radii: star-shaped about the origin */
 
-/* Adds a copy of `other`, moved; `turned` swaps its inside and outside. */
+/* Adds a translated copy of `other`; `turned` swaps its inside and outside. */
 void shape_append(shape *out, const shape *other, const double offset[3], int turned);
 
 /* Multiplies by a scale, then adds the offset to every coordinate. */

@@ -7,12 +7,12 @@
 
 #include "starguard/tetra.h"
 
-/* Delaunay tetrahedra of random points (at most 100), or of points of a small lattice, of which
- * some are left out; coordinates are multiplied by `scale`. */
+/* Delaunay tetrahedra of random points (at most 100) or of points of a small lattice, some of them
+ * omitted; coordinates are multiplied by `scale`. */
 starg_tetmesh *random_tetmesh(starg_context *context, uint64_t seed, size_t points, bool lattice,
                               double scale);
 
-/* Isosurface stuffing of a procedural sample with about so many tetrahedra. */
+/* Isosurface stuffing of a procedural sample with about `target` tetrahedra. */
 starg_tetmesh *sample_tetmesh(starg_context *context, const char *name, size_t target);
 
 #endif

@@ -8,9 +8,9 @@
 
 /* ---- signs in doubles, where they are certain ---- */
 
-/* Sign of det(a, b, c) for vectors that are rounded differences of doubles below 1e100; 0 when
- * rounding could have turned it. The error is below 16 units of 2^-53 of the sum of the absolute
- * products; underflow of a product of two loses less than 1e-220 in the whole. */
+/* Sign of det(a, b, c) for vectors that are rounded differences of doubles below 1e100; 0 if
+ * rounding could have changed it. The error is below 16 units of 2^-53 of the sum of the absolute
+ * products; underflow of a product of two loses less than 1e-220 in total. */
 static int certain_sign(const double a[3], const double b[3], const double c[3]) {
     double sum = 0, size = 0;
     for (int k = 0; k < 3; k++) {
@@ -36,7 +36,7 @@ static int certain_side(const double *const t[3], const double p[3]) {
     return certain_sign(a, b, c);
 }
 
-/* Are the points of the segment all on one side of the triangle's box? */
+/* Are all points of the segment on one side of the triangle's box? */
 static bool boxes_apart(const double p[3], const double q[3], const double *const t[3]) {
     for (int k = 0; k < 3; k++) {
         double low = fmin(p[k], q[k]), high = fmax(p[k], q[k]);
@@ -56,7 +56,7 @@ static bool blocks(const double p[3], const double q[3], const double *const t[3
         return false;
     int side_p = certain_side(t, p);
     if (side_p != 0 && (same(q, t[0]) || same(q, t[1]) || same(q, t[2])))
-        return false; /* the segment leaves the plane at q for good */
+        return false; /* the segment leaves the plane at q */
     int side_q = certain_side(t, q);
     if (side_p != 0 && side_p == side_q)
         return false;
@@ -71,7 +71,7 @@ static bool blocks(const double p[3], const double q[3], const double *const t[3
         less += sign < 0;
     }
     if (plus != 0 && less != 0)
-        return false; /* the line passes beside the triangle */
+        return false; /* the line misses the triangle */
     if ((plus == 3 || less == 3) && side_p != 0 && side_p == -side_q)
         return true;
     return oracle_segment_meets_triangle(p, q, t[0], t[1], t[2]);
@@ -106,7 +106,7 @@ static bool sees_point(const scene *s, const double p[3], const double q[3]) {
     return true;
 }
 
-/* May t have a point in the tetrahedron (p, face)? False only if surely not. */
+/* May t have a point in the tetrahedron (p, face)? False only if certain. */
 static bool may_enter(const double p[3], const double *const face[3], const double *const t[3]) {
     for (int k = 0; k < 3; k++) {
         double low = fmin(fmin(p[k], face[0][k]), fmin(face[1][k], face[2][k]));
@@ -115,7 +115,7 @@ static bool may_enter(const double p[3], const double *const face[3], const doub
             (t[0][k] > high && t[1][k] > high && t[2][k] > high))
             return false;
     }
-    for (int i = 0; i < 3; i++) { /* outside of one of the three planes through p */
+    for (int i = 0; i < 3; i++) { /* outside one of the three planes through p */
         const double *plane[3] = {p, face[(i + 1) % 3], face[i]};
         if (certain_side(plane, t[0]) < 0 && certain_side(plane, t[1]) < 0 &&
             certain_side(plane, t[2]) < 0)

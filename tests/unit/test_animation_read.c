@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Animations read back: the frames that were written, and bytes that are no animation. */
+/* Reading animations: the written frames, and bytes that are not an animation. */
 #include "support.h"
 
 #include <math.h>
@@ -76,7 +76,7 @@ static void round_trip(void **state) {
     test_context_free(context);
 }
 
-/* Files that are cut off or changed are read or refused; what is read is a mesh. */
+/* Truncated or changed files are read or rejected; whatever is read is a mesh. */
 static void damaged_files(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -102,7 +102,8 @@ static void damaged_files(void **state) {
         if (status == STARG_OK)
             starg_animation_free(context, frames, count);
     }
-    assert_true(good > 0 && good < 3000); /* some changes hurt, some are of coordinates only */
+    assert_true(good > 0 &&
+                good < 3000); /* some changes break the file, some only change coordinates */
     free(changed);
     free(bytes);
     free(positions);

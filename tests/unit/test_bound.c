@@ -15,7 +15,7 @@ typedef struct problem {
     witness_row rows[MOST_ROWS];
     const witness_row *list[MOST_ROWS];
     size_t count;
-    witness_row wanted; /* what some row holds */
+    witness_row wanted; /* the targets of some row */
 } problem;
 
 static problem random_problem(uint64_t item) {
@@ -37,7 +37,7 @@ static void link_rows(problem *p) {
         p->list[i] = &p->rows[i];
 }
 
-/* Do `most` rows hold all that is left? By the rows of the first witness that is. */
+/* Do `most` rows cover all remaining targets? Tries the rows of the first one. */
 static bool holds(const problem *p, witness_row left, size_t most) {
     for (size_t j = 0; j < MOST_WITNESSES; j++) {
         if (!starg_bit_test(left.bits, j))
@@ -114,7 +114,7 @@ static void test_bounds_against_enumeration(void **state) {
     test_context_free(context);
 }
 
-/* A leaf that may see more than it did: what was proven without that is not proven any more. */
+/* If a leaf may see more than before, what was proven without that is no longer proven. */
 static void test_corrupted_row_is_noticed(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is hidden from a box: definitions, reasons, and small solids on lattices and off them, held
- * against points of the boxes by rational arithmetic. */
+/* What is hidden from a box: definitions, reasons, and small solids on and off lattices, checked at
+ * points of the boxes by rational arithmetic. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,7 +49,7 @@ static box_question question(const setting *s, starg_target target, bvh_box box)
                           .range = INFINITY};
 }
 
-/* open and reasons of all targets, which the caller frees. */
+/* Bits and reasons of all targets; the caller frees them. */
 typedef struct answer {
     size_t count;
     uint64_t *open;
@@ -94,7 +94,7 @@ static void test_all_is_open_in_a_cube(void **state) {
 static void test_outside_sees_nothing(void **state) {
     (void)state;
     setting s = setting_of_shape(shape_room());
-    /* in the corner that the L leaves; far away */
+    /* in the corner outside the L; far away */
     const bvh_box boxes[] = {{{1.5, 1.5, 0.25}, {3.5, 3.5, 0.75}}, {{9, 9, 9}, {10, 10, 10}}};
     for (int i = 0; i < 2; i++) {
         box_question q = question(&s, STARG_TARGET_FACES, boxes[i]);
@@ -105,7 +105,7 @@ static void test_outside_sees_nothing(void **state) {
     setting_free(&s);
 }
 
-/* From the end of one arm of the L the end of the other is hidden, by the corner between them. */
+/* From the end of one arm of the L the end of the other is hidden by the corner between them. */
 static void test_round_the_corner(void **state) {
     (void)state;
     setting s = setting_of_shape(shape_room());
@@ -192,7 +192,7 @@ static void test_among_and_known(void **state) {
     setting_free(&s);
 }
 
-/* What a worker was asked before, and whether reasons are wanted, makes no difference. */
+/* Earlier queries of a worker, and whether reasons are wanted, make no difference. */
 static void test_no_memory_of_earlier_boxes(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -219,9 +219,9 @@ static void test_no_memory_of_earlier_boxes(void **state) {
 
 /* ---- shafts ---- */
 
-/* Is there a point of the box on the ray from v through x, at x or behind it? All coordinates are
- * small multiples of 1/16, so that nothing is rounded but the bounds of the parameter; those are
- * compared as fractions. */
+/* Does the ray from v through x contain a point of the box at or behind x? All coordinates are
+ * small multiples of 1/16, so only the bounds of the parameter could be rounded; those are compared
+ * as fractions. */
 static bool in_shaft(const double v[3], const bvh_box *box, const double x[3]) {
     double low_n = 1, low_d = 1, high_n = 1, high_d = 0; /* 1 to infinity */
     for (int k = 0; k < 3; k++) {
@@ -404,7 +404,7 @@ static void test_small_solids(void **state) {
     check_solid(&gallery, "gallery", boxes / 8);
 }
 
-/* Two cubes that overlap: nothing may be concluded from where segments begin or surfaces enter. */
+/* Two overlapping cubes: the start of a segment or the entry into a surface proves nothing. */
 static void test_intersecting_shells(void **state) {
     (void)state;
     shape both = shape_room(), other = shape_cube(2);

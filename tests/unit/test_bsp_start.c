@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Solids cut by planes until every part is star-shaped, and pieces parted into what is connected:
+/* Solids cut by planes until every part is star-shaped, and pieces split into connected parts:
  * against the definitions, by brute force and in rationals (partition_oracle.h). */
 #include "support.h"
 
@@ -46,8 +46,8 @@ static bool share_edge(const facet *a, const facet *b) {
     return shared >= 2;
 }
 
-/* The lowest facet that each facet of a piece hangs together with, by going over all pairs until
- * nothing changes. */
+/* The lowest facet connected with each facet of a piece, by iterating over all pairs until nothing
+ * changes. */
 static uint32_t *find_parts(const partition *p) {
     uint32_t *part = calloc(p->facets.count, sizeof *part);
     bool changed = true;
@@ -66,8 +66,8 @@ static uint32_t *find_parts(const partition *p) {
     return part;
 }
 
-/* Boxes, six tetrahedra each, at given places of a grid; it is regular but for the width along x
- * from 1 to 2. */
+/* Boxes of six tetrahedra each at given places of a grid, regular except for the width along x from
+ * 1 to 2. */
 static partition boxes(starg_context *context, const int (*places)[3], size_t count, double width) {
     static const int steps[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                     {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -105,7 +105,7 @@ static partition cubes(starg_context *context, const int (*places)[3], size_t co
     return boxes(context, places, count, 1);
 }
 
-/* Random cubes of a grid: some touch in a vertex only, which is not enough. */
+/* Random cubes of a grid: some touch in a vertex only, which does not connect them. */
 static void test_parts(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -176,8 +176,8 @@ static partition random_cubes(starg_context *context, starg_rng *rng) {
     return cubes(context, (const int(*)[3])places, count);
 }
 
-/* Through a point of the grid, across a direction of small integers: through vertices, along edges,
- * through faces. */
+/* A plane through a point of the grid, normal to a direction of small integers: through vertices,
+ * along edges, through faces. */
 static partition_plane random_grid_plane(const partition *p, starg_rng *rng) {
     partition_plane plane = {.normal = {0, 0, 0}};
     double point[3], unit[3], length = 0;
@@ -196,7 +196,7 @@ static partition_plane random_grid_plane(const partition *p, starg_rng *rng) {
     return plane;
 }
 
-/* No facet of a part is beyond the plane, and one is as far on its side as the piece was. */
+/* No facet of a part is beyond the plane, and one extends as far on its side as the piece did. */
 static void check_sides(const partition *p, uint32_t high, const partition_plane *plane) {
     for (size_t i = 0; i < 2 * p->facets.count; i++)
         for (int k = 0; k < 3; k++) {
@@ -267,7 +267,7 @@ static void check_bisected(const partition *first, const partition *p) {
     assert_true(fabs(volume_of_all(first) - volume_of_all(p)) < 1e-12);
 }
 
-/* Solids of which one can say how few pieces they need: that many are found. */
+/* Solids whose minimal number of pieces is known: the search finds it. */
 static void test_cubes(void **state) {
     (void)state;
     static const int one[][3] = {{0, 0, 0}};
@@ -297,7 +297,7 @@ static void test_cubes(void **state) {
     test_context_free(context);
 }
 
-/* The sample in one piece, before and after. */
+/* The sample as one piece, before and after. */
 static void bisect_sample(starg_context *context, const char *name, size_t target, partition *first,
                           partition *after) {
     *first = grown_sample(context, name, target);
@@ -323,8 +323,8 @@ static void check_sample(const char *name, size_t target) {
     test_context_free(one);
 }
 
-/* No more pieces than by region growing, and the same whatever the threads; some of their lattice
- * surfaces touch themselves. */
+/* No more pieces than by region growing, and the same for any number of threads; some of the
+ * lattice surfaces touch themselves. */
 static void test_samples(void **state) {
     (void)state;
     static const char *const names[] = {"horse", "torus", "gallery", "shell", "sphere"};
@@ -332,8 +332,8 @@ static void test_samples(void **state) {
         check_sample(names[i], 2000);
 }
 
-/* Random tetrahedra in one piece: needles among them, holes, and edges and vertices in which the
- * surface touches itself. Roundings may spoil a start, but not others. */
+/* Random tetrahedra as one piece, including needles, holes, and edges and vertices where the
+ * surface touches itself. Rounding may spoil one start, but not others. */
 static void test_random_cells(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -366,8 +366,8 @@ static void check_certified(const partition *p) {
     }
 }
 
-/* A fin on a slab, also where it is thinner than the least room of a guard that is asked for at
- * first; then rounded angles are of no use to check by. */
+/* A fin on a slab, also one thinner than the least room initially required for a guard; rounded
+ * angles cannot be checked then. */
 static void test_fins(void **state) {
     (void)state;
     static const int fin[][3] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}};
@@ -387,7 +387,7 @@ static void test_fins(void **state) {
     test_context_free(context);
 }
 
-/* So many facets that large pieces are looked at by samples of them. */
+/* So many facets that large pieces are examined by samples of them. */
 static void test_large(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -406,7 +406,7 @@ static void test_large(void **state) {
     test_context_free(context);
 }
 
-/* With too small a budget, or no time, there is no result, unless it must come to an end. */
+/* With too small a budget, or no time, there is no result, unless the call must finish. */
 static void test_limits(void **state) {
     (void)state;
     starg_context *context = test_context(1);

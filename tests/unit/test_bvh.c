@@ -33,7 +33,7 @@ static shape make_shape(int which) {
         s = shape_blob(2, 7);
         shape_place(&s, 2, 0);
         return s;
-    case 6: /* two cubes that pass through one another, and one turned inside out */
+    case 6: /* two cubes that cross, and one turned inside out */
         s = shape_cube(2);
         other = shape_cube(2);
         shape_append(&s, &other, near, 0);
@@ -194,7 +194,7 @@ static void check_winding(const scene *world) {
         double p[3];
         lattice_point(&rng, p);
         check_winding_at(world, p);
-        for (int k = 0; k < 3; k++) /* and next to it, by an ulp */
+        for (int k = 0; k < 3; k++) /* and an ulp next to it */
             p[k] = nextafter(p[k], starg_rng_below(&rng, 2) ? INFINITY : -INFINITY);
         check_winding_at(world, p);
     }
@@ -268,7 +268,7 @@ static void test_query_segment(void **state) {
     with_every_shape(check_segments);
 }
 
-/* The same meshes so large and so small that products of coordinates leave the range of doubles. */
+/* The same meshes so large and so small that products of coordinates overflow or underflow. */
 static void test_query_segment_at_any_scale(void **state) {
     (void)state;
     static const double scales[] = {1e99, 1e90, 1e-160, 1e-300, 5e-324};
@@ -297,7 +297,7 @@ static void test_query_segment_at_any_scale(void **state) {
     test_context_free(context);
 }
 
-/* A query of one's own: whatever reaches below z = 1. */
+/* A custom query: everything that reaches below z = 1. */
 static bool reaches_below_one(void *user, const bvh_box *box) {
     (void)user;
     return box->lower[2] < 1;
@@ -339,13 +339,13 @@ static void test_order_is_a_permutation(void **state) {
     with_every_shape(check_order);
 }
 
-/* ---- distance: the least over the corners, the edges and the foot on the plane ---- */
+/* ---- distance: the least over corners, edges and the foot on the plane ---- */
 
 static long double dot(const long double a[3], const long double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Squared length of v minus its multiple of e, with the factor kept in [0, 1]. */
+/* Squared length of v minus its projection to e, with the factor clamped to [0, 1]. */
 static long double squared_from_edge(const long double v[3], const long double e[3]) {
     long double length = dot(e, e);
     long double t = length > 0 ? fminl(1, fmaxl(0, dot(v, e) / length)) : 0;
@@ -365,7 +365,7 @@ static double distance_by_definition(const shape *s, size_t face, const double p
     for (int k = 0; k < 3; k++)
         n[k] = e[0][(k + 1) % 3] * e[1][(k + 2) % 3] - e[0][(k + 2) % 3] * e[1][(k + 1) % 3];
     bool above = dot(n, n) > 0;
-    for (int i = 0; i < 3; i++) { /* on the inner side of every edge, seen along the normal? */
+    for (int i = 0; i < 3; i++) { /* on the inner side of every edge, in the plane? */
         long double side[3];
         for (int k = 0; k < 3; k++)
             side[k] = e[i][(k + 1) % 3] * v[i][(k + 2) % 3] - e[i][(k + 2) % 3] * v[i][(k + 1) % 3];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Filling plane loops: areas, edges and turns of the triangles against those of the loops, for
- * random rings with holes and islands in them, in random planes; and loops that make no sense. */
+/* Filling plane loops: areas, edges and orientation of the triangles against those of the loops,
+ * for random rings with holes and islands, in random planes; and invalid loops. */
 #include "support.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@ enum { POINTS_MOST = 1200, LOOPS_MOST = 90 };
 
 static const double TWO_PI = 6.283185307179586;
 
-/* Loops in a plane: (u, v) along two directions across the normal. */
+/* Loops in a plane: (u, v) along two directions orthogonal to the normal. */
 typedef struct drawing {
     double normal[3], along[2][3], origin[3];
     double points[3 * POINTS_MOST];
@@ -51,7 +51,7 @@ static drawing random_plane(starg_rng *rng) {
     return d;
 }
 
-/* One of the six sides of a cube: coordinates are as given, exactly. */
+/* One of the six sides of a cube: keeps coordinates exactly. */
 static drawing straight_plane(int side) {
     drawing d = {.point_count = 0};
     int axis = side % 3;
@@ -74,14 +74,14 @@ static void add_point(drawing *d, double u, double v) {
     d->point_count++;
 }
 
-/* Points since the last loop become one. */
+/* Makes a loop of the points since the last one. */
 static void end_loop(drawing *d, bool hole) {
     assert_true(d->loop_count < LOOPS_MOST);
     d->starts[++d->loop_count] = (uint32_t)d->point_count;
     d->outlines += !hole;
 }
 
-/* A loop about (u, v) between the radii 0.7 and 1 times `radius`. */
+/* A loop around (u, v) between the radii 0.7 and 1 times `radius`. */
 static void add_ring(drawing *d, starg_rng *rng, double u, double v, double radius, bool hole) {
     size_t count = 6 + (size_t)starg_rng_below(rng, 9);
     double phase = TWO_PI * starg_rng_unit(rng);
@@ -94,8 +94,9 @@ static void add_ring(drawing *d, starg_rng *rng, double u, double v, double radi
     end_loop(d, hole);
 }
 
-/* A ring, one to three rings of the other sense in it, and so on. Corners of a ring are less than
- * 94 degrees apart, so that a disc of 0.7 cos 47 degrees of the radius, at least, is inside. */
+/* A ring, one to three rings of the opposite orientation in it, and so on. Corners of a ring are
+ * less than 94 degrees apart, so it contains a disc of at least 0.7 cos 47 degrees of the
+ * radius. */
 static void add_nested(drawing *d, starg_rng *rng, double u, double v, double radius, int depth) {
     add_ring(d, rng, u, v, radius, depth % 2 == 1);
     if (depth == 3 || starg_rng_below(rng, 5) == 0)
@@ -113,7 +114,7 @@ static void add_nested(drawing *d, starg_rng *rng, double u, double v, double ra
     }
 }
 
-/* The order of loops, and where they start, are of no account. */
+/* The order of loops and their starts do not matter. */
 static void shuffle_loops(drawing *d, starg_rng *rng) {
     drawing old = *d;
     size_t order[LOOPS_MOST];
@@ -131,9 +132,9 @@ static void shuffle_loops(drawing *d, starg_rng *rng) {
     }
 }
 
-/* ---- what a filling must be ---- */
+/* ---- requirements of a filling ---- */
 
-/* Twice the area of a, b, c as seen against the normal. */
+/* Twice the area of a, b, c, seen against the normal. */
 static long double area_of(const drawing *d, uint32_t a, uint32_t b, uint32_t c) {
     const double *p = d->points + 3 * a, *q = d->points + 3 * b, *r = d->points + 3 * c;
     long double sum = 0;
@@ -154,8 +155,8 @@ static long double area_inside(const drawing *d) {
     return sum;
 }
 
-/* Every edge of a loop once more the right way than the other; all others as often either way.
- * `exactly`: no more than that. */
+/* Every edge of a loop occurs once more in its direction than in the other; all other edges equally
+ * often in both. `exactly`: no more than that. */
 static void check_edges(const drawing *d, const cap_indices *triangles, bool exactly) {
     size_t n = d->point_count;
     uint8_t *edges = calloc(n * n + 1, sizeof *edges);
@@ -193,8 +194,8 @@ static int turn(const drawing *d, uint32_t a, uint32_t b, uint32_t c) {
     return d->normal[axis] < 0 ? -sign : sign;
 }
 
-/* Triangles that all turn the right way and have the loops as their boundary fill what the loops
- * wind around; the area says how often. */
+/* Positively oriented triangles with the loops as boundary fill the interior of the loops; the area
+ * shows how often. */
 static void check_filling(const drawing *d, const cap_indices *triangles) {
     long double sum = 0, inside = area_inside(d);
     assert_int_equal(triangles->count % 3, 0);
@@ -281,8 +282,8 @@ static void add_steps(drawing *d, const int (*steps)[2], size_t count, bool hole
     end_loop(d, hole);
 }
 
-/* Teeth whose ends lie on two lines, above a bar with square holes and, in one of them, a square:
- * many corners on one line, exactly. */
+/* Teeth whose ends lie on two lines, above a bar with square holes and a square in one of them:
+ * many exactly collinear corners. */
 static void add_comb(drawing *d, int teeth, int hole_at) {
     static const int square[4][2] = {{0, 0}, {0, 4}, {4, 4}, {4, 0}};
     int width = 8 * teeth;
@@ -323,7 +324,7 @@ static void test_combs(void **state) {
 
 /* ---- walls ---- */
 
-/* A hall of 40 x 40 with slits in its floor and thin walls that stand free in it. */
+/* A hall of 40 x 40 with slits in its floor and free-standing thin walls. */
 typedef struct hall {
     int slit_count, slits[10][2]; /* place, height */
     int wall_count, walls[12][4]; /* x, y, width, height */
@@ -384,7 +385,7 @@ static void draw_hall(drawing *d, const hall *h, starg_rng *rng, double by) {
     }
 }
 
-/* The nearest corners do not see one another there; many are in one line, or nearly. */
+/* The nearest corners do not see one another there; many are collinear, or nearly so. */
 static void test_halls(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -402,7 +403,7 @@ static void test_halls(void **state) {
     test_context_free(context);
 }
 
-/* Corners in the middle of straight edges, as splits of facets leave them. */
+/* Corners in the middle of straight edges, as left by splits of facets. */
 static void test_straight_corners(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -428,7 +429,7 @@ static void test_straight_corners(void **state) {
     test_context_free(context);
 }
 
-/* A square is cut along its shorter diagonal, wherever the loop starts; a thin kite across. */
+/* A square is cut along its shorter diagonal, wherever the loop starts; so is a thin kite. */
 static void test_delaunay(void **state) {
     (void)state;
     static const int kite[4][2] = {{0, 0}, {10, -1}, {20, 0}, {10, 1}};
@@ -442,7 +443,7 @@ static void test_delaunay(void **state) {
                 d.corners[i] = (i + shift) % 4;
             assert_true(fill(context, &d, &triangles));
             check_filling(&d, &triangles);
-            for (size_t t = 0; t < 2; t++) { /* both have the short diagonal's ends */
+            for (size_t t = 0; t < 2; t++) { /* both contain the ends of the short diagonal */
                 const uint32_t *k = triangles.data + 3 * t;
                 assert_true(k[0] == 1 || k[1] == 1 || k[2] == 1);
                 assert_true(k[0] == 3 || k[1] == 3 || k[2] == 3);
@@ -456,8 +457,8 @@ static void test_delaunay(void **state) {
 
 enum { SIDE = 7, CELLS = 2 * (SIDE - 1) * (SIDE - 1) };
 
-/* A square of lattice triangles, some of which are to be filled: all loops, holes, islands, and
- * loops that meet in vertices that they can have. */
+/* A square of lattice triangles, some of which are to be filled: all possible loops, holes,
+ * islands, and loops that meet in vertices. */
 typedef struct patchwork {
     drawing d;
     uint32_t cells[CELLS][3];
@@ -475,7 +476,7 @@ static void add_cell(patchwork *w, size_t number, uint32_t a, uint32_t b, uint32
     w->full[number] = full;
 }
 
-/* Each edge of the lattice once, with what its two cells say. */
+/* Each edge of the lattice once, with the labels of its two cells. */
 static void find_edges(patchwork *w, starg_rng *rng, double more) {
     static int32_t turns[SIDE * SIDE][SIDE * SIDE];
     static bool there[SIDE * SIDE][SIDE * SIDE];
@@ -524,8 +525,9 @@ static bool is_inside(const drawing *d, const uint32_t *t, uint32_t a, uint32_t 
            turn(&point, t[2], t[0], last) > 0;
 }
 
-/* Every cell to be filled has its middle in one triangle, the others in none; areas add up; edges
- * of the graph at full cells are edges of triangles, and so are lone vertices amid them. */
+/* The centre of every filled cell lies in exactly one triangle, of the others in none; areas add
+ * up; edges of the graph at filled cells are edges of triangles, and so are isolated vertices
+ * inside. */
 static void check_patchwork(const patchwork *w, const cap_indices *triangles) {
     static bool edge[SIDE * SIDE][SIDE * SIDE], corner[SIDE * SIDE];
     long double wanted = 0, sum = 0;
@@ -588,7 +590,7 @@ static void test_plane_graphs(void **state) {
     test_context_free(context);
 }
 
-/* ---- what makes no sense ---- */
+/* ---- invalid loops ---- */
 
 static void test_refused(void **state) {
     (void)state;
@@ -603,20 +605,20 @@ static void test_refused(void **state) {
             drawing d = straight_plane(side);
             if (kind == 0) /* a hole alone */
                 add_steps(&d, hole, 4, true);
-            if (kind == 1) { /* a hole outside of everything */
+            if (kind == 1) { /* a hole outside everything */
                 add_steps(&d, square, 4, false);
                 add_steps(&d, away, 4, true);
             }
             if (kind == 2) /* edges cross */
                 add_steps(&d, bow, 4, false);
-            if (kind == 3) { /* all in one line */
+            if (kind == 3) { /* all collinear */
                 for (int i = 0; i < 4; i++)
                     add_point(&d, i, 0);
                 end_loop(&d, false);
             }
             assert_false(fill(context, &d, &triangles));
         }
-    /* nothing is filled by nothing */
+    /* an empty input has an empty filling */
     drawing none = straight_plane(0);
     triangles.count = 0;
     assert_true(fill(context, &none, &triangles));
@@ -625,8 +627,8 @@ static void test_refused(void **state) {
     test_context_free(context);
 }
 
-/* Any corners in any order, some of them the same, on a lattice or not: refused or filled with
- * triangles whose boundary is the loops. */
+/* Random corners in random order, some of them repeated, on or off a lattice: rejected, or filled
+ * with triangles whose boundary is the loops. */
 static void test_senseless(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -647,7 +649,7 @@ static void test_senseless(void **state) {
                               size * (starg_rng_unit(&rng) - 0.5));
             end_loop(&d, false);
         }
-        if (seed % 5 == 0) /* loops that meet in a vertex, or go through one twice */
+        if (seed % 5 == 0) /* loops that meet in a vertex, or pass one twice */
             d.corners[starg_rng_below(&rng, d.point_count)] =
                 (uint32_t)starg_rng_below(&rng, d.point_count);
         cap_indices triangles = {0};
@@ -665,7 +667,7 @@ static void test_senseless(void **state) {
     test_context_free(context);
 }
 
-/* Triangles that are there already stay. */
+/* Existing triangles stay. */
 static void test_appends(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures of tables and curves: what they show is read back from them. */
+/* Pictures of tables and curves: reads back what they show. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static int make_folder(void **state) {
 
 static int remove_folder(void **state) {
     (void)state;
-    return rmdir(folder); /* fails when a test has left anything */
+    return rmdir(folder); /* fails if a test has left anything */
 }
 
 static uint8_t *read_file(const char *name, size_t *size) {
@@ -47,7 +47,7 @@ static int paeth(int left, int above, int corner) {
     return a <= b && a <= c ? left : b <= c ? above : corner;
 }
 
-/* The grey levels of a PNG that has one IDAT chunk behind its header and Paeth rows only. */
+/* The grey levels of a PNG that has one IDAT chunk after its header and only Paeth rows. */
 static uint8_t *decode(const uint8_t *png, size_t side) {
     size_t stride = 3 * side + 1;
     uLongf size = stride * side;

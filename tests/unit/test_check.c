@@ -61,7 +61,7 @@ static void expect(const checked *c, starg_finding_kind kind, size_t count, star
     expect((C), (KIND), (COUNT), (ELEMENT), sizeof((uint64_t[]){__VA_ARGS__}) / sizeof(uint64_t),  \
            (const uint64_t[]){__VA_ARGS__})
 
-/* Asserts that nothing is found but the kinds in the mask. */
+/* Asserts that only the kinds in the mask are found. */
 static void expect_only(const checked *c, unsigned mask) {
     for (int kind = 0; kind < STARG_FINDING_KINDS; kind++)
         if (c->check->findings[kind].count != 0 && !(mask >> kind & 1))
@@ -108,7 +108,7 @@ static void test_genus(void **state) {
     assert_int_equal(c.check->genus, 4);
     checked_free(&c);
 
-    /* two rings apart */
+    /* two separate rings */
     shape pair = shape_cells("####.####", 3, 3, 1), other = shape_cells("####.####", 3, 3, 1);
     shape_append(&pair, &other, (const double[3]){9, 0, 0}, 0);
     shape_free(&other);
@@ -133,7 +133,7 @@ static void test_no_faces(void **state) {
     checked_free(&c);
 }
 
-/* ---- each kind by itself ---- */
+/* ---- one kind at a time ---- */
 
 static void test_open_edges(void **state) {
     (void)state;
@@ -218,8 +218,8 @@ static void test_repeated_corner(void **state) {
 
 static void test_degenerate_face(void **state) {
     (void)state;
-    /* face 0 2 1 of the tetrahedron is cut at 4, the middle of edge 1 2, which opens nothing: the
-     * flat face 1 2 4 closes it against face 1 2 3 */
+    /* face 0 2 1 of the tetrahedron is cut at 4, the midpoint of edge 1 2, without opening an edge:
+     * the flat face 1 2 4 closes the gap to face 1 2 3 */
     double vertices[15];
     memcpy(vertices, TETRAHEDRON, sizeof TETRAHEDRON);
     memcpy(vertices + 12, (const double[3]){2, 2, 0}, 3 * sizeof(double));
@@ -275,7 +275,7 @@ static void test_inward(void **state) {
     checked_free(&c);
 }
 
-/* Cubes of sides 9, 7, 5, 3 in one another: solid, cavity, solid, cavity. */
+/* Nested cubes of sides 9, 7, 5, 3: solid, cavity, solid, cavity. */
 static void nested(int turned, size_t inward, const uint64_t *first) {
     shape s = {0};
     for (int i = 0; i < 4; i++) {
@@ -328,7 +328,7 @@ static void test_overlapping_components(void **state) {
     checked_free(&c);
 }
 
-/* Shells whose sizes leave the range of doubles when multiplied are solids all the same. */
+/* Shells whose products of sizes overflow or underflow are still solids. */
 static void test_scales(void **state) {
     (void)state;
     static const double scales[] = {1e-320, 1e-300, 1e-120, 1e-60, 1e60, 1e90, 4e99};
@@ -345,7 +345,7 @@ static void test_scales(void **state) {
 
 /* ---- pairs ---- */
 
-/* Two triangles by themselves. */
+/* Two isolated triangles. */
 static void expect_pair(const double *second, size_t crossings, size_t contacts) {
     double vertices[18] = {0, 0, 0, 4, 0, 0, 0, 4, 0};
     memcpy(vertices + 9, second, 9 * sizeof(double));
@@ -357,16 +357,16 @@ static void expect_pair(const double *second, size_t crossings, size_t contacts)
 
 static void test_pairs(void **state) {
     (void)state;
-    expect_pair((const double[9]){1, 1, -1, 1, 1, 1, 9, 9, 0}, 1, 0); /* passes through       */
-    expect_pair((const double[9]){1, 1, 0, 5, 1, 0, 1, 5, 0}, 1, 0);  /* coplanar, overlaps   */
-    expect_pair((const double[9]){4, 4, 0, 4, 0, 0, 0, 4, 0}, 0, 1);  /* coplanar, same edge  */
-    expect_pair((const double[9]){4, 4, 0, 5, 4, 0, 4, 5, 0}, 0, 0);  /* coplanar, apart      */
+    expect_pair((const double[9]){1, 1, -1, 1, 1, 1, 9, 9, 0}, 1, 0); /* passes through */
+    expect_pair((const double[9]){1, 1, 0, 5, 1, 0, 1, 5, 0}, 1, 0);  /* coplanar, overlaps */
+    expect_pair((const double[9]){4, 4, 0, 4, 0, 0, 0, 4, 0}, 0, 1);  /* coplanar, same edge */
+    expect_pair((const double[9]){4, 4, 0, 5, 4, 0, 4, 5, 0}, 0, 0);  /* coplanar, apart */
     expect_pair((const double[9]){1, 1, 0, 1, 1, 3, 2, 2, 3}, 0, 1);  /* a corner on the face */
     expect_pair((const double[9]){1, 1, 0, 2, 1, 0, 2, 2, 3}, 0, 1);  /* an edge on the face: T */
     expect_pair((const double[9]){2, -1, 0, 2, 0, 0, 2, -1, 3}, 1,
                 0); /* an edge through a corner */
     expect_pair((const double[9]){2, 0, 0, 1, -1, 1, 3, -1, 1}, 0, 1); /* a corner on an edge */
-    expect_pair((const double[9]){4, 0, 0, 5, 0, 1, 5, 1, 1}, 0, 1);   /* corner to corner     */
+    expect_pair((const double[9]){4, 0, 0, 5, 0, 1, 5, 1, 1}, 0, 1);   /* corner to corner */
     expect_pair((const double[9]){1, 1, 0x1p-1074, 1, 1, 3, 2, 2, 3}, 0, 0);
     expect_pair((const double[9]){1, 1, -0x1p-1074, 1, 1, 3, 2, 2, 3}, 1, 0);
 }
@@ -407,7 +407,7 @@ static bool oracle_pair(const shape *s, size_t a, size_t b) {
     return shared == 3 || oracle_triangles_contact(p, q, shared);
 }
 
-/* Do the boxes of two faces meet? What does not is left to the oracle now and then only. */
+/* Do the boxes of two faces meet? If not, the oracle is asked only occasionally. */
 static bool boxes_meet(const shape *s, size_t a, size_t b) {
     for (int k = 0; k < 3; k++) {
         double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -422,8 +422,8 @@ static bool boxes_meet(const shape *s, size_t a, size_t b) {
     return true;
 }
 
-/* Of a face without area whose middle corner is shared the check says that it touches, the oracle
- * that it does not. Returns whether there is none, so that the counts had to be equal. */
+/* For a zero-area face whose middle corner is shared, the check reports contact and the oracle does
+ * not. Returns whether there is no such face, so that counts must be equal. */
 static bool check_against_oracle(shape *s) {
     size_t meeting = 0;
     uint8_t *marked = calloc(s->face_count, 1);
@@ -449,8 +449,8 @@ static bool check_against_oracle(shape *s) {
     return all_have_area;
 }
 
-/* Moves vertices off the positions of earlier ones: contact in a doubled position is contact for
- * the check, and none for the oracle, which knows positions only. */
+/* Moves vertices off the positions of earlier ones: contact in coincident vertices is contact for
+ * the check, but not for the oracle, which knows positions only. */
 static void part_equal(shape *s) {
     for (size_t i = 0; i < s->vertex_count; i++)
         for (size_t k = 0; k < i; k++)
@@ -458,7 +458,7 @@ static void part_equal(shape *s) {
                 s->vertices[3 * i + 2] += 0.25 + 0.001953125 * (double)i;
 }
 
-/* Positions on a coarse lattice, so that contacts of every kind abound. */
+/* Positions on a coarse lattice, with contacts of every kind. */
 static void test_random_lattice(void **state) {
     (void)state;
     size_t equal = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pieces that are star-shaped in two places at once, against their definition in rationals. */
+/* Pieces that are star-shaped in two embeddings at once, against their definition in rationals. */
 #include "support.h"
 
 #include <stdlib.h>
@@ -30,7 +30,7 @@ static starg_tetmesh *image_of(starg_context *context, const starg_tetmesh *mesh
     return image;
 }
 
-/* Sheared and stretched by powers of two: what is star-shaped stays so. */
+/* Sheared and stretched by powers of two: preserves star-shapedness. */
 static starg_tetmesh *shear(starg_context *context, const starg_tetmesh *mesh) {
     double *places = copy_places(mesh);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
@@ -52,7 +52,7 @@ static bool all_positive(const starg_tetmesh *mesh, const double *places) {
 }
 
 /* Vertices moved one by one wherever all tetrahedra stay positive. The random meshes have holes,
- * into which tetrahedra may run: then less far. */
+ * which tetrahedra may enter: then the moves are smaller. */
 static starg_tetmesh *shake(starg_context *context, const starg_tetmesh *mesh, uint64_t seed) {
     starg_tetmesh *image = NULL;
     for (double reach = 0.3; image == NULL; reach /= 2) {
@@ -128,8 +128,7 @@ static void test_random(void **state) {
     test_context_free(many);
 }
 
-/* A solid whose image is an affine copy needs no more pieces than alone; what is convex needs one.
- */
+/* A solid whose image is an affine copy needs no more pieces than alone; a convex one needs one. */
 static void test_affine(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The public call on problems with known answers, at its limits, and when things go wrong. */
+/* The public function on problems with known answers, at its limits, and with failures. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 #include "cover_oracle.h"
 #include "support.h"
 
-/* Seconds; a busy machine does not count. */
+/* Processor seconds, independent of load. */
 static double processor_time(void) {
     return (double)clock() / CLOCKS_PER_SEC;
 }
@@ -41,7 +41,7 @@ static starg_cover_problem problem_of(const starg_bits *bits) {
     return problem;
 }
 
-/* `copies` separate cycles of `length` rows; each column is held by two neighbours. */
+/* `copies` separate cycles of `length` rows; each column is in two adjacent ones. */
 static starg_bits *make_cycles(starg_context *context, size_t copies, size_t length) {
     starg_bits *bits = make_bits(context, copies * length, copies * length);
     for (size_t k = 0; k < copies; k++) {
@@ -186,7 +186,7 @@ static void refused_arguments(void **state) {
     test_context_free(context);
 }
 
-/* Sparse random columns: no reduction helps much and the linear relaxation is far off. */
+/* Sparse random columns: reductions hardly help and the linear relaxation is weak. */
 static starg_bits *make_hard(starg_context *context, size_t rows, size_t columns) {
     starg_bits *bits = make_bits(context, rows, columns);
     starg_rng rng = starg_rng_make(1, 20, rows);
@@ -214,7 +214,8 @@ static void limits_keep_the_bound(void **state) {
         starg_cover_free(cover);
     }
     size_t bound = 0;
-    for (double limit = 0.5; bound <= 5; limit *= 2) { /* until there is the time for the bound */
+    for (double limit = 0.5; bound <= 5;
+         limit *= 2) { /* until there is enough time for the bound */
         double start = processor_time();
         starg_context_set_time_limit(context, limit);
         test_ok(context, starg_cover_solve(context, &problem, NULL, &cover));
@@ -223,7 +224,7 @@ static void limits_keep_the_bound(void **state) {
         bound = cover->lower_bound;
         starg_cover_free(cover);
     }
-    starg_context_set_time_limit(context, 1e-9); /* over before it begins */
+    starg_context_set_time_limit(context, 1e-9); /* over before it starts */
     test_ok(context, starg_cover_solve(context, &problem, NULL, &cover));
     assert_true(cover->time_limited && cover->target_reached && !cover->optimal);
     assert_true(cover->count < 60);
@@ -296,7 +297,7 @@ static int solve_in_thread(void *argument) {
     return (int)starg_cover_solve(job->context, job->problem, NULL, &job->cover);
 }
 
-/* The solver library cannot do two solves at once; the callers need not know. */
+/* The solver library cannot run two solves at once; callers need not care. */
 static void two_solves_at_once(void **state) {
     (void)state;
     parallel_solve jobs[2];
@@ -323,7 +324,7 @@ static void two_solves_at_once(void **state) {
     test_context_free(context);
 }
 
-/* Points a file descriptor at `file`; returns a copy of what it was. */
+/* Redirects a file descriptor to `file`; returns a copy of the old one. */
 static int redirect(int descriptor, int file) {
     fflush(NULL);
     int old = dup(descriptor);
@@ -351,7 +352,7 @@ static void prints_nothing(void **state) {
     restore(STDOUT_FILENO, old_out);
     restore(STDERR_FILENO, old_err);
     test_ok(context, status);
-    assert_true(cover->nodes > 0 && cover->optimal); /* the solver library was at work */
+    assert_true(cover->nodes > 0 && cover->optimal); /* the solver library was used */
     assert_int_equal(lseek(fileno(sink), 0, SEEK_END), 0);
     fclose(sink);
     starg_cover_free(cover);
@@ -359,7 +360,7 @@ static void prints_nothing(void **state) {
     test_context_free(context);
 }
 
-/* Lets every allocation of a solve fail in turn; returns how many there were. */
+/* Makes every allocation of a solve fail in turn; returns their number. */
 static size_t fail_each(starg_context *context, size_t *left, const starg_cover_problem *problem,
                         starg_cover_method method) {
     starg_cover_options options;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The database: what is stored and found again, what is refused, and that nothing harms it. */
+/* The database: storing, finding, rejecting, and robustness. */
 #include "starguard/database.h"
 
 #include <sqlite3.h>
@@ -52,7 +52,7 @@ static int remove_folder(void **state) {
     for (size_t i = 0; i < MODELS; i++)
         unlink(path_of(names[i]));
     unlink(path_of("models.db"));
-    return rmdir(folder); /* fails when a test has left anything */
+    return rmdir(folder); /* fails if a test has left anything */
 }
 
 static starg_database *open_new(starg_context *context, const char *name) {
@@ -102,7 +102,7 @@ static void write_bytes(const char *path, const char *bytes, size_t size) {
     fclose(file);
 }
 
-/* A copy of a database of all models, which is made once. */
+/* A copy of a database of all models, which is created once. */
 static starg_database *open_copy(starg_context *context, const char *name) {
     starg_database *database = NULL;
     size_t size;
@@ -154,7 +154,7 @@ static void added_known_refused(void **state) {
     test_context_free(context);
 }
 
-/* What is stored are the signatures of the models, whatever the number of threads. */
+/* The stored numbers are the models' signatures, for any number of threads. */
 static void stored_signatures(void **state) {
     (void)state;
     starg_context *contexts[2] = {test_context(1), test_context(3)};
@@ -178,7 +178,7 @@ static void stored_signatures(void **state) {
             assert_memory_equal(a->signature->numbers, b->signature->numbers,
                                 8 * a->signature->count);
             if (i % STARG_SIGNATURE_KINDS != (size_t)k)
-                continue; /* each kind is made anew of a model or two */
+                continue; /* recomputes each kind for a model or two */
             test_ok(contexts[0], starg_mesh_read(contexts[0], a->path, &mesh));
             test_ok(contexts[0], starg_signature_create(contexts[0], mesh, kind, &fresh));
             assert_int_equal(a->vertices, starg_mesh_vertex_count(mesh));
@@ -198,7 +198,7 @@ static void stored_signatures(void **state) {
     unlink(path_of("three.db"));
 }
 
-/* Signatures of another version are made anew by adding the file again. */
+/* Adding the file again recomputes signatures of another version. */
 static void run_sql(const char *path, const char *sql) {
     sqlite3 *handle = NULL;
     assert_int_equal(sqlite3_open(path, &handle), SQLITE_OK);
@@ -240,7 +240,7 @@ static void old_and_damaged_signatures(void **state) {
     test_context_free(context);
 }
 
-/* What would run when tables are read or changed is not opened. */
+/* A database with code that would run on reading or changing tables is not opened. */
 static void views_and_triggers(void **state) {
     (void)state;
     static const char *const harms[] = {
@@ -326,7 +326,7 @@ static void removal(void **state) {
     test_context_free(context);
 }
 
-/* ---- files that are no databases ---- */
+/* ---- files that are not databases ---- */
 
 static void expect_refusal(const char *name, starg_status expected, const char *phrase) {
     starg_context *context = test_context(1);
@@ -370,7 +370,7 @@ static void no_databases(void **state) {
     test_context_free(context);
 }
 
-/* Bytes of a database overwritten at random: statuses, no crash. */
+/* Randomly overwritten bytes of a database: statuses, no crash. */
 static void damaged_files(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -396,7 +396,7 @@ static void damaged_files(void **state) {
         }
         starg_database_close(database);
     }
-    assert_true(readable > 5); /* some hit nothing that matters */
+    assert_true(readable > 5); /* some hit nothing relevant */
     free(bytes);
     free(harmed);
     unlink(path_of("d.db"));

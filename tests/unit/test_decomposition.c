@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What is told about pieces, for random labels and guards on random tetrahedra, against brute force
- * in rationals; what is written is what was told. */
+/* Reports about pieces, for random labels and guards on random tetrahedra, against brute force in
+ * rationals; files contain what was reported. */
 #include "support.h"
 
 #include <jansson.h>
@@ -24,7 +24,8 @@
 
 /* ---- random input ---- */
 
-/* A guard in the middle of a tetrahedron, of one of its faces or edges, at a vertex, or far off. */
+/* A guard at the centre of a tetrahedron, of one of its faces or edges, at a vertex, or far
+ * away. */
 static void random_guard(starg_rng *rng, const starg_tetmesh *mesh, size_t tetrahedron,
                          double out[3]) {
     int corners = (int)starg_rng_below(rng, 6);
@@ -38,7 +39,7 @@ static void random_guard(starg_rng *rng, const starg_tetmesh *mesh, size_t tetra
         out[0] += 2 * fabs(tetmesh_corner(mesh, tetrahedron, 0)[0]) + 1e-3;
 }
 
-/* Labels that grow from random tetrahedra, or that are random; every label occurs. */
+/* Labels grown from random tetrahedra, or random ones; every label occurs. */
 static int32_t *random_labels(starg_context *context, starg_rng *rng, const starg_tetmesh *mesh,
                               size_t pieces, double *guards) {
     int32_t *labels = starg_allocate(context, mesh->count, sizeof *labels);
@@ -97,13 +98,13 @@ static void test_random(void **state) {
         others += d->piece_count - d->strictly_star;
         starg_decomposition_free(context, d);
     }
-    assert_true(stars > 150); /* both kinds were met */
+    assert_true(stars > 150); /* both kinds occurred */
     assert_true(others > 150);
     starg_decomposition_free(context, NULL);
     test_context_free(context);
 }
 
-/* Lengths, areas and volumes that doubles can hold come out right at any size. */
+/* Lengths, areas and volumes that fit doubles are correct at any scale. */
 static void test_scales(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -116,7 +117,7 @@ static void test_scales(void **state) {
             assert_int_equal(d->piece_count, unit->piece_count);
             assert_int_equal(d->contact_count, unit->contact_count);
             for (size_t p = 0; p < d->piece_count; p++) {
-                /* guards that were moved off by a fixed length are none of that */
+                /* guards displaced by a fixed length are excluded */
                 if (fabs(d->pieces[p].guard[0] - s * unit->pieces[p].guard[0]) > 0)
                     continue;
                 assert_int_equal(d->pieces[p].star, unit->pieces[p].star);
@@ -144,7 +145,7 @@ static void check_surface(starg_context *context, const starg_decomposition *d,
         assert_true(faces[i] >= *next_vertex); /* no vertex of an earlier piece */
         most = faces[i] > most ? faces[i] : most;
     }
-    /* every edge as often one way as the other */
+    /* every edge equally often in both directions */
     for (size_t i = 0; i < 3 * count; i++) {
         uint32_t a = faces[i], b = faces[i % 3 == 2 ? i - 2 : i + 1];
         int balance = 0;
@@ -264,7 +265,7 @@ static void test_files(void **state) {
     test_context_free(context);
 }
 
-/* What is read of both files is written as the same bytes. */
+/* Reading both files and writing them again gives the same bytes. */
 static void check_reread(starg_context *context, const char *grid, const char *report,
                          bool binary) {
     starg_decomposition *d = NULL;
@@ -288,7 +289,7 @@ static void check_reread(starg_context *context, const char *grid, const char *r
     starg_decomposition_free(context, d);
 }
 
-/* Any result at any size, a model of tetrahedra or a surface, kept or approximated. */
+/* Any result at any scale, from tetrahedra or a surface, kept or approximated. */
 static void test_read_back(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -315,8 +316,7 @@ static void test_read_back(void **state) {
     test_context_free(context);
 }
 
-/* A pair of files that are each right but not of one decomposition, and reports that do not agree
- * with themselves. */
+/* Pairs of files that are valid alone but do not match, and inconsistent reports. */
 static void test_bad_pairs(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -422,7 +422,7 @@ static void test_arguments(void **state) {
 
 /* ---- memory ---- */
 
-/* Everything in one go; true when the ration was enough. */
+/* Everything in one go; true if the ration was enough. */
 static bool run_rationed(size_t ration, const char *report) {
     size_t left = SIZE_MAX;
     starg_context *context = test_scarce_context(1, &left);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Delaunay tetrahedra against the definition: no point strictly inside a sphere, and the volumes
- * add up to that of the hull (as found by a second triangulation in another order). */
+ * add up to that of the hull (computed by a second triangulation in another order). */
 #include "support.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static double volume_of(const delaunay *d, const double *points) {
 }
 
 /* Every inner face must have two tetrahedra, on opposite sides: with positive volumes and empty
- * spheres this makes a tiling of the hull. */
+ * spheres these tile the hull. */
 static void check_faces(const delaunay *d, size_t count) {
     size_t faces = 4 * d->count;
     uint64_t *keys = malloc(faces * sizeof *keys);
@@ -68,8 +68,8 @@ static void check_faces(const delaunay *d, size_t count) {
     free(keys);
 }
 
-/* Neighbours name each other, share the three points of the face between them, and nothing lies
- * beyond exactly those faces that one tetrahedron alone has. */
+/* Neighbours are mutual and share the three points of their common face, and exactly the faces of a
+ * single tetrahedron have no neighbour. */
 static void check_neighbours(const delaunay *d) {
     for (uint32_t t = 0; t < d->count; t++)
         for (int k = 0; k < 4; k++) {
@@ -102,7 +102,7 @@ static void run(starg_context *context, const double *points, size_t count, doub
     delaunay_free(d);
 }
 
-/* Lattice points are cospherical, coplanar and doubled all over; the corners fix the hull. */
+/* Lattice points are often cospherical, coplanar or coincident; the corners fix the hull. */
 static void test_lattice(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -134,7 +134,7 @@ static void test_random(void **state) {
     test_context_free(context);
 }
 
-/* All on one sphere, as rounding lets them be. */
+/* All on one sphere, up to rounding. */
 static void test_sphere(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -162,12 +162,12 @@ static void test_flat(void **state) {
     test_context_free(context);
 }
 
-/* A copy and what it was made from go on by themselves, and both end as if there were no other. */
+/* A copy and its original continue independently, and both end as if the other did not exist. */
 static void test_copy(void **state) {
     (void)state;
     enum { FIRST = 25, COUNT = 50 };
     starg_context *context = test_context(1);
-    double points[2][3 * COUNT]; /* the same at first, then not */
+    double points[2][3 * COUNT]; /* equal at first, later not */
     starg_rng rng = starg_rng_make(7, 3, 0);
     for (size_t i = 0; i < 3 * COUNT; i++) {
         points[0][i] = points[1][i] = (double)starg_rng_below(&rng, 6);

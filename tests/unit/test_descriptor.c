@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Descriptors: distances in closed form, files there and back and broken, reconstruction. */
+/* Descriptors: distances in closed form, files read back and broken, reconstruction. */
 #include "starguard/descriptor.h"
 
 #include <math.h>
@@ -28,7 +28,7 @@ static double length(const double a[3]) {
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-/* Unit vectors whose sum, and whose products of two coordinates, are those of the whole sphere. */
+/* Unit vectors whose sum and second moments are those of the whole sphere. */
 static void directions_cover_the_sphere(void **state) {
     (void)state;
     const size_t counts[] = {12, 100, 256, 4096};
@@ -52,7 +52,7 @@ static void directions_cover_the_sphere(void **state) {
     }
 }
 
-/* From inside of a box the boundary is where the ray leaves the first of the six planes. */
+/* Inside a box the boundary is where the ray meets the first of the six planes. */
 static void distances_in_a_box(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -78,8 +78,8 @@ static void distances_in_a_box(void **state) {
     test_context_free(context);
 }
 
-/* Volumes sum to that of the model, every distance ends on the surface with nothing in between that
- * is nearer along the ray, and gates lie in the box of the model. */
+/* Volumes sum to that of the model, every distance ends at the first surface point along the ray,
+ * and gates lie in the box of the model. */
 static void pieces_of_figures(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -109,8 +109,8 @@ static void pieces_of_figures(void **state) {
     test_context_free(context);
 }
 
-/* More directions, and the surface is known more closely: the gaps between points fall with the
- * root of their number. */
+/* More directions sample the surface more densely: gaps between points fall with the square root of
+ * their number. */
 static void reconstruction_gets_closer(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -130,11 +130,10 @@ static void reconstruction_gets_closer(void **state) {
     test_context_free(context);
 }
 
-/* ---- what does not depend on guards ---- */
+/* ---- parts that do not depend on guards ---- */
 
-/* From points of a ball of radius 1, even in its volume, the boundary is 3/4 away on average. Its
- * width is the same all over, so that the shell has the spectrum of the sphere: l (l + 1) times 4
- * pi, 2 l + 1 times each. */
+/* From points uniform in a unit ball, the boundary is 3/4 away on average. The shell has the
+ * spectrum of the sphere: l (l + 1) times 4 pi, 2 l + 1 times each. */
 static void views_and_spectra_of_a_ball(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -155,8 +154,8 @@ static void views_and_spectra_of_a_ball(void **state) {
             double expected = 4 * 3.14159265358979323846 * (double)(l * (l + 1));
             assert_true(fabs(d->surface_spectrum[i] / expected - 1) < 0.01);
         }
-    /* By the addition theorem vibrations of any degree are equally strong all over; what is above
-     * energies of the fifth one is cut off within the sixth. */
+    /* By the addition theorem, modes of any degree are equally strong everywhere; anything above
+     * the energies of the fifth one is cut off within the sixth. */
     for (size_t e = 0; e < STARG_DESCRIPTOR_ENERGIES - 4; e++)
         for (size_t i = 0; i < STARG_DESCRIPTOR_SPREAD; i++)
             assert_true(fabs(d->wave_kernel[e][i] - 1) < 0.05);
@@ -165,8 +164,7 @@ static void views_and_spectra_of_a_ball(void **state) {
     test_context_free(context);
 }
 
-/* A square bar of length 4 QUARTER, twice as thick in its outer quarters as between them, with
- * pointed ends. */
+/* A square bar of length 4 QUARTER, twice as thick in its outer quarters, with pointed ends. */
 static shape dumbbell(void) {
     enum { QUARTER = 24, RINGS = 4 * QUARTER + 1, RING = 4 };
     shape s = {.vertex_count = RING * RINGS + 2, .face_count = 2 * RING * RINGS};
@@ -198,9 +196,9 @@ static shape dumbbell(void) {
     return s;
 }
 
-/* Slow modes of a bar are those of a line that holds and conducts in proportion to what counts: the
- * perimeter. With thick quarters at the ends, q being what counts in the middle by what counts
- * there, the first mode has the wave number 2 atan(sqrt q), the second one pi, in units of half the
+/* Slow modes of a bar are those of a one-dimensional one with mass and stiffness in proportion to
+ * the perimeter. With thick quarters at the ends, and q the ratio of the perimeters of middle to
+ * ends, the first mode has wave number 2 atan(sqrt q), the second one pi, in units of half the
  * length. */
 static void spectra_of_a_dumbbell(void **state) {
     (void)state;
@@ -225,7 +223,7 @@ static const char *scratch_path(void) {
     return path;
 }
 
-/* Its text; the caller frees it. */
+/* The file's text; the caller frees it. */
 static char *text_of(starg_context *context, const starg_descriptor *d, size_t *size) {
     test_ok(context, starg_descriptor_write(context, d, "models/a.off", scratch_path()));
     FILE *file = fopen(scratch_path(), "rb");
@@ -276,7 +274,7 @@ static void there_and_back(void **state) {
     test_context_free(context);
 }
 
-/* The first occurrence of a piece of text replaced by another. */
+/* Replaces the first occurrence of a text. */
 static char *replaced(const char *text, const char *old, const char *new) {
     const char *place = strstr(text, old);
     assert_non_null(place);
@@ -288,7 +286,7 @@ static char *replaced(const char *text, const char *old, const char *new) {
     return out;
 }
 
-/* Files of version 3 had a spectrum more. */
+/* Files of version 3 had one more spectrum. */
 static void older_files(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -373,7 +371,7 @@ static void broken_files(void **state) {
     test_context_free(context);
 }
 
-/* ---- what may go wrong ---- */
+/* ---- failures ---- */
 
 static void refused(void **state) {
     (void)state;
@@ -429,7 +427,7 @@ static void same_on_any_threads(void **state) {
     test_context_free(four);
 }
 
-/* Everything after the decomposition, whose memory tests are its own. */
+/* Everything after the decomposition, which has its own memory tests. */
 static void memory_may_give_out(void **state) {
     (void)state;
     size_t left = SIZE_MAX, size, failures = 0;

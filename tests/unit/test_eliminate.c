@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Piece elimination: fans of triangles at random and those that are found, against brute force and
- * in rationals (partition_oracle.h). */
+/* Piece elimination: random and computed fans of triangles, against brute force and in rationals
+ * (partition_oracle.h). */
 #include "support.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@ enum { AROUND_MOST = 400 };
 
 static const double MARGIN = 4e-6, SEARCH_MARGIN = 5e-6;
 
-/* Pieces that have a facet in common with some of `pieces`, in the order of their numbers. */
+/* Pieces that share a facet with one of `pieces`, by number. */
 static size_t find_around(const partition *p, const uint32_t *pieces, size_t count, uint32_t *out) {
     size_t found = 0;
     for (uint32_t other = 0; other < p->pieces.count; other++) {
@@ -41,7 +41,7 @@ static double volume_of_all(const partition *p) {
 
 /* ---- fans ---- */
 
-/* All facets of a piece to takers by chance, about its guard. */
+/* Assigns all facets of a piece to random takers, as a fan from its guard. */
 static fan_plan random_fan(const partition *p, uint32_t number, starg_rng *rng) {
     starg_status status = STARG_OK;
     uint32_t around[AROUND_MOST];
@@ -62,7 +62,7 @@ done:
     return plan;
 }
 
-/* What each taker gets, by tetrahedra. */
+/* The volume that each taker gets, by tetrahedra. */
 static void volumes_taken(const partition *p, const fan_plan *plan, double *out) {
     for (size_t i = 0; i < plan->taker_count; i++)
         out[i] = 0;
@@ -131,7 +131,7 @@ static void check_plan(const partition *p, const eliminate_task *task, const fan
         assert_true(plan->takes.data[i] < plan->taker_count);
 }
 
-/* Eliminates what it can, piece after piece; the number of pieces saved. */
+/* Eliminates what it can, piece by piece; returns the number of pieces saved. */
 static size_t eliminate_all(partition *p, size_t size, size_t kept, uint64_t seed) {
     region_scratch scratch = {.context = p->context};
     partition first = partition_oracle_copy(p);
@@ -176,7 +176,7 @@ static size_t eliminate_all(partition *p, size_t size, size_t kept, uint64_t see
     return carried_out;
 }
 
-/* So many pieces made so many. */
+/* Numbers of pieces, before and after. */
 static const size_t SIZES[4][2] = {{1, 0}, {1, 1}, {2, 1}, {2, 0}};
 
 static void test_samples(void **state) {
@@ -195,7 +195,7 @@ static void test_samples(void **state) {
     test_context_free(context);
 }
 
-/* Tetrahedra with nothing in common but faces: most have neighbours that can take them. */
+/* Tetrahedra that share only faces: most have neighbours that can take them. */
 static void test_random_cells(void **state) {
     (void)state;
     static const size_t least[4] = {100, 3, 3, 0}; /* moves must make large pieces larger */

@@ -77,7 +77,7 @@ static void expect_nearest(const mpq_t x, double rounded) {
     mpq_clears(error, other, (mpq_ptr)NULL);
 }
 
-/* The point lies in these planes, is rounded well, and on the right side of another plane. */
+/* The point lies in these planes, is rounded correctly, and on the right side of another plane. */
 static void expect_point(const exact_point *point, double (*corner)[3], int planes, int scale) {
     mpq_t p[3];
     for (int k = 0; k < 3; k++) {
@@ -153,8 +153,8 @@ static int turn_of(const drawing *d, uint32_t a, uint32_t b, uint32_t c) {
     return exact_points_turn(&d->set, a, b, c, 0, 1);
 }
 
-/* All triangles turn left, twins are mutual, the area is that of the enclosing triangle (their
- * number is what it must be), and no edge crosses a segment. */
+/* All triangles are counter-clockwise, twins are mutual, the area is that of the enclosing
+ * triangle, their number is correct, and no edge crosses a segment. */
 static void expect_triangulation(const drawing *d) {
     const triangulation *t = &d->t;
     size_t triangles = t->corner.count / 3, points = t->used.count;
@@ -196,7 +196,7 @@ static void draw(starg_context *context, uint64_t round) {
             d.point[k] = add_point(&d, d.end[k]);
             test_ok(context, triangulation_insert(&d.t, d.point[k]));
         }
-        /* by turns a line through its ends and the upright plane through it */
+        /* alternately a line through its ends and the vertical plane through it */
         memcpy(d.above[i], (const double[]){d.end[2 * i][0], d.end[2 * i][1], 1},
                sizeof d.above[i]);
         triangulation_carrier carrier = {

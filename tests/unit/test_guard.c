@@ -78,7 +78,7 @@ static void test_options(void **state) {
     assert_int_equal(one->count, 1);
     assert_true(one->coverage_area <= one->area_bound * (1 + 1e-9));
     assert_true(one->area_bound < 1);
-    options.redundancy = 3; /* some faces may be seen by one candidate only; it alone counts then */
+    options.redundancy = 3; /* some faces may be seen by a single candidate, which then suffices */
     starg_guards *few = test_guard(context, solid, &options);
     assert_true(few->count <= 1 && few->area_bound == 1);
     starg_guards_free(context, few);
@@ -139,7 +139,7 @@ static char *read_text(const char *path, long *size) {
     return text;
 }
 
-/* Same bytes at any thread count, and the file gives back what was written. */
+/* Same bytes for any number of threads, and the file reads back what was written. */
 static void test_file(void **state) {
     (void)state;
     char path[2][64], *text[2];
@@ -183,7 +183,7 @@ static void test_file(void **state) {
     free(text[1]);
 }
 
-/* The nodes of a skeleton are points, whichever format it is written in. */
+/* The nodes of a skeleton are used as points, whichever format it is written in. */
 static void test_skeletons_are_points(void **state) {
     static const char *const extensions[] = {"obj", "cg", "vtk"};
     (void)state;
@@ -208,8 +208,8 @@ static void test_skeletons_are_points(void **state) {
     test_context_free(context);
 }
 
-/* A line of too many numbers is told by its number; six are a position and a direction, and all
- * lines have as many. */
+/* A line with too many numbers is reported by its number; six numbers are a position and a
+ * direction, and all lines have equally many. */
 static void test_lines_of_points(void **state) {
     static const struct {
         const char *text, *says;
@@ -244,7 +244,7 @@ static void test_lines_of_points(void **state) {
     test_context_free(context);
 }
 
-/* Every change to a good file that makes it bad is told, and none crashes. */
+/* Every change that invalidates a good file is reported, and none crashes. */
 static void test_bad_files(void **state) {
     static const char good[] =
         "{\"format\":\"starguard-guards\",\"version\":1,"
@@ -327,7 +327,7 @@ static void test_bad_options(void **state) {
     test_context_free(context);
 }
 
-/* An allocator that fails at the n-th call, for every n: right status, nothing lost. */
+/* An allocator that fails at the n-th call, for every n: correct status, no leaks. */
 typedef struct failing {
     size_t calls, fail_at;
 } failing;
@@ -376,8 +376,8 @@ static void test_memory(void **state) {
     test_context_free(plain);
 }
 
-/* Guards that stand already, in any order and twice: what they see is told, and verifies. A point
- * that is not inside is refused. */
+/* Given guards, in any order and repeated: the result reports what they see, and verifies. A point
+ * that is not inside is rejected. */
 static void test_given_guards(void **state) {
     (void)state;
     starg_context *context = test_context(2);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* GUARDS.json that is read and written again: nothing is lost, made up or cut off. */
+/* Reading and rewriting GUARDS.json: nothing is lost, invented or truncated. */
 #include "support.h"
 
 #include <stdio.h>
@@ -34,7 +34,8 @@ static starg_guards *read_file(starg_context *context, const file_text *file) {
     return guards;
 }
 
-/* Written again, and that read and written once more: the same; free with starg_text_free. */
+/* Writes it again, reads that and writes once more: both texts are equal; free with
+ * starg_text_free. */
 static char *rewrite(starg_context *context, const file_text *file) {
     char *text, *again;
     size_t size;
@@ -52,7 +53,7 @@ static char *rewrite(starg_context *context, const file_text *file) {
 static const char ILP[] = "\"method\":\"ilp\",\"redundancy\":1,\"cone\":null";
 static const char CURVE[] = ",\"curve\":[[0.75,0.7]]";
 
-/* Writing crashed. */
+/* Regression: writing crashed. */
 static void test_file_without_curve(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -66,7 +67,7 @@ static void test_file_without_curve(void **state) {
     test_context_free(context);
 }
 
-/* They were dropped, and -1 was written as the step. */
+/* Regression: they were dropped, and the step was written as -1. */
 static void test_level_options_survive(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -89,7 +90,7 @@ static void test_level_options_survive(void **state) {
     test_context_free(context);
 }
 
-/* A file that does not tell the step tells none afterwards; null stands for quarters. */
+/* A file without the step stays without it; null means quarters. */
 static void test_missing_step(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -105,7 +106,7 @@ static void test_missing_step(void **state) {
     test_context_free(context);
 }
 
-/* Casts cut them off, and a cone that is no number was taken for 360. */
+/* Regression: casts truncated them, and a cone that is not a number became 360. */
 static void test_numbers_out_of_range(void **state) {
     static const struct {
         const char *from, *to, *key;

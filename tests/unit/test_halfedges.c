@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The halfedge mesh under random collapses, flips and splits, beside a list of oriented triangles
- * on which each of them is done by its definition. */
+/* Halfedge mesh under random collapses, flips and splits, compared with a list of oriented
+ * triangles that implements each by its definition. */
 #include "mesh/halfedges.h"
 
 #include <stdlib.h>
@@ -16,7 +16,7 @@ typedef struct triangle_list {
     size_t count;
 } triangle_list;
 
-/* From its lowest corner on. */
+/* Rotates to start at the lowest corner. */
 static void canonical(uint32_t t[3]) {
     while (t[0] > t[1] || t[0] > t[2]) {
         uint32_t first = t[0];
@@ -74,7 +74,7 @@ static bool list_has_edge(const triangle_list *list, uint32_t v, uint32_t w) {
     return false;
 }
 
-/* Vertices with an edge to both; the link condition wants two, and no tetrahedron. */
+/* Vertices joined to both; the link condition requires two, and no tetrahedron. */
 static bool may_collapse(const triangle_list *list, uint32_t a, uint32_t b, size_t vertices) {
     size_t common = 0, degree = 0;
     for (uint32_t v = 0; v < vertices; v++) {
@@ -85,7 +85,7 @@ static bool may_collapse(const triangle_list *list, uint32_t a, uint32_t b, size
     return common == 2 && degree > 6;
 }
 
-/* The living faces are those of the list; twins, rings and leaving halfedges say the same. */
+/* The living faces are those of the list; twins, rings and leaving halfedges are consistent. */
 static void expect_same(const mesh_halfedges *m, const triangle_list *list) {
     static triangle_list found, sorted;
     static uint32_t degree[MOST];
@@ -233,7 +233,7 @@ static void test_random(void **state) {
     test_context_free(context);
 }
 
-/* What is left, numbered without gaps, is a closed mesh of the same genus. */
+/* The rest, numbered without gaps, is a closed mesh of the same genus. */
 static void test_compact(void **state) {
     (void)state;
     static triangle_list list;

@@ -50,7 +50,7 @@ static void test_segment(void **state) {
     for_all(check_segment);
 }
 
-/* The end q at a corner, on an edge or inside of the triangle: contact in q alone is none. */
+/* The end q at a corner, on an edge or inside the triangle: touching in q alone does not count. */
 static bool check_segment_end(point_family family, uint64_t round, points x) {
     static const double weights[4][3] = {{1, 0, 0}, {0.5, 0.5, 0}, {0.25, 0.25, 0.5}, {0, 1, 0}};
     const double *w = weights[round % 4];
@@ -88,7 +88,7 @@ static void test_point(void **state) {
 }
 
 static bool check_segments(point_family family, uint64_t round, points x) {
-    for (int k = 0; k < 3 && round % 2 == 0; k++) /* make them cross, as far as doubles can */
+    for (int k = 0; k < 3 && round % 2 == 0; k++) /* make them cross, as far as doubles allow */
         x[3][k] = x[0][k] + 0.5 * (x[1][k] - x[0][k]) - (x[2][k] - x[0][k]);
     bool expected = oracle_segments_meet(x[0], x[1], x[2], x[3]);
     bool found = segments_meet(x[0], x[1], x[2], x[3]);
@@ -108,8 +108,8 @@ static bool check_triangles(point_family family, uint64_t round, points x) {
     int shared = (int)(round % 3);
     const double *s[3] = {x[0], x[1], x[2]};
     const double *t[3] = {shared > 0 ? x[0] : x[3], shared > 1 ? x[1] : x[4], x[5]};
-    /* A shared corner of a triangle without area: its other corners may coincide with it, and
-     * whether that is a contact is for the check of the mesh, which names such faces anyway. */
+    /* A shared corner of a zero-area triangle may coincide with its other corners; whether that is
+     * a contact is up to the mesh check, which reports such faces anyway. */
     if (shared > 0 && (collinear(s[0], s[1], s[2]) || collinear(t[0], t[1], t[2])))
         return false;
     bool expected = oracle_triangles_contact(s, t, shared);
@@ -127,7 +127,7 @@ static void test_triangles(void **state) {
     for_all(check_triangles);
 }
 
-/* What the kinds of contact mean, on input where it is plain to see. */
+/* The meaning of the kinds of contact, on obvious input. */
 static void test_contact_kinds(void **state) {
     (void)state;
     const double a[3] = {0, 0, 0}, b[3] = {4, 0, 0}, c[3] = {0, 4, 0};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The k-d tree against looking at every point. */
+/* The k-d tree against brute force. */
 #include "geometry/kd_tree.h"
 
 #include "core/rng.h"
@@ -24,7 +24,7 @@ static size_t nearest_of_all(const double *points, size_t count, int dimension, 
     return best;
 }
 
-/* A coordinate: anywhere, or on a small lattice, where many are equal. */
+/* A coordinate: arbitrary, or on a small lattice, where many are equal. */
 static double random_real(starg_rng *rng, bool lattice) {
     return lattice ? (double)starg_rng_below(rng, 4) : starg_rng_unit(rng);
 }
@@ -60,7 +60,7 @@ static void memory_may_give_out(void **state) {
     size_t left = 0;
     const double point[3] = {1, 2, 3};
     kd_tree tree;
-    left = 2; /* what the context itself takes */
+    left = 2; /* the context's own */
     starg_context *context = test_scarce_context(1, &left);
     left = 0;
     assert_int_equal(kd_tree_create(context, point, 1, 3, &tree), STARG_ERROR_MEMORY);

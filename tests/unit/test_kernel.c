@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Kernels against rationals: all vertices of the arrangement of the face planes that lie behind no
+/* Kernels against rationals: all vertices of the arrangement of the face planes that are beyond no
  * plane. The kernel has an interior exactly if their mean is strictly on the inner side of every
  * face. */
 #include "support.h"
@@ -69,7 +69,7 @@ static void determinant(mpq_t out, mpq_t *const c[3]) {
     mpq_clear(t);
 }
 
-/* Cramer's rule; false when the planes have no single common point. */
+/* Cramer's rule; false if the planes have no unique common point. */
 static bool common_point(plane *planes[3], mpq_t x[3]) {
     mpq_t m[4][3], det;
     mpq_init(det);
@@ -218,8 +218,8 @@ static starg_kernel_verdict check_shape(starg_context *context, const shape *s) 
 
 /* ---- tests ---- */
 
-/* Cells at random are lattice shapes with coplanar and opposite faces all over. Shapes whose edges
- * do not cancel do not come up: the surface of cells is closed. */
+/* Random cells are lattice shapes with many coplanar and opposite faces. The surface of cells is
+ * always closed. */
 static void test_cells(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -240,7 +240,7 @@ static void test_cells(void **state) {
     test_context_free(context);
 }
 
-/* Random octahedra subdivided once: star-shaped when the radii allow for it. */
+/* Random octahedra subdivided once: star-shaped if the radii allow it. */
 static void test_blobs(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -262,7 +262,7 @@ static void test_blobs(void **state) {
     test_context_free(context);
 }
 
-/* Known kernels: the centre and the radius are what they must be. */
+/* Known kernels: checks centre and radius. */
 static void test_known(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -284,8 +284,8 @@ static void test_known(void **state) {
     test_context_free(context);
 }
 
-/* Steps of cells: planes of walls that pass through one another's edges, so that what is left is
- * flat, a line, or nothing. */
+/* Steps of cells: planes of walls that meet other walls' edges, so that the kernel is flat, a line,
+ * or empty. */
 static void test_empty_interior(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -335,7 +335,7 @@ static void test_winding(void **state) {
     test_context_free(context);
 }
 
-/* A vertex on the edge of its neighbours makes a face without area. */
+/* A vertex on the edge of its neighbours makes a zero-area face. */
 static void test_flat_face(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -368,7 +368,8 @@ static void test_errors(void **state) {
     assert_int_equal(starg_kernel(context, none, NULL, &result), STARG_ERROR_MESH);
     starg_mesh_free(open);
     starg_mesh_free(none);
-    s.faces[0] ^= s.faces[1]; /* one face turned: every edge has two faces, three do not match */
+    s.faces[0] ^=
+        s.faces[1]; /* one reversed face: every edge has two faces, three of them inconsistent */
     s.faces[1] ^= s.faces[0];
     s.faces[0] ^= s.faces[1];
     open = test_mesh_of(context, &s);
@@ -382,7 +383,7 @@ static void test_errors(void **state) {
     test_context_free(context);
 }
 
-/* Proofs of emptiness against sets that have a common point, or none. */
+/* Proofs of emptiness for sets with and without a common point. */
 static void test_half_spaces(void **state) {
     (void)state;
     const double o[3] = {0, 0, 0}, x[3] = {1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
@@ -395,7 +396,8 @@ static void test_half_spaces(void **state) {
     assert_false(half_spaces_apart((half_space[]){above, above}, 2));
     assert_false(half_spaces_apart((half_space[]){above}, 1));
     assert_true(half_spaces_apart((half_space[]){{o, x, x}}, 1));
-    half_space corner[4] = {{o, x, y}, {o, y, z}, {o, z, x}, {x, z, y}}; /* tetrahedron, one way */
+    half_space corner[4] = {
+        {o, x, y}, {o, y, z}, {o, z, x}, {x, z, y}}; /* tetrahedron, one orientation */
     int sides[2] = {0, 0};
     for (int turn = 0; turn < 2; turn++) {
         half_space all[4];
@@ -407,7 +409,8 @@ static void test_half_spaces(void **state) {
             assert_false(half_spaces_apart(three, 3));
         }
     }
-    assert_int_equal(sides[0] + sides[1], 1); /* inside out has none, the other has the inside */
+    assert_int_equal(sides[0] + sides[1],
+                     1); /* one orientation is empty, the other is the inside */
     /* nearly parallel: they meet far away, not in the box */
     const double tilted[3] = {1, 0, 1 + 0x1p-20}, lower[3] = {-9, -9, -9}, upper[3] = {9, 9, 9};
     const double weights[2] = {1, 1}, wrong[2] = {1, 0}, negative[2] = {1, -1};

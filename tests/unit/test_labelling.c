@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Labellings against trying all of them. */
+/* Labellings against exhaustive search. */
 #include "support.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 
 enum { NODES_MOST = 8 };
 
-/* Every node with three edges, never to itself; `labels` of them, or fewer here and there. */
+/* Every node with three edges, none to itself; `labels` labels, or fewer for some nodes. */
 static labelling random_problem(starg_context *context, starg_rng *rng, uint32_t nodes, int count) {
     labelling l = {.context = context};
     uint32_t ends[3 * NODES_MOST];
@@ -125,7 +125,7 @@ static void test_more_labels_are_seldom_missed(void **state) {
     }
 }
 
-/* A ring around which nothing may change: the label of the one node that is settled. */
+/* A ring whose edges forbid changes: all follow the label of the one fixed node. */
 static void test_follows(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The largest ball inside of half-spaces, against all choices of four of them in long double and
- * against a linear program in four variables; the proof that it carries, against its definition. */
+/* Largest ball in half-spaces, against all choices of four in long double and against a linear
+ * program in four variables; its proof, against the definition. */
 #include "support.h"
 
 #include <math.h>
@@ -12,11 +12,11 @@
 
 enum { MOST = 30, BOX = 6, ROUNDS = 2000 };
 
-/* Half-spaces; the first six are a box, so that the ball never meets the far tetrahedron. */
+/* Half-spaces; the first six are a box, so that the ball never meets the initial tetrahedron. */
 typedef struct problem {
     size_t count;
     double normals[MOST][3], offsets[MOST];
-    bool gone[MOST]; /* taken away again */
+    bool gone[MOST]; /* removed again */
 } problem;
 
 static double dot(const double a[3], const double b[3]) {
@@ -42,7 +42,7 @@ static double centred(starg_rng *rng) {
     return 2 * starg_rng_unit(rng) - 1;
 }
 
-/* `lowest`: offsets start there; below 0 there may be no point inside of all. */
+/* `lowest`: lower bound of offsets; if negative there may be no common point. */
 static problem random_problem(starg_rng *rng, size_t extra, double lowest) {
     problem p = {.count = 0};
     add_box(&p, 1);
@@ -58,7 +58,7 @@ static problem degenerate_problem(starg_rng *rng) {
     add_box(&p, starg_rng_below(rng, 2) == 0 ? 1 : 0.5);
     while (p.count < MOST) {
         double n[3], nudge = nudges[starg_rng_below(rng, 5)];
-        if (starg_rng_below(rng, 2) == 0) { /* one that is there, or its opposite */
+        if (starg_rng_below(rng, 2) == 0) { /* an existing one, or its opposite */
             size_t i = (size_t)starg_rng_below(rng, p.count);
             double sign = starg_rng_below(rng, 4) == 0 ? -1 : 1;
             for (int k = 0; k < 3; k++)
@@ -76,7 +76,7 @@ static problem degenerate_problem(starg_rng *rng) {
 
 /* ---- slow answers ---- */
 
-/* Solves n_i . x + r = b_i for four planes; false when that has no single solution. */
+/* Solves n_i . x + r = b_i for four planes; false if singular. */
 static bool meet_four(const problem *p, const size_t four[4], long double x[4]) {
     long double m[4][5];
     for (int i = 0; i < 4; i++)
@@ -115,7 +115,7 @@ static bool fits(const problem *p, const long double x[4]) {
     return true;
 }
 
-/* The largest of all balls that touch four and fit into all. */
+/* The largest ball that touches four half-spaces and fits into all. */
 static double try_all_fours(const problem *p) {
     long double best = -INFINITY, x[4];
     size_t f[4];
@@ -149,7 +149,7 @@ static double solve_program(const problem *p, uint64_t seed) {
     return solution.point[3];
 }
 
-/* ---- what the ball claims ---- */
+/* ---- the ball's proof ---- */
 
 static void check_proof(const problem *p, const largest_ball *ball, double tolerance) {
     double sum = 0, combination[3] = {0}, bound = 0;
@@ -173,11 +173,10 @@ static void check_proof(const problem *p, const largest_ball *ball, double toler
     assert_true(fabs(sum - 1) < tolerance);
     for (int k = 0; k < 3; k++)
         assert_true(fabs(combination[k]) < tolerance);
-    assert_true(fabs(bound - ball->radius) < tolerance); /* no larger ball is inside of the four */
+    assert_true(fabs(bound - ball->radius) < tolerance); /* the four allow no larger ball */
 }
 
-/* The half-space that the ball is least inside of, or one at random that it is not inside of;
- * MOST: it is inside of all. */
+/* The half-space that the ball violates most, or a random violated one; MOST: none. */
 static size_t find_violated(const problem *p, const largest_ball *ball, starg_rng *rng) {
     size_t found = MOST, seen = 0;
     bool any = starg_rng_below(rng, 2) == 0;
@@ -195,7 +194,7 @@ static size_t find_violated(const problem *p, const largest_ball *ball, starg_rn
     return found;
 }
 
-/* Adds what is violated until nothing is; false when the ball gives up. */
+/* Adds violated half-spaces until there are none; false if the ball gives up. */
 static bool settle(const problem *p, largest_ball *ball, starg_rng *rng, double tolerance) {
     for (int round = 0; round < ROUNDS; round++) {
         size_t next = find_violated(p, ball, rng);
@@ -242,10 +241,10 @@ static void test_random(void **state) {
         inside += ball.radius > 0;
         outside += ball.radius < 0;
     }
-    assert_true(inside > 30 && outside > 30); /* both kinds were met */
+    assert_true(inside > 30 && outside > 30); /* both kinds occurred */
 }
 
-/* Half-spaces are moved far away, one or two at a time, and the ball grows into what they leave. */
+/* Half-spaces are moved far away, one or two at a time, and the ball grows. */
 static void test_moved_away(void **state) {
     (void)state;
     size_t grown = 0;
@@ -273,7 +272,7 @@ static void test_moved_away(void **state) {
     assert_true(grown > 50);
 }
 
-/* A half-space comes nearer: the same as one that was there from the start. */
+/* Moving a half-space closer equals having it there from the start. */
 static void test_moved_nearer(void **state) {
     (void)state;
     for (uint64_t seed = 0; seed < 40; seed++) {
@@ -295,7 +294,7 @@ static void test_moved_nearer(void **state) {
     }
 }
 
-/* The ball may give up, but seldom; what it tells is right. */
+/* The ball may give up, but rarely; its results are correct. */
 static void test_degenerate(void **state) {
     (void)state;
     size_t settled = 0, count = 60;
@@ -312,7 +311,7 @@ static void test_degenerate(void **state) {
     assert_true(settled >= count - 3);
 }
 
-/* The same half-space, or all that there is, again and again. */
+/* The same half-space, or all existing ones, repeatedly. */
 static void test_repeated(void **state) {
     (void)state;
     problem p = {.count = 0};
@@ -323,12 +322,12 @@ static void test_repeated(void **state) {
     largest_ball_start(&ball);
     assert_true(settle(&p, &ball, &rng, 1e-9));
     assert_true(fabs(ball.radius - 0.25) < 1e-12);
-    /* a slab without width: the ball is a point of it */
+    /* a slab of zero width: the ball is a point of it */
     add_plane(&p, 1, 1, 0, 0.1);
     add_plane(&p, -1, -1, 0, -0.1);
     assert_true(settle(&p, &ball, &rng, 1e-9));
     assert_true(fabs(ball.radius) < 1e-12);
-    /* and one that is empty by a little */
+    /* and a slightly empty one */
     add_plane(&p, -1, -1, 0, -0.1 - 2e-6);
     assert_true(settle(&p, &ball, &rng, 1e-9));
     assert_true(fabs(ball.radius + 1e-6) < 1e-12);

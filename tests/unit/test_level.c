@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Levels of detail for descriptors: noise goes, the shape stays. */
+/* Levels of detail for descriptors: noise disappears, the shape stays. */
 #include "shape/level.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 #include "starguard/check.h"
 #include "starguard/solid.h"
 
-/* Every coordinate moved at random by up to `step` either way. */
+/* Moves every coordinate at random by up to `step`. */
 static starg_mesh *shaken(starg_context *context, const starg_mesh *mesh, double step) {
     starg_rng rng = starg_rng_make(31, 0, 0);
     starg_mesh *out = NULL;
@@ -26,7 +26,7 @@ static starg_mesh *shaken(starg_context *context, const starg_mesh *mesh, double
     return out;
 }
 
-/* Root of the mean square distance of the vertices from a sphere of radius 1 about the origin. */
+/* Root mean square distance of the vertices from the unit sphere. */
 static double off_the_sphere(const starg_mesh *mesh) {
     double sum = 0;
     size_t n = starg_mesh_vertex_count(mesh);
@@ -54,7 +54,7 @@ static void noise_goes_and_volume_stays(void **state) {
     test_context_free(context);
 }
 
-/* Whatever comes out of noise bounds a solid; no two faces of it meet where they should not. */
+/* Whatever comes of noise bounds a solid without self-intersections. */
 static void noisy_figures_bound_solids(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -83,7 +83,7 @@ static void noisy_figures_bound_solids(void **state) {
     test_context_free(context);
 }
 
-/* What has few vertices is not smoothed; what is no closed manifold is left alone. */
+/* Coarse meshes are not smoothed; meshes that are not closed manifolds are left alone. */
 static void coarse_and_open_meshes(void **state) {
     (void)state;
     starg_context *context = test_context(1);

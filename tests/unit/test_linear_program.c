@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Linear programs against the enumeration of all vertices of the arrangement in long double, and
- * the rows that are told against their definition. */
+/* Linear programs against the enumeration of all vertices of the arrangement in long double; tight
+ * and infeasible rows against their definition. */
 #include "support.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static void add_box(problem *p, double side) {
     }
 }
 
-/* Gaussian elimination with full pivoting of rows; false when singular. */
+/* Gaussian elimination with full pivoting of rows; false if singular. */
 static bool intersect(const problem *p, const size_t *chosen, long double *x) {
     int n = p->dimension;
     long double m[LINEAR_PROGRAM_MOST][STRIDE];
@@ -86,7 +86,7 @@ static bool satisfies(const problem *p, const long double *x, long double tolera
     return true;
 }
 
-/* The best vertex within a tolerance; false when there is none. The rows must bound the problem. */
+/* The best vertex within a tolerance; false if there is none. The rows must bound the problem. */
 static bool enumerate(const problem *p, long double tolerance, long double *best) {
     size_t chosen[LINEAR_PROGRAM_MOST];
     int n = p->dimension;
@@ -120,7 +120,7 @@ static linear_program as_program(const problem *p, uint64_t seed) {
     return program;
 }
 
-/* The rows that are told leave no point of a far larger box. */
+/* The reported rows leave no point of a far larger box. */
 static void check_infeasible_rows(const problem *p, const linear_solution *solution) {
     problem few = {.dimension = p->dimension};
     assert_in_range(solution->tight_count, 1, p->dimension + 1);
@@ -136,8 +136,8 @@ static void check_infeasible_rows(const problem *p, const linear_solution *solut
     assert_false(enumerate(&few, -1e-9L, &ignored));
 }
 
-/* The objective is what the tight rows alone allow: the program without the others, in a box that
- * is larger, has the same value. */
+/* The tight rows alone determine the objective: the program without the others, in a larger box,
+ * has the same value. */
 static void check_tight_rows(const problem *p, const linear_solution *solution, double value) {
     problem few = {.dimension = p->dimension};
     memcpy(few.objective, p->objective, sizeof few.objective);
@@ -159,7 +159,7 @@ static double value_of(const problem *p, const double *x) {
     return sum;
 }
 
-/* Returns whether the program was decided, that is, is not within rounding of the border. */
+/* Returns whether the program was decided, i.e. not within rounding of the border. */
 static bool check_problem(const problem *p, uint64_t seed, size_t *infeasible) {
     uint32_t order[MOST_ROWS];
     linear_solution solution, again;
@@ -174,7 +174,7 @@ static bool check_problem(const problem *p, uint64_t seed, size_t *infeasible) {
         return true;
     }
     if (!solution.feasible)
-        return false; /* the caller counts how often */
+        return false; /* counted by the caller */
     long double x[LINEAR_PROGRAM_MOST];
     for (int k = 0; k < p->dimension; k++)
         x[k] = solution.point[k];
@@ -183,7 +183,7 @@ static bool check_problem(const problem *p, uint64_t seed, size_t *infeasible) {
     assert_true(fabsl((long double)value - loose) < 1e-7L);
     check_tight_rows(p, &solution, value);
 
-    /* started with its own solution, another order gives the same value */
+    /* starting from its own solution, another order gives the same value */
     program.seed = seed + 1000;
     linear_program_solve(&program, order, &solution, &again);
     assert_true(again.feasible);

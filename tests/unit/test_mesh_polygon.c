@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Polygons cut into triangles. The checker knows nothing of ears: positive triangles whose areas
- * add up to the polygon's area, and whose edges cancel to its boundary, cannot overlap. */
+/* Polygon triangulation. The checker does not use ears: positive triangles whose areas add up to
+ * the polygon's area, and whose edges cancel to its boundary, cannot overlap. */
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -68,8 +68,8 @@ static void expect_triangulation(const test_polygon *p, int u, int v) {
     assert_true(fabs(sum - whole) <= 1e-9 * fabs(whole));
 }
 
-/* A random polygon about a centre, so a simple one, with deep dents; in the plane of u and v,
- * tilted a little out of it. */
+/* A random star polygon around a centre, hence simple, with deep dents; in the plane of u and v,
+ * slightly tilted. */
 static void make_random(test_polygon *p, starg_rng *rng, int u, int v, bool clockwise) {
     int w = 3 - u - v;
     p->count = 4 + (size_t)starg_rng_below(rng, MOST - 4);
@@ -97,7 +97,7 @@ static void random_polygons(void **state) {
     test_context_free(context);
 }
 
-/* A strip that winds five times about the origin: nearly every triangle is in some ear's way. */
+/* A strip that winds five times around the origin: nearly every triangle blocks some ear. */
 static void spirals(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -114,7 +114,7 @@ static void spirals(void **state) {
     test_context_free(context);
 }
 
-/* The outline that a walk to the north, east, south and west by one each leaves. */
+/* The outline of a walk in unit steps north, east, south and west. */
 static void walk(test_polygon *p, const char *text) {
     double x = 0, y = 0;
     p->count = strlen(text);
@@ -131,11 +131,11 @@ static void walk(test_polygon *p, const char *text) {
 static void lattice_polygons(void **state) {
     (void)state;
     static const char *const walks[] = {
-        "EENNWWSS",                     /* a square with corners amid its sides */
-        "WWSSEENN",                     /* the same from another corner         */
-        "EEENWWNEENWWWSSS",             /* a C                                  */
-        "ENESENESENNNWWWWWSSS",         /* a comb                               */
-        "EEEEENNNNNWWWWWSSSEENESSWWWS", /* a hook                       */
+        "EENNWWSS",                     /* a square with corners in the middle of its sides */
+        "WWSSEENN",                     /* the same from another corner */
+        "EEENWWNEENWWWSSS",             /* a C */
+        "ENESENESENNNWWWWWSSS",         /* a comb */
+        "EEEEENNNNNWWWWWSSSEENESSWWWS", /* a hook */
     };
     starg_context *context = test_context(1);
     static test_polygon p;
@@ -147,7 +147,7 @@ static void lattice_polygons(void **state) {
     test_context_free(context);
 }
 
-/* A square with a square hole, joined by a bridge: two corners stand at the place of two others. */
+/* A square with a square hole, joined by a bridge: two pairs of corners coincide. */
 static void a_bridge_to_a_hole(void **state) {
     (void)state;
     static const double outline[10][2] = {{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0},
@@ -165,7 +165,7 @@ static void a_bridge_to_a_hole(void **state) {
     test_context_free(context);
 }
 
-/* Whatever the shape: all collinear, all in one place, crossing itself, tiny and huge. */
+/* Any shape: collinear, in one point, self-intersecting, tiny and huge. */
 static void polygons_without_a_triangulation_keep_their_boundary(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -186,7 +186,7 @@ static void polygons_without_a_triangulation_keep_their_boundary(void **state) {
     test_context_free(context);
 }
 
-/* A convex quadrilateral keeps its first corner as apex; a concave one gets the other diagonal. */
+/* A convex quadrilateral is a fan from its first corner; a concave one gets the other diagonal. */
 static void quadrilaterals(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -194,7 +194,7 @@ static void quadrilaterals(void **state) {
     assert_true(cut(context, &p));
     static const uint32_t fan[] = {0, 1, 2, 0, 2, 3};
     assert_memory_equal(p.triangles, fan, sizeof fan);
-    p.vertices[3][0] = 1.5; /* now an arrow head with its notch at the last corner */
+    p.vertices[3][0] = 1.5; /* now an arrowhead with its notch at the last corner */
     p.vertices[3][1] = 0.5;
     assert_false(cut(context, &p));
     expect_triangulation(&p, 0, 1);

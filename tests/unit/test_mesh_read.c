@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Readers: every form that is accepted, and every documented error with its status and place. */
+/* Readers: every accepted form, and every documented error with its status and place. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +7,7 @@
 
 #include "support.h"
 
-/* A tetrahedron is what the good files hold, unless they say otherwise. */
+/* The good files contain a tetrahedron, unless stated otherwise. */
 static const double points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 static const uint32_t faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 
@@ -19,7 +19,7 @@ static starg_status read_text(starg_context *context, const char *text, const ch
 static void expect_tetrahedron(const char *text, size_t size, const char *name) {
     starg_context *context = test_context(1);
     starg_mesh *mesh = NULL;
-    char *exact = malloc(size); /* no byte behind the end, so that sanitizers see overruns */
+    char *exact = malloc(size); /* nothing after the end, so that sanitizers see overruns */
     assert_non_null(exact);
     memcpy(exact, text, size);
     test_ok(context, starg_mesh_read_memory(context, exact, size, name, &mesh));
@@ -37,7 +37,7 @@ static void expect_tetrahedra(const char *const *texts, size_t count, const char
         expect_tetrahedron(texts[i], strlen(texts[i]), name);
 }
 
-/* Replaces every '\n' of `text` by `end`; the caller frees. */
+/* Replaces every '\n' of `text` by `end`; the caller frees the result. */
 static char *with_line_ends(const char *text, const char *end) {
     char *out = malloc(2 * strlen(text) + 1), *at = out;
     assert_non_null(out);
@@ -64,7 +64,7 @@ static void expect_error(const bad_file *bad, size_t size) {
     starg_mesh *mesh = (starg_mesh *)(uintptr_t)1;
     char *exact = malloc(size + 1);
     assert_non_null(exact);
-    memcpy(exact + 1, bad->text, size); /* odd address, nothing behind */
+    memcpy(exact + 1, bad->text, size); /* odd address, nothing after it */
     starg_status status = starg_mesh_read_memory(context, exact + 1, size, bad->name, &mesh);
     free(exact);
     const starg_error *error = starg_context_error(context);
@@ -111,7 +111,7 @@ static void off_forms(void **state) {
         "STCNOFF 4 4 0\n0 0 0 0 0 1 1 1 1 1 0 0\n1 0 0\n0 1 0\n0 0 1\n" OFF_FACES,
     };
     expect_tetrahedra(texts, COUNT(texts), "a.off");
-    expect_tetrahedra(texts, COUNT(texts), "misleading.stl"); /* the content counts */
+    expect_tetrahedra(texts, COUNT(texts), "misleading.stl"); /* the content decides */
     for (size_t i = 0; i < COUNT(texts); i++) {
         static const char *const ends[] = {"\r\n", "\r"};
         for (size_t k = 0; k < 2; k++) {
@@ -194,7 +194,7 @@ static void obj_forms(void **state) {
         OBJ_VERTICES "f 1/1 3/2 2/3\nf 1//1 2//2 4//3\nf 2/1/1 3/9/9 4/-1/-1\nf 3/ 1// 4\n",
         OBJ_VERTICES "f -4 -2 -3\nf -4/1 -3/1 -1/1\nf -3//1 -2//1 -1//1\nf -2/1/1 -4/1/1 -1/1/1\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -1 -2\nv 0 0 1\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
-        OBJ_FACES OBJ_VERTICES, /* faces may name vertices that come later */
+        OBJ_FACES OBJ_VERTICES, /* faces may refer to later vertices */
         "v 0 0 0 1\nv 1 0 0 1 0 0\nv 0 1 0 1 1 1\nv 0 0 1 1 1 1 1\n" OBJ_FACES,
         "v \\\n 0 0\\\n 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 \\\n3 2\nf 1 2 4\nf 2 3 4\nf 3\\\n 1 4",
         "\n\n \tv 0 0 0 # remark \\\n\tv\t1 0 0\n v 0 1 0\n v 0 0 1\n" OBJ_FACES,
@@ -209,7 +209,8 @@ static void obj_forms(void **state) {
             free(text);
         }
     }
-    expect_tetrahedron(texts[0], strlen(texts[0]), "standard input"); /* told by content alone */
+    expect_tetrahedron(texts[0], strlen(texts[0]),
+                       "standard input"); /* recognized by content only */
 }
 
 static void obj_errors(void **state) {
@@ -258,7 +259,7 @@ static void polygons_are_cut_in_place(void **state) {
     test_context_free(context);
 }
 
-/* A zigzag of 5,000 corners is refused instead of taking quadratic time. */
+/* A zigzag of 5,000 corners is rejected instead of taking quadratic time. */
 static void huge_concave_polygons_are_refused(void **state) {
     (void)state;
     enum { CORNERS = 5000 };
@@ -321,7 +322,7 @@ static void stl_text_forms(void **state) {
     }
 }
 
-/* The facets as binary STL behind a header that begins with `header`. */
+/* The facets as binary STL with a header that starts with `header`. */
 static size_t make_binary_stl(unsigned char *bytes, const char *header) {
     memset(bytes, 0, 84 + 4 * 50);
     memcpy(bytes, header, strlen(header));
@@ -348,11 +349,11 @@ static void stl_binary_forms(void **state) {
     size = make_binary_stl(bytes, "solid that is none\n facet normal");
     expect_stl((const char *)bytes, size, "a.stl");
     memset(bytes, ' ', 80);
-    memcpy(bytes, "solid", 5); /* not a zero byte in it: the size decides */
+    memcpy(bytes, "solid", 5); /* without a zero byte: the size decides */
     expect_stl((const char *)bytes, size, "a.stl");
 }
 
-/* Bytes behind the triangles are ignored. */
+/* Bytes after the triangles are ignored. */
 static void stl_trailing_bytes(void **state) {
     (void)state;
     unsigned char bytes[512] = {0};
@@ -410,7 +411,7 @@ static void ply_text_forms(void **state) {
         "comment # end_header\nobj_info x\n" PLY_VERTEX
         "element face 4\nproperty list int32 uint16 vertex_index\nend_header\n" OFF_VERTICES
             OFF_FACES "\n\n",
-        /* other properties before, between and behind, in other orders; other elements */
+        /* other properties in any place and order; other elements */
         PLY_TEXT
         "element camera 2\nproperty list uchar float path\nproperty int id\n"
         "element nothing 1000000000000\n"
@@ -457,7 +458,7 @@ static void append_real(unsigned char *bytes, size_t *size, double value, size_t
 }
 
 typedef struct ply_case {
-    const char *coordinate, *count, *index; /* names of types */
+    const char *coordinate, *count, *index; /* type names */
     size_t coordinate_width, count_width, index_width;
     bool little, faces_first;
     const char *line_end;
@@ -552,7 +553,7 @@ static void ply_binary_forms(void **state) {
     }
 }
 
-/* Cut anywhere, a binary file is an error, and one byte too many is as well. */
+/* A binary file cut anywhere is an error, and so is one byte too many. */
 static void ply_binary_truncations(void **state) {
     (void)state;
     const ply_case c = {"float", "uchar", "int", 4, 1, 4, is_big, false, "\n"};
@@ -717,7 +718,7 @@ static void reading_can_be_cancelled(void **state) {
     test_context_free(context);
 }
 
-/* Memory gives out at the n-th block, for every n until the reading succeeds. */
+/* Memory runs out at the n-th block, for every n until reading succeeds. */
 static void memory_may_give_out_anywhere(void **state) {
     (void)state;
     static const char *const texts[] = {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writers: what is written is read back bit for bit, and a file appears whole or not at all. */
+/* Writers: files read back bit for bit, and appear completely or not at all. */
 #include <dirent.h>
 #include <fcntl.h>
 #include <locale.h>
@@ -24,7 +24,7 @@ static int make_folder(void **state) {
 
 static int remove_folder(void **state) {
     (void)state;
-    return rmdir(folder); /* fails when a test has left anything */
+    return rmdir(folder); /* fails if a test has left anything */
 }
 
 static const char *path_of(const char *name) {
@@ -43,7 +43,7 @@ static size_t files_in_folder(void) {
     return count - 2; /* . and .. */
 }
 
-/* Any finite double below 1e100, subnormal ones and -0 among them. */
+/* Any finite double below 1e100, including subnormals and -0. */
 static double random_coordinate(starg_rng *rng) {
     for (;;) {
         uint64_t bits = starg_rng_next(rng);
@@ -119,7 +119,7 @@ static void indexed_formats_keep_every_bit(void **state) {
     test_context_free(context);
 }
 
-/* STL keeps no indices: corner by corner the positions are the same, -0 and 0 being equal. */
+/* STL has no indices: positions are equal corner by corner, with -0 equal to 0. */
 static void stl_keeps_every_corner(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -168,7 +168,7 @@ static void expect_text(const starg_mesh *mesh, const starg_mesh_write_options *
     test_context_free(context);
 }
 
-/* The bytes themselves, under a locale with a decimal comma if there is one. */
+/* The exact bytes, under a locale with a decimal comma if there is one. */
 static void the_text_is_as_documented(void **state) {
     (void)state;
     if (setlocale(LC_ALL, "de_DE.UTF-8") == NULL)
@@ -190,7 +190,7 @@ static void the_text_is_as_documented(void **state) {
                 "property double z\nelement face 1\nproperty list uchar int vertex_indices\n"
                 "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
                 "0 0 0\n1 0 0\n0 0.25 0\n3 0 1 2 255 0 7\n");
-    starg_mesh *back = write_and_read(context, mesh, "a.off", NULL); /* reads points, too */
+    starg_mesh *back = write_and_read(context, mesh, "a.off", NULL); /* also reads points */
     expect_same(mesh, back);
     starg_mesh_free(back);
     starg_mesh_free(mesh);
@@ -223,7 +223,7 @@ static void failures(void **state) {
     assert_int_equal(files_in_folder(), 0);
 }
 
-/* An old file is replaced by a whole new one, or stays as it is. */
+/* An old file is replaced completely, or stays unchanged. */
 static void old_files_are_replaced_at_once(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -243,7 +243,7 @@ static void old_files_are_replaced_at_once(void **state) {
     test_context_free(context);
 }
 
-/* Runs `step` in a child whose standard stream `which` is `path`; returns its exit status. */
+/* Runs `step` in a child with `path` as standard stream `which`; returns its exit status. */
 static int with_stream(int which, const char *path, int flags, int (*step)(void)) {
     fflush(stdout);
     pid_t child = fork();

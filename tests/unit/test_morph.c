@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Maps and morphs of small shapes: ends, rigid motions, bad input, memory that gives out. */
+/* Maps and morphs of small shapes: ends, rigid motions, bad input, failing memory. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,7 +30,7 @@ static double farthest(const double *a, const double *b, size_t count) {
     return most;
 }
 
-/* The ends to the bit, and nothing jumps next to them. */
+/* The ends are exact, and the motion is continuous there. */
 static void test_ends(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -55,7 +55,7 @@ static void test_ends(void **state) {
     test_context_free(context);
 }
 
-/* Turned about a skew axis by the angle, then moved. */
+/* Rotates about a skew axis, then translates. */
 static void turn_and_move(const starg_mesh *mesh, double angle, double *out) {
     const double axis[3] = {2.0 / 3, -1.0 / 3, 2.0 / 3};
     for (size_t v = 0; v < starg_mesh_vertex_count(mesh); v++) {
@@ -85,7 +85,7 @@ static double longest_change(const starg_mesh *mesh, const double *frame) {
     return most;
 }
 
-/* A copy that was moved rigidly is interpolated rigidly: no edge changes its length. */
+/* A rigidly moved copy is interpolated rigidly: no edge changes its length. */
 static void test_rigid(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -108,8 +108,8 @@ static void test_rigid(void **state) {
     test_context_free(context);
 }
 
-/* A prism whose upper end is turned by more than half a turn against the lower one: neighbouring
- * faces must take the same way round, so that no edge gets much shorter than at both ends. */
+/* A prism whose upper end is rotated by more than half a turn against the lower one: adjacent faces
+ * must rotate the same way, so that no edge gets much shorter than at both ends. */
 static void test_twist(void **state) {
     (void)state;
     enum { RINGS = 41, SIDES = 12, VERTICES = RINGS * SIDES, FACES = 2 * (RINGS - 1) * SIDES };
@@ -136,14 +136,14 @@ static void test_twist(void **state) {
     test_ok(context, starg_mesh_create(context, rest, VERTICES, faces, FACES, &a));
     starg_morph *morph = test_morph(context, a, images, STARG_MORPH_ARAP);
     test_ok(context, starg_morph_frame(morph, 0.5, frame));
-    for (size_t v = 0; v < VERTICES; v++) /* a tube of the same width all along */
+    for (size_t v = 0; v < VERTICES; v++) /* a tube of constant width */
         assert_true(fabs(hypot(frame[3 * v], frame[3 * v + 1]) - 1) < 0.1);
     starg_morph_free(morph);
     starg_mesh_free(a);
     test_context_free(context);
 }
 
-/* Vertices change places with a neighbour here and there, which folds the surface. */
+/* Swaps some vertices with a neighbour, which folds the surface. */
 static void fold(const starg_mesh *mesh, double *images) {
     for (size_t f = 0; f < starg_mesh_face_count(mesh); f += 150)
         for (size_t k = 0; k < 3; k++) {
@@ -155,8 +155,8 @@ static void fold(const starg_mesh *mesh, double *images) {
         }
 }
 
-/* The end with its folds is met to the bit, but on the way nothing passes through itself, where as
- * rigid as possible each face goes its own way. */
+/* The folded end is exact, but nothing intersects on the way, whereas with the rigid method each
+ * face moves on its own. */
 static void test_folds(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -242,7 +242,7 @@ static void test_parts(void **state) {
     test_context_free(context);
 }
 
-/* Writes text to a temporary file; the name is to be removed. */
+/* Writes text to a temporary file; the caller removes it. */
 static void write_text(char name[64], const char *text) {
     snprintf(name, 64, "/tmp/starguard-morph-XXXXXX");
     int file = mkstemp(name);
@@ -315,7 +315,7 @@ static void test_landmark_files(void **state) {
     test_context_free(context);
 }
 
-/* What is written is read back to the bit. */
+/* Files read back bit for bit. */
 static void test_map_round(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -338,7 +338,7 @@ static void test_map_round(void **state) {
     test_context_free(context);
 }
 
-/* Every allocation fails once, in steps: an error, and nothing is left behind. */
+/* Every allocation fails once, in steps: an error, and no leaks. */
 static void test_memory(void **state) {
     (void)state;
     starg_context *plenty = test_context(1);

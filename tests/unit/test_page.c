@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pages: what stands in them is read back with code of its own (blocks, base64, JSON), names are
- * held against all that HTML could take for markup, surfaces of pieces against the volumes of their
- * tetrahedra; and all that must be refused. Without a viewer in the build, pages are refused. */
+/* Pages: independent code reads back their contents (blocks, base64, JSON); names are tested with
+ * everything that HTML could take for markup, surfaces of pieces against the volumes of their
+ * tetrahedra; and invalid input is rejected. Without a viewer in the build, pages are refused. */
 #include "support.h"
 
 #include <jansson.h>
@@ -34,7 +34,7 @@ static int make_folder(void **state) {
 
 static int remove_folder(void **state) {
     (void)state;
-    return rmdir(folder); /* fails when a test has left anything */
+    return rmdir(folder); /* fails if a test has left anything */
 }
 
 static char *read_path(const char *path, size_t *size) {
@@ -49,7 +49,7 @@ static char *read_path(const char *path, size_t *size) {
     return text;
 }
 
-/* The page as text; the file is removed. */
+/* The page as text; removes the file. */
 static char *write_page(starg_context *context, const starg_page *page) {
     size_t size;
     test_ok(context, starg_page_write(context, page, page_path));
@@ -59,7 +59,7 @@ static char *write_page(starg_context *context, const starg_page *page) {
     return text;
 }
 
-/* What stands in the element of that id, as the browser would have it. */
+/* Text of the element with that id, as the browser sees it. */
 static char *block_of(const char *text, const char *id) {
     char mark[64];
     snprintf(mark, sizeof mark, " id=\"%s\">", id);
@@ -79,7 +79,7 @@ static int digit(char c) {
     return (int)(found - digits);
 }
 
-/* Base64, by the bit. */
+/* Base64, bit by bit. */
 static uint8_t *decode(const char *page, const char *id, size_t *size) {
     char *text = block_of(page, id);
     assert_non_null(text);
@@ -116,7 +116,7 @@ static json_t *data_of(const char *text) {
     return data;
 }
 
-/* Points of a block, moved back, are those given to single precision of the whole. */
+/* Points of a block, scaled back, equal the given ones to single precision of the extent. */
 static void check_points(const char *text, const char *id, const double *points, size_t count) {
     size_t size;
     uint8_t *bytes = decode(text, id, &size);
@@ -147,7 +147,7 @@ static bool viewer_is_missing(void) {
     return !starg_page_available();
 }
 
-/* ---- what is in a page ---- */
+/* ---- contents of a page ---- */
 
 static size_t count_of(const char *text, const char *what) {
     size_t count = 0;
@@ -156,7 +156,7 @@ static size_t count_of(const char *text, const char *what) {
     return count;
 }
 
-/* However a model is called, the page has the same elements and its JSON gives the name back. */
+/* Whatever a model's name, the page has the same elements and its JSON contains the name. */
 static void names_are_text(void **state) {
     (void)state;
     static const char *const names[] = {
@@ -203,7 +203,7 @@ static void names_are_text(void **state) {
     test_context_free(context);
 }
 
-/* Bytes that are no text are replaced. */
+/* Invalid UTF-8 is replaced. */
 static void odd_bytes_are_replaced(void **state) {
     (void)state;
     if (viewer_is_missing())
@@ -220,7 +220,7 @@ static void odd_bytes_are_replaced(void **state) {
     test_context_free(context);
 }
 
-/* Nothing is fetched: the policy forbids it, and no address stands in the page's own markup. */
+/* Nothing is fetched: the policy forbids it, and the page's own markup contains no address. */
 static void page_fetches_nothing(void **state) {
     (void)state;
     if (viewer_is_missing())
@@ -329,7 +329,7 @@ static void skeletons_and_morphs(void **state) {
     test_context_free(context);
 }
 
-/* Any place and size of a model is within single precision of the page. */
+/* Single precision relative to the model suffices, for any place and size. */
 static void models_far_away(void **state) {
     (void)state;
     static const double scales[] = {1e-290, 1e-5, 1, 1e90};
@@ -373,7 +373,7 @@ static double volume_of_face(const starg_pieces_mesh *mesh, const starg_piece_su
     return volume_of_tetrahedron(p, t);
 }
 
-/* How often does a directed edge stand in faces [begin, end)? */
+/* Number of occurrences of a directed edge in faces [begin, end). */
 static size_t count_edge(const uint32_t *faces, size_t begin, size_t end, uint32_t a, uint32_t b) {
     size_t count = 0;
     for (size_t f = begin; f < end; f++)
@@ -438,7 +438,7 @@ static void pieces_are_enclosed(void **state) {
     test_context_free(context);
 }
 
-/* Labels and vertices that cannot be. */
+/* Invalid labels and vertices. */
 static void wrong_pieces(void **state) {
     (void)state;
     double vertices[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -546,7 +546,7 @@ static void unwritable_places(void **state) {
     test_context_free(context);
 }
 
-/* Any allocation may fail: nothing leaks, no file is left. */
+/* Any allocation may fail: no leaks, no file is left. */
 static void scarce_memory(void **state) {
     (void)state;
     if (viewer_is_missing())

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Paper mode: what it gives is what decomposition_oracle.h makes of it; the same at any number of
- * threads; smoothing does no harm; odd guards and limits; memory that runs out. */
+/* Paper mode: results agree with decomposition_oracle.h; they are the same for any number of
+ * threads; smoothing does no harm; odd guards and limits; failing memory. */
 #include "support.h"
 
 #include <math.h>
@@ -25,7 +25,7 @@ static starg_decompose_options paper_options(void) {
     return options;
 }
 
-/* The same tetrahedra on vertices that have moved inside at most. */
+/* The same tetrahedra, with at most interior vertices moved. */
 static void check_mesh(starg_context *context, const starg_tetmesh *before,
                        const starg_tetmesh *after) {
     starg_tetmesh *again = NULL;
@@ -48,7 +48,7 @@ static void check_mesh(starg_context *context, const starg_tetmesh *before,
     free(outer);
 }
 
-/* Random guards, some of them outside, some of them the same. */
+/* Random guards, some outside, some repeated. */
 static size_t random_guards(const starg_tetmesh *mesh, uint64_t seed, double *guards) {
     starg_rng rng = starg_rng_make(seed, 31, 0);
     size_t count = starg_rng_below(&rng, 6);
@@ -89,7 +89,7 @@ static void test_random(void **state) {
     test_context_free(context);
 }
 
-/* Models that differ by a power of two in size are cut the same way. */
+/* Models whose sizes differ by a power of two are cut the same way. */
 static void test_scales(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -137,7 +137,7 @@ static starg_decomposition *cut_sample(int threads, const char *name, const doub
     return d;
 }
 
-/* With the guards of section 3 more than 99 % is seen, whatever the number of threads. */
+/* With the guards of section 3 more than 99 % is visible, for any number of threads. */
 static void test_threads(void **state) {
     (void)state;
     starg_context *one, *four;
@@ -159,7 +159,7 @@ static void test_threads(void **state) {
     test_context_free(four);
 }
 
-/* Without a guard to begin with, all is a component that is guarded again. */
+/* Without initial guards, everything is one component that is guarded again. */
 static void test_no_guards(void **state) {
     (void)state;
     starg_context *context;
@@ -192,7 +192,7 @@ static void test_max_pieces(void **state) {
     test_context_free(context);
 }
 
-/* A convex solid is one piece, seen from anywhere; parts that do not touch need a guard each. */
+/* A convex solid is one piece, seen from anywhere; separate components need a guard each. */
 static void test_convex_and_parts(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -224,7 +224,7 @@ static void test_convex_and_parts(void **state) {
 
 /* ---- smoothing ---- */
 
-/* Random regions, and after smoothing: nothing is seen less, no star-shaped piece is lost. */
+/* Random regions before and after smoothing: no guard sees less, no star-shaped piece is lost. */
 static void test_smoothing(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Partitions through what is done to them: built, joined, sliced, merged, cut to a plan. After
- * every step the whole of it is checked by brute force (partition_oracle.h). */
+/* Operations on partitions: built, joined, sliced, merged, cut by a plan. After every step brute
+ * force checks everything (partition_oracle.h). */
 #include "support.h"
 
 #include <math.h>
@@ -42,7 +42,7 @@ static void replace(partition *p, partition *by) {
 
 /* ---- building ---- */
 
-/* Facets are the faces between labels and at the boundary, and nothing else. */
+/* Facets are exactly the faces between labels and at the boundary. */
 static void check_facets(const partition *p, const starg_tetmesh *mesh, const uint32_t *labels) {
     size_t expected = 0;
     for (size_t slot = 0; slot < 4 * mesh->count; slot++) {
@@ -90,7 +90,7 @@ static void test_create(void **state) {
     test_context_free(context);
 }
 
-/* A surface is one piece with its faces as facets, in planes of their own. */
+/* A surface is one piece with its faces as facets, each in its own plane. */
 static void test_create_from_surface(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -131,7 +131,7 @@ static void test_gather(void **state) {
         assert_true(fabs(volume - partition_oracle_volume(&p, i)) < 1e-13);
         const double *guard = p.pieces.data[i].guard;
         assert_true(partition_certify(&p, triangles.data, triangles.count / 3, guard));
-        /* not by a guard behind one of the facets, nor without one of them */
+        /* not with a guard behind one of the facets, nor without one of them */
         double behind[3];
         for (int k = 0; k < 3; k++)
             behind[k] = 3 * partition_point(&p, triangles.data[0])[k] - 2 * guard[k];
@@ -142,7 +142,7 @@ static void test_gather(void **state) {
     test_context_free(context);
 }
 
-/* Inside is not enough, nor is to see all of it when that is there twice. */
+/* Being inside is not enough, nor is seeing all of a doubled surface. */
 static void test_certify(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -180,7 +180,7 @@ static void test_certify(void **state) {
 
 /* ---- slicing ---- */
 
-/* Slices a copy; true when that was done. */
+/* Slices a copy; returns whether that was possible. */
 static bool slice(const partition *p, uint32_t low, const partition_plane *plane, partition *out) {
     bool done = false;
     piece fresh = {.volume = 0};
@@ -197,7 +197,7 @@ done:
     return done;
 }
 
-/* The two sides of a slice are on their sides, and the facets between them along the plane. */
+/* Both parts of a slice are on their sides, and the facets between them lie in the plane. */
 static void check_slice(const partition *before, const partition *p, uint32_t low,
                         const partition_plane *plane) {
     uint32_t high = (uint32_t)p->pieces.count - 1;
@@ -219,7 +219,7 @@ static void check_slice(const partition *before, const partition *p, uint32_t lo
             assert_memory_equal(&p->planes.data[f->plane], plane, sizeof *plane);
         cap += between;
     }
-    /* parts of the piece that did not hang together may be parted without a cut */
+    /* disconnected parts of the piece may be separated without a cut */
     assert_true(cap > 0 || p->facets.count == before->facets.count);
     parts[0] = partition_oracle_volume(p, low);
     parts[1] = partition_oracle_volume(p, high);
@@ -255,7 +255,7 @@ static partition_plane random_plane_through(const partition *p, uint32_t number,
     return plane;
 }
 
-/* Many planes one after the other, some through pieces and some through what they have left. */
+/* Many planes one after the other, through pieces and through their parts. */
 static void slice_often(const partition *first, uint64_t seed, size_t planes, size_t least) {
     starg_rng rng = starg_rng_make(seed, 73, 0);
     partition p = partition_oracle_copy(first), next;
@@ -284,7 +284,7 @@ static void test_slices_of_samples(void **state) {
     for (uint64_t i = 0; i < sizeof names / sizeof *names; i++) {
         partition p = grown_sample(context, names[i], 1500);
         slice_often(&p, i, 30, 22);
-        /* as one piece, of which planes cut many loops at once */
+        /* as one piece, where a plane cuts many loops at once */
         uint32_t *all = calloc(p.pieces.count, sizeof *all);
         for (uint32_t k = 0; k < p.pieces.count; k++)
             all[k] = k;
@@ -310,8 +310,7 @@ static void test_slices_of_hulls(void **state) {
     test_context_free(context);
 }
 
-/* Through edges: where the plane enters the piece along the edge, or passes it by there. No vertex
- * is made where one is. */
+/* Planes through edges, which enter the piece there or touch it. No vertex is duplicated. */
 static void test_slices_through_edges(void **state) {
     (void)state;
     static const char *const names[] = {"horse", "knot", "gallery"};
@@ -345,8 +344,7 @@ static void test_slices_through_edges(void **state) {
     test_context_free(context);
 }
 
-/* Planes that nearly go through a vertex, or do, and those that pass the piece by, which are
- * refused. */
+/* Planes through or nearly through a vertex, and planes that miss the piece, which are rejected. */
 static void test_planes_at_vertices(void **state) {
     (void)state;
     static const double near[] = {0, 2e-12, -2e-12, 9e-10, -9e-10, 1e-8};
@@ -383,7 +381,7 @@ static void test_planes_at_vertices(void **state) {
     test_context_free(context);
 }
 
-/* Two cubes of six tetrahedra each that share an edge only. */
+/* Two cubes of six tetrahedra each that share only an edge. */
 static starg_tetmesh *touching_cubes(starg_context *context) {
     static const int steps[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                     {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -407,8 +405,8 @@ static starg_tetmesh *touching_cubes(starg_context *context) {
     return mesh;
 }
 
-/* Cutting one piece splits facets of the other where they share an edge; a piece that touches
- * itself in an edge is cut there. */
+/* Cutting one piece splits facets of the other at a shared edge; a piece that touches itself in an
+ * edge is cut there. */
 static void test_edge_contact(void **state) {
     (void)state;
     static const double guards[] = {0.5, 0.5, 0.5, 1.5, 1.5, 0.5};
@@ -501,7 +499,7 @@ static void place_guards(partition *p) {
     }
 }
 
-/* Cut i has parted piece i + 1 from piece lows[i]. */
+/* Cut i has split piece i + 1 off piece lows[i]. */
 static partition sliced_hull(starg_context *context, uint64_t seed, size_t cuts, uint32_t *lows) {
     starg_rng rng = starg_rng_make(seed, 76, 0);
     partition p = random_hull(context, seed, 6 + 2 * (size_t)(seed % 10)), next;
@@ -517,7 +515,7 @@ static partition sliced_hull(starg_context *context, uint64_t seed, size_t cuts,
     return p;
 }
 
-/* Takes the last cut back. */
+/* Undoes the last cut. */
 static void undo_cut(partition *p, const uint32_t *lows) {
     uint32_t last = (uint32_t)p->pieces.count - 1;
     const uint32_t pair[2] = {lows[last - 1], last};
@@ -527,7 +525,7 @@ static void undo_cut(partition *p, const uint32_t *lows) {
     place_guards(p);
 }
 
-/* Random points, off all facets with probability one, lie in the pieces that they lay in. */
+/* Random points, off all facets with probability one, lie in the same pieces as before. */
 static void check_same_pieces(const partition *a, const partition *b, starg_rng *rng, int points) {
     assert_int_equal(a->pieces.count, b->pieces.count);
     for (uint32_t i = 0; i < a->pieces.count; i++)
@@ -540,7 +538,7 @@ static void check_same_pieces(const partition *a, const partition *b, starg_rng 
     }
 }
 
-/* Cut after cut is taken back and merged: no more is left than if it had never been. */
+/* Undoing and merging cut after cut leaves no more than if there had never been a cut. */
 static void undo_all(starg_context *context, uint64_t seed, size_t cuts) {
     starg_rng rng = starg_rng_make(seed, 77, 0);
     uint32_t lows[CUTS_MOST];
@@ -578,7 +576,7 @@ static void test_merge_undoes_cuts(void **state) {
     test_context_free(context);
 }
 
-/* Once is enough. */
+/* Merging again changes nothing. */
 static void test_merge_twice(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -608,7 +606,7 @@ static void test_merge_refuses(void **state) {
     test_ok(context, merge_coplanar(&p));
     assert_true(partition_oracle_same(&before, &p));
     partition_free(&before);
-    /* with its own guard something would have been */
+    /* with its own guard there would be changes */
     place_guards(&p);
     size_t facets = p.facets.count;
     test_ok(context, merge_coplanar(&p));
@@ -617,7 +615,7 @@ static void test_merge_refuses(void **state) {
     test_context_free(context);
 }
 
-/* Partitions as the search leaves them. */
+/* Partitions produced by the search. */
 static void test_merge_after_search(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -647,7 +645,7 @@ static void test_merge_after_search(void **state) {
     test_context_free(context);
 }
 
-/* The search ends by its work, which is counted the same at any number of threads. */
+/* The search ends by its work count, which is the same for any number of threads. */
 static void test_search_ends_by_work(void **state) {
     (void)state;
     improve_report report[2];
@@ -677,7 +675,7 @@ static void test_search_ends_by_work(void **state) {
 
 /* ---- plans ---- */
 
-/* A random piece and pieces next to it. */
+/* A random piece and adjacent pieces. */
 static size_t choose(const partition *p, starg_rng *rng, uint32_t pieces[APPLY_MOST]) {
     size_t count = 1, wanted = 2 + (size_t)starg_rng_below(rng, APPLY_MOST - 1);
     pieces[0] = (uint32_t)starg_rng_below(rng, p->pieces.count);
@@ -696,7 +694,7 @@ static size_t choose(const partition *p, starg_rng *rng, uint32_t pieces[APPLY_M
     return count;
 }
 
-/* Pieces that the plan does not name are as they were, whatever their number is now. */
+/* Pieces that the plan does not mention are unchanged, up to their numbers. */
 static void check_others(const partition *before, const partition *p, const uint32_t *pieces,
                          size_t count, const apply_effect *effect) {
     for (uint32_t i = 0; i < before->pieces.count; i++) {
@@ -730,7 +728,7 @@ static void check_applied(const partition *before, const partition *p, const uin
     assert_true(fabs(volume_of_all(p) - volume_of_all(before)) < 1e-12);
 }
 
-/* Plans of planes at random, which seldom do, and those that the search finds. */
+/* Random plans of planes, which rarely apply, and those found by the search. */
 static void test_plans(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -769,7 +767,7 @@ static void test_plans(void **state) {
             assert_false(effect.done);
             assert_true(partition_oracle_same(&before, &p));
             uneven++;
-            /* then with more room than there is anywhere */
+            /* then with more room than possible */
             test_ok(context, apply_plan(&p, pieces, count, &plan, 1, -1, &scratch, &effect));
             assert_false(effect.done);
             assert_true(partition_oracle_same(&before, &p));
@@ -804,7 +802,7 @@ static bool sees_all(const partition *p, uint32_t number, const double guard[3])
     return sees;
 }
 
-/* Moves a guard so near to the middle of a facet's edge that doubles can hardly tell. */
+/* Moves a guard within rounding of the midpoint of a facet's edge. */
 static void move_guard(partition *p, uint32_t number, starg_rng *rng) {
     uint32_t first = p->start.data[number], count = p->start.data[number + 1] - first;
     const facet *f = &p->facets.data[p->index.data[first + starg_rng_below(rng, count)] / 2];
@@ -819,8 +817,8 @@ static void move_guard(partition *p, uint32_t number, starg_rng *rng) {
     }
 }
 
-/* A split of a facet turns its parts by a rounding: a guard of another piece that is too near to it
- * does not see them any more, and the plan is refused. */
+/* Splitting a facet rotates its parts by a rounding error: another piece's guard that is too close
+ * no longer sees them, and the plan is rejected. */
 static void test_near_guards(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -849,7 +847,7 @@ static void test_near_guards(void **state) {
     test_context_free(context);
 }
 
-/* Any two neighbours are one piece again exactly if they have a kernel. */
+/* Any two neighbours can be joined exactly if they have a common kernel. */
 static void test_joins(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -885,7 +883,7 @@ static void test_joins(void **state) {
 
 /* ---- memory ---- */
 
-/* Everything in one go on a small hull; true when the ration was enough. */
+/* Everything in one go on a small hull; true if the ration was enough. */
 static bool run_rationed(size_t ration) {
     size_t left = SIZE_MAX;
     starg_context *context = test_scarce_context(1, &left);

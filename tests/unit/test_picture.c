@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pictures: the file is a PNG of the right size, and its pixels show what the scene says. The PNG
- * is taken apart by code of the test's own (zlib inflates). */
+/* Pictures: the file is a PNG of the right size, and its pixels show the scene. The test decodes
+ * the PNG itself (zlib inflates). */
 #include "support.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@
 #include "starguard/picture.h"
 #include "starguard/sample.h"
 
-/* ---- reading a PNG -------------------------------------------------------------------------- */
+/* ---- reading a PNG ---- */
 
 typedef struct image {
     size_t width, height;
@@ -125,7 +125,7 @@ static bool is_white(const uint8_t *p) {
     return p[0] == 255 && p[1] == 255 && p[2] == 255;
 }
 
-/* ---- scenes --------------------------------------------------------------------------------- */
+/* ---- scenes ---- */
 
 static char folder[64];
 
@@ -209,7 +209,7 @@ static void a_face_on_cube_is_a_square(void **state) {
 }
 
 /* With the default up axis, azimuth 0 looks along -z and azimuth 90 along -x; elevation 90 looks
- * down. Coloured faces tell which side is seen. */
+ * down. Coloured faces identify the visible side. */
 static void the_camera_stands_where_it_should(void **state) {
     (void)state;
     static const struct {
@@ -298,7 +298,7 @@ static void flat_faces_have_no_seams(void **state) {
     options.opacity = 0.5;
     options.azimuth = 0;
     image i = draw(context, mesh, &options);
-    /* the commonest colour covers nearly all that is not white and not an outline */
+    /* the commonest colour covers nearly all that is neither white nor an outline */
     size_t counts[256] = {0}, covered = 0, best = 0;
     for (size_t p = 0; p < i.width * i.height; p++)
         if (!is_white(i.rgb + 3 * p)) {
@@ -340,7 +340,7 @@ static void same_bytes_for_any_thread_count(void **state) {
     free(bytes[1]);
 }
 
-/* Sizes from the subnormal to the huge give the same picture; so do places far from the origin. */
+/* Sizes from subnormal to huge give the same picture; so do places far from the origin. */
 static void scale_does_not_matter(void **state) {
     (void)state;
     static const double scales[] = {1e-300, 1e-3, 1e90};
@@ -364,7 +364,7 @@ static void scale_does_not_matter(void **state) {
     test_context_free(context);
 }
 
-/* Any mesh can be drawn: nothing, points only, triangles without area, shared or open edges. */
+/* Any mesh can be drawn: empty, points only, zero-area triangles, shared or open edges. */
 static void odd_meshes_are_drawn(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -392,7 +392,7 @@ static void odd_meshes_are_drawn(void **state) {
     test_context_free(context);
 }
 
-/* A fan with thousands of layers on one spot is cut off at the nearest, not a failure. */
+/* A fan with thousands of layers on one spot is truncated to the nearest, without error. */
 static void many_layers_are_cut_off(void **state) {
     (void)state;
     enum { LAYERS = 3000 };
@@ -509,7 +509,7 @@ static void memory_failures_leak_nothing(void **state) {
     assert_int_equal(unlink(path), 0);
 }
 
-/* Plain distance in RGB between the first colours, and white. */
+/* RGB distance between the first colours, and to white. */
 static void colors_are_distinct(void **state) {
     (void)state;
     enum { COUNT = 24 };

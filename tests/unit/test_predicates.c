@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every predicate against rational arithmetic, on families of input that break careless ones. */
+/* Every predicate against rational arithmetic, on input families that break careless ones. */
 #include <math.h>
 
 #include "adversarial.h"
@@ -147,7 +147,7 @@ static void test_collinear(void **state) {
     for_all(check_collinear);
 }
 
-/* The meaning of the signs, on input where it is plain to see. */
+/* The meaning of the signs, on obvious input. */
 static void test_meaning(void **state) {
     (void)state;
     const double a[3] = {0, 0, 0}, b[3] = {1, 0, 0}, c[3] = {0, 1, 0};
@@ -167,7 +167,7 @@ static void test_meaning(void **state) {
     assert_int_equal(compare_distance(a, b, 1), 0);
 }
 
-/* The families must reach zeros and both signs, or the comparisons above show little. */
+/* The families must reach zeros and both signs, otherwise the comparisons above prove little. */
 static void test_families_reach_every_sign(void **state) {
     (void)state;
     for (int family = 0; family < POINT_FAMILIES; family++) {

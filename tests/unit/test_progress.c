@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the progress callback hears: stages that nest, each from 0 to 1, without a step back. */
+/* Progress callbacks: nested stages, each from 0 to 1, never decreasing. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,8 +29,8 @@ typedef struct recorder {
     double fractions[DEEPEST];
     size_t depth, calls;
     size_t ilp_steps;  /* different fractions of it */
-    bool refined[2];   /* the cover and the search for places have run inside of "search" */
-    const char *wrong; /* what was wrong first, or NULL */
+    bool refined[2];   /* the cover and the search for places have run inside "search" */
+    const char *wrong; /* the first violation, or NULL */
 } recorder;
 
 static bool is_known(const char *stage) {
@@ -82,7 +82,7 @@ static bool record(void *user, const char *stage, double fraction) {
     return true;
 }
 
-/* Every step is heard, however short after the last one. */
+/* Receives every step, without a pause between steps. */
 static recorder recorder_new(int threads) {
     recorder r = {.context = test_context(threads)};
     r.context->progress.pause = 0;
@@ -95,7 +95,7 @@ static void listen(recorder *r) {
     r->calls = 0;
 }
 
-/* What was heard is complete: what began has ended. */
+/* Every stage that began has ended. */
 static void expect_end(recorder *r) {
     r->context->progress.report = NULL;
     assert_null(r->wrong);
@@ -197,7 +197,7 @@ static void test_morphs(void **state) {
     test_context_free(r.context);
 }
 
-/* Branch and bound tells how many of its nodes are used, not a half for ever. */
+/* Branch and bound reports the share of its nodes used, not a constant half. */
 static void test_ilp(void **state) {
     (void)state;
     enum { ROWS = 90, COLUMNS = 90, ONES = 6 };
@@ -221,8 +221,8 @@ static void test_ilp(void **state) {
     test_context_free(r.context);
 }
 
-/* A part takes the stage around it along; a stage in one of the same name is no new one; what goes
- * back is not told. */
+/* A part advances the enclosing stage; a nested stage of the same name is not a new one; decreasing
+ * steps are not reported. */
 static void test_shares(void **state) {
     (void)state;
     recorder r = recorder_new(1);
@@ -251,7 +251,7 @@ static void test_shares(void **state) {
     test_context_free(r.context);
 }
 
-/* Rules of the time limit: the one that lets a stage run to its end holds for all its parts. */
+/* Rules of the time limit: one that lets a stage run to its end applies to all its parts. */
 static void test_time_rules(void **state) {
     (void)state;
     starg_context *context = test_context(1);

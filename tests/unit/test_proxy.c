@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Which level of detail the medial axis of a large model is taken from. */
+/* The level of detail used for the medial axis of a large model. */
 #include "guard/proxy.h"
 #include "models.h"
 
 enum { MESHES = 4 };
 
-/* The level that is chosen among some of the meshes, of which the last is the model. */
+/* The level chosen among some of the meshes, the last of which is the model. */
 static void expect_level(starg_context *context, starg_mesh *const meshes[MESHES],
                          const size_t *some, size_t count, size_t wanted) {
     starg_level entries[MESHES] = {{.mesh = NULL}};
@@ -18,7 +18,7 @@ static void expect_level(starg_context *context, starg_mesh *const meshes[MESHES
     starg_solid_free(chosen);
 }
 
-/* The coarsest that has 25,000 vertices; the model itself where none has. */
+/* The coarsest with 25,000 vertices; the model itself if none has. */
 static void test_choice(void **state) {
     (void)state;
     starg_context *context = test_context(2);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Work that several processes share: the same results as without them, and what becomes of a run in
- * which one of them fails. */
+/* Work shared by several processes: the same results as without sharing, and runs in which one
+ * process fails. */
 #include "starguard/ranks.h"
 
 #include <stdio.h>
@@ -44,7 +44,7 @@ static bool same_rows(const starg_bits *a, const starg_bits *b) {
     return true;
 }
 
-/* Every option that a row depends on goes to the helpers. */
+/* Every option that affects a row is sent to the helpers. */
 static void test_rows(void **state) {
     (void)state;
     starg_context *alone = test_context(1);
@@ -97,7 +97,7 @@ static starg_guards *guards_of(starg_context *context, starg_guard_method method
     return guards;
 }
 
-/* The whole of guarding, in which levels of detail are shared, too. */
+/* All of guarding, including levels of detail. */
 static void test_guards(void **state) {
     (void)state;
     static const starg_guard_method methods[] = {STARG_GUARD_GREEDY, STARG_GUARD_PILP};
@@ -161,7 +161,7 @@ static void remove_models(void) {
     assert_int_equal(rmdir(folder), 0);
 }
 
-/* A model, which is stored already; a file that is none; the others, the first one again. */
+/* A model that is stored already; a file that is not a model; the others, the first one again. */
 static void fill(starg_context *context, starg_database_report **report,
                  starg_database_models **models) {
     static const size_t order[FILES] = {0, MODELS, 1, 2, 3, 0};
@@ -238,7 +238,7 @@ static starg_status look(starg_context *context, const starg_solid *solid) {
     return status;
 }
 
-/* The way breaks after any number of messages. */
+/* The connection breaks after any number of messages. */
 static void test_broken_way(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -275,8 +275,8 @@ static void test_garbled_replies(void **state) {
     test_context_free(context);
 }
 
-/* Each of a helper's allocations fails once: the call fails with that or, if it was that of a
- * message, with the loss of the helper. */
+/* Each of a helper's allocations fails once: the call fails with that or, if it was for a message,
+ * with the loss of the helper. */
 static void test_memory_of_a_helper(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -301,7 +301,7 @@ static void test_memory_of_a_helper(void **state) {
     test_context_free(context);
 }
 
-/* Messages that no rank 0 sends. */
+/* Messages that rank 0 never sends. */
 static void test_nonsense(void **state) {
     (void)state;
     starg_rng rng = starg_rng_make(3, 2, 1);
@@ -339,13 +339,13 @@ static void test_time_limit(void **state) {
     starg_context_set_time_limit(context, 1e-6);
     assert_int_equal(look(context, solid), STARG_ERROR_TIME);
 
-    starg_guard_options_default(&options); /* stopped somewhere: a result that says so, or none */
+    starg_guard_options_default(&options); /* stopped anywhere: a result that says so, or none */
     options.visibility.engine = STARG_VISIBILITY_SWEEP;
     options.candidate_count = 3000;
     starg_context_set_time_limit(context, 0.25);
     starg_status status = starg_guard(context, solid, &options, &guards);
     assert_true(status == STARG_OK ? guards->time_limited : status == STARG_ERROR_TIME);
-    starg_context_set_time_limit(context, 0); /* the helpers go on as if nothing had been */
+    starg_context_set_time_limit(context, 0); /* the helpers continue as if nothing had happened */
     if (status == STARG_OK)
         test_verified(context, "cat", starg_solid_mesh(solid), guards);
     starg_guards_free(context, guards);
@@ -355,7 +355,7 @@ static void test_time_limit(void **state) {
     test_context_free(context);
 }
 
-/* Agrees until the first step of the rows. */
+/* Returns true until the first step of the rows. */
 static bool refuse_late(void *user, const char *stage, double fraction) {
     (void)user;
     return strcmp(stage, "visibility") != 0 || fraction == 0;
@@ -385,7 +385,7 @@ static void test_cancel(void **state) {
     test_context_free(context);
 }
 
-/* Helpers have no ranks of their own to share with; neither has a process that is alone. */
+/* Helpers have no ranks of their own; neither has a single process. */
 static void test_no_helpers(void **state) {
     (void)state;
     starg_context *context = test_context(1);

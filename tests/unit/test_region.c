@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the search for cuts knows of a union of pieces, against linear programs over all rows that
- * count, set up anew for every height that matters. */
+/* Queries of the search for cuts about a union of pieces, against linear programs over all relevant
+ * rows, rebuilt for every relevant height. */
 #include "support.h"
 
 #include <math.h>
@@ -49,7 +49,7 @@ static bool is_in(const setting *s, uint32_t number) {
     return false;
 }
 
-/* Some pieces, neighbours or not. */
+/* Some pieces, adjacent or not. */
 static void choose_union(setting *s, starg_rng *rng) {
     size_t wanted = 1 + (size_t)starg_rng_below(rng, UNION_MOST);
     s->count = 0;
@@ -82,7 +82,7 @@ static void release(setting *s) {
     test_context_free(s->context);
 }
 
-/* Something to check of s->r; tells how often it was a case that must come up. */
+/* A check of s->r; counts the cases that must occur. */
 typedef size_t union_check(setting *s, starg_rng *rng);
 
 /* The sum over some unions of each of some partitions. */
@@ -135,7 +135,7 @@ static void test_scan(void **state) {
 
 /* ---- gathering ---- */
 
-/* A row for each plane and side that bounds the union, no two the same. */
+/* A row for each plane and side that bounds the union, all distinct. */
 static void check_rows(const setting *s) {
     const partition *p = &s->p;
     size_t triangles = 0, rows = 0;
@@ -155,8 +155,8 @@ static void check_rows(const setting *s) {
     assert_int_equal(s->r.rows.count, 4 * rows);
 }
 
-/* Every triangle lies in its row's plane and is counter-clockwise seen from where that points; the
- * triangles enclose the pieces' volume. */
+/* Every triangle lies in its row's plane and is counter-clockwise seen from where the row points;
+ * the triangles enclose the pieces' volume. */
 static void check_triangles(const setting *s) {
     const region *r = &s->r;
     double volume = 0, up[3] = {0, 0, 1};
@@ -192,7 +192,7 @@ static void test_gather(void **state) {
 
 /* ---- slow answers ---- */
 
-/* Where a row begins to count along a direction. */
+/* Where a row becomes active along a direction. */
 static double lowest_of(const region *r, const double *normal, size_t row) {
     double lowest = INFINITY;
     for (size_t i = 0; i < r->triangles.count; i++)
@@ -213,8 +213,8 @@ static void add_program_row(linear_program *program, double *rows, const double 
         row[k] = (k < 3 ? normal[k] : k == 3 ? 1 : offset) / sqrt(2);
 }
 
-/* Radius of the largest ball inside of the rows that count below a height and of the plane there
- * (INFINITY: no plane, all rows that a triangle has); at most 4 or so. */
+/* Radius of the largest ball in the rows active below a height and the plane there (INFINITY: no
+ * plane, all rows with triangles); at most about 4. */
 static double radius_below(const region *r, const double *normal, const double *lowest,
                            double height) {
     size_t count = r->rows.count / 4;
@@ -238,8 +238,8 @@ static double radius_below(const region *r, const double *normal, const double *
 
 /* ---- reaches ---- */
 
-/* Between two heights at which rows begin to count the plane alone moves, away from the guard: so
- * the highest place is one of them, or there is none. */
+/* Between two heights at which rows become active only the plane moves, away from the guard: so the
+ * highest place is one of them, or there is none. */
 static void check_reach(const region *r, const double normal[3], double margin,
                         const region_reach *reach) {
     size_t count = r->rows.count / 4;
@@ -292,7 +292,7 @@ static void test_reach(void **state) {
     assert_true(whole > 20 && part > 20);
 }
 
-/* The nearest that a row comes to a place, by its triangles' corners; squared. */
+/* Squared distance from a place to the nearest triangle corner of a row. */
 static void find_nearest(const region *r, const double center[3], double *nearest) {
     for (size_t i = 0; i < r->rows.count / 4; i++)
         nearest[i] = INFINITY;
@@ -306,8 +306,8 @@ static void find_nearest(const region *r, const double center[3], double *neares
         }
 }
 
-/* All rows of a distance below the one found have the guard inside, and with the next rows there
- * would be no room. */
+/* All rows closer than the distance found contain the guard, and with the next rows there would be
+ * no room. */
 static void check_reach_about(const region *r, const double center[3], double margin,
                               const region_reach *reach) {
     size_t count = r->rows.count / 4;
@@ -327,7 +327,7 @@ static void check_reach_about(const region *r, const double center[3], double ma
     for (size_t i = 0; i < count; i++)
         scaled[i] = nearest[i] <= next + 1e-12 ? 0 : 2;
     static const double away[3] = {1, 0, 0};
-    /* a plane far off, and only the rows marked with 0 count */
+    /* a plane far away, so that only the rows marked with 0 count */
     if (reach->height < INFINITY)
         assert_true(radius_below(r, away, scaled, 1) < margin + 1e-9);
     free(nearest);
@@ -410,8 +410,8 @@ static bool has_row(const region *r, const double *row) {
     return false;
 }
 
-/* Some facets ask for nothing that all of them do not ask for, and leave nothing behind that
- * another gathering could trip over. */
+/* A subset of facets has no rows beyond those of all facets, and leaves no state that affects
+ * another gathering. */
 static size_t check_some(setting *s, starg_rng *rng) {
     uint32_t most = 1 + (uint32_t)starg_rng_below(rng, 40);
     bool fewer = s->r.triangles.count > 2 * s->count * most;

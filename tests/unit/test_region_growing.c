@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Grown regions against their definition in rationals: every set star-shaped about its guard,
- * nothing left over; and what hints and threads may and may not change. */
+/* Grown regions against their definition in rationals: every set is star-shaped about its guard,
+ * and they cover everything; the effect of hints and threads. */
 #include "support.h"
 
 #include <math.h>
@@ -23,7 +23,8 @@ static int side_of(const starg_tetmesh *mesh, size_t t, size_t face, const doubl
 }
 
 /* One set: each face of its boundary has the guard strictly on its inner side, and one of its
- * tetrahedra holds the guard (on its border maybe). So the set is star-shaped, and connected. */
+ * tetrahedra contains the guard (possibly on its border). So the set is star-shaped and
+ * connected. */
 static void check_set(const starg_tetmesh *mesh, const grown_regions *c, uint32_t number) {
     const double *guard = c->guards.data + 3 * (size_t)number;
     size_t holders = 0, inner = 0;
@@ -43,7 +44,7 @@ static void check_set(const starg_tetmesh *mesh, const grown_regions *c, uint32_
     }
     assert_true(holders > 0);
     assert_true(inner <= 1);
-    assert_true(inner == 0 || holders == 1); /* wound around once */
+    assert_true(inner == 0 || holders == 1); /* winding number one */
 }
 
 static void check_connected(const starg_tetmesh *mesh, const grown_regions *c, uint32_t number) {
@@ -117,7 +118,7 @@ static void test_random(void **state) {
         starg_tetmesh_free(mesh);
     }
     assert_true(sets > 40);
-    assert_true(4 * sets < tetrahedra); /* regions hold more than the guard's tetrahedron */
+    assert_true(4 * sets < tetrahedra); /* regions contain more than the guard's tetrahedron */
     test_context_free(context);
     test_context_free(many);
 }
@@ -137,7 +138,7 @@ static void test_samples(void **state) {
     test_context_free(context);
 }
 
-/* A star-shaped whole is one set, and so is every part of it that hangs apart. */
+/* A star-shaped whole is one set, and so is every separate component. */
 static void test_whole(void **state) {
     (void)state;
     static const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1,
@@ -158,7 +159,7 @@ static void test_whole(void **state) {
     test_context_free(context);
 }
 
-/* Any points will do: far off, in vertices, on faces, many times the same. */
+/* Any points are allowed: far away, at vertices, on faces, repeated. */
 static void test_hints(void **state) {
     (void)state;
     starg_context *context = test_context(1), *many = test_context(3);
@@ -188,14 +189,14 @@ static void test_hints(void **state) {
         grown_regions_free(many, &three);
         starg_tetmesh_free(mesh);
     }
-    assert_true(other > 6); /* they are tried indeed */
+    assert_true(other > 6); /* the hints are used */
     test_context_free(context);
     test_context_free(many);
 }
 
 /* ---- failures ---- */
 
-/* No double lies between one coordinate and the next: a tetrahedron without a point for a guard. */
+/* No double lies between one coordinate and the next: a tetrahedron without room for a guard. */
 static void test_too_thin(void **state) {
     (void)state;
     static const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Each operation of repair on meshes with one known fault, and what the report says of it. */
+/* Each repair operation on meshes with one known fault, and its report. */
 #include "starguard/repair.h"
 
 #include <math.h>
@@ -39,7 +39,7 @@ static void add_vertex(shape *s, double x, double y, double z) {
     memcpy(s->vertices + 3 * s->vertex_count++, (const double[3]){x, y, z}, 3 * sizeof(double));
 }
 
-/* Takes the face out; the last one takes its place. */
+/* Removes the face; the last one takes its place. */
 static void remove_face(shape *s, size_t face) {
     memmove(s->faces + 3 * face, s->faces + 3 * --s->face_count, 3 * sizeof *s->faces);
 }
@@ -50,8 +50,8 @@ static void turn_face(shape *s, size_t face) {
     s->faces[3 * face + 1] = swap;
 }
 
-/* Repairs a shape, which is freed, and asserts what holds of every success: a usable solid with
- * shells turned, and a report that adds up. */
+/* Repairs a shape, frees it, and asserts the properties of every success: a usable solid with
+ * oriented shells, and a consistent report. */
 static repaired repair_with(shape *s, const starg_repair_options *options) {
     repaired r = {.context = test_context(1)};
     r.input = test_mesh_of(r.context, s);
@@ -165,12 +165,12 @@ static void test_merges_within_a_distance(void **state) {
 static void test_drops_what_does_not_belong(void **state) {
     (void)state;
     shape s = shape_tetrahedron();
-    add_vertex(&s, 9, 9, 9); /* isolated       */
+    add_vertex(&s, 9, 9, 9); /* isolated */
     add_face(&s, 0, 2, 0);   /* repeated corner */
-    add_face(&s, 2, 3, 1);   /* duplicate      */
-    add_face(&s, 3, 1, 2);   /* and once more  */
+    add_face(&s, 2, 3, 1);   /* duplicate */
+    add_face(&s, 3, 1, 2);   /* and once more */
     add_vertex(&s, 5, 5, 1);
-    add_face(&s, 1, 2, 5); /* a fin          */
+    add_face(&s, 1, 2, 5); /* a fin */
     repaired r = repair(&s);
     assert_int_equal(r.report.faces_dropped, 4);
     assert_int_equal(r.report.vertices_dropped, 2);
@@ -197,7 +197,7 @@ static void test_keeps_one_layer(void **state) {
     repaired_free(&r);
 }
 
-/* Two cubes with a wall between them, which each has for itself: the wall goes. */
+/* Two cubes with a doubled wall between them: the wall is dropped. */
 static void test_drops_a_wall_inside(void **state) {
     (void)state;
     shape s = shape_cells("##", 2, 1, 1);
@@ -256,7 +256,7 @@ static void test_turns_shells(void **state) {
     repaired_free(&r);
 }
 
-/* Two cells that touch along an edge come apart there; nothing moves. */
+/* Two cells that touch along an edge are separated there; nothing moves. */
 static void test_splits_an_edge(void **state) {
     (void)state;
     shape s = shape_cells("#..#", 2, 2, 1);
@@ -281,7 +281,7 @@ static void test_splits_a_vertex(void **state) {
 }
 
 /* A ring of cells whose first and last touch along an edge: both sheets of the edge share both
- * ends, so that copies of the vertices alone do not part them. */
+ * ends, so copying the vertices does not separate them. */
 static void test_splits_a_pinched_edge(void **state) {
     (void)state;
     shape s = shape_cells(".#"
@@ -357,7 +357,7 @@ static void test_fills_holes_that_meet(void **state) {
     repaired_free(&r);
 }
 
-/* A flat hole that is not convex is filled flat: the lid of an L of cells. */
+/* A flat concave hole is filled flat: the lid of an L of cells. */
 static void test_fills_a_concave_hole(void **state) {
     (void)state;
     shape s = shape_room();
@@ -376,7 +376,7 @@ static void test_fills_a_concave_hole(void **state) {
     repaired_free(&r);
 }
 
-/* A drum of n sides without its lid; n beyond the limit of the exact filling too. */
+/* A drum with n sides without its lid; n also beyond the limit of the exact filling. */
 static void test_fills_large_holes(void **state) {
     (void)state;
     static const uint32_t sides[] = {3, 4, 50, 192, 1000};
@@ -418,7 +418,7 @@ static void test_leaves_holes_beyond_the_limit(void **state) {
 
 /* ---- intersections ---- */
 
-/* A vertex of a fine blob pushed through the wall opposite to it. */
+/* A vertex of a fine blob pushed through the opposite wall. */
 static void test_untangles_a_spike(void **state) {
     (void)state;
     shape s = shape_blob(4, 2);
@@ -437,8 +437,8 @@ static void test_untangles_a_spike(void **state) {
     repaired_free(&r);
 }
 
-/* Random noise on a sphere folds faces over one another: fewer crossings afterwards, never more,
- * and no vertex far from where it was. */
+/* Random noise on a sphere folds faces over one another: repair reduces crossings, never adds any,
+ * and moves no vertex far. */
 static void test_untangles_folds(void **state) {
     (void)state;
     for (uint64_t round = 0; round < 5; round++) {
@@ -469,7 +469,7 @@ static void test_leaves_overlapping_components(void **state) {
     repaired_free(&r);
 }
 
-/* ---- what cannot be mended ---- */
+/* ---- what cannot be repaired ---- */
 
 static void test_refuses_a_moebius_strip(void **state) {
     (void)state;
@@ -539,7 +539,7 @@ static void test_cancel(void **state) {
     test_context_free(context);
 }
 
-/* ---- random damage: never a crash, never more faults, and repeatable ---- */
+/* ---- random damage: no crash, no additional faults, repeatable ---- */
 
 static shape damaged(uint64_t round) {
     starg_rng rng = starg_rng_make(11, 0, round);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Retrieval measures: by hand for small cases, and on random tables with many ties against counting
- * straight from the definitions. */
+/* Retrieval measures: small cases by hand, and random tables with many ties against the
+ * definitions. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,8 +14,7 @@ static void expect(double found, double wanted) {
         fail_msg("%.17g, %.17g expected", found, wanted);
 }
 
-/* Four models: a query's own class holds the first two. From 0 the other is second, from 1 first.
- */
+/* Four models: a query's own class has the first two. From 0 the other is second, from 1 first. */
 static void by_hand(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -66,7 +65,7 @@ static void perfect(void **state) {
     test_context_free(context);
 }
 
-/* ---- straight from the definitions ---- */
+/* ---- by the definitions ---- */
 
 typedef struct world {
     size_t count;
@@ -74,7 +73,7 @@ typedef struct world {
     uint32_t class_of[60];
 } world;
 
-/* The place of a model in a query's ranking, from 1 on: one more than those in front of it. */
+/* Rank of a model for a query, from 1 on: one more than the models before it. */
 static size_t place_of(const world *w, size_t query, size_t model) {
     size_t place = 1;
     double d = w->distances[query * w->count + model];
@@ -166,7 +165,7 @@ static void random_tables(void **state) {
         expect(all.dcg, sum.dcg / n);
         for (size_t k = 0; k < STARG_RECALL_LEVELS; k++)
             expect(all.precision[k], sum.precision[k] / n);
-        /* the classes' means, weighted by their queries, are the mean of all */
+        /* the classes' means, weighted by their queries, are the overall mean */
         double tiers = 0;
         for (size_t c = 0; c < class_count; c++)
             tiers += classes[c].first_tier * (double)classes[c].queries;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Every sample, every pose: a closed 2-manifold, outward, embedded, of the expected genus, near the
- * wanted size. Checked with simple code that shares nothing with the library. */
+/* Every sample, every pose: a closed 2-manifold, outward, embedded, of the expected genus, close to
+ * the wanted size. Checked with simple code independent of the library. */
 #include "support.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@
 
 #include "starguard/sample.h"
 
-/* ---- closed 2-manifold ---------------------------------------------------------------------- */
+/* ---- closed 2-manifold ---- */
 
 typedef struct directed_edge {
     uint32_t from, to, opposite;
@@ -43,7 +43,7 @@ static const directed_edge *find_edge(const directed_edge *edges, size_t count, 
     return bsearch(&key, edges, count, sizeof *edges, compare_edges);
 }
 
-/* Every directed edge once, and once the other way; about every vertex one closed fan. */
+/* Every directed edge occurs once, and so does its opposite; every vertex has one closed fan. */
 static void assert_manifold(const starg_mesh *mesh) {
     size_t count = 3 * starg_mesh_face_count(mesh), fans = 0, vertices = 0;
     directed_edge *edges = sorted_edges(mesh);
@@ -54,7 +54,7 @@ static void assert_manifold(const starg_mesh *mesh) {
         assert_non_null(find_edge(edges, count, edges[i].to, edges[i].from));
     }
     for (size_t i = 0; i < count;) {
-        /* walk about the vertex from its first edge and count the steps back to it */
+        /* walk around the vertex from its first edge and count the steps back to it */
         size_t begin = i, steps = 0;
         const directed_edge *e = &edges[begin];
         do {
@@ -96,7 +96,7 @@ static size_t count_components(const starg_mesh *mesh) {
     return components;
 }
 
-/* ---- geometry ------------------------------------------------------------------------------- */
+/* ---- geometry ---- */
 
 static const double *corner(const starg_mesh *mesh, size_t face, size_t k) {
     return starg_mesh_vertices(mesh) + 3 * (size_t)starg_mesh_faces(mesh)[3 * face + k % 3];
@@ -145,10 +145,10 @@ static double smallest_angle(const starg_mesh *mesh) {
     return smallest;
 }
 
-/* ---- self-intersection ---------------------------------------------------------------------- */
+/* ---- self-intersection ---- */
 
-/* Does the segment p q pass through the triangle a b c? Contact alone does not count, nor what is
- * within rounding of it. */
+/* Does the segment p q pass through the triangle a b c? Contact alone and cases within rounding do
+ * not count. */
 static bool pierces(const double *p, const double *q, const double *a, const double *b,
                     const double *c) {
     double s = volume6(a, b, c, p), t = volume6(a, b, c, q);
@@ -170,8 +170,8 @@ static bool faces_share_corner(const uint32_t *f, const uint32_t *g) {
     return false;
 }
 
-/* An edge of one through the inside of the other; corners in common are left out of account by
- * testing only edges that do not end in the other face. */
+/* An edge of one passes through the interior of the other; edges that end in the other face are
+ * skipped because of common corners. */
 static bool faces_cross(const starg_mesh *mesh, size_t f, size_t g) {
     const uint32_t *faces = starg_mesh_faces(mesh);
     for (int turn = 0; turn < 2; turn++) {
@@ -225,7 +225,7 @@ static size_t count_crossings(const starg_mesh *mesh) {
     return crossings;
 }
 
-/* ---- tests ---------------------------------------------------------------------------------- */
+/* ---- tests ---- */
 
 static starg_mesh *make(starg_context *context, const char *name, int pose, size_t vertex_count) {
     starg_sample_options options;
@@ -274,7 +274,7 @@ static void check_sample(starg_context *context, const starg_sample_info *info, 
     starg_mesh_free(mesh);
 }
 
-/* Every sample in the rest pose and in poses `from` to `to`, as far as it has them. */
+/* Every sample in the rest pose and in poses `from` to `to`, where available. */
 static void check_all(size_t vertex_count, double tolerance, int from, int to) {
     starg_context *context = test_context(2);
     for (size_t i = 0; i < starg_sample_count(); i++) {
@@ -288,7 +288,7 @@ static void check_all(size_t vertex_count, double tolerance, int from, int to) {
 
 static void samples_of_500(void **state) {
     (void)state;
-    check_all(500, 0.25, 3, 3); /* rigid polyhedra come in coarse steps here */
+    check_all(500, 0.25, 3, 3); /* rigid polyhedra have coarse steps here */
 }
 
 static void samples_of_5000(void **state) {
@@ -296,7 +296,7 @@ static void samples_of_5000(void **state) {
     check_all(5000, 0.05, 2, 2);
 }
 
-/* One pose of each: the test is to stay quick. */
+/* One pose of each, to stay fast. */
 static void samples_of_20000(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -358,7 +358,7 @@ static void same_bytes_for_any_thread_count(void **state) {
     test_context_free(four);
 }
 
-/* Volumes that are known from the shapes themselves. */
+/* Volumes known in closed form. */
 static void volumes_are_right(void **state) {
     (void)state;
     static const struct {
@@ -418,7 +418,7 @@ static void cancellation_stops_it(void **state) {
     test_context_free(context);
 }
 
-/* ---- memory that runs out ------------------------------------------------------------------- */
+/* ---- memory that runs out ---- */
 
 static void memory_failures_leak_nothing(void **state) {
     (void)state;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Scenes in one file: what is in them, read back by our readers of meshes and by code here; what
- * does not fit together, and every way in which writing can end early. Readers of others open the
- * files in tests/cli/test_export.py. */
+/* Scenes in one file: their contents, read back by our mesh readers and by code here; inconsistent
+ * input, and every way in which writing can fail. tests/cli/test_export.py opens the files with
+ * other programs' readers. */
 #include "support.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@
 #include "starguard/decompose.h"
 #include "starguard/scene.h"
 
-enum { BALL = 72 }; /* faces of what stands for a guard */
+enum { BALL = 72 }; /* faces of a guard's symbol */
 
 static const char *const NAMES[] = {"scene.glb", "scene.vtu", "scene.ply", "scene.obj"};
 enum { FORMATS = 4 };
@@ -31,7 +31,7 @@ static int make_folder(void **state) {
 
 static int remove_folder(void **state) {
     (void)state;
-    return rmdir(folder); /* fails when a test has left anything */
+    return rmdir(folder); /* fails if a test has left anything */
 }
 
 static const char *in_folder(const char *name) {
@@ -83,7 +83,7 @@ static stage make_stage(void) {
     return s;
 }
 
-/* The structs that the scene points to stand in the stage, wherever that is by now. */
+/* The structs that the scene points to are in the stage, at its current address. */
 static starg_scene whole_scene(const stage *s) {
     starg_scene scene = s->scene;
     scene.pieces = &s->mesh;
@@ -150,7 +150,7 @@ static void test_pieces_make_up_the_model(void **state) {
     free_stage(&s);
 }
 
-/* ---- parts that are missing, or do not fit ---- */
+/* ---- missing or inconsistent parts ---- */
 
 static void test_every_part_may_be_alone(void **state) {
     (void)state;
@@ -242,7 +242,7 @@ static void test_a_single_node(void **state) {
     test_context_free(context);
 }
 
-/* ---- ends before time ---- */
+/* ---- failures while writing ---- */
 
 static void test_unwritable(void **state) {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Guards that look in one direction: cones of view against their definition, and end to end. */
+/* Guards that look in one direction: viewing cones against their definition, and end to end. */
 #include "support.h"
 
 #include <math.h>
@@ -12,8 +12,8 @@
 
 enum { POINTS = 12 };
 
-/* Points inside, some of them one after the other at the same place, with directions to vertices,
- * along axes and at random: the cases in which cosines are ties. */
+/* Points inside, some of them repeated consecutively, with directions to vertices, along axes and
+ * at random: cases with ties of cosines. */
 static void pick_views(const starg_solid *solid, double *points, double *directions) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
     const double *v = starg_mesh_vertices(mesh);
@@ -36,7 +36,7 @@ static void pick_views(const starg_solid *solid, double *points, double *directi
     }
 }
 
-/* A row with a cone holds what the row without one holds, as far as it lies in the cone. */
+/* A row with a cone contains what the row without one contains, restricted to the cone. */
 static void check_rows(starg_context *context, const starg_solid *solid,
                        starg_visibility_options options, const double *points) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
@@ -119,7 +119,7 @@ static void test_bad_cones(void **state) {
     test_context_free(context);
 }
 
-/* The narrower the view, the more guards; all of them look somewhere. */
+/* Narrower views need more guards; all of them have a direction. */
 static void test_guards_with_cones(void **state) {
     (void)state;
     starg_context *context = test_context(2);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* SHA-256 against the examples that FIPS 180-4 and its test vectors give. */
+/* SHA-256 against the examples of FIPS 180-4 and its test vectors. */
 #include "shape/sha256.h"
 
 #include <stdio.h>
@@ -31,7 +31,7 @@ static void known_digests(void **state) {
     free(million);
 }
 
-/* Every length about the block size gives another digest, and the digest depends on every byte. */
+/* Lengths around the block size have different digests, and the digest depends on every byte. */
 static void lengths_and_bytes(void **state) {
     (void)state;
     uint8_t bytes[130] = {0}, seen[260][STARG_SHA256_BYTES];

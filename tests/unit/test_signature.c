@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Signatures against what is known in closed form, and against motions that must not change them.
- */
+/* Signatures against closed forms, and under motions that must not change them. */
 #include "starguard/shape.h"
 
 #include <math.h>
@@ -42,7 +41,7 @@ static double sum_of(const double *numbers, size_t count) {
     return sum;
 }
 
-/* Two points of a sphere of radius 1 are nearer than d with probability d^2 / 4; on average 4 / 3
+/* Two points of the unit sphere are closer than d with probability d^2 / 4; on average 4 / 3
  * apart. */
 static void d2_of_a_sphere(void **state) {
     (void)state;
@@ -51,7 +50,7 @@ static void d2_of_a_sphere(void **state) {
     starg_signature *s = describe(context, mesh, STARG_SIGNATURE_D2);
     assert_int_equal(s->count, BINS);
     assert_true(fabs(sum_of(s->numbers, s->count) - 1) < 1e-9);
-    /* opposite points are at the limit of two bins, and the mesh is no sphere to the last digit */
+    /* opposite points are at the limit of two bins, and the mesh is not exactly a sphere */
     assert_true(s->numbers[32] < 0.002);
     s->numbers[31] += s->numbers[32];
     s->numbers[32] = 0;
@@ -66,8 +65,8 @@ static void d2_of_a_sphere(void **state) {
     test_context_free(context);
 }
 
-/* Points of the surface of a unit cube: the mean square of their distance is 5 / 6; its mean is
- * 0.5214054331 on the same face, 0.9263900552 on different ones. */
+/* Points of the surface of a unit cube: their mean squared distance is 5 / 6; their mean distance
+ * is 0.5214054331 on the same face, 0.9263900552 on different ones. */
 static void d2_of_a_cube(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -126,8 +125,8 @@ static double entry(const laplacian *l, int64_t row, int64_t column) {
     return 0;
 }
 
-/* x' L x for a coordinate of the vertices is the integral of its gradient's square, which on a
- * triangle is 1 less the square of that coordinate of the normal. */
+/* x' L x for a coordinate of the vertices is the integral of its squared gradient, which on a
+ * triangle is 1 minus that coordinate of the normal, squared. */
 static void laplacian_energy(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -206,7 +205,7 @@ static void jacobi(double *a, size_t n, double *out) {
     }
 }
 
-/* Are columns solutions of A x = lambda M x, and orthonormal in the masses? */
+/* Are the columns solutions of A x = lambda M x, and orthonormal with respect to the masses? */
 static void check_functions(const double *full, const double *masses, size_t n,
                             const double *eigenvalues, const double *functions, size_t count) {
     for (size_t i = 0; i < count; i++) {
@@ -306,7 +305,7 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* A sheet of sides a and b, free at its border: pi^2 (m^2 / a^2 + n^2 / b^2). */
+/* A sheet with sides a and b and free borders: pi^2 (m^2 / a^2 + n^2 / b^2). */
 static void spectrum_of_a_sheet(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -326,7 +325,7 @@ static void spectrum_of_a_sheet(void **state) {
 
 /* ---- invariance ---- */
 
-/* The same surface moved, turned, scaled, and with its vertices and faces in another order. */
+/* The same surface translated, rotated, scaled, and with vertices and faces reordered. */
 static starg_mesh *disguise(starg_context *context, const starg_mesh *mesh, double scale) {
     size_t n = starg_mesh_vertex_count(mesh), m = starg_mesh_face_count(mesh);
     shape s = {.vertex_count = n, .face_count = m};
@@ -368,7 +367,7 @@ static void nothing_but_the_shape_counts(void **state) {
     for (int k = 0; k < STARG_SIGNATURE_KINDS; k++) {
         starg_signature_kind kind = (starg_signature_kind)k;
         if (kind == STARG_SIGNATURE_PAPER)
-            continue; /* hangs on where the guards happen to stand; test_match turns its graphs */
+            continue; /* depends on the positions of guards; test_match transforms its graphs */
         starg_signature *first = describe(context, mesh, kind);
         starg_signature *unlike = describe(context, other, kind);
         assert_true(distance(context, first, first) == 0);
@@ -391,7 +390,7 @@ static void nothing_but_the_shape_counts(void **state) {
     test_context_free(context);
 }
 
-/* How finely a flat surface is cut hardly matters: coarse meshes are subdivided. */
+/* The resolution of a flat surface hardly matters: coarse meshes are subdivided. */
 static void resolution_hardly_counts(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -428,7 +427,7 @@ static void same_bytes_on_any_threads(void **state) {
     test_context_free(four);
 }
 
-/* ---- what is refused ---- */
+/* ---- rejections ---- */
 
 static void poor_meshes(void **state) {
     (void)state;
@@ -458,8 +457,8 @@ static void poor_meshes(void **state) {
     test_context_free(context);
 }
 
-/* Random faces over the nastiest points: a signature that its own check takes, or a clear refusal.
- * Without those of guards: a lattice fine enough for such shapes takes minutes. */
+/* Random faces over the nastiest points: a signature that passes its own check, or a clear
+ * rejection. Without those based on guards: a fine enough lattice for such shapes takes minutes. */
 static void adversarial_meshes(void **state) {
     (void)state;
     enum { POINTS = 9, FACES = 14 };

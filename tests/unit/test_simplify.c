@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Simplified meshes: the topology, the embedding and nearly the shape of the input, the same bytes
- * every time, and no harm on anything else. What comes out is judged by starg_mesh_check and by
- * distances, which share nothing with the simplification. */
+ * every time, and errors on other input. Results are judged by starg_mesh_check and by distances,
+ * which are independent of the simplification. */
 #include "support.h"
 
 #include <dirent.h>
@@ -53,7 +53,7 @@ static void assert_same_topology(starg_context *context, const starg_mesh *fine,
     starg_check_free(context, after);
 }
 
-/* Onto all vertices of the coarse mesh; and those into which one vertex alone went did not move. */
+/* Onto all vertices of the coarse mesh; vertices that are the only preimage did not move. */
 static void assert_map(const starg_mesh *fine, const starg_mesh *coarse, const uint32_t *map) {
     size_t n = starg_mesh_vertex_count(fine), count = starg_mesh_vertex_count(coarse);
     uint32_t *merged = calloc(count, sizeof *merged);
@@ -80,9 +80,9 @@ static starg_mesh *simplify(starg_context *context, const starg_mesh *mesh, size
     return coarse;
 }
 
-/* ---- topology and embedding ----------------------------------------------------------------- */
+/* ---- topology and embedding ---- */
 
-/* To a target that can be reached, and as far as it goes. */
+/* To a reachable target, and as far as possible. */
 static void check_mesh(starg_context *context, const starg_mesh *mesh, size_t target,
                        double volume_change) {
     starg_mesh *coarse = simplify(context, mesh, target);
@@ -154,7 +154,7 @@ static void test_everything_shrinks_to_a_tetrahedron(void **state) {
     test_context_free(context);
 }
 
-/* Small shells close to a surface that moves: none may change sides. */
+/* Small shells close to a moving surface: none may change sides. */
 static void test_shells_do_not_change_sides(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -199,7 +199,7 @@ static void test_shared_solids(void **state) {
         if (strstr(entry->d_name, ".off") == NULL)
             continue;
         test_ok(context, starg_mesh_read(context, path, &mesh));
-        if (starg_mesh_vertex_count(mesh) < 4000) { /* the larger ones take their time in check */
+        if (starg_mesh_vertex_count(mesh) < 4000) { /* checking the larger ones takes long */
             check_mesh(context, mesh, 300 + starg_mesh_vertex_count(mesh) / 10, 0.05);
             done++;
         }
@@ -210,9 +210,9 @@ static void test_shared_solids(void **state) {
     test_context_free(context);
 }
 
-/* ---- the rules of a collapse ---------------------------------------------------------------- */
+/* ---- the rules of a collapse ---- */
 
-/* A lens over six corners of a ring: one vertex below, two above, joined by an edge. */
+/* A lens over a ring of six corners: one vertex below, two above, joined by an edge. */
 static shape lens(void) {
     static const uint32_t above[8][3] = {{7, 5, 0}, {7, 0, 1}, {7, 1, 8}, {8, 1, 2},
                                          {8, 2, 3}, {8, 3, 4}, {8, 4, 7}, {7, 4, 5}};
@@ -257,11 +257,11 @@ static void test_shape_is_kept(void **state) {
         bool shape, embedding;
     } cases[] = {
         {{0, 0, 0.1}, true, true},    {{0.2, 0.1, 0.2}, true, true},
-        {{0, 0, -0.3}, false, true},  /* inside out, though no face turns by much */
-        {{1.5, 0, 0.1}, false, true}, /* over the rim: two faces turn over        */
-        {{0, 0, -0.1}, false, false}, /* onto the vertex below                    */
-        {{1, 0, 0}, false, false},    /* onto the ring                            */
-        {{0, 0, 1e9}, false, true},   /* needles                                  */
+        {{0, 0, -0.3}, false, true},  /* inside out, though no normal rotates far */
+        {{1.5, 0, 0.1}, false, true}, /* over the rim: two faces flip */
+        {{0, 0, -0.1}, false, false}, /* onto the vertex below */
+        {{1, 0, 0}, false, false},    /* onto the ring */
+        {{0, 0, 1e9}, false, true},   /* needles */
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         assert_int_equal(collapse_keeps_shape(surface, &star, cases[i].position), cases[i].shape);
@@ -275,7 +275,7 @@ static void test_shape_is_kept(void **state) {
     test_context_free(context);
 }
 
-/* The mesh that a collapse gives, made by hand. */
+/* The mesh resulting from a collapse, built directly. */
 static starg_mesh *collapsed(starg_context *context, const mesh_surface *surface,
                              const collapse_star *star, const double position[3]) {
     shape s = {.vertex_count = surface->vertex_count};
@@ -296,7 +296,7 @@ static starg_mesh *collapsed(starg_context *context, const mesh_surface *surface
     return mesh;
 }
 
-/* Any edge of a shape, to any place: what the rule says and what the check of the whole says. */
+/* Any edge of a shape, to any place: compares the rule with a check of the whole mesh. */
 static void compare_embedding(starg_context *context, shape *s, uint64_t seed, size_t trials,
                               size_t *kept, size_t *broken) {
     starg_mesh *mesh = test_mesh_of(context, s);
@@ -347,7 +347,7 @@ static void test_embedding_against_the_check(void **state) {
     test_context_free(context);
 }
 
-/* ---- shape ---------------------------------------------------------------------------------- */
+/* ---- shape ---- */
 
 /* The largest distance of random points of a mesh from a solid. */
 static double farthest(const starg_mesh *mesh, const starg_solid *solid, uint64_t seed) {
@@ -456,7 +456,7 @@ static void test_size_does_not_matter(void **state) {
     test_context_free(context);
 }
 
-/* At the ends of the range all that is asked for is the topology. */
+/* At the ends of the range only the topology is checked. */
 static void test_extreme_places(void **state) {
     (void)state;
     static const double places[][2] = {{1, 1e8}, {1e-3, 1e12}, {3e99, 0}, {1e-320, 0}, {0, 5}};
@@ -496,7 +496,7 @@ static void test_crossing_input_keeps_its_topology(void **state) {
     test_context_free(context);
 }
 
-/* ---- levels --------------------------------------------------------------------------------- */
+/* ---- levels ---- */
 
 static void test_levels(void **state) {
     (void)state;
@@ -522,7 +522,7 @@ static void test_levels(void **state) {
     test_context_free(context);
 }
 
-/* Each a quarter of the next finer one; the last clamped to the coarsest, if that is worth it. */
+/* Each a quarter of the next finer one; the last clamped to the coarsest, if worthwhile. */
 static void test_levels_by_quarters(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -533,7 +533,7 @@ static void test_levels_by_quarters(void **state) {
     } cases[] = {{100, 4, {100, n / 16, n / 4, n}},
                  {n / 16, 3, {n / 16, n / 4, n}},
                  {n / 16 + 1, 3, {n / 16 + 1, n / 4, n}},
-                 {n / 4 - 10, 2, {n / 4, n}}, /* ten fewer are not worth a level */
+                 {n / 4 - 10, 2, {n / 4, n}}, /* ten fewer do not make a level */
                  {n / 2, 2, {n / 2, n}},
                  {n - n / 8, 1, {n}},
                  {n, 1, {n}}};
@@ -578,7 +578,7 @@ static void test_levels_that_are_left_out(void **state) {
     test_context_free(context);
 }
 
-/* ---- bad input ------------------------------------------------------------------------------ */
+/* ---- bad input ---- */
 
 static void assert_refused(starg_context *context, const shape *s, const char *word) {
     starg_mesh *mesh = test_mesh_of(context, s), *coarse = mesh;
@@ -621,7 +621,7 @@ static void test_vertices_of_no_face_go(void **state) {
     starg_context *context = test_context(1);
     shape cube = shape_cube(1);
     uint32_t map[9];
-    double vertices[27] = {5, 5, 5}; /* number 0 is of no face */
+    double vertices[27] = {5, 5, 5}; /* number 0 is isolated */
     memcpy(vertices + 3, cube.vertices, 24 * sizeof *vertices);
     for (size_t i = 0; i < 3 * cube.face_count; i++)
         cube.faces[i]++;
@@ -664,7 +664,7 @@ static void test_it_can_be_stopped(void **state) {
     test_context_free(context);
 }
 
-/* ---- memory that runs out ------------------------------------------------------------------- */
+/* ---- memory that runs out ---- */
 
 static void test_every_allocation_fails_once(void **state) {
     (void)state;
@@ -683,7 +683,7 @@ static void test_every_allocation_fails_once(void **state) {
         assert_null(coarse);
         assert_int_equal(starg_context_live_blocks(context), before);
     }
-    assert_true(failures > 30); /* among them those of the trees that are built anew */
+    assert_true(failures > 30); /* including those of rebuilt trees */
     starg_mesh_free(coarse);
     for (failures = 0;; failures++) {
         left = failures;
@@ -702,9 +702,9 @@ static void test_every_allocation_fails_once(void **state) {
     test_context_free(context);
 }
 
-/* ---- the queue ------------------------------------------------------------------------------ */
+/* ---- the queue ---- */
 
-/* Against a table that is searched from end to end. */
+/* Against a table searched linearly. */
 static void test_heap_against_a_table(void **state) {
     (void)state;
     enum { ITEMS = 50 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Curve skeletons of small shapes whose skeletons are known, their files, and bad options. */
+/* Curve skeletons of small shapes with known skeletons, their files, and bad options. */
 #include "support.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "starguard/sample.h"
 #include "starguard/skeleton.h"
 
-/* Everything that the header promises of any skeleton, checked from its arrays alone. */
+/* Everything that the header guarantees for any skeleton, from its arrays alone. */
 static void check_promises(const starg_solid *solid, const starg_skeleton *s) {
     size_t parts = s->node_count, joints = 0, ends = 0;
     uint32_t *set = malloc(s->node_count * sizeof *set);
@@ -102,7 +102,7 @@ static void test_components(void **state) {
     shape_free(&both);
 }
 
-/* A wall about a cavity must be cut open, and that is told. */
+/* A wall around a cavity must be cut, and that is reported. */
 static void test_cavity(void **state) {
     (void)state;
     shape hollow = shape_cavity();
@@ -130,7 +130,7 @@ static void test_thin_plate(void **state) {
     shape_free(&plate);
 }
 
-/* The shape decides: all balls of a round solid are about its centre. */
+/* All balls of a round solid are around its centre: the skeleton is a point. */
 static void test_ball_is_a_point(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -213,7 +213,7 @@ static void test_threads(void **state) {
     }
 }
 
-/* Counts the lines that begin with a word, and the first line. */
+/* Counts the lines that start with a word, and returns the first line. */
 static size_t count_lines(const char *path, const char *word, char first[128]) {
     FILE *file = fopen(path, "r");
     char line[512];
@@ -288,7 +288,7 @@ static void test_bad_options(void **state) {
     test_context_free(context);
 }
 
-/* One end for each limb at the default: spikes; arms, legs and head; legs, head and tail. */
+/* One end per limb by default: spikes; arms, legs and head; legs, head and tail. */
 static void test_limbs(void **state) {
     (void)state;
     static const struct {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Files of skeletons: round trips through each format, files by hand, and what must be refused with
- * the line. */
+/* Skeleton files: round trips through each format, hand-written files, and rejected files with the
+ * line of the error. */
 #include "support.h"
 
 #include <stdio.h>
@@ -54,7 +54,7 @@ static void round_trips(void **state) {
     test_context_free(context);
 }
 
-/* A polyline of OBJ is as many edges as it has steps. */
+/* A polyline of OBJ becomes an edge per step. */
 static void polylines(void **state) {
     (void)state;
     static const char text[] = "# by hand\nv 0 0 0\nv 1 0 0 \nv 1 1 0\nv 5 5 5\nl 1 2 3 1\n";
@@ -117,7 +117,7 @@ static const char GOOD[] =
              "LINES 3 9\n2 0 1\n2 1 2\n2 1 3\nPOINT_DATA 4\nSCALARS radius double 1\n"
              "LOOKUP_TABLE default\n.5\n.5\n.25\n.125\n";
 
-/* Files that are cut off or have bytes changed are read or refused, and never more than that. */
+/* Truncated files and files with changed bytes are read or rejected. */
 static void damaged_files(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The solid: what is refused and with which message, shells turned, order kept, containment and
- * distance. */
+/* The solid: rejections with their messages, shell orientation, order, containment and distance. */
 
 #include "starguard/solid.h"
 
@@ -96,7 +95,7 @@ static void test_refuses_nothing(void **state) {
     expect_refusal(&s, "no faces", STARG_ELEMENT_NONE, 0, 0);
 }
 
-/* ---- what is taken ---- */
+/* ---- accepted input ---- */
 
 static void test_keeps_order(void **state) {
     (void)state;
@@ -198,7 +197,7 @@ static void test_distance(void **state) {
     test_context_free(context);
 }
 
-/* Each face with vertices of its own, as seams are written: the solid is that of the welded mesh,
+/* Each face with its own vertices, as written along seams: the solid is that of the welded mesh,
  * and vertices and faces keep their numbers. */
 static void test_welds_seams(void **state) {
     (void)state;
@@ -228,7 +227,7 @@ static void test_welds_seams(void **state) {
             for (uint32_t k = 0; k < v; k++) /* the first one */
                 assert_int_not_equal(s.faces[k], s.faces[i]);
         }
-        if (missing) /* what the mesh has, not what it would have */
+        if (missing) /* the defects of the given mesh, not of the welded one */
             assert_non_null(strstr(starg_context_error(context)->message, "open edges: 33"));
         starg_solid_free(solid);
         starg_mesh_free(mesh);
@@ -239,7 +238,7 @@ static void test_welds_seams(void **state) {
     }
 }
 
-/* Solids whose areas and volumes would vanish are refused; scaled up they are taken. */
+/* Solids whose areas and volumes would underflow are rejected; scaled up they are accepted. */
 static void test_narrow(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Both ends of a morph in the same pieces: what is promised, checked on the results alone. */
+/* Both ends of a morph cut into the same pieces: checks the guarantees on the results alone. */
 #include "support.h"
 
 #include <math.h>
@@ -24,7 +24,8 @@ static void free_both(starg_context *context, starg_decomposition *out[2]) {
     starg_decomposition_free(context, out[1]);
 }
 
-/* The boundary of the tetrahedra is the surface: as many faces, each of three of its positions. */
+/* The boundary of the tetrahedra is the surface: equally many faces, each at three of its
+ * positions. */
 static void check_boundary(starg_context *context, const starg_decomposition *d,
                            const starg_mesh *a, const double *positions) {
     starg_mesh *surface;
@@ -85,7 +86,7 @@ static void test_poses(void **state) {
     test_context_free(many);
 }
 
-/* What is convex at both ends is one piece. */
+/* A shape that is convex at both ends is one piece. */
 static void test_convex(void **state) {
     (void)state;
     if (!has_tetgen())
@@ -121,7 +122,7 @@ static void expect(starg_context *context, const starg_mesh *a, const double *im
     starg_morph_free(morph);
 }
 
-/* A beam that is bent by 172 degrees and by 206; the straight way to that leads through itself. */
+/* A beam bent by 172 degrees and by 206; the straight path to the latter self-intersects. */
 static void test_bent(void **state) {
     (void)state;
     if (!has_tetgen())
@@ -156,7 +157,7 @@ static void test_bent(void **state) {
     test_context_free(context);
 }
 
-/* An end that meets itself; a mirror image, whose tetrahedra would have to turn over. */
+/* A self-intersecting end; a mirror image, whose tetrahedra would have to invert. */
 static void test_refused(void **state) {
     (void)state;
     if (!has_tetgen())

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tetrahedral meshes: what is accepted is what the definition says, neighbours by brute force,
+/* Tetrahedral meshes: exactly what the definition allows is accepted; neighbours by brute force,
  * boundary and volume against each other. */
 #include "support.h"
 
@@ -42,7 +42,7 @@ static void expect_fail(starg_context *context, const double *points, size_t poi
 static void test_basics(void **state) {
     (void)state;
     starg_context *context = test_context(1);
-    const uint32_t two[] = {0, 1, 2, 3, 0, 1, 2, 4}; /* the second is the wrong way */
+    const uint32_t two[] = {0, 1, 2, 3, 0, 1, 2, 4}; /* the second is negative */
     const int32_t regions[] = {7, -2}, same[] = {3, 3};
     starg_tetmesh *mesh = NULL;
     starg_mesh *surface = NULL;
@@ -68,7 +68,7 @@ static void test_basics(void **state) {
     starg_mesh_free(surface);
     starg_tetmesh_free(mesh);
     test_ok(context, starg_tetmesh_create(context, POINTS, POINT_COUNT, two, 2, same, &mesh));
-    assert_null(starg_tetmesh_regions(mesh)); /* they say nothing */
+    assert_null(starg_tetmesh_regions(mesh)); /* uniform labels are dropped */
     starg_tetmesh_free(mesh);
     starg_tetmesh_free(NULL);
     test_context_free(context);
@@ -100,7 +100,7 @@ static void test_refused(void **state) {
     test_context_free(context);
 }
 
-/* One tetrahedron, moved and scaled, beside the standard one: overlapping or not. */
+/* One tetrahedron, translated and scaled, next to the standard one: overlapping or not. */
 static starg_status beside(starg_context *context, double scale, const double offset[3],
                            starg_tetmesh **mesh) {
     static const double corner[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -139,7 +139,7 @@ static void test_overlap_elsewhere(void **state) {
     test_context_free(context);
 }
 
-/* Delaunay tetrahedra of random points, of which some are left out: always a mesh. */
+/* Delaunay tetrahedra of random points, some omitted: always a mesh. */
 static starg_tetmesh *random_mesh(starg_context *context, uint64_t seed, size_t points_wanted,
                                   bool lattice) {
     starg_rng rng = starg_rng_make(seed, 11, 0);
@@ -208,7 +208,7 @@ static void test_random(void **state) {
     test_context_free(context);
 }
 
-/* A vertex moved beyond the face opposite it folds the mesh: found, or nothing overlaps. */
+/* A vertex moved beyond its opposite face folds the mesh: this is detected, or nothing overlaps. */
 static void test_moved_vertex(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -223,7 +223,7 @@ static void test_moved_vertex(void **state) {
             points[3 * vertex + k] = 2 * starg_rng_unit(&rng) - 0.5;
         starg_status status = make(context, points, 20, starg_tetmesh_tetrahedra(mesh),
                                    starg_tetmesh_count(mesh), &moved);
-        /* by sampling: a point in two tetrahedra is proof */
+        /* by sampling: a point in two tetrahedra is a proof */
         const uint32_t *v = starg_tetmesh_tetrahedra(mesh);
         size_t most = 0;
         for (int sample = 0; sample < 60; sample++) {

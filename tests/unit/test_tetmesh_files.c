@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Files of tetrahedra: every format by hand, round trips, and what must be refused, quickly and
- * with a message that says where. */
+/* Files of tetrahedra: hand-written files of every format, round trips, and rejections, quick and
+ * with a message that gives the place. */
 #include "support.h"
 
 #include <stdbool.h>
@@ -41,7 +41,7 @@ static starg_status read_text(starg_context *context, const char *text, starg_te
     return starg_tetmesh_read_memory(context, text, strlen(text), "model.txt", mesh);
 }
 
-/* Two tetrahedra, the second turned, of regions 1 and 2. */
+/* Two tetrahedra, the second negative, with regions 1 and 2. */
 static void check_two(const starg_tetmesh *mesh) {
     static const double points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1};
     static const uint32_t tetrahedra[] = {0, 1, 2, 3, 0, 1, 4, 2};
@@ -65,7 +65,7 @@ static void test_text_formats(void **state) {
         check_two(mesh);
         starg_tetmesh_free(mesh);
     }
-    /* without the types of cells: four corners make a tetrahedron */
+    /* without cell types: four corners make a tetrahedron */
     char cut[sizeof VTK];
     starg_tetmesh *mesh = NULL;
     memcpy(cut, VTK, sizeof VTK);
@@ -79,7 +79,7 @@ static void test_text_formats(void **state) {
     test_context_free(context);
 }
 
-/* ---- binary, made by hand ---- */
+/* ---- hand-made binary files ---- */
 
 typedef struct bytes {
     unsigned char data[4096];
@@ -185,8 +185,7 @@ static void vtk(bytes *b) {
     put_text(b, "\n");
 }
 
-/* Every binary file whole, and cut off after every byte: an error or a mesh, never anything else.
- */
+/* Every binary file, complete and truncated after every byte: an error or a mesh. */
 static void check_binary(starg_context *context, const bytes *b, size_t least) {
     starg_tetmesh *mesh = NULL;
     test_ok(context, starg_tetmesh_read_memory(context, b->data, b->size, "b", &mesh));
@@ -220,7 +219,7 @@ static void test_binary_formats(void **state) {
     test_context_free(context);
 }
 
-/* ---- what is refused ---- */
+/* ---- rejections ---- */
 
 typedef struct bad {
     const char *text, *says;
@@ -286,7 +285,7 @@ static void test_refused(void **state) {
         assert_null(mesh);
     }
     assert_true(starg_context_peak_bytes(context) < 100000);
-    /* what is no matter of the file's text is told with indices */
+    /* errors that do not concern the text are reported with indices */
     starg_tetmesh *mesh = NULL;
     assert_int_equal(
         read_text(context, MEDIT_HEAD FOUR "Tetrahedra\n2\n1 2 3 4 0\n2 3 4 4 0\n", &mesh),
@@ -355,7 +354,7 @@ static void test_round_trip(void **state) {
         test_ok(context, starg_tetmesh_read(context, path, &again));
         assert_memory_equal(starg_tetmesh_vertices(again), points, sizeof points);
         assert_memory_equal(starg_tetmesh_tetrahedra(again), tetrahedra, sizeof tetrahedra);
-        assert_null(starg_tetmesh_regions(again)); /* one label says nothing */
+        assert_null(starg_tetmesh_regions(again)); /* a uniform label is dropped */
         starg_tetmesh_free(again);
         starg_tetmesh_free(mesh);
         test_ok(context, read_text(context, MEDIT, &mesh));
@@ -364,7 +363,7 @@ static void test_round_trip(void **state) {
         test_ok(context, starg_tetmesh_read(context, path, &again));
         assert_memory_equal(starg_tetmesh_regions(again), two_labels, sizeof two_labels);
         starg_tetmesh_free(again);
-        options.labels = NULL; /* its own */
+        options.labels = NULL; /* the mesh's own */
         test_ok(context, starg_tetmesh_write(context, mesh, path, &options));
         test_ok(context, starg_tetmesh_read(context, path, &again));
         check_two(again);

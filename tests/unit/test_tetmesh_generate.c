@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tetrahedra of solids: what both generators promise, checked on their results alone; programs that
- * fail in every way; the same bytes at any number of threads. */
+/* Tetrahedra of solids: checks the guarantees of both generators on their results alone; programs
+ * that fail in every way; the same bytes for any number of threads. */
 #include "support.h"
 
 #include <dirent.h>
@@ -69,7 +69,7 @@ static void check_mesh(starg_context *context, const starg_tetmesh *mesh) {
     starg_tetmesh_free(again);
 }
 
-/* Distance from p to a triangle by search: the projection of a convex problem, halving. */
+/* Distance from p to a triangle by bisection of a convex problem. */
 static double triangle_distance(const double *p, const double *a, const double *b,
                                 const double *c) {
     double low[2] = {0, 0}, best = 1e300, size = 1;
@@ -93,7 +93,7 @@ static double triangle_distance(const double *p, const double *a, const double *
     return sqrt(best);
 }
 
-/* No vertex or middle of a face of one surface is farther from the other than was told. */
+/* No vertex or face centroid of one surface is farther from the other than reported. */
 static void check_distance(const starg_mesh *from, const starg_mesh *to, double told) {
     const double *p = starg_mesh_vertices(from), *q = starg_mesh_vertices(to);
     for (size_t f = 0; f < starg_mesh_face_count(from); f += 1 + starg_mesh_face_count(from) / 12) {
@@ -108,7 +108,7 @@ static void check_distance(const starg_mesh *from, const starg_mesh *to, double 
                 nearest =
                     fmin(nearest, triangle_distance(x, q + 3 * w[0], q + 3 * w[1], q + 3 * w[2]));
             }
-            assert_true(nearest <= told * 1.001); /* the search is rough */
+            assert_true(nearest <= told * 1.001); /* the search is inexact */
         }
     }
 }
@@ -155,7 +155,7 @@ static void test_stuffing(void **state) {
     test_context_free(context);
 }
 
-/* Spikes finer than the lattice: the angles hold for any surface. */
+/* Spikes finer than the lattice: the angle bounds hold for any surface. */
 static void test_stuffing_spikes(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -192,7 +192,7 @@ static void test_scales(void **state) {
     test_context_free(context);
 }
 
-/* A plate that the first lattice misses. */
+/* A plate missed by the first lattice. */
 static void test_thin(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -215,7 +215,7 @@ static void test_thin(void **state) {
     test_context_free(context);
 }
 
-/* Faces missing, either side out: what is left still winds around nearly the same points. */
+/* Missing faces, with either orientation: the rest still winds around nearly the same points. */
 static void test_open(void **state) {
     (void)state;
     starg_context *context = test_context(2);
@@ -268,8 +268,8 @@ static void test_nothing_inside(void **state) {
     test_context_free(context);
 }
 
-/* What encloses nothing is told at once: flat and tilted, doubled faces in any order, and again
- * with a face that spoils it. */
+/* Meshes that enclose nothing are reported at once: flat and tilted, doubled faces in any order,
+ * and again with a face that invalidates this. */
 static void test_hollow(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -298,7 +298,7 @@ static void test_hollow(void **state) {
         size_t half = 3 * (size_t)FACES;
         for (int single = 0; single < 2; single++) {
             starg_mesh *mesh = NULL;
-            if (!single) { /* without the one in the middle */
+            if (!single) { /* without the middle one */
                 uint32_t all[6 * FACES];
                 memcpy(all, faces, half * sizeof *all);
                 memcpy(all + half, faces + half + 3, half * sizeof *all);
@@ -406,7 +406,8 @@ static void test_tetgen(void **state) {
             counts[dense] = starg_tetmesh_count(mesh);
             starg_tetmesh_free(mesh);
         }
-        /* no point comes near a large face that must stay whole: only fine surfaces get dense */
+        /* no point comes close to a large face that must stay whole: only fine surfaces get
+         * dense */
         assert_true(i + 1 < sizeof shapes / sizeof *shapes ? counts[1] >= counts[0]
                                                            : counts[1] > 4 * counts[0]);
         starg_solid_free(solid);
@@ -415,7 +416,7 @@ static void test_tetgen(void **state) {
     test_context_free(context);
 }
 
-/* Files of a folder, not counting the two that are always there. */
+/* Files in a folder, without "." and "..". */
 static size_t count_files(const char *path) {
     size_t count = 0;
     DIR *folder = opendir(path);
@@ -439,7 +440,7 @@ static void listen(void *user, starg_log_level level, const char *message) {
     }
 }
 
-/* Programs that fail: what each does, and what the message says of it. */
+/* Failing programs: what each does, and the resulting message. */
 static const struct {
     const char *script, *says;
 } BROKEN[] = {
@@ -520,7 +521,7 @@ static void keep_last(void *user, starg_log_level level, const char *message) {
     snprintf(user, 512, "%s", message);
 }
 
-/* Where no program makes tetrahedra of a plate, the model is told to be thin. */
+/* If no program makes tetrahedra of a plate, the message says that the model is thin. */
 static void test_thin_is_told(void **state) {
     (void)state;
     char heard[512] = "";

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The verifier of guards: its arithmetic and geometry against rationals, true results that must
- * pass, and results with one thing wrong that must fail by the right claim. */
+ * pass, and results with one error that must fail the right claim. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static void for_all(void check(point_family family, points x)) {
         }
 }
 
-/* A sum of products, half of which cancel others up to their last bits. */
+/* A sum of products, half of which nearly cancel others. */
 static void check_sum(point_family family, points x) {
     exact_sum sum;
     mpq_t total, product, factor;
@@ -112,7 +112,8 @@ static void test_shapes(void **state) {
     for_all(check_shapes);
 }
 
-/* Triangles that cross have a common point; triangles in general position that have one cross. */
+/* Crossing triangles have a common point; triangles in general position with a common point
+ * cross. */
 static void check_cross(point_family family, points x) {
     const double *s[3] = {x[0], x[1], x[2]}, *t[3] = {x[3], x[4], x[5]};
     bool cross = verify_cross(s, t), contact = oracle_triangles_contact(s, t, 0);
@@ -131,13 +132,13 @@ static void test_cross(void **state) {
     const double e[3] = {1, 1, 0};
     const double *abc[3] = {a, b, c}, *bcd[3] = {b, c, d}, *ebd[3] = {e, b, d};
     assert_true(verify_cross(abc, abc));
-    assert_false(verify_cross(abc, bcd)); /* they share an edge and no more */
+    assert_false(verify_cross(abc, bcd)); /* they share only an edge */
     assert_true(verify_cross(abc, ebd));
 }
 
 /* ---- solids ---- */
 
-/* What is given to the verifier, and the same with its shells turned as they must be. */
+/* The verifier's input, and the same with correctly oriented shells. */
 typedef struct model {
     const char *name;
     shape given, turned;
@@ -153,8 +154,8 @@ static model same(const char *name, shape s) {
     return m;
 }
 
-/* A cube of three sides and one of one side somewhere, each of them turned or not, both in what is
- * given and in what it means. */
+/* A cube of side three and one of side one, each of them reversed or not, both as given and as it
+ * should be. */
 static model two_cubes(const char *name, double at, int outer_given, int inner_given,
                        int inner_turned) {
     const double nothing[3] = {0}, offset[3] = {at, at, at};
@@ -213,7 +214,7 @@ static starg_mesh *make_mesh(starg_context *context, const shape *s) {
     return mesh;
 }
 
-/* A point about the model: on its lattice, between, or anywhere. */
+/* A point around the model: on its lattice, between, or anywhere. */
 static void some_point(starg_rng *rng, const shape *s, double p[3]) {
     double scale = TINY;
     for (size_t i = 0; i < 3 * s->vertex_count; i++)
@@ -232,7 +233,7 @@ static bool is_inside(const shape *s, const double p[3]) {
     return !on_surface && winding >= 1;
 }
 
-/* Finds a point inside by trying. */
+/* Finds an inside point by trial. */
 static void inside_point(starg_rng *rng, const shape *s, double p[3]) {
     for (int attempt = 0; attempt < 10000; attempt++) {
         some_point(rng, s, p);
@@ -334,7 +335,7 @@ typedef struct result {
     starg_guards guards;
     double positions[3 * GUARDS];
     size_t seen[GUARDS];
-    uint32_t *uncovered, *uncovered_vertices; /* one entry more than could be needed */
+    uint32_t *uncovered, *uncovered_vertices; /* with one spare entry */
 } result;
 
 static long double face_area(const shape *s, size_t face) {
@@ -438,14 +439,14 @@ static void make_result(result *r, const model *m, uint64_t seed,
                                      : r->guards.uncovered_count < s->face_count;
 }
 
-/* Puts all guards where the first one is, so that much stays unseen. */
+/* Moves all guards to the first one, so that much stays unseen. */
 static void gather_guards(result *r, const shape *s) {
     for (size_t i = 1; i < GUARDS; i++)
         memcpy(r->positions + 3 * i, r->positions, 3 * sizeof *r->positions);
     fill_in(r, s);
 }
 
-/* A copy that can be falsified. */
+/* A copy to falsify. */
 static void copy_result(result *r, const result *from, const shape *s) {
     *r = *from;
     r->uncovered = calloc(s->face_count + 1, sizeof *r->uncovered);
@@ -593,14 +594,14 @@ static void deny_optimal(result *r, const shape *s) {
     r->guards.lower_bound = GUARDS;
 }
 
-/* Both guards stand at one place, and are called needed. */
+/* Both guards coincide and are called necessary. */
 static void need_duplicates(result *r, const shape *s) {
     (void)s;
     r->guards.lower_bound = GUARDS;
     r->guards.optimal = true;
 }
 
-/* A part that one guard sees, and a bound of two. */
+/* A part that one guard sees, with a bound of two. */
 static void ask_for_less(result *r, const shape *s) {
     (void)s;
     r->guards.options.max_guards = 0;
@@ -634,12 +635,12 @@ static void raise_coverable(result *r, const shape *s) {
     r->guards.coverable_faces = s->face_count + 1;
 }
 
-/* One face that some candidate sees too few. */
+/* One coverable face too few. */
 static void forget_coverable(result *r, const shape *s) {
     r->guards.coverable_faces = s->face_count - 1;
 }
 
-/* Nothing more can be seen than is seen. */
+/* Claims that nothing more can be seen than is seen. */
 static void deny_coverable(result *r, const shape *s) {
     r->guards.coverable_faces = s->face_count - r->guards.uncovered_count;
     r->guards.options.max_guards = 0;
@@ -686,7 +687,7 @@ static void forget_guards(result *r, const shape *s) {
 typedef struct falsification {
     void (*apply)(result *r, const shape *s);
     const char *claim; /* part of the text of the claim that must fail */
-    bool alone;        /* and no other one */
+    bool alone;        /* only this one fails */
 } falsification;
 
 static const falsification FALSIFICATIONS[] = {
@@ -807,7 +808,7 @@ static void test_vertex_falsifications_fail(void **state) {
     test_context_free(context);
 }
 
-/* The clearance of a known point, kept to the last digits and not kept. */
+/* The clearance of a known point, kept and violated by a few ulps. */
 static void test_clearance(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -848,10 +849,10 @@ static void test_unusable_meshes(void **state) {
     expect_mesh_error(context, &s);
     s.face_count++;
     uint32_t *face = s.faces + 9, second = face[1];
-    face[1] = face[2]; /* one face the wrong way round */
+    face[1] = face[2]; /* one reversed face */
     face[2] = second;
     expect_mesh_error(context, &s);
-    face[1] = face[2]; /* a corner twice */
+    face[1] = face[2]; /* a repeated corner */
     expect_mesh_error(context, &s);
     s.face_count = 0;
     expect_mesh_error(context, &s);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verifier of star decompositions: decompositions made by hand pass, and with one thing wrong
- * they fail by the right claim. */
+/* The verifier of star decompositions: decompositions built by hand pass, and with one error they
+ * fail the right claim. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,7 +86,7 @@ static void test_true_decompositions_pass(void **state) {
     test_context_free(context);
 }
 
-/* Far from the origin, huge, tiny and stretched: all that has no tolerance stays exact. */
+/* Far from the origin, huge, tiny and stretched: everything without tolerance stays exact. */
 static void test_scales(void **state) {
     (void)state;
     static const struct {
@@ -279,7 +279,7 @@ static void lose_seen(cut *c) {
     c->report.visible_vertices = NAN;
 }
 
-static void admit_failure(cut *c) { /* honest, but not what strict mode promises */
+static void admit_failure(cut *c) { /* true, but violates strict mode */
     move_guard_to_plane(c);
     c->pieces[0].star = false;
     c->report.strictly_star--;
@@ -310,7 +310,7 @@ static void drop_piece(cut *c) { /* the last tetrahedra are those of c */
 typedef struct falsification {
     void (*apply)(cut *c);
     const char *claim; /* part of the text of the claim that must fail */
-    bool alone;        /* and no other one */
+    bool alone;        /* only this one fails */
 } falsification;
 
 static const falsification FALSIFICATIONS[] = {
@@ -379,7 +379,7 @@ static void test_each_falsification_fails(void **state) {
     test_context_free(context);
 }
 
-/* The plane of a wall is x = 2: the last double before it passes, it and the next one do not. */
+/* The plane of a wall is x = 2: the last double before it passes, 2 and the next one do not. */
 static void test_guard_at_a_plane(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -398,7 +398,8 @@ static void test_guard_at_a_plane(void **state) {
 
 /* ---- boundaries ---- */
 
-/* Edges of the surface and of contacts split, where rounding leaves the plane and where not. */
+/* Edges of the surface and of contacts split, where rounding leaves the plane and where it does
+ * not. */
 static void test_subdivided(void **state) {
     (void)state;
     static const double a[3] = {0, 1, 0}, b[3] = {1, 1, 1}, o[3] = {0, 0, 0}, x[3] = {1, 0, 0};
@@ -429,7 +430,7 @@ static void test_subdivided(void **state) {
     test_context_free(context);
 }
 
-/* A vertex that no face names, very far away, does not make all near. */
+/* An isolated vertex very far away does not affect tolerances. */
 static void test_far_vertex(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -447,8 +448,8 @@ static void test_far_vertex(void **state) {
     test_context_free(context);
 }
 
-/* A ring around an axis, run through twice: all tetrahedra positive, all faces on the model with
- * the right side, and the guard behind none; but everything is covered twice. */
+/* A ring around an axis, traversed twice: all tetrahedra positive, all faces on the model with the
+ * right side, and the guard behind none; but everything is covered twice. */
 static void test_double_winding(void **state) {
     (void)state;
     static const double ring[4][3] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
@@ -459,7 +460,7 @@ static void test_double_winding(void **state) {
     cut *c = cut_new(&none);
     uint32_t t = cut_add_vertex(c, top), s = cut_add_vertex(c, bottom),
              g = cut_add_vertex(c, middle), r[8];
-    for (int i = 0; i < 8; i++) { /* equal points stay apart */
+    for (int i = 0; i < 8; i++) { /* coincident points stay separate */
         r[i] = (uint32_t)c->mesh.vertex_count++;
         memcpy(c->vertices + 3 * (size_t)r[i], ring[i % 4], 3 * sizeof(double));
     }
@@ -490,8 +491,8 @@ static void test_double_winding(void **state) {
     test_context_free(context);
 }
 
-/* Two cells that touch in a corner: one of them twice, the other not at all. Area, volume and faces
- * are those of the model. */
+/* Two cells that touch in a corner: one of them twice, the other missing. Area, volume and faces
+ * equal the model's. */
 static void test_one_shell_for_another(void **state) {
     (void)state;
     static const grid cell = {"A", {1, 1, 1}};
@@ -521,7 +522,7 @@ static void test_model_turned_inside_out(void **state) {
     const double nowhere[3] = {0, 0, 0};
     shape_append(&turned, &model, nowhere, 1);
     cut *c = cut_new(&GRID_CAVITY);
-    expect_pass(context, &turned, c); /* shells are turned */
+    expect_pass(context, &turned, c); /* shells are reoriented */
     shape_free(&model);
     model = shape_cube(3); /* without the cavity */
     expect_failure(context, &model, c, "faces lie elsewhere", false);
@@ -551,14 +552,14 @@ static void test_approximated(void **state) {
     c->report.distance = 0.3;
     c->report.distance_back = 0.0624;
     expect_failure(context, &model, c, "the model's surface is at most", true);
-    c->report.distance_back = INFINITY; /* not told */
+    c->report.distance_back = INFINITY; /* not given */
     expect_pass(context, &model, c);
     free(c);
     shape_free(&model);
     test_context_free(context);
 }
 
-/* Two pieces that lie one in the other, each fine by itself. */
+/* Two nested pieces, each valid alone. */
 static void test_overlap_of_shells(void **state) {
     (void)state;
     static const grid small = {"A", {1, 1, 1}};
@@ -613,7 +614,7 @@ static void test_tetmesh_model(void **state) {
 
 /* ---- vertices seen ---- */
 
-/* The fraction by the definition: every line against every outer face. */
+/* The fraction by the definition: every segment against every outer face. */
 static double fraction_seen(const cut *c) {
     size_t outer = 0, pairs = 0, seen = 0;
     uint32_t *faces = calloc(12 * c->mesh.count, sizeof *faces);
@@ -663,7 +664,7 @@ static void test_visible_vertices(void **state) {
             c->pieces[p].star = false;
         }
         c->report.strictly_star -= 3;
-        for (size_t p = 0; p < 3; p++) { /* by chance it may be in the kernel, a box */
+        for (size_t p = 0; p < 3; p++) { /* it may happen to be in the kernel, a box */
             const double *g = c->pieces[p].guard;
             static const double box[3][6] = {
                 {0, 0, 0, 3, 3, 1}, {0, 0, 1, 3, 1, 2}, {0, 1, 1, 1, 2, 2}};
@@ -683,8 +684,8 @@ static void test_visible_vertices(void **state) {
     test_context_free(context);
 }
 
-/* An L of cells, each coned from its middle, seen from one end: more vertices than lines of sight
- * are tested. The outer parts of the arms are x >= SIDE and y >= SIDE. */
+/* An L of cells, each coned from its centre, seen from one end: more vertices than segments tested.
+ * The outer parts of the arms are x >= SIDE and y >= SIDE. */
 enum { SIDE = 14, CELLS = 5 * SIDE * SIDE * SIDE };
 
 static bool in_bend(int x, int y, int z) {
@@ -692,7 +693,7 @@ static bool in_bend(int x, int y, int z) {
            (x < SIDE || y < SIDE);
 }
 
-/* Is a point of the bend seen from p, which is at the end along x? Only the inner corner hides. */
+/* Is a point of the bend visible from p at the end along x? Only the inner corner hides. */
 static bool in_sight(const double p[3], const double q[3]) {
     double turn = (q[0] - p[0]) * (SIDE - p[1]) - (q[1] - p[1]) * (SIDE - p[0]);
     return q[1] <= SIDE || turn < 0;
@@ -869,7 +870,7 @@ static void give_back(void *user, void *block) {
     free(block);
 }
 
-/* Reading both files and verifying, in paper mode with lines of sight, or near the model. */
+/* Reads both files and verifies, in paper mode with visibility tests, or near the model. */
 static starg_status read_and_verify(starg_context *context, const starg_mesh *mesh, cut_file vtk,
                                     cut_file json) {
     starg_pieces_mesh *pieces = NULL;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verifier's readers of PIECES.vtk and PIECES.json: what was written comes back, and whatever
- * is wrong with a file, it is refused with a message. */
+/* The verifier's readers of PIECES.vtk and PIECES.json: written files read back, and any invalid
+ * file is rejected with a message. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,11 +53,11 @@ static void test_files_give_back_what_was_written(void **state) {
     test_context_free(context);
 }
 
-/* Reads bytes that are of either kind; what cannot be read is refused with a message. */
+/* Reads bytes of either kind; whatever cannot be read is rejected with a message. */
 static starg_status read_any(starg_context *context, bool json, const char *bytes, size_t size) {
     starg_pieces_mesh *mesh = NULL;
     starg_pieces_report *report = NULL;
-    char *exact = malloc(size + 1); /* so that reading beyond the end is found */
+    char *exact = malloc(size + 1); /* detects reads beyond the end */
     memcpy(exact, bytes, size);
     exact = realloc(exact, size > 0 ? size : 1);
     starg_status status =
@@ -84,7 +84,7 @@ static void test_truncated_files(void **state) {
         cut_file whole =
             kind < 2 ? cut_write_vtk(&c->mesh, (coding)kind) : cut_write_report(&c->report);
         for (size_t size = 0; size <= whole.size; size++) {
-            bool good = size >= whole.size - (kind != DOUBLES); /* a line end may be missing */
+            bool good = size >= whole.size - (kind != DOUBLES); /* the last line end is optional */
             assert_int_equal(read_any(context, kind == 2, whole.bytes, size) == STARG_OK, good);
         }
         free(whole.bytes);
@@ -93,7 +93,7 @@ static void test_truncated_files(void **state) {
     test_context_free(context);
 }
 
-/* Bytes changed at random: read or refused, nothing lost. */
+/* Bytes changed at random: read or rejected, no leaks. */
 static void test_mutilated_files(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -123,7 +123,7 @@ static void test_mutilated_files(void **state) {
     test_context_free(context);
 }
 
-/* Puts `new` in the place of the first `old`, and reads. */
+/* Replaces the first `old` by `new`, and reads. */
 static void expect_refusal(starg_context *context, bool json, cut_file whole, const char *old,
                            const char *new, const char *says) {
     char *at = strstr(whole.bytes, old);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The verifier's search tree and its table of facets against slow ones. */
+/* The verifier's search tree and its table of facets against brute force. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,7 +109,7 @@ static void test_tree_winding(void **state) {
                   : which == 2 ? shape_blob(2, 3)
                                : shape_cube(2);
         const double nearby[3] = {0.5, 0.25, 0.125};
-        if (which == 3) { /* two of them, one in the other: winding numbers up to 2 */
+        if (which == 3) { /* two nested ones: winding numbers up to 2 */
             shape other = shape_cube(2);
             shape_append(&s, &other, nearby, 0);
             shape_free(&other);
@@ -146,7 +146,7 @@ static void test_tree_winding(void **state) {
 /* ---- facets ---- */
 
 /* Random tetrahedra on few vertices: mates are unique, mutual and opposite; every triangle without
- * misuse is mated exactly if it occurs twice. */
+ * misuse is matched exactly if it occurs twice. */
 static void test_facets(void **state) {
     (void)state;
     enum { MOST = 40 };

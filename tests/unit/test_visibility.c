@@ -14,7 +14,7 @@
 #include "visibility/grid.h"
 #include "visibility_oracle.h"
 
-/* Points inside: random ones, and means of few vertices, which lie in many planes of faces. */
+/* Points inside: random ones, and means of a few vertices, which lie in many face planes. */
 static size_t pick_points(const starg_solid *solid, size_t wanted, uint64_t seed, double *points) {
     const starg_mesh *mesh = starg_solid_mesh(solid);
     const double *v = starg_mesh_vertices(mesh);
@@ -109,7 +109,7 @@ static void test_samples(void **state) {
     test_context_free(context);
 }
 
-/* Flat, self-intersecting, touching, with cavities: where signs of zero abound. */
+/* Flat, self-intersecting, touching, with cavities: many signs are zero. */
 static void test_shared(void **state) {
     static const char *const files[] = {"cad/cross.off",
                                         "cad/crown.off",
@@ -144,7 +144,8 @@ static void test_shared(void **state) {
     test_context_free(context);
 }
 
-/* A box, every side cut into squares on a lattice: most segments to its vertices run in planes. */
+/* A box with every side divided into squares on a lattice: most segments to its vertices lie in
+ * planes. */
 static starg_mesh *make_lattice_box(starg_context *context, uint32_t steps, double scale,
                                     double shift) {
     uint32_t side = steps + 1, count = side * side * side, *index = calloc(count, sizeof *index);
@@ -194,7 +195,7 @@ static void test_lattice_boxes(void **state) {
     test_context_free(context);
 }
 
-/* A sample, its scene, and what is needed to ask for single points. */
+/* A sample, its scene, and data for querying single points. */
 typedef struct isa_case {
     starg_context *context;
     starg_mesh *mesh;
@@ -231,7 +232,7 @@ static void free_isa_case(isa_case *c) {
     test_context_free(c->context);
 }
 
-/* The stages for each instruction set that the processor has: the same bits. */
+/* The stages for each instruction set of the processor: the same bits. */
 static void test_grid_isa(void **state) {
     (void)state;
     isa_case c;
@@ -255,7 +256,7 @@ static void test_grid_isa(void **state) {
     free_isa_case(&c);
 }
 
-/* Likewise; and the contours decide for themselves, without the grid, but for special points. */
+/* Likewise; and contours decide by themselves, without the grid, except at special points. */
 static void test_contours_isa(void **state) {
     (void)state;
     isa_case c;
@@ -286,7 +287,7 @@ static void test_contours_isa(void **state) {
     free_isa_case(&c);
 }
 
-/* Each engine is chosen for some points of the samples, and either gives the same bits. */
+/* Both engines are chosen for some points of the samples, and give the same bits. */
 static void test_fastest(void **state) {
     (void)state;
     size_t by_contours = 0, count = 0;
@@ -328,7 +329,7 @@ static void test_arguments(void **state) {
     starg_bits_free(bits);
 
     starg_visibility_options_default(&options);
-    options.range = 1; /* reaches the middles of the six sides, no whole face */
+    options.range = 1; /* reaches the centres of the six sides, but no whole face */
     options.target = STARG_TARGET_VERTICES;
     test_ok(context, starg_visibility(context, solid, outside + 6, 1, &options, &bits));
     assert_int_equal(starg_bits_count(bits, 0), 6);

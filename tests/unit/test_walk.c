@@ -7,7 +7,7 @@
 #include "models.h"
 #include "morph/walk.h"
 
-/* A place of the cube's side that points along an axis, by its face and coordinates. */
+/* The point of the cube's side that points along an axis, by face and coordinates. */
 static surface_point point_at(const starg_mesh *mesh, const double p[3]) {
     surface_point best = {0};
     double least = INFINITY;
@@ -30,8 +30,8 @@ static double part(const double a[3], const double b[3]) {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-/* Four sides of a cube round an axis are one strip: all round leads back to where it began, and
- * any stretch of it keeps the height. */
+/* Four sides of a cube around an axis are one strip: a full turn returns to the start, and any part
+ * of it stays at the same height. */
 static void test_round_a_cube(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -63,8 +63,7 @@ static void test_round_a_cube(void **state) {
     test_context_free(context);
 }
 
-/* Coordinates stay those of a point of a face, whatever the step; no walk is longer in space than
- * its step. */
+/* Coordinates stay valid whatever the step; no walk is longer in space than its step. */
 static void test_any_step(void **state) {
     (void)state;
     starg_context *context = test_context(1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What faces weigh does not depend on the size of the model. */
+/* Weights of faces do not depend on the size of the model. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,7 +27,7 @@ static void test_sizes(void **state) {
     starg_mesh *mesh = test_sample_mesh(context, "gallery", 500);
     size_t faces = starg_mesh_face_count(mesh);
     column_weights plain, other;
-    const starg_solid given = {.mesh = mesh}; /* so small a mesh is no solid */
+    const starg_solid given = {.mesh = mesh}; /* so small a mesh is not accepted as a solid */
     test_ok(context, column_weights_create(context, &given, STARG_TARGET_FACES, &plain));
     for (size_t i = 0; i < sizeof exponents / sizeof *exponents; i++) {
         starg_mesh *sized = scaled(context, mesh, exponents[i]);
@@ -43,7 +43,7 @@ static void test_sizes(void **state) {
     test_context_free(context);
 }
 
-/* The verifier, which has a scale of its own, finds the claims about areas to hold. */
+/* The verifier, which has its own scale, confirms the claims about areas. */
 static void test_tiny(void **state) {
     (void)state;
     starg_context *context = test_context(1);

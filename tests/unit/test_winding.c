@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The generalised winding number against the sum of all solid angles. */
+/* The generalized winding number against the sum of all solid angles. */
 #include "support.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "geometry/winding.h"
 #include "shapes.h"
 
-/* Solid angle by its definition on the sphere: the sum of the angles less pi. */
+/* Solid angle by its definition on the sphere: the sum of the angles minus pi. */
 static double solid_angle(const double *const corner[3], const double *p) {
     double u[3][3], sum = 0, side = 0;
     for (int k = 0; k < 3; k++) {

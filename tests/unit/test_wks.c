@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Wave kernel signatures on a string, whose vibrations are known in closed form, against the
+/* Wave kernel signatures on a string, whose modes are known in closed form, against the
  * definition. */
 #include "shape/wks.h"
 
@@ -37,7 +37,7 @@ static void measure(starg_context *context, string *s, size_t count,
     test_ok(context, wks_measure(context, &l, s->eigenvalues, s->functions, out));
 }
 
-/* The density at a place, the k-th eigenvalue being (pi k)^2: from the definition. */
+/* The density at a place by definition; the k-th eigenvalue is (pi k)^2. */
 static double density(double x, size_t energy) {
     double growth = PI * PI * (WKS_MODES + 1) / 2, above = 0, below = 0;
     double e = 1.5 * pow(35 / 1.5, (double)energy / (ENERGIES - 1));
@@ -49,8 +49,8 @@ static double density(double x, size_t energy) {
     return above / below;
 }
 
-/* A number is a quantile if so much of the string is below it, and no more than that below
- * anything greater. */
+/* Quantile: at least that fraction of the string is below it, and not more below anything
+ * greater. */
 static void quantiles_of_a_string(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -96,8 +96,8 @@ static void basis_does_not_count(void **state) {
     test_context_free(context);
 }
 
-/* A solution for each component is 0 and does not vibrate; more components than modes have nothing
- * that does. */
+/* One solution per component is 0 and does not vibrate; with more components than modes nothing
+ * vibrates. */
 static void components(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -121,7 +121,7 @@ static void components(void **state) {
     test_context_free(context);
 }
 
-/* Quantiles are by mass: a point of twice the mass counts as two. */
+/* Quantiles are by mass: a point with twice the mass counts twice. */
 static void masses_count(void **state) {
     (void)state;
     starg_context *context = test_context(1);
@@ -134,7 +134,7 @@ static void masses_count(void **state) {
     for (size_t i = 0; i < N; i += 2)
         s->masses[i] = 2.0 / N, s->masses[i + 1] = 0;
     starg_rng rng = starg_rng_make(3, 0, 0);
-    for (size_t k = 0; k <= WKS_MODES; k++) /* what has no mass does not count */
+    for (size_t k = 0; k <= WKS_MODES; k++) /* points without mass do not count */
         for (size_t i = 1; i < N; i += 2)
             s->functions[k * N + i] = starg_rng_unit(&rng);
     measure(context, s, N, two);

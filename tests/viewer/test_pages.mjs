@@ -461,7 +461,7 @@ test("guards with a cone of view point to where they look", async () => {
 });
 
 test("a proof shows its witnesses and the boxes of guards", async () => {
-    starguard("sample", "gallery", "--vertices", "100", "-o", "room.off");
+    starguard("sample", "gallery", "--vertices", "500", "-o", "room.off");
     starguard("guard", "room.off", "--prove", "--certificate", "why.txt", "-o", "proven.json");
     starguard("view", "proven.json", "why.txt", "-o", "proof.html");
     const lines = readFileSync(fileOf("why.txt"), "utf8").split("\n");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the two halves of the PLY reader share: the header's declarations. */
+/* Shared by the two halves of the PLY reader: the header's declarations. */
 #ifndef STARG_MESH_FORMATS_PLY_H
 #define STARG_MESH_FORMATS_PLY_H
 
@@ -19,13 +19,13 @@ typedef enum ply_type {
     PLY_TYPES
 } ply_type;
 
-/* What a property is to us. PLY_X, PLY_Y, PLY_Z are 0, 1, 2. */
+/* Meaning of a property. PLY_X, PLY_Y, PLY_Z are 0, 1, 2. */
 typedef enum ply_role { PLY_X, PLY_Y, PLY_Z, PLY_CORNERS, PLY_OTHER } ply_role;
 
 typedef struct ply_property {
     ply_role role;
     bool list;
-    ply_type count_type; /* of a list */
+    ply_type count_type; /* for lists */
     ply_type type;
 } ply_property;
 
@@ -34,31 +34,31 @@ typedef enum ply_kind { PLY_VERTICES, PLY_FACES, PLY_OTHERS } ply_kind;
 typedef struct ply_element {
     ply_kind kind;
     size_t count;
-    size_t first, properties; /* in the array of all properties */
+    size_t first, properties; /* range in the array of all properties */
     size_t line;
 } ply_element;
 
 typedef struct ply_reader {
     starg_mesh_builder *builder;
     const starg_source *source;
-    starg_scan scan; /* in binary data only its `at` is used */
+    starg_scan scan; /* binary data uses only its `at` */
     ply_encoding encoding;
     bool has_encoding;
-    bool by_lines; /* each item has a line of its own, whose further values are ignored */
-    size_t extra;  /* lines that had some */
+    bool by_lines; /* one item a line; extra values are ignored */
+    size_t extra;  /* lines with extra values */
     size_t first_extra;
     STARG_ARRAY(ply_element) elements;
     STARG_ARRAY(ply_property) properties;
 } ply_reader;
 
-/* Bytes of one value in a binary file. */
+/* Size of a value in a binary file. */
 size_t starg_ply_type_size(ply_type type);
 
-/* The element of this kind, which is not PLY_OTHERS; NULL when the header declares none. */
+/* The element of this kind (not PLY_OTHERS), or NULL if the header does not declare it. */
 const ply_element *starg_ply_find(const ply_reader *ply, ply_kind kind);
 
-/* Reads and checks the header and leaves the scanner at the first byte of the data. A header that
- * passes declares vertices with x, y, z, faces with a list of indices, and no more items than the
+/* Reads and checks the header and leaves the scanner at the first byte of the data. An accepted
+ * header declares vertices with x, y, z, faces with a list of indices, and no more items than the
  * rest of the source can hold. Errors: FORMAT, MEMORY. */
 starg_status starg_ply_read_header(ply_reader *ply);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The header of a PLY file: lines that declare the encoding, elements and their properties. */
+/* Header of a PLY file: declares the encoding, the elements and their properties. */
 #include <string.h>
 
 #include "mesh/formats/ply.h"
@@ -132,8 +132,8 @@ done:
     return status;
 }
 
-/* Goes behind the line end of "end_header". A lone CR ends it only if it does so in the first
- * line: the LF behind it is data then, but not in a file with CR LF. */
+/* Skips the line end of "end_header". A lone CR is a line end only if it also ends the first line:
+ * an LF after it is then data, but not in a file with CR LF. */
 static starg_status pass_header_end(ply_reader *ply) {
     starg_scan *scan = &ply->scan;
     starg_word word;
@@ -148,7 +148,7 @@ static starg_status pass_header_end(ply_reader *ply) {
     return STARG_OK;
 }
 
-/* A line that only people read. */
+/* A comment or obj_info line. */
 static bool is_remark(starg_word word) {
     return starg_word_is(word, "comment") || starg_word_is(word, "obj_info");
 }
@@ -196,7 +196,7 @@ static bool has_role(const ply_reader *ply, const ply_element *element, ply_role
     return false;
 }
 
-/* The fewest bytes that one item takes. */
+/* Smallest size of an item. */
 static size_t least_bytes(const ply_reader *ply, const ply_element *element) {
     size_t bytes = 0;
     for (size_t i = 0; i < element->properties; i++) {
@@ -211,7 +211,7 @@ static size_t least_bytes(const ply_reader *ply, const ply_element *element) {
     return bytes;
 }
 
-/* A count that the rest of the file cannot hold is refused before any memory is asked for. */
+/* Rejects counts that the rest of the file cannot hold, before allocating. */
 static starg_status check_counts(const ply_reader *ply) {
     size_t left = (size_t)(ply->scan.end - ply->scan.at);
     for (size_t i = 0; i < ply->elements.count; i++) {

@@ -1,23 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Problem: cut a polygon of a mesh file into triangles. Its corners lie in space, as a rule nearly
- * in one plane, and may turn inward.
+/* Problem: triangulate a polygon of a mesh file. It is nearly planar as a rule and may be concave.
  *
- * Method: the polygon is seen along the axis in which its area is largest (Newell's normal). The
- * fan about the first corner does when each of its triangles turns the same way as the polygon.
- * If not, ears are clipped (Meisters, Polygons have ears, 1975): a corner that turns outward, whose
- * triangle holds no corner that turns inward or not at all.
+ * Method: project the polygon along the dominant axis of its Newell normal. Use the fan about the
+ * first corner if all its triangles are oriented like the polygon. Otherwise clip ears (Meisters,
+ * Polygons have ears, 1975): a convex corner whose triangle contains no reflex or straight corner.
  *
- * Invariants: count - 2 triangles, each with the polygon's orientation in the chain of its corners,
- * so that the cut polygon has the same boundary edges as the whole one, whatever its shape. For a
- * polygon whose projection is simple, no triangle overlaps another. A polygon that crosses itself
- * or has no area runs out of ears; its rest is cut corner by corner, and `check` reports the
- * result. Signs are exact. Cost: the fan is linear, the clipping quadratic. */
+ * Invariants: count - 2 triangles, oriented like the polygon, so that their union has the same
+ * boundary edges whatever its shape. If the projection is simple, no triangles overlap. A
+ * self-intersecting or zero-area polygon runs out of ears; the rest is then cut corner by corner,
+ * and `check` reports the result. Signs are exact. Cost: linear for the fan, quadratic for ear
+ * clipping. */
 #include <math.h>
 
 #include "geometry/predicates.h"
 #include "mesh/formats/io.h"
 
-/* The two coordinates in which the polygon turns counter-clockwise. */
+/* The two coordinates in which the polygon is counter-clockwise. */
 typedef struct plane_view {
     const double *vertices;
     const uint32_t *corners;
@@ -42,7 +40,7 @@ static double extent(const plane_view *view, size_t count) {
     return largest;
 }
 
-/* Newell's normal of the polygon scaled to unit size, so that nothing under- or overflows. */
+/* Newell's normal of the polygon scaled to unit size, to avoid overflow and underflow. */
 static void newell_normal(const plane_view *view, size_t count, double normal[3]) {
     const double *origin = corner_at(view, 0);
     double size = extent(view, count);
@@ -93,12 +91,12 @@ bool starg_polygon_fan(const double *vertices, const uint32_t *corners, size_t c
     return true;
 }
 
-/* The corners that are left, in a ring. */
+/* The remaining corners, in a ring. */
 typedef struct corner_ring {
     plane_view view;
     size_t left;
     uint32_t *before, *after;
-    bool *outward; /* turns to the outer side: all others may lie in an ear's way */
+    bool *outward; /* convex; only the others can block an ear */
     bool *ear;
 } corner_ring;
 
@@ -107,8 +105,8 @@ static bool same_place(const plane_view *view, size_t a, size_t b) {
     return p[view->u] == q[view->u] && p[view->v] == q[view->v];
 }
 
-/* True when corner j lies in the closed triangle of corner i and its neighbours. Corners at the
- * same place as one of the three do not count: polygons with bridges to their holes have them. */
+/* True if corner j lies in the closed triangle of corner i and its neighbours. Corners that
+ * coincide with one of those three do not count: bridges to holes have them. */
 static bool in_the_way(const corner_ring *ring, size_t i, size_t j) {
     const plane_view *view = &ring->view;
     size_t a = ring->before[i], b = ring->after[i];
@@ -136,14 +134,14 @@ static void fill(corner_ring *ring, size_t count) {
         look_again(ring, i);
 }
 
-/* The next ear from corner i on; i itself when there is none. */
+/* The next ear from corner i on, or i if there is none. */
 static size_t next_ear(const corner_ring *ring, size_t i) {
     for (size_t step = 0; step < ring->left && !ring->ear[i]; step++)
         i = ring->after[i];
     return i;
 }
 
-/* Cuts off corner i. Only its neighbours can become ears by that, or cease to be. */
+/* Clips corner i. This affects only whether its neighbours are ears. */
 static void cut(corner_ring *ring, size_t i, uint32_t *triangle) {
     size_t before = ring->before[i], after = ring->after[i];
     const uint32_t *corners = ring->view.corners;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Reading a mesh of any format: the format is recognized by content, and only if that leaves
- * it open by the name. */
+/* Reads a mesh of any format, recognized by content, or by file name if the content is
+ * ambiguous. */
 #include <string.h>
 #include <strings.h>
 
@@ -44,7 +44,7 @@ static starg_status detect(const starg_source *source, const char *name,
     return starg_source_fail(source, starg_at_file(), "unknown format; use OFF, OBJ, PLY or STL");
 }
 
-/* Text may begin with a byte order mark, which says nothing. */
+/* Skips a byte order mark. */
 static void pass_byte_order_mark(starg_source *source) {
     if (source->size >= 3 && memcmp(source->bytes, "\xEF\xBB\xBF", 3) == 0) {
         source->bytes += 3;
@@ -52,8 +52,7 @@ static void pass_byte_order_mark(starg_source *source) {
     }
 }
 
-/* Long names are shown by their ends, so that a message has room for what it says. */
-static void show_name(const char *name, char *shown, size_t size) {
+void starg_source_shorten(const char *name, char *shown, size_t size) {
     size_t length = strlen(name);
     if (length < size)
         memcpy(shown, name, length + 1);
@@ -65,7 +64,7 @@ starg_status starg_mesh_read_memory(starg_context *context, const void *bytes, s
                                     const char *name, starg_mesh **out) {
     starg_status status = STARG_OK;
     char shown[256];
-    show_name(name, shown, sizeof shown);
+    starg_source_shorten(name, shown, sizeof shown);
     starg_source source = {context, shown, bytes, size};
     starg_mesh_builder builder = {.source = &source};
     starg_c_locale locale = {0};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* OBJ, Wavefront's text format: lines of a keyword and its values, of which v and f matter. Faces
- * may name vertices that come later, so one pass reads the vertices and a second one the faces.
- * Other files that it names are never opened. */
+/* Wavefront OBJ: lines of a keyword and values; only v and f matter. Faces may refer to later
+ * vertices, so a first pass reads vertices and a second one faces. Referenced files are never
+ * opened. */
 #include "mesh/formats/scan.h"
 
 bool starg_obj_matches(const starg_source *source) {
@@ -23,7 +23,7 @@ static starg_scan scan_lines(const starg_source *source) {
     return scan;
 }
 
-/* x y z, then perhaps a weight or a colour. */
+/* x y z, optionally followed by a weight or a colour. */
 static starg_status read_vertex(starg_scan *scan, starg_mesh_builder *builder) {
     enum { MOST_EXTRAS = 5 };
     starg_status status = STARG_OK;
@@ -43,7 +43,7 @@ done:
     return status;
 }
 
-/* Splits v, v/t, v//n or v/t/n; the numbers behind the slashes must be numbers, no more. */
+/* Parses v, v/t, v//n or v/t/n; t and n must be numbers. */
 static bool parse_corner(starg_word word, int64_t *vertex) {
     size_t begin = 0;
     for (int part = 0; part < 3; part++) {
@@ -65,7 +65,8 @@ static bool parse_corner(starg_word word, int64_t *vertex) {
     return false;
 }
 
-/* Counts from 1 on, or backward from the last vertex before this line; `out` counts from 0. */
+/* Positive indices count from 1, negative ones backward from the last vertex before this line;
+ * `out` counts from 0. */
 static starg_status resolve(starg_scan *scan, int64_t given, size_t before,
                             const starg_mesh_builder *builder, int64_t *out) {
     size_t count = starg_builder_vertex_count(builder);
@@ -81,7 +82,7 @@ static starg_status resolve(starg_scan *scan, int64_t given, size_t before,
     return STARG_OK;
 }
 
-/* The corners of a face; `before` vertices stand before this line. */
+/* Reads the corners of a face that follows `before` vertices. */
 static starg_status read_face(starg_scan *scan, size_t before, starg_mesh_builder *builder) {
     starg_status status = STARG_OK;
     starg_place place = starg_at_line(scan->line);

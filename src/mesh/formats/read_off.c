@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* OFF, Geomview's text format: a keyword, the counts of vertices, faces and edges, the vertices,
- * the faces. The letters before OFF tell what vertices carry besides their position; those numbers
- * end with the line, and so do the colours of faces. Everything else may be spread over lines as
- * one likes. */
+/* Geomview OFF: a keyword, the counts of vertices, faces and edges, the vertices, the faces.
+ * Letters before OFF declare further vertex data, which ends with the line, as do face colours.
+ * Otherwise line breaks are free. */
 #include <string.h>
 
 #include "mesh/formats/scan.h"
 
 typedef struct off_header {
     bool vertex_extras; /* normals, colours or texture coordinates follow each position */
-    bool homogeneous;   /* 4OFF: four coordinates   */
-    bool dimension;     /* nOFF: a number of coordinates of its own */
+    bool homogeneous;   /* 4OFF: four coordinates */
+    bool dimension;     /* nOFF: states its number of coordinates */
     size_t length;      /* of the keyword */
 } off_header;
 
@@ -22,7 +21,7 @@ static bool take(const char **at, const char *end, const char *prefix) {
     return true;
 }
 
-/* [ST][C][N][4][n]OFF, and then nothing; or a digit, which can only belong to the first count. */
+/* [ST][C][N][4][n]OFF, followed by nothing or by a digit of the first count. */
 static bool parse_keyword(starg_word word, off_header *header) {
     const char *at = word.text, *end = word.text + word.length;
     bool texture = take(&at, end, "ST");
@@ -44,7 +43,7 @@ bool starg_off_matches(const starg_source *source) {
     return starg_scan_word(&scan, &word) && parse_keyword(word, &ignored);
 }
 
-/* Reads the keyword and leaves the scanner behind its last letter. */
+/* Reads the keyword and leaves the scanner after its last letter. */
 static starg_status read_keyword(starg_scan *scan, off_header *header) {
     starg_word word;
     starg_status status = starg_scan_expect(scan, "the keyword OFF", &word);
@@ -70,7 +69,7 @@ static starg_status read_keyword(starg_scan *scan, off_header *header) {
     return STARG_OK;
 }
 
-/* The edge count means nothing and is often left out: it stands on the line of the face count, or
+/* Skips the edge count. It is unused and often missing; it is on the line of the face count, or
  * alone on the next one. */
 static starg_status pass_edge_count(starg_scan *scan) {
     starg_word word;
@@ -85,7 +84,7 @@ static starg_status pass_edge_count(starg_scan *scan) {
     return starg_word_integer(scan, word, "the edge count", &edges);
 }
 
-/* A count that the rest of the file cannot hold is refused before any memory is asked for. */
+/* Rejects counts that the rest of the file cannot hold, before allocating. */
 static starg_status read_counts(starg_scan *scan, size_t *vertices, size_t *faces) {
     starg_status status = STARG_OK;
     int64_t v, f;

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* PLY, the Stanford polygon format: a text header that declares elements and their properties,
- * then the elements in text or in binary of either byte order. Any types and order of properties
- * are read; elements and properties that do not matter here are stepped over. Faces may stand
- * before the vertices: then they are stepped over first and read at the end.
+/* PLY (Stanford polygon format): a text header that declares elements and their properties, then
+ * the elements as text or binary of either byte order. Types and order of properties are free;
+ * unknown elements and properties are skipped. If faces precede the vertices, they are skipped
+ * first and read at the end.
  *
- * Text is read value by value, wherever lines end. Some programs write more values for an item than
- * the header declares: where that is what went wrong, it is read again line by line. */
+ * Text is read value by value, ignoring line breaks. Some programs write more values per item than
+ * declared: if that makes reading fail, it is repeated line by line. */
 #include <math.h>
 #include <string.h>
 
@@ -16,8 +16,8 @@ static starg_place place_of(const ply_reader *ply) {
                                      : starg_at_byte((size_t)(ply->scan.at - ply->source->bytes));
 }
 
-/* The place of what was just read, given that of the cursor before: a scanner of text reaches the
- * line of a word only when it reads it. */
+/* The place of the value just read, given the cursor's place before it: a text scanner advances to
+ * a word's line only when it reads the word. */
 static starg_place place_since(const ply_reader *ply, starg_place before) {
     return ply->encoding == PLY_TEXT ? place_of(ply) : before;
 }
@@ -29,7 +29,7 @@ static starg_status need(const ply_reader *ply, size_t bytes) {
                              "the file ends within its data; it seems to be truncated");
 }
 
-/* The next `size` bytes as a number, whatever their order. */
+/* The next `size` bytes as a number in the file's byte order. */
 static uint64_t take_bits(ply_reader *ply, size_t size) {
     const unsigned char *bytes = (const unsigned char *)ply->scan.at;
     uint64_t bits = 0;
@@ -75,7 +75,7 @@ static starg_status read_real(ply_reader *ply, ply_type type, const char *what, 
     return STARG_OK;
 }
 
-/* Whole numbers may be stored in a floating type. */
+/* Floating types may hold integers. */
 static starg_status read_integer(ply_reader *ply, ply_type type, const char *what, int64_t *value) {
     if (type >= PLY_FLOAT32) {
         double real;
@@ -132,7 +132,7 @@ done:
     return status;
 }
 
-/* One item of an element; its values are used unless `skip`. */
+/* Reads one item of an element; ignores its values if `skip`. */
 static starg_status read_item(ply_reader *ply, const ply_element *element, bool skip) {
     starg_status status = STARG_OK;
     starg_place before = place_of(ply);
@@ -157,7 +157,7 @@ done:
     return status;
 }
 
-/* One item on a line of its own. */
+/* Reads one item on a line of its own. */
 static starg_status read_line(ply_reader *ply, const ply_element *element, bool skip) {
     starg_status status = STARG_OK;
     starg_scan ahead = ply->scan;
@@ -177,14 +177,14 @@ done:
 
 static starg_status read_items(ply_reader *ply, const ply_element *element, bool skip) {
     if (element->properties == 0)
-        return STARG_OK; /* takes no bytes, however many there are */
+        return STARG_OK; /* items without bytes, whatever their number */
     starg_status status = STARG_OK;
     for (size_t i = 0; i < element->count && status == STARG_OK; i++)
         status = ply->by_lines ? read_line(ply, element, skip) : read_item(ply, element, skip);
     return status;
 }
 
-/* Nothing but line ends may follow. */
+/* Only line ends may follow. */
 static starg_status check_end(ply_reader *ply) {
     static const char hint[] = "the counts in the header do not fit the data";
     if (ply->encoding == PLY_TEXT)
@@ -219,7 +219,7 @@ done:
     return status;
 }
 
-/* The data from its beginning, into an empty builder. */
+/* Reads the data from its beginning into an empty builder. */
 static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_lines) {
     ply->scan = *begin;
     ply->by_lines = by_lines;
@@ -228,7 +228,7 @@ static starg_status read_anew(ply_reader *ply, const starg_scan *begin, bool by_
     return read_data(ply);
 }
 
-/* If that fails line by line as well, the first fault is reported. */
+/* If reading line by line fails too, the first error is reported. */
 static starg_status read_either_way(ply_reader *ply) {
     const starg_scan begin = ply->scan;
     starg_status status = read_anew(ply, &begin, false);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* STL: a soup of triangles, each with three points of its own, in text or binary. Points at
- * exactly equal positions are welded; normals are ignored, the order of the corners counts.
+/* STL: a triangle soup, three points per triangle, as text or binary. Points at exactly equal
+ * positions are welded; normals are ignored, orientation comes from the corner order.
  *
- * Many binary files begin with the word "solid", so a size that fits the triangle count decides
- * first, then whether a zero byte stands in the header, which text never has. */
+ * Many binary files start with "solid", so a size that matches the triangle count is tested first,
+ * then whether the header contains a zero byte, which text never does. */
 #include <string.h>
 #include <strings.h>
 
@@ -63,8 +63,8 @@ static starg_status expect_keyword(starg_scan *scan, const char *keyword) {
                              starg_word_excerpt(word).text, keyword);
 }
 
-/* Behind "facet": normal, outer loop, three points, endloop, endfacet. Normals of facets without
- * area are written in many ways, so anything passes for their numbers. */
+/* After "facet": normal, outer loop, three points, endloop, endfacet. Normals of zero-area facets
+ * are written in many ways, so their numbers may be anything. */
 static starg_status read_facet(starg_scan *scan, starg_weld *weld) {
     starg_status status = STARG_OK;
     starg_place place = starg_at_line(scan->line);
@@ -89,7 +89,7 @@ done:
     return status;
 }
 
-/* Facets up to "endsolid"; the name that may follow either keyword ends with its line. */
+/* Reads facets up to "endsolid"; after either keyword the rest of the line is a name. */
 static starg_status read_solid(starg_scan *scan, starg_weld *weld) {
     starg_status status = STARG_OK;
     starg_word word;
@@ -110,13 +110,13 @@ done:
     return status;
 }
 
-/* One solid after the other, to the end of the text. */
+/* Reads all solids of the text. */
 static starg_status read_text(const starg_source *source, starg_weld *weld) {
     starg_status status = STARG_OK;
     starg_scan scan = starg_scan_make(source);
     starg_scan ahead;
     starg_word word;
-    scan.comments = false; /* the format has none, and names may hold anything */
+    scan.comments = false; /* STL has none, and names may contain any character */
     do {
         STARG_TRY(read_solid(&scan, weld));
         ahead = scan;
@@ -125,7 +125,7 @@ done:
     return status;
 }
 
-/* What stands behind the triangles is of no use to anybody. */
+/* Bytes after the triangles are ignored. */
 static starg_status check_size(const starg_source *source) {
     if (source->size < HEADER)
         return starg_source_fail(

@@ -29,7 +29,7 @@ static void pass_line_end(starg_scan *scan) {
     scan->line++;
 }
 
-/* True when the scanner stands on a backslash that joins this line and the next. */
+/* True at a backslash that joins this line and the next. */
 static bool at_continuation(const starg_scan *scan) {
     return scan->continuations && scan->end - scan->at > 1 && scan->at[0] == '\\' &&
            is_line_end(scan->at[1]);
@@ -40,7 +40,7 @@ static void skip_comment(starg_scan *scan) {
         scan->at++;
 }
 
-/* Stops before a word, a line's end or the end of the text. */
+/* Stops at a word, a line end or the end of the text. */
 static void skip_blanks(starg_scan *scan) {
     while (scan->at < scan->end) {
         if (is_blank(*scan->at)) {
@@ -84,7 +84,7 @@ bool starg_scan_word(starg_scan *scan, starg_word *word) {
 
 bool starg_scan_next_line(starg_scan *scan) {
     for (;;) {
-        skip_blanks(scan); /* comments may hold backslashes that join nothing */
+        skip_blanks(scan); /* in comments a backslash joins nothing */
         if (scan->at == scan->end)
             return false;
         if (is_line_end(*scan->at)) {
@@ -171,7 +171,7 @@ starg_excerpt starg_word_excerpt(starg_word word) {
     return excerpt;
 }
 
-/* A decimal number taken apart: mantissa x 10^exponent. */
+/* A decimal number: mantissa x 10^exponent. */
 typedef struct decimal {
     bool negative;
     bool rounded; /* the mantissa lost digits */
@@ -183,7 +183,7 @@ static bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/* Eats digits into the mantissa while 19 of them fit; returns how many there were. */
+/* Reads digits into the mantissa while 19 of them fit; returns how many there were. */
 static size_t take_digits(const char **at, const char *end, decimal *number, bool fraction) {
     const char *begin = *at;
     for (; *at < end && is_digit(**at); (*at)++) {
@@ -198,7 +198,7 @@ static size_t take_digits(const char **at, const char *end, decimal *number, boo
     return (size_t)(*at - begin);
 }
 
-/* Eats an exponent, if one begins here; false when it is malformed. */
+/* Reads an exponent if there is one; false if it is malformed. */
 static bool take_exponent(const char **at, const char *end, decimal *number) {
     enum { HUGE_EXPONENT = 100000 }; /* beyond any double, far from overflow */
     if (*at == end || (**at != 'e' && **at != 'E'))
@@ -216,7 +216,7 @@ static bool take_exponent(const char **at, const char *end, decimal *number) {
     return *at != begin;
 }
 
-/* True when the text is a decimal number from its first to its last character. */
+/* True if all of the text is a decimal number. */
 static bool take_decimal(const char *at, const char *end, decimal *number) {
     *number = (decimal){.negative = at < end && *at == '-'};
     if (at < end && (*at == '-' || *at == '+'))
@@ -253,10 +253,10 @@ static bool take_special(const char *text, size_t length, double *value) {
     return true;
 }
 
-/* Longest number in characters: 767 digits decide any double, longer words are no honest ones. */
+/* Longest number in characters: 767 digits determine any double. */
 enum { LONGEST_NUMBER = 1000 };
 
-/* What the fast path cannot round goes to strtod, which is exact. */
+/* strtod, which is exact, for numbers that the fast path cannot round. */
 static double parse_slowly(const char *text, size_t length) {
     char copy[LONGEST_NUMBER + 1];
     memcpy(copy, text, length);
@@ -264,8 +264,8 @@ static double parse_slowly(const char *text, size_t length) {
     return strtod(copy, NULL);
 }
 
-/* Mantissas and powers of ten that are exact doubles give a correctly rounded quotient or product
- * in one operation (Clinger, How to read floating point numbers accurately, 1990). */
+/* If mantissa and power of ten are exact doubles, one operation gives the correctly rounded
+ * quotient or product (Clinger, How to read floating point numbers accurately, 1990). */
 bool starg_parse_real(const char *text, size_t length, double *value) {
     static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                     1e8,  1e9,  1e10, 1e11, 1e12, 1e13, 1e14, 1e15,

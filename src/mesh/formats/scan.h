@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A scanner for text in memory: words between blanks, with their lines. Words that stand on one
- * line can be told from words that stand anywhere. Lines end with LF, CR LF or CR. */
+/* Scanner for text in memory: words between blanks, with their lines. Callers can restrict a read
+ * to the current line. Lines end with LF, CR LF or CR. */
 #ifndef STARG_MESH_FORMATS_SCAN_H
 #define STARG_MESH_FORMATS_SCAN_H
 
@@ -10,8 +10,8 @@ typedef struct starg_scan {
     const starg_source *source;
     const char *at, *end;
     size_t line;
-    bool comments;      /* # hides the rest of its line                 */
-    bool continuations; /* a backslash before a line's end joins lines  */
+    bool comments;      /* # starts a comment */
+    bool continuations; /* a backslash before a line end joins lines */
 } starg_scan;
 
 typedef struct starg_word {
@@ -22,25 +22,24 @@ typedef struct starg_word {
 
 starg_scan starg_scan_make(const starg_source *source);
 
-/* The next word on the line that the scanner stands on; false at its end. */
+/* The next word on the current line; false at its end. */
 bool starg_scan_word_here(starg_scan *scan, starg_word *word);
 
 /* The next word on this line or a later one; false at the end of the text. */
 bool starg_scan_word(starg_scan *scan, starg_word *word);
 
-/* Goes to the beginning of the next line; false at the end of the text. */
+/* Moves to the beginning of the next line; false at the end of the text. */
 bool starg_scan_next_line(starg_scan *scan);
 
-/* The next word, which has to be there; `what` says in messages what it should be ("a face
- * count"). Errors: FORMAT. */
+/* The next word, which must exist; messages call it `what` ("a face count"). Errors: FORMAT. */
 starg_status starg_scan_expect(starg_scan *scan, const char *what, starg_word *word);
 starg_status starg_scan_real(starg_scan *scan, const char *what, double *value);
 starg_status starg_scan_integer(starg_scan *scan, const char *what, int64_t *value);
 
-/* Fails when words that are not numbers follow on this line, or more than `limit` numbers. */
+/* Fails if the rest of the line has words that are not numbers, or more than `limit` numbers. */
 starg_status starg_scan_extra_numbers(starg_scan *scan, size_t limit, const char *what);
 
-/* Fails when anything but blanks and comments follows. */
+/* Fails if anything but blanks and comments follows. */
 starg_status starg_scan_end(starg_scan *scan, const char *hint);
 
 bool starg_word_is(starg_word word, const char *text);
@@ -49,18 +48,18 @@ starg_status starg_word_real(const starg_scan *scan, starg_word word, const char
 starg_status starg_word_integer(const starg_scan *scan, starg_word word, const char *what,
                                 int64_t *value);
 
-/* The beginning of a word as messages show it: printable, short, terminated. */
+/* The beginning of a word for messages: printable, short, terminated. */
 typedef struct starg_excerpt {
     char text[28];
 } starg_excerpt;
 
 starg_excerpt starg_word_excerpt(starg_word word);
 
-/* The nearest double of a decimal number that fills the whole text; nan, inf and infinity in any
- * case are accepted, hexadecimal numbers are not. Expects the "C" locale. */
+/* The double nearest to a decimal number that fills the text; also accepts nan, inf and infinity in
+ * any case, but no hexadecimal numbers. Requires the "C" locale. */
 bool starg_parse_real(const char *text, size_t length, double *value);
 
-/* A decimal integer that fills the whole text and fits. */
+/* A decimal integer that fills the text and fits. */
 bool starg_parse_integer(const char *text, size_t length, int64_t *value);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writing a mesh of any format; the file appears under its name when it is complete. */
+/* Writes a mesh of any format; the file gets its name once it is complete. */
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -46,7 +46,7 @@ static starg_status choose_format(starg_context *context, const char *path,
                       path);
 }
 
-/* Binary STL holds floats: what they cannot hold would become infinite. */
+/* Binary STL uses floats: rejects coordinates that would become infinite. */
 static starg_status check_single(starg_context *context, const starg_mesh *mesh, const char *path) {
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
         if (fabs(mesh->vertices[i]) <= (double)FLT_MAX)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* OBJ: lines of v and f; indices count from 1. The format has no colours of faces. */
+/* OBJ: lines of v and f; indices count from 1. Face colours are not supported. */
 #include <inttypes.h>
 
 #include "mesh/formats/io.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* OFF: counts, vertices, faces with the colour (0 to 255) behind the indices. No comments. */
+/* OFF: counts, vertices, faces with a colour (0 to 255) after the indices. */
 #include <inttypes.h>
 
 #include "mesh/formats/io.h"

@@ -4,7 +4,7 @@
 #include "mesh/formats/io.h"
 #include "mesh/formats/pack.h"
 
-/* The three points of a face, and its unit normal; zero for a face without area. */
+/* The three points of a face and its unit normal, zero for a zero-area face. */
 static void look_up(const starg_mesh *mesh, size_t face, double points[3][3], double normal[3]) {
     for (int corner = 0; corner < 3; corner++)
         vec3_copy(mesh->vertices + 3 * (size_t)mesh->faces[3 * face + (size_t)corner],
@@ -14,7 +14,7 @@ static void look_up(const starg_mesh *mesh, size_t face, double points[3][3], do
     vec3_subtract(points[2], points[0], v);
     for (int k = 0; k < 3; k++)
         scale = fmax(scale, fmax(fabs(u[k]), fabs(v[k])));
-    for (int k = 0; k < 3 && scale > 0; k++) { /* so that no product over- or underflows */
+    for (int k = 0; k < 3 && scale > 0; k++) { /* avoids overflow and underflow of products */
         u[k] /= scale;
         v[k] /= scale;
     }

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The rules of an edge collapse.
+/* Validity of an edge collapse.
  *
- * Topology: in a closed surface an edge satisfies the link condition exactly if its ends have no
- * common neighbours but the two opposite corners, and the component is no tetrahedron. Then the
- * surface stays a 2-manifold of the same genus.
+ * Topology: in a closed surface an edge satisfies the link condition if and only if its ends have
+ * no common neighbours besides the two opposite corners, and the component is not a tetrahedron.
+ * Then the surface stays a 2-manifold of the same genus.
  *
- * Embedding: only pairs with a changed face can come to meet. Those in the new star do not when
- * the star projects one to one to a coordinate plane (the usual case, decided by orient2d);
- * otherwise every pair is tested. All other faces whose boxes meet those of new faces are tested
- * against these; the planes of the two mostly tell them apart. What lies between the old and the
- * new star is covered by the tetrahedra of the new position with the old faces: another component
- * that touches none of the new faces is swept over as a whole or not at all, so that one point of
- * it decides. That the own component does not turn inside out is seen in its volume. */
+ * Embedding: only pairs with a changed face can start to intersect. Faces of the new star do not
+ * intersect one another if the star projects injectively to a coordinate plane (the usual case,
+ * decided by orient2d); otherwise all their pairs are tested. All other faces whose boxes meet
+ * those of new faces are tested against these; their planes usually separate the two. The region
+ * between the old and the new star is covered by the tetrahedra of the new position with the old
+ * faces: another component that touches no new face is inside or outside as a whole, so testing one
+ * of its points is enough. The component's volume shows whether it turns inside out. */
 #include "mesh/levels/collapse.h"
 
 #include <math.h>
@@ -20,16 +20,16 @@
 #include "geometry/vec3.h"
 #include "mesh/contact.h"
 
-/* Cosine of the largest turn of a normal. */
+/* Cosine of the largest rotation of a normal. */
 static const double LARGEST_TURN = 0.2;
-/* Twice the area over the square of the longest edge: faces below are slivers. */
+/* Twice the area over the squared longest edge: faces below this are slivers. */
 static const double SLIVER = 1e-3;
-/* The part of its volume that a component keeps in a collapse. */
+/* Fraction of its volume that a component must keep in a collapse. */
 static const double LEAST_VOLUME = 0.5;
 
-/* ---- topology ------------------------------------------------------------------------------- */
+/* ---- topology ---- */
 
-/* Appends the faces about the start of `first` that the collapse keeps; false if too many. */
+/* Appends the faces around the start of `first` that the collapse keeps; false if too many. */
 static bool gather_end(const mesh_surface *s, uint32_t first, collapse_star *star) {
     uint32_t gone = star->halfedge / 3, other = halfedges_twin(&s->mesh, star->halfedge) / 3,
              h = first;
@@ -55,26 +55,26 @@ bool collapse_gather(const mesh_surface *s, uint32_t halfedge, collapse_star *st
         return false;
     if (star->count < 3) /* a tetrahedron */
         return false;
-    /* The kept faces of an end come in turn: the first begins at one opposite corner, the last ends
-     * at the other, and all corners between them must be of this end alone. */
+    /* The kept faces of an end are in order: the first starts at one opposite corner, the last ends
+     * at the other, and all corners between must belong to this end only. */
     return halfedges_common(&s->mesh, star->kept + 1, about_a - 1, star->kept + about_a + 1,
                             star->count - about_a - 1) == 0;
 }
 
-/* ---- shape ---------------------------------------------------------------------------------- */
+/* ---- shape ---- */
 
 static double longest_squared(const double u[3], const double v[3]) {
     return fmax(fmax(vec3_dot(u, u), vec3_dot(v, v)), vec3_distance_squared(u, v));
 }
 
-/* Corners of a kept face from its end on; the second and third do not change. */
+/* Corners of a kept face, starting with its end; the second and third do not change. */
 static void kept_corners(const mesh_surface *s, uint32_t halfedge, const double *corner[3]) {
     corner[0] = surface_at(s, halfedges_start(&s->mesh, halfedge));
     corner[1] = surface_at(s, halfedges_end(&s->mesh, halfedge));
     corner[2] = surface_at(s, halfedges_apex(&s->mesh, halfedge));
 }
 
-/* The normal of a face as seen from its first corner, and how far it is from a sliver. */
+/* The normal of a face, computed at its first corner, and its quality relative to SLIVER. */
 static double face_quality(const mesh_surface *s, const double first[3], const double *corner[3],
                            double normal[3]) {
     double u[3], v[3];
@@ -123,14 +123,14 @@ bool collapse_keeps_shape(const mesh_surface *s, const collapse_star *star,
            keeps_volume(s, star, position);
 }
 
-/* ---- embedding ------------------------------------------------------------------------------ */
+/* ---- embedding ---- */
 
-/* What a test against the faces nearby needs. */
+/* Data for tests against nearby faces. */
 typedef struct change {
     const mesh_surface *surface; /* with vertex a at its new position */
     const collapse_star *star;
     double old[3];  /* where a was */
-    int axis, sign; /* the star looks largest along this coordinate; its normal's sign there */
+    int axis, sign; /* dominant axis of the star's normal, and its sign */
     bvh_box box;    /* of the old and the new star */
     uint32_t corner[2 * COLLAPSE_DEGREE][3];
     bvh_box face_box[2 * COLLAPSE_DEGREE];
@@ -180,7 +180,7 @@ static bool is_corner(uint32_t vertex, const uint32_t face[3]) {
     return vertex == face[0] || vertex == face[1] || vertex == face[2];
 }
 
-/* Do all corners of face v that u does not have lie strictly on one side of the plane of u? */
+/* Are all corners of face v that are not corners of u strictly on one side of u's plane? */
 static bool beside(const mesh_surface *s, const uint32_t u[3], const uint32_t v[3]) {
     int side = 0;
     for (int k = 0; k < 3; k++) {
@@ -195,9 +195,9 @@ static bool beside(const mesh_surface *s, const uint32_t u[3], const uint32_t v[
     return side != 0;
 }
 
-/* Is there an edge of u that, in the coordinate plane across `axis`, has u on one side and all
- * corners of v that are not its own ends strictly on the other? Then they meet in nothing but the
- * ends that they share. In flat parts, where planes tell nothing, this does. */
+/* Does some edge of u, projected along `axis`, have u on one side and all corners of v except its
+ * own ends strictly on the other? Then they meet at most in those ends. This decides flat parts,
+ * where planes do not separate. */
 static bool apart_across(const mesh_surface *s, const uint32_t u[3], const uint32_t v[3],
                          int axis) {
     int p = (axis + 1) % 3, q = (axis + 2) % 3;
@@ -216,7 +216,7 @@ static bool apart_across(const mesh_surface *s, const uint32_t u[3], const uint3
     return false;
 }
 
-/* Do two faces with area meet in more than they share? The axis is a hint. */
+/* Do two faces with area meet beyond their common corners and edge? The axis is a hint. */
 static bool faces_meet(const mesh_surface *s, const uint32_t u[3], const uint32_t v[3], int axis) {
     if (apart_across(s, u, v, axis) || beside(s, u, v) || apart_across(s, v, u, axis) ||
         beside(s, v, u))
@@ -225,8 +225,8 @@ static bool faces_meet(const mesh_surface *s, const uint32_t u[3], const uint32_
     return contact == TRIANGLES_TOUCH || contact == TRIANGLES_CROSS;
 }
 
-/* Does the new star project one to one along its axis? Every face turns the same way there,
- * and the ring passes the half-line from the middle along coordinate u once. */
+/* Does the new star project injectively along its axis? All its faces turn the same way there, and
+ * the ring crosses a half-line from the centre along coordinate u once. */
 static bool projects(const change *c) {
     int sign = c->sign, u = (c->axis + 1) % 3, v = (c->axis + 2) % 3, turns = 0;
     const double *middle = surface_at(c->surface, c->star->a);
@@ -257,7 +257,7 @@ static bool star_is_embedded(const change *c) {
     return true;
 }
 
-/* Is p in the tetrahedron of the new position and an old face, unless that is flat? */
+/* Is p in the tetrahedron of the new position and an old face? False if that is flat. */
 static bool sweeps(const change *c, uint32_t face, const double p[3]) {
     const double *t[4];
     for (size_t k = 0; k < 3; k++) {
@@ -282,7 +282,7 @@ static bool is_swept(const change *c, const double p[3]) {
     return false;
 }
 
-/* A face nearby: false, which ends the search, when it is in the way. */
+/* Visits a nearby face: false, which ends the search, if it intersects. */
 static bool clear_of(void *user, uint32_t face) {
     const change *c = user;
     const mesh_surface *s = c->surface;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A binary heap that knows where each item is. */
+/* Binary heap that tracks the slot of each item. */
 #include "mesh/levels/heap.h"
 
 #include "core/memory.h"
@@ -38,7 +38,7 @@ static void put(mesh_heap *heap, size_t slot, heap_entry entry) {
     heap->slot[entry.item] = (uint32_t)slot;
 }
 
-/* Puts the entry where it belongs on the way from a free slot to the root. */
+/* Moves an entry up from a free slot. */
 static void rise(mesh_heap *heap, size_t slot, heap_entry entry) {
     while (slot > 0 && before(entry, heap->entries[(slot - 1) / 2])) {
         put(heap, slot, heap->entries[(slot - 1) / 2]);
@@ -47,7 +47,7 @@ static void rise(mesh_heap *heap, size_t slot, heap_entry entry) {
     put(heap, slot, entry);
 }
 
-/* The same on the way to the leaves. */
+/* Moves an entry down from a free slot. */
 static void sink(mesh_heap *heap, size_t slot, heap_entry entry) {
     for (;;) {
         size_t child = 2 * slot + 1;

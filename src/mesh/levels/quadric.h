@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Quadric error metrics [Garland, Heckbert 1997]: the weighted sum of squared distances to planes
- * and points, as a polynomial of the offset d from a reference point: d.Ad + 2 b.d + c. */
+/* Quadric error metrics [Garland, Heckbert 1997]: weighted sum of squared distances to planes and
+ * points, as a polynomial in the offset d from a reference point: d.Ad + 2 b.d + c. */
 #ifndef STARG_MESH_LEVELS_QUADRIC_H
 #define STARG_MESH_LEVELS_QUADRIC_H
 
@@ -13,8 +13,8 @@ typedef struct quadric {
     double b[3], c;
 } quadric;
 
-/* Adds a plane through the reference point: `normal` is not of unit length, its length is the
- * weight. The point itself is added with `share` of the weight. */
+/* Adds a plane through the reference point; the length of `normal` is the weight. Adds the point
+ * itself with `share` of the weight. */
 static inline void quadric_add_plane(quadric *q, const double normal[3], double share) {
     double weight = vec3_length(normal);
     if (!(weight > 0))
@@ -48,7 +48,7 @@ static inline void quadric_shift(quadric *q, const double d[3]) {
     vec3_along(q->b, 1, ad, q->b);
 }
 
-/* Adds a quadric of the same reference point. */
+/* Adds a quadric with the same reference point. */
 static inline void quadric_add(quadric *q, const quadric *other) {
     q->xx += other->xx;
     q->xy += other->xy;
@@ -60,8 +60,8 @@ static inline void quadric_add(quadric *q, const quadric *other) {
     q->c += other->c;
 }
 
-/* The offset of the least error, A d = -b by Cholesky's decomposition without roots; false when A
- * is too near to a singular matrix for it to mean anything. */
+/* The offset of least error, A d = -b by root-free Cholesky decomposition; false if A is too close
+ * to singular. */
 static inline bool quadric_optimum(const quadric *q, double d[3]) {
     double least = 1e-10 * (q->xx + q->yy + q->zz);
     double p0 = q->xx, l1 = q->xy / p0, l2 = q->xz / p0;

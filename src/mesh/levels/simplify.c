@@ -4,18 +4,17 @@
  * Source: M. Garland, P. S. Heckbert, Surface simplification using quadric error metrics, 1997,
  * with the edge collapses of H. Hoppe, Progressive meshes, 1996.
  *
- * Each vertex has a quadric: the squared distances to the planes of all faces that were merged
- * into it, weighted by area, and with a very small share of the weight to the corners of these.
- * The share keeps the system of the best position away from singular ones, and spreads the
- * vertices evenly where the planes leave the position free. An edge waits in a queue with the error
- * of its best placement: the optimum of the two quadrics, the middle or an end. The first is taken
- * out; if the rules (collapse.h) forbid the placement, the edge comes back with its next best; if
- * they forbid all, it waits until one of its ends changes or the queue is empty: then all edges
- * enter anew, as long as that is of use.
+ * Each vertex has a quadric: the area-weighted squared distances to the planes of all faces merged
+ * into it, plus a very small share of the weight for their corners. The share keeps the linear
+ * system of the best position away from singular and distributes vertices evenly where planes do
+ * not determine the position. Edges wait in a queue by the error of their best placement: the
+ * optimum of the two quadrics, the midpoint or an end. If the rules (collapse.h) reject a
+ * placement, the edge returns with its next best; if they reject all, it waits until one of its
+ * ends changes or the queue is empty. Then all edges enter again, as long as that gains enough.
  *
  * Invariants: the surface stays a closed 2-manifold with the same components and genus; every edge
- * is in the queue or has been refused since its ends last changed. Ties go to the lower edge.
- * Cost: O(n log n), 5 to 15 us a collapse, most of it for the faces nearby. */
+ * is in the queue or was rejected since its ends last changed. Ties go to the lower edge. Cost: O(n
+ * log n), 5 to 15 us a collapse, mostly for nearby faces. */
 #include "starguard/simplify.h"
 
 #include <math.h>
@@ -26,33 +25,33 @@
 #include "mesh/levels/heap.h"
 #include "mesh/levels/quadric.h"
 
-/* The share of the weight that goes to points: small against the planes of any real feature. */
+/* Share of the weight for points: small compared with the planes of any real feature. */
 static const double POINT_SHARE = 1e-6;
 
 enum {
-    PLACEMENTS = 4,       /* optimum, middle, start, end                                   */
-    CHECK_INTERVAL = 256, /* edges between two looks at the clock                          */
-    LEAST_GAIN = 1000     /* another round is of use after one collapse per so many vertices */
+    PLACEMENTS = 4,       /* optimum, middle, start, end */
+    CHECK_INTERVAL = 256, /* edges between two checks of the clock */
+    LEAST_GAIN = 1000     /* another round needs one collapse per this many vertices */
 };
 
 typedef struct simplifier {
     starg_context *context;
     mesh_surface *surface;
     dynamic_bvh *tree; /* NULL: intersections are allowed */
-    mesh_heap *queue;  /* of edges                        */
-    quadric *quadrics; /* per vertex, about its position  */
-    uint8_t *attempt;  /* per edge: placements refused    */
-    size_t gain;       /* collapses in this round         */
-    size_t handled;    /* edges taken from the queue      */
+    mesh_heap *queue;  /* of edges */
+    quadric *quadrics; /* per vertex, about its position */
+    uint8_t *attempt;  /* per edge: number of rejected placements */
+    size_t gain;       /* collapses in this round */
+    size_t handled;    /* edges taken from the queue */
 } simplifier;
 
-/* ---- placements ----------------------------------------------------------------------------- */
+/* ---- placements ---- */
 
 typedef struct placement {
     double error, position[3];
 } placement;
 
-/* The sum of the quadrics of an edge's ends, about its start. */
+/* Sum of the quadrics of an edge's ends, relative to its start. */
 static quadric edge_quadric(const simplifier *s, uint32_t a, uint32_t b) {
     quadric sum = s->quadrics[a], other = s->quadrics[b];
     double back[3];
@@ -63,10 +62,10 @@ static quadric edge_quadric(const simplifier *s, uint32_t a, uint32_t b) {
 }
 
 static double rounded_error(const quadric *q, const double offset[3]) {
-    return fmax(quadric_error(q, offset), 0); /* also for NaN */
+    return fmax(quadric_error(q, offset), 0); /* 0 for NaN, too */
 }
 
-/* The optimum, unless it is farther from the middle than the edge is long. */
+/* The optimum, unless it is farther from the midpoint than the edge is long. */
 static double try_optimum(const mesh_surface *surface, const quadric *q, const double edge[3],
                           const double start[3], double position[3]) {
     double offset[3], from_middle[3];
@@ -82,7 +81,7 @@ static double try_optimum(const mesh_surface *surface, const quadric *q, const d
     return rounded_error(q, offset);
 }
 
-/* The edge's placement of `rank` by error (0: the best); false when there is none. */
+/* The edge's placement of `rank` by error (0: the best); false if there is none. */
 static bool place(const simplifier *s, uint32_t edge, int rank, placement *out) {
     const mesh_surface *surface = s->surface;
     uint32_t h = surface->halfedge[edge], a = halfedges_start(&surface->mesh, h),
@@ -114,7 +113,7 @@ static bool place(const simplifier *s, uint32_t edge, int rank, placement *out) 
     return false;
 }
 
-/* ---- the queue ------------------------------------------------------------------------------ */
+/* ---- the queue ---- */
 
 static void enter(simplifier *s, uint32_t edge, int attempt) {
     placement next;
@@ -147,7 +146,7 @@ static void make_quadrics(simplifier *s) {
     }
 }
 
-/* ---- collapses ------------------------------------------------------------------------------ */
+/* ---- collapses ---- */
 
 static starg_status collapse(simplifier *s, const collapse_star *star, const double position[3]) {
     mesh_surface *surface = s->surface;
@@ -183,7 +182,7 @@ static starg_status try_collapse(simplifier *s, uint32_t edge) {
     return STARG_OK;
 }
 
-/* The next edge; false when nothing can be gained any more. */
+/* The next edge; false if nothing more can be gained. */
 static bool next_edge(simplifier *s, uint32_t *edge) {
     if (heap_pop(s->queue, edge))
         return true;
@@ -204,7 +203,7 @@ static starg_status look_up(simplifier *s, size_t target) {
     return starg_check_cancel(s->context, "simplify");
 }
 
-/* Collapses edges until `target` vertices are left or nothing can be gained. */
+/* Collapses edges until `target` vertices are left or nothing more can be gained. */
 static starg_status reduce(simplifier *s, size_t target) {
     starg_status status = STARG_OK;
     uint32_t edge;
@@ -221,7 +220,7 @@ done:
     return status;
 }
 
-/* ---- beginning and end ---------------------------------------------------------------------- */
+/* ---- start and result ---- */
 
 static starg_status begin(simplifier *s, starg_context *context, const starg_mesh *mesh,
                           const starg_simplify_options *options) {
@@ -247,7 +246,7 @@ static void end(simplifier *s) {
     starg_release(s->context, s->attempt);
 }
 
-/* A mesh of the surface as it is, and per vertex of the input its vertex there. */
+/* Makes a mesh of the current surface, and maps each input vertex to its vertex there. */
 static starg_status snapshot(const mesh_surface *surface, uint32_t *number, starg_mesh **out) {
     starg_status status = STARG_OK;
     starg_context *context = surface->context;
@@ -277,7 +276,7 @@ done:
     return status;
 }
 
-/* ---- the calls ------------------------------------------------------------------------------ */
+/* ---- public functions ---- */
 
 void starg_simplify_options_default(starg_simplify_options *options) {
     *options = (starg_simplify_options){0};
@@ -303,10 +302,10 @@ done:
     return status;
 }
 
-/* The levels in the making, from the finest on. */
+/* Levels built so far, from the finest on. */
 typedef struct level_list {
     starg_levels *out;
-    uint32_t *of_finest; /* per vertex of the input its one of the last level */
+    uint32_t *of_finest; /* per vertex of the input its vertex in the last level */
 } level_list;
 
 /* The sizes of the levels. */
@@ -314,21 +313,21 @@ typedef struct ladder {
     size_t coarsest, step;
 } ladder;
 
-/* The vertices of the level below one that has `finer`, more than the coarsest. */
+/* Target vertex count below a level of `finer` vertices, more than the coarsest. */
 static size_t next_target(const ladder *sizes, size_t finer) {
     if (sizes->step == STARG_QUARTERS)
         return finer / 4 > sizes->coarsest ? finer / 4 : sizes->coarsest;
     return sizes->coarsest + (finer - sizes->coarsest - 1) / sizes->step * sizes->step;
 }
 
-/* How many vertices less than the level above, with `finer`, are worth a level: a quarter of a
- * step. */
+/* Smallest reduction that makes a level, given that the one above has `finer` vertices: a quarter
+ * of a step. */
 static size_t least_difference(const ladder *sizes, size_t finer) {
     size_t step = sizes->step == STARG_QUARTERS ? finer - finer / 4 : sizes->step;
     return step - 3 * (step / 4);
 }
 
-/* The number of levels: the input and one for each target below it. */
+/* Upper bound on the levels: the input and one for each target below it. */
 static size_t most_levels(const ladder *sizes, size_t vertices) {
     size_t count = 1;
     for (size_t left = vertices; left > sizes->coarsest; count++)
@@ -336,7 +335,7 @@ static size_t most_levels(const ladder *sizes, size_t vertices) {
     return count;
 }
 
-/* Adds the surface as a level, unless it is too much like the last one. */
+/* Appends the surface as a level, unless it is too similar to the last one. */
 static starg_status add_level(simplifier *s, level_list *list, const ladder *sizes,
                               uint32_t *number) {
     starg_status status = STARG_OK;
@@ -348,7 +347,7 @@ static starg_status add_level(simplifier *s, level_list *list, const ladder *siz
         return STARG_OK;
     STARG_NEW(context, "simplify", map, finer);
     STARG_TRY(snapshot(s->surface, number, &mesh));
-    memset(map, 0xff, finer * sizeof *map); /* STARG_NO_VERTEX */
+    memset(map, 0xff, finer * sizeof *map); /* fills with STARG_NO_VERTEX */
     for (size_t v = 0; v < s->surface->vertex_count; v++) {
         if (list->of_finest[v] != STARG_NO_VERTEX)
             map[list->of_finest[v]] = number[v];
@@ -379,7 +378,7 @@ done:
     return status;
 }
 
-/* Turns the list about: the coarsest first. */
+/* Reverses the list: coarsest first. */
 static void reverse(starg_levels *levels) {
     for (size_t i = 0, j = levels->count; i + 1 < j--; i++) {
         starg_level swap = levels->levels[i];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The working surface of the simplification: what a collapse does to positions, to the numbers of
- * edges, and to the volumes of components. It costs O(degree of the vertex that goes). */
+/* Working surface of the simplification: applies a collapse to positions, edge numbers and
+ * component volumes. Cost: O(degree of the removed vertex). */
 #include "mesh/levels/surface.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ static starg_status check_edges(starg_context *context, const starg_mesh *mesh,
     return STARG_OK;
 }
 
-/* Every corner must be met on the way about its vertex. */
+/* Every corner must be reached by walking around its vertex. */
 static starg_status check_fans(const mesh_surface *s) {
     size_t met = 0;
     for (size_t v = 0; v < s->vertex_count; v++) {
@@ -71,7 +71,7 @@ static void find_used(mesh_surface *s) {
     }
 }
 
-/* About a corner of each component, so that small ones far away keep their digits. */
+/* Measured from a corner of each component, so that small distant ones do not lose digits. */
 static starg_status measure_volumes(mesh_surface *s) {
     starg_status status = STARG_OK;
     uint32_t *origin = NULL;
@@ -91,13 +91,13 @@ done:
     return status;
 }
 
-/* Within the range in which the scale and its inverse are finite. */
+/* Limited so that the scale and its inverse are finite. */
 static double scale_of(const starg_mesh *mesh) {
     int exponent = starg_mesh_exponent(mesh);
     return ldexp(1, -(exponent < -1000 ? -1000 : exponent));
 }
 
-/* The components are taken over from the topology. */
+/* Takes the components from the topology. */
 static starg_status fill(mesh_surface *s, const starg_mesh *mesh, mesh_topology *topology) {
     starg_status status = STARG_OK;
     starg_context *context = s->context;
@@ -154,7 +154,7 @@ void surface_free(mesh_surface *surface) {
     starg_release(surface->context, surface);
 }
 
-/* What a collapse does to the volume: the star of either end, seen from the new position. */
+/* Change of the volume in a collapse: the star of either end, as seen from the new position. */
 static void update_volume(mesh_surface *s, uint32_t halfedge, const double position[3]) {
     uint32_t a = halfedges_start(&s->mesh, halfedge), b = halfedges_end(&s->mesh, halfedge);
     double lost = 0;
@@ -175,8 +175,7 @@ static void update_volume(mesh_surface *s, uint32_t halfedge, const double posit
     s->volume[s->component[halfedge / 3]] -= lost;
 }
 
-/* In the face of a collapsed edge, the edges of the other two sides become one, with the number of
- * `kept`. */
+/* In a face of a collapsed edge the other two sides become one edge, numbered as that of `kept`. */
 static void merge_edges(mesh_surface *s, uint32_t gone, uint32_t kept) {
     uint32_t outer_gone = halfedges_twin(&s->mesh, gone);
     s->halfedge[s->edge[gone]] = TOPOLOGY_NONE;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A closed surface that changes by edge collapses: halfedges, with what the simplification keeps of
- * vertices, edges and components. */
+/* Closed surface under edge collapses: halfedges with the positions, edge numbers and component
+ * data that simplification needs. */
 #ifndef STARG_MESH_LEVELS_SURFACE_H
 #define STARG_MESH_LEVELS_SURFACE_H
 
@@ -8,29 +8,29 @@
 
 #include "mesh/halfedges.h"
 
-/* Edges are numbered by the first halfedge that they had. */
+/* An edge is numbered by its original first halfedge. */
 typedef struct mesh_surface {
     starg_context *context;
     mesh_halfedges mesh;
     size_t vertex_count, face_count, edge_count, component_count; /* of the input */
     size_t vertices_left, faces_left;
-    double scale;        /* a power of two: the extent of the input times it is about 1 */
-    double *vertices;    /* vertex_count x 3, current positions                         */
-    uint32_t *edge;      /* per halfedge                                                */
-    uint32_t *halfedge;  /* per edge one of its two, TOPOLOGY_NONE when it is gone      */
-    uint32_t *merged;    /* per vertex the one it was merged into, itself if it stands;
-                            TOPOLOGY_NONE for a vertex of no face                       */
-    uint32_t *component; /* per face                                                    */
-    double *volume;      /* per component six times its signed volume, in scaled units  */
+    double scale;        /* a power of two that scales the input's extent to about 1 */
+    double *vertices;    /* vertex_count x 3, current positions */
+    uint32_t *edge;      /* per halfedge */
+    uint32_t *halfedge;  /* per edge one of its halfedges, TOPOLOGY_NONE if removed */
+    uint32_t *merged;    /* per vertex the one it was merged into, itself if it still exists;
+                            TOPOLOGY_NONE for an isolated vertex */
+    uint32_t *component; /* per face */
+    double *volume;      /* per component: six times its signed volume, in scaled units */
 } mesh_surface;
 
-/* A working copy of a closed, oriented 2-manifold. Errors: MESH (it is not; with indices), MEMORY.
- */
+/* Creates a working copy of a closed, oriented 2-manifold. Errors: MESH (not such a mesh; with
+ * indices), MEMORY. */
 starg_status surface_create(starg_context *context, const starg_mesh *mesh, mesh_surface **out);
 void surface_free(mesh_surface *surface);
 
-/* Collapses an edge that satisfies the link condition (see collapse.h): the vertex at the end of
- * the halfedge is merged into the one at its start, which moves to `position`. */
+/* Collapses an edge that satisfies the link condition (see collapse.h): merges the vertex at the
+ * end of the halfedge into the one at its start, which moves to `position`. */
 void surface_collapse(mesh_surface *surface, uint32_t halfedge, const double position[3]);
 
 static inline const double *surface_at(const mesh_surface *surface, uint32_t vertex) {

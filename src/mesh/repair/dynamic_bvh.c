@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A bounding volume hierarchy under edge collapses: the box of a leaf, and of the nodes above it,
- * grows when a face moves out of it, and dead faces are skipped. Boxes never shrink, so that
- * no face is lost; building anew whenever half of the faces are gone keeps them tight, at the cost
- * of two constructions for the largest mesh in all. */
+/* Bounding volume hierarchy under edge collapses: when a face leaves the box of its leaf, that box
+ * and its ancestors grow; dead faces are skipped. Boxes never shrink, so no face is missed.
+ * Rebuilding when half of the faces are dead keeps boxes tight and costs at most twice the first
+ * construction in total. */
 #include "mesh/repair/dynamic_bvh.h"
 
 #include "core/memory.h"
@@ -107,7 +107,7 @@ void dynamic_bvh_free(dynamic_bvh *tree) {
     starg_release(tree->context, tree);
 }
 
-/* Makes a box hold another; false when it did already. */
+/* Extends a box to contain another; false if it already did. */
 static bool enclose(bvh_box *box, const bvh_box *other) {
     bool grown = false;
     for (int k = 0; k < 3; k++) {

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Dynamic bounding volume hierarchy: the faces near a place on a changing surface. Its boxes grow
- * with the faces. */
+/* Dynamic bounding volume hierarchy over the faces of a changing surface. */
 #ifndef STARG_MESH_REPAIR_DYNAMIC_BVH_H
 #define STARG_MESH_REPAIR_DYNAMIC_BVH_H
 
@@ -10,11 +9,11 @@
 typedef struct dynamic_bvh {
     starg_context *context;
     const mesh_surface *surface;
-    size_t listed;     /* faces when the tree was built  */
-    bvh *tree;         /* over copies of those           */
-    uint32_t *corners; /* listed x 3, what the tree read */
-    uint32_t *face;    /* per triangle of the tree       */
-    uint32_t *leaf;    /* per face of the surface        */
+    size_t listed;     /* faces when the tree was built */
+    bvh *tree;         /* over copies of these faces */
+    uint32_t *corners; /* listed x 3, read by the tree */
+    uint32_t *face;    /* per triangle of the tree */
+    uint32_t *leaf;    /* per face of the surface */
     uint32_t *parent;  /* per node; the root's is itself */
 } dynamic_bvh;
 
@@ -23,9 +22,9 @@ starg_status dynamic_bvh_create(starg_context *context, const mesh_surface *surf
                                 dynamic_bvh **out);
 void dynamic_bvh_free(dynamic_bvh *tree);
 
-/* Tells that a face has moved. */
+/* Updates the tree after a face has moved. */
 void dynamic_bvh_update(dynamic_bvh *tree, uint32_t face);
-/* Builds the tree anew once half of its faces are gone. Errors: MEMORY. */
+/* Rebuilds the tree once half of its faces are dead. Errors: MEMORY. */
 starg_status dynamic_bvh_renew(dynamic_bvh *tree);
 
 /* Calls visit for every living face whose box meets `box`, until it returns false. Returns false

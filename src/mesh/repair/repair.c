@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Mending a mesh until it bounds a solid.
+/* Repairs a mesh until it bounds a solid.
  *
- * Stages: weld, drop what is doubled or hangs loose, orient patch by patch, cut apart what is not
- * a manifold, remove faces without area, fill holes, drop what encloses nothing, turn the shells,
- * resolve local intersections, or, where the union is asked for, cut all of them out. Each stage is
- * a file of its own (mesh/repair/repair.h lists them) and takes what the ones before it leave. A
- * mesh that needs none of them comes back as it is.
+ * Stages: weld, drop duplicate and dangling faces, orient each patch, split non-manifold edges and
+ * vertices, remove zero-area faces, fill holes, drop components without volume, orient the shells,
+ * resolve local intersections or, for a union, cut out all of them. Each stage has its own file
+ * (mesh/repair/repair.h lists them) and works on the result of the stages before it. A mesh that
+ * needs none of them is returned unchanged.
  *
- * Without a union, components that overlap stay, are counted in intersections_after, and the
- * winding number makes one solid of them. */
+ * Without a union, overlapping components stay and are counted in intersections_after; the winding
+ * number defines one solid from them. */
 #include <math.h>
 
 #include "core/fields.h"
@@ -64,8 +64,8 @@ static size_t found(const starg_check *check, starg_finding_kind kind) {
     return check->findings[kind].count;
 }
 
-/* Contacts and doubled positions are no faults of a solid: shells may touch. But surfaces may pass
- * through one another where faces only touch, so a union looks at them. */
+/* Contacts and coincident vertices are not faults of a solid: shells may touch. But surfaces may
+ * cross where faces only touch, so a union inspects them. */
 static bool needs_nothing(const starg_check *check, const starg_repair_options *options) {
     return check->usable && options->merge_distance == 0 &&
            found(check, STARG_FINDING_INWARD_COMPONENT) == 0 &&
@@ -75,8 +75,8 @@ static bool needs_nothing(const starg_check *check, const starg_repair_options *
            (!options->unite || found(check, STARG_FINDING_SELF_CONTACT) == 0);
 }
 
-/* The combinatorial part. Equal positions are merged only where the surface is broken or a
- * distance is asked for: a sound surface may well touch itself. */
+/* Combinatorial stages. Coincident vertices are merged only if the surface is broken or a distance
+ * is given: a valid surface may touch itself. */
 static starg_status mend_surface(repair_state *state, const starg_check *before) {
     starg_status status = STARG_OK;
     bool sound = before->closed && before->manifold;
@@ -88,7 +88,7 @@ static starg_status mend_surface(repair_state *state, const starg_check *before)
     STARG_TRY(repair_orient(state));
     STARG_TRY(repair_split(state));
     STARG_TRY(repair_degenerate(state));
-    STARG_TRY(repair_split(state)); /* dropped faces may have left two fans at a vertex */
+    STARG_TRY(repair_split(state)); /* dropping faces may leave two fans at a vertex */
 done:
     return status;
 }
@@ -97,7 +97,8 @@ done:
 static starg_status close_surface(repair_state *state) {
     starg_status status = STARG_OK;
     STARG_TRY(repair_fill_holes(state));
-    STARG_TRY(repair_degenerate(state)); /* loops with corners in a row leave no choice */
+    STARG_TRY(repair_degenerate(
+        state)); /* filling loops with collinear corners can make zero-area faces */
     STARG_TRY(repair_drop_flat(state));
     if (!state->options.unite) {
         STARG_TRY(repair_untangle(state));
@@ -162,7 +163,7 @@ static starg_status fail_empty(repair_state *state) {
                       state->input->face_count, state->one_sided_faces, report->components_dropped);
 }
 
-/* Cutting the result apart may put a vertex in the middle of an edge, rounded. */
+/* Splitting may insert a rounded vertex into an edge, which can make faces cross. */
 static starg_status fail_crossed(starg_context *context, const starg_finding *finding) {
     return starg_fail_at(context, STARG_ERROR_MESH, REPAIR_STAGE, finding->element, finding->first,
                          finding->shown,
@@ -186,7 +187,7 @@ static starg_status fail_unusable(starg_context *context, const starg_check *che
                       "the mesh could not be made a solid: the remainder encloses no volume");
 }
 
-/* Checks the result, and hands it over if it is a solid's boundary. */
+/* Checks the result and returns it if it bounds a solid. */
 static starg_status finish(repair_state *state, starg_mesh **out) {
     starg_status status = STARG_OK;
     starg_check *check = NULL;

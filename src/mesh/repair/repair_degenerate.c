@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Faces without area in a manifold mesh.
+/* Removes zero-area faces of a manifold mesh.
  *
- * Such a face (a, b, m) has its middle corner m on the edge a b. If that edge is open the face is
- * dropped: a m b is the same border. Else the edge is flipped to m d, d the far corner of the
- * neighbour across it, which leaves the surface as a set of points as it was. Where m and d are
- * joined already, or the neighbour is of the same kind, the shorter of the edges a m and m b is
- * collapsed instead if the link condition allows it, which moves m.
+ * Such a face (a, b, m) has its middle corner m on the edge a b. If that edge is open, the face is
+ * dropped: a m b is the same border. Otherwise the edge is flipped to m d, where d is the opposite
+ * corner of the neighbour, which leaves the surface as a point set unchanged. If m and d are
+ * already joined, or the neighbour has no area either, the shorter of the edges a m and m b is
+ * collapsed if the link condition allows it; this moves m.
  *
- * In one round no two changes touch the same vertex, so that the tables of the round stay true;
- * rounds end when nothing changes. */
+ * Changes of one round touch disjoint vertices, so that the tables of the round stay valid; rounds
+ * end when nothing changes. */
 #include "geometry/vec3.h"
 #include "mesh/repair/repair.h"
 
@@ -26,7 +26,7 @@ static bool has_no_area(const repair_state *state, size_t face) {
     return repair_has_no_area(state, repair_face(state, face));
 }
 
-/* Is x on the closed segment p q, all three on one line? */
+/* Does x lie on the closed segment p q? */
 static bool lies_between(const double x[3], const double p[3], const double q[3]) {
     for (int k = 0; k < 3; k++)
         if ((x[k] < p[k] && x[k] < q[k]) || (x[k] > p[k] && x[k] > q[k]))
@@ -34,7 +34,7 @@ static bool lies_between(const double x[3], const double p[3], const double q[3]
     return true;
 }
 
-/* The halfedge of a flat face that is opposite to its middle corner. */
+/* The halfedge of a zero-area face opposite to its middle corner. */
 static uint32_t longest_edge(const repair_state *state, uint32_t face) {
     const uint32_t *corner = repair_face(state, face);
     for (uint32_t k = 0; k < 2; k++)
@@ -45,7 +45,7 @@ static uint32_t longest_edge(const repair_state *state, uint32_t face) {
     return 3 * face + 2;
 }
 
-/* Number of faces that have both vertices. */
+/* Number of faces with both vertices. */
 static size_t common_faces(const flattener *f, uint32_t a, uint32_t b) {
     size_t count = 0;
     for (size_t i = f->stars.start[a]; i < f->stars.start[a + 1]; i++) {
@@ -55,12 +55,12 @@ static size_t common_faces(const flattener *f, uint32_t a, uint32_t b) {
     return count;
 }
 
-/* Vertices joined to both a and b, by the faces of a. */
+/* Vertices joined to both a and b by faces of a. */
 static size_t common_neighbours(const flattener *f, uint32_t a, uint32_t b) {
     size_t count = 0;
     for (size_t i = f->stars.start[a]; i < f->stars.start[a + 1]; i++) {
         const uint32_t *corner = repair_face(f->state, f->stars.list[i]);
-        for (int k = 0; k < 3; k++) /* each neighbour once: as the corner after a */
+        for (int k = 0; k < 3; k++) /* counts each neighbour once: as the corner after a */
             if (corner[k] == a && common_faces(f, corner[(k + 1) % 3], b) > 0)
                 count += corner[(k + 1) % 3] != b;
     }
@@ -102,7 +102,7 @@ static bool try_flip(flattener *f, uint32_t h, uint32_t twin) {
     return true;
 }
 
-/* Moves `from` into `to` when both faces of the edge are there and nothing else joins the two. */
+/* Merges `from` into `to` if the edge has both faces and no other vertex is joined to both. */
 static bool try_collapse(flattener *f, uint32_t from, uint32_t to) {
     if (common_faces(f, from, to) != 2 || common_neighbours(f, from, to) != 2 ||
         !star_is_free(f, from) || !star_is_free(f, to))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Dropping what no solid's boundary has: faces with repeated corners, faces laid on one another,
+/* Drops what the boundary of a solid cannot contain: faces with repeated corners, duplicate faces,
  * fins, and components without volume. */
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ void repair_drop_repeated(repair_state *state) {
 typedef struct face_key {
     uint32_t corner[3]; /* ascending */
     uint32_t face;
-    bool odd; /* ascending order is against the face's orientation */
+    bool odd; /* ascending order reverses the face's orientation */
 } face_key;
 
 static void sort_two(face_key *key, int i, int j) {
@@ -50,8 +50,8 @@ static int compare_keys(const void *left, const void *right) {
     return (a->face > b->face) - (a->face < b->face);
 }
 
-/* Keeps the first face of each set of equal corners. Marks it in `sheet` when both sides of it
- * were there: the layer stands for nothing by itself. */
+/* Keeps the first face of each set with equal corners. Marks it in `sheet` if both orientations
+ * occurred: such a layer bounds nothing by itself. */
 static starg_status keep_first(repair_state *state, uint8_t *sheet) {
     starg_status status = STARG_OK;
     size_t count = repair_face_count(state), kept = 0;
@@ -78,8 +78,8 @@ done:
     return status;
 }
 
-/* Joins neighbouring sheet faces into patches and lets the edges of a patch's border vote: for
- * dropping it where an even number of other faces is left, against it where the number is odd. */
+/* Joins adjacent sheet faces into patches and lets the edges on a patch's border vote: for dropping
+ * it if the number of other faces there is even, against it if odd. */
 static void vote_on_sheets(const mesh_topology *topology, const uint8_t *sheet, uint32_t *patch,
                            int64_t *votes) {
     for (uint32_t h = 0; h < 3 * topology->face_count; h++) {
@@ -138,7 +138,7 @@ static int compare_fins(const void *left, const void *right) {
     return (a->patch > b->patch) - (a->patch < b->patch);
 }
 
-/* Number of faces on the edge of h that are still there. */
+/* Number of remaining faces on the edge of h. */
 static size_t faces_left(const repair_state *state, const mesh_topology *topology, uint32_t h) {
     size_t left = 0;
     uint32_t o = h;
@@ -165,7 +165,7 @@ static bool hangs_loose(const repair_state *state, const mesh_topology *topology
     return attached;
 }
 
-/* Patches are joined across edges of two faces; the small ones go first. */
+/* Joins faces across manifold edges into patches; sorts them by size, small ones first. */
 static size_t list_fins(const mesh_topology *topology, uint32_t *patch, fin *fins) {
     size_t count = 0;
     sets_make(patch, topology->face_count);
@@ -187,7 +187,7 @@ static size_t list_fins(const mesh_topology *topology, uint32_t *patch, fin *fin
     return count;
 }
 
-/* Files faces by patch: members[start[p]] to members[start[p] + size - 1] for root p. */
+/* Groups faces by patch: members[start[p]] to members[start[p] + size - 1] for root p. */
 static void file_members(uint32_t *patch, size_t count, size_t *start, uint32_t *members) {
     for (uint32_t f = 0; f < count; f++)
         start[sets_find(patch, f)]++;
@@ -236,8 +236,7 @@ typedef struct extent {
     double lower[3], upper[3], volume, area;
 } extent;
 
-/* Volume and area of a shell whose box is scaled to diagonal 1, so that nothing over- or
- * underflows. */
+/* Volume and area of a shell scaled to a box diagonal of 1, to avoid overflow and underflow. */
 static void measure_faces(const starg_mesh *view, const mesh_topology *topology, extent *extents) {
     for (size_t f = 0; f < view->face_count; f++) {
         extent *own = &extents[topology->component[f]];
@@ -271,7 +270,7 @@ static void measure_boxes(const starg_mesh *view, const mesh_topology *topology,
     }
 }
 
-/* Flat up to the rounding of coordinates; no judgement about thin solids. */
+/* Flat up to the rounding of coordinates; thin solids are kept. */
 static bool is_flat(const extent *own) {
     return !(fabs(own->volume) > 0x1p-44 * own->area);
 }

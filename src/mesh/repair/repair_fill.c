@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Filling a loop with the least area [Barequet, Sharir: Filling gaps in the boundary of a
- * polyhedron, 1995]: dynamic programming over the pairs of loop vertices, O(n^3). Edges that the
- * mesh has already are out of the question. Triangles that turn out to cross the mesh or one
- * another are banned and the table is filled again, a few times; the best result is kept.
+/* Minimum-area triangulation of a loop [Barequet, Sharir: Filling gaps in the boundary of a
+ * polyhedron, 1995]: dynamic programming over pairs of loop vertices, O(n^3). Existing edges of the
+ * mesh are forbidden. Triangles that cross the mesh or one another are banned and the table is
+ * recomputed, a few times; the best result is kept.
  *
- * Loops beyond LIMIT vertices are done coarsely first: every s-th vertex makes a loop of its own,
- * and what is left between its edges and the loop is filled piece by piece. */
+ * Loops of more than LIMIT vertices are filled hierarchically: every s-th vertex makes a coarse
+ * loop, and the gaps between its edges and the loop are filled one by one. */
 #include "mesh/repair/repair_fill.h"
 
 #include "geometry/vec3.h"
@@ -13,18 +13,18 @@
 
 enum { LIMIT = 192, ATTEMPTS = 6 };
 
-/* Stands for an edge that is there already. */
+/* Cost of an existing edge. */
 #define IMPOSSIBLE ((uint32_t)1 << 20)
 
-/* The cheapest filling between vertices i < j of the loop is at i n + j. */
+/* The cheapest filling between loop vertices i < j is at i n + j. */
 typedef struct table {
     const fill_job *job;
     const uint32_t *loop;
     size_t count;
     double *area;
-    uint32_t *bad;    /* faults, counted before area */
-    uint32_t *apex;   /* the third corner at i, j    */
-    repair_keys bans; /* triples of places           */
+    uint32_t *bad;    /* faults, compared before area */
+    uint32_t *apex;   /* the third corner at i, j */
+    repair_keys bans; /* triples of places in the loop */
 } table;
 
 static uint64_t triple_key(size_t i, size_t k, size_t j) {
@@ -74,7 +74,7 @@ static void solve(table *t) {
         }
 }
 
-/* Lists the triangles of the solution as triples of places; `stack` has room for 2 n entries. */
+/* Lists the triangles of the solution as triples of places; `stack` has 2 n entries. */
 static void trace(const table *t, uint32_t *stack, uint32_t *places) {
     size_t depth = 0;
     stack[depth++] = 0;
@@ -129,7 +129,7 @@ done:
     return status;
 }
 
-/* Solves again and again; `best` keeps the places of the triangles with the fewest faults. */
+/* Solves repeatedly; `best` keeps the places of the triangles with the fewest faults. */
 static starg_status attempt(table *t, uint32_t *best, size_t *faults, bool *possible) {
     starg_status status = STARG_OK;
     starg_context *context = t->job->state->context;
@@ -179,7 +179,8 @@ done:
     return status;
 }
 
-/* Picks about LIMIT / 2 places of the loop, so that no chord from one to the next is an edge. */
+/* Picks about LIMIT / 2 places of the loop such that no chord between consecutive ones is an
+ * existing edge. */
 static size_t pick_places(const fill_job *job, const uint32_t *loop, size_t count, size_t *places) {
     size_t step = 2 * count / LIMIT + 1, picked = 0, at = 0;
     while (at < count) {

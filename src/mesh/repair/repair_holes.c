@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Holes: loops of open edges. Each is filled by itself; where no filling keeps the mesh manifold,
- * or every one crosses something, a fan about the loop's centre is tried.
+/* Fills holes: loops of open edges, one by one. If no filling keeps the mesh manifold, or all of
+ * them cross something, a fan about the loop's centre is tried.
  *
- * Where two holes meet in a vertex, that vertex was split before, and the two holes have become one
- * loop that passes both copies. Such copies are joined again first and the loop is cut in two
- * there: filling both makes one fan of the two. It is allowed where the copies have no neighbour
- * in common, which would double an edge. */
+ * Where two holes meet in a vertex, that vertex was split earlier, which merged the holes into one
+ * loop through both copies. Such copies are first joined again, which splits the loop in two:
+ * filling both makes one fan. Joining requires that the copies have no common neighbour, which
+ * would duplicate an edge. */
 #include "mesh/repair/repair.h"
 #include "mesh/repair/repair_fill.h"
 
-/* Loops longer than this are not searched for copies of a vertex. */
+/* Longer loops are not searched for copies of a vertex. */
 enum { MAX_STEPS = 1 << 14 };
 
 typedef struct filler {
     repair_state *state;
     uint32_t *out;   /* per vertex: the open halfedge from it, or TOPOLOGY_NONE */
-    uint32_t *end;   /* per vertex: the next one on its loop                    */
-    uint32_t *alias; /* per vertex: itself, or the copy that it was joined with */
+    uint32_t *end;   /* per vertex: the next one on its loop */
+    uint32_t *alias; /* per vertex: itself, or the copy it was joined with */
     repair_stars stars;
-    repair_keys edges; /* of the mesh as it grows                                 */
+    repair_keys edges; /* of the growing mesh */
     repair_index index;
     fill_list loop, triangles;
 } filler;
@@ -60,8 +60,8 @@ done:
     return status;
 }
 
-/* Finds the vertices before v and w on the loop that passes both, if each of its two parts has
- * three edges or more. */
+/* Finds the predecessors of v and w on their common loop, if both parts have at least three
+ * edges. */
 static bool find_before(const filler *f, uint32_t v, uint32_t w, uint32_t *before_v,
                         uint32_t *before_w) {
     size_t steps = 0, to_w = 0;
@@ -89,7 +89,7 @@ static bool have_common_neighbour(const filler *f, uint32_t v, uint32_t w) {
     return false;
 }
 
-/* Gives the faces of w to v and cuts their loop in two. */
+/* Replaces w by v in its faces and splits their loop. */
 static starg_status join_copies(filler *f, uint32_t v, uint32_t w, bool *joined) {
     starg_status status = STARG_OK;
     uint32_t before_v, before_w;
@@ -133,8 +133,8 @@ done:
     return status;
 }
 
-/* Collects the loop through `first`, against the direction of its faces, and closes it for later
- * calls. False if the open edges do not close up. */
+/* Collects the loop through `first`, against the direction of its faces, and marks it as closed.
+ * False if the open edges do not form a loop. */
 static starg_status collect_loop(filler *f, uint32_t first, bool *closed) {
     starg_status status = STARG_OK;
     uint32_t v = first;
@@ -173,8 +173,8 @@ done:
     return status;
 }
 
-/* A fan about the middle of the loop: always manifold. Taken when it must be or when it crosses
- * less than `faults`; the vertex it adds is dropped later if it is not used. */
+/* A fan about the loop's centre: always manifold. Used if no filling is possible or it has fewer
+ * than `faults` crossings; an unused centre vertex is dropped later. */
 static starg_status try_fan(filler *f, size_t faults) {
     starg_status status = STARG_OK;
     fill_list filling = f->triangles;
@@ -215,7 +215,7 @@ done:
     return status;
 }
 
-/* Keeps the search for crossings fast while faces are added. */
+/* Rebuilds the index when many faces were added. */
 static starg_status refresh_index(filler *f) {
     if (f->index.state != NULL && !repair_index_is_stale(&f->index))
         return STARG_OK;

@@ -12,7 +12,7 @@ starg_status repair_index_create(const repair_state *state, repair_index *index)
     *index = (repair_index){.state = state, .tracked = repair_face_count(state)};
     STARG_NEW(state->context, REPAIR_STAGE, index->vertices, state->vertices.count);
     STARG_NEW(state->context, REPAIR_STAGE, index->faces, state->faces.count);
-    if (index->tracked != 0) { /* else the arrays may be NULL */
+    if (index->tracked != 0) { /* otherwise the arrays may be NULL */
         memcpy(index->vertices, state->vertices.data, state->vertices.count * sizeof(double));
         memcpy(index->faces, state->faces.data, state->faces.count * sizeof(uint32_t));
     }
@@ -65,13 +65,6 @@ static bvh_box box_of(const repair_state *state, const uint32_t corner[3]) {
     return box;
 }
 
-static bool boxes_meet(const bvh_box *a, const bvh_box *b) {
-    for (int k = 0; k < 3; k++)
-        if (a->upper[k] < b->lower[k] || b->upper[k] < a->lower[k])
-            return false;
-    return true;
-}
-
 void repair_index_query(const repair_index *index, const uint32_t corner[3], bvh_visit *visit,
                         void *user) {
     query q = {index, corner, visit, user};
@@ -80,7 +73,7 @@ void repair_index_query(const repair_index *index, const uint32_t corner[3], bvh
         return;
     for (size_t f = index->tracked; f < repair_face_count(index->state); f++) {
         bvh_box other = box_of(index->state, repair_face(index->state, f));
-        if (boxes_meet(&box, &other) && !visit_face(&q, (uint32_t)f))
+        if (bvh_boxes_meet(&box, &other) && !visit_face(&q, (uint32_t)f))
             return;
     }
 }

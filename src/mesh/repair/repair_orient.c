@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Orientation: breadth first over edges of two faces, each patch by itself. A patch that comes
- * back to a face the wrong way round has one side only, like a Moebius strip: it bounds nothing
- * and is dropped. Of the two orientations of a patch the one that turns fewer faces is taken. */
+/* Orients each patch by breadth-first search across manifold edges. A patch whose search returns to
+ * a face with the opposite side is one-sided, like a Moebius strip: it bounds nothing and is
+ * dropped. Of the two orientations of a patch, the one that reverses fewer faces is used. */
 #include "mesh/examine.h"
 #include "mesh/repair/repair.h"
 
 typedef struct walk {
     repair_state *state;
     mesh_topology *topology;
-    uint8_t *side; /* per face: 0 unseen, 1 as it is, 2 to be turned */
+    uint8_t *side; /* per face: 0 unseen, 1 as given, 2 reversed */
     uint32_t *queue;
 } walk;
 
-/* Gives the neighbour across h the side that fits its own; false when it has the other one. */
+/* Gives the neighbour across h the consistent side; false if it already has the other one. */
 static bool visit_neighbour(walk *w, uint32_t h, size_t *count) {
     uint32_t twin = w->topology->twin[h];
     if (twin == TOPOLOGY_NONE)

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cutting a surface apart where it is not a manifold.
+/* Splits a surface where it is not manifold.
  *
- * 1. Around every edge of more than two faces these are sorted by angle and paired: a face that
- *    runs along the edge one way with the next one that runs the other way, solid between them,
- *    like brackets. So two cubes that touch along an edge become two shells that touch there.
- *    What finds no partner is left with an open edge, for the hole filler.
- * 2. The corners at a vertex that are linked across paired edges form a fan; each fan but the
- *    first gets a copy of the vertex. That parts non-manifold vertices and, as a rule, the sheets
- *    of an edge as well.
- * 3. Sheets that hang together at both ends of the edge still share it. All but one pair get a
- *    vertex of their own in the middle of the edge, and the three stages start again.
+ * 1. Around every edge of more than two faces, the faces are sorted by angle and matched like
+ *    brackets: a face in one direction with the next one in the other direction, with solid between
+ *    them. Two cubes that touch along an edge become two shells. Faces without a partner leave an
+ *    open edge for the hole filler.
+ * 2. Corners at a vertex that are linked across matched edges form a fan; each fan but the first
+ *    gets a copy of the vertex. This separates non-manifold vertices and usually the sheets at an
+ *    edge too.
+ * 3. Sheets that are connected at both ends of an edge still share it. All but one pair get their
+ *    own vertex in the middle of the edge, and the three stages start again.
  *
  * The order by angle is exact. Cost O(n log n). */
 #include "geometry/predicates.h"
@@ -20,20 +20,20 @@ enum { MAX_ROUNDS = 16 };
 typedef struct splitter {
     repair_state *state;
     mesh_topology *topology;
-    uint32_t *pair; /* per halfedge: the one it is paired with, or TOPOLOGY_NONE */
+    uint32_t *pair; /* per halfedge: its partner, or TOPOLOGY_NONE */
 } splitter;
 
-/* A face at an edge, seen along the edge from its lower vertex to its upper one. */
+/* A face at an edge, viewed along the edge from its lower to its upper vertex. */
 typedef struct wing {
     uint32_t halfedge;
-    const double *tip; /* the corner off the edge                                   */
-    bool forward;      /* runs from the lower to the upper vertex                   */
-    int sector;        /* against the first wing: 0 same, 1 left, 2 opposite, 3 right */
+    const double *tip; /* the corner opposite the edge */
+    bool forward;      /* directed from the lower to the upper vertex */
+    int sector;        /* relative to the first wing: 0 same, 1 left, 2 opposite, 3 right */
 } wing;
 
 typedef STARG_ARRAY(wing) wing_list;
 
-/* Where `tip` lies around the line a b when `first` is straight up. */
+/* Sector of `tip` around line a b, where `first` points up. */
 static int sector_of(const double a[3], const double b[3], const double first[3],
                      const double tip[3]) {
     int side = orient3d(a, b, first, tip);
@@ -88,7 +88,7 @@ done:
     return status;
 }
 
-/* Matches wings like brackets on a circle: going round twice closes those open at the end. */
+/* Matches wings like brackets on a circle: the second pass closes those left open. */
 static starg_status pair_wings(splitter *s, const wing_list *wings) {
     starg_status status = STARG_OK;
     uint32_t *open = NULL;
@@ -150,7 +150,7 @@ static starg_status split_fans(splitter *s) {
         sets_join(fan, h, corner_next(other));
         sets_join(fan, corner_next(h), other);
     }
-    for (uint32_t h = 0; h < corners; h++) { /* the root of a fan is its lowest corner */
+    for (uint32_t h = 0; h < corners; h++) { /* a fan's root is its lowest corner */
         uint32_t root = sets_find(fan, h), *vertex = &s->state->faces.data[h];
         if (root != h) {
             *vertex = s->state->faces.data[root];
@@ -200,7 +200,7 @@ done:
     return status;
 }
 
-/* Parts the sheets that share both ends of an edge; *changed tells whether there are any. */
+/* Separates sheets that share both ends of an edge; *changed tells whether there are any. */
 static starg_status split_shared_edges(splitter *s, bool *changed) {
     starg_status status = STARG_OK;
     mesh_topology *topology = NULL;

@@ -53,7 +53,7 @@ bool repair_has_no_area(const repair_state *state, const uint32_t corner[3]) {
 starg_status repair_add_vertex(repair_state *state, const double p[3], uint32_t origin,
                                uint32_t *vertex) {
     starg_status status = STARG_OK;
-    const double copy[3] = {p[0], p[1], p[2]}; /* p may lie in the array that grows */
+    const double copy[3] = {p[0], p[1], p[2]}; /* p may point into the array that grows */
     for (int k = 0; k < 3; k++)
         STARG_PUSH(state->context, REPAIR_STAGE, &state->vertices, copy[k]);
     STARG_PUSH(state->context, REPAIR_STAGE, &state->origin, origin);
@@ -125,7 +125,7 @@ starg_status repair_stars_create(const repair_state *state, repair_stars *stars)
         stars->start[state->faces.data[i]]++;
     for (size_t v = 0; v < count; v++)
         stars->start[v + 1] += stars->start[v];
-    /* start[v] is where v ends by now; filing from behind brings it back to where v begins */
+    /* start[v] is the end of v's range; filling backward moves it to the beginning */
     for (size_t i = state->faces.count; i-- > 0;)
         stars->list[--stars->start[state->faces.data[i]]] = (uint32_t)(i / 3);
 done:
@@ -137,7 +137,7 @@ void repair_stars_free(const repair_state *state, repair_stars *stars) {
     starg_release(state->context, stars->list);
 }
 
-/* The slot of a key, or the free one where it belongs. */
+/* The slot of a key, or the free slot for it. */
 static uint64_t *find_slot(const repair_keys *keys, uint64_t key) {
     size_t mask = keys->size - 1;
     size_t i = (size_t)starg_hash64(key) & mask;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The mesh that repair works on: an indexed face set that every operation of repair changes in
- * place, and that remembers where its vertices and faces came from. Not on mesh/halfedges.h: until
- * repair is done, edges may have one face or many, that run along them either way. */
+/* Working mesh of repair: an indexed face set that the stages change in place, and that records the
+ * origin of its vertices and faces. It does not use mesh/halfedges.h, because edges may have any
+ * number of faces in either direction until repair is done. */
 #ifndef STARG_MESH_REPAIR_REPAIR_STATE_H
 #define STARG_MESH_REPAIR_REPAIR_STATE_H
 
@@ -11,13 +11,13 @@
 #include "starguard/repair.h"
 
 #define REPAIR_STAGE "repair"
-#define REPAIR_NEW   UINT32_MAX /* origin of a vertex that the input has not */
+#define REPAIR_NEW   UINT32_MAX /* origin of a vertex that is not in the input */
 
-/* What became of a face. */
+/* Flags of a face. */
 enum {
-    REPAIR_TURNED = 1, /* against its orientation in the input */
-    REPAIR_ADDED = 2,  /* not a face of the input              */
-    REPAIR_GONE = 4    /* to be removed by repair_compact      */
+    REPAIR_TURNED = 1, /* reversed relative to the input */
+    REPAIR_ADDED = 2,  /* not in the input */
+    REPAIR_GONE = 4    /* repair_compact removes it */
 };
 
 typedef struct repair_state {
@@ -27,7 +27,7 @@ typedef struct repair_state {
     starg_repair_report report;
     size_t one_sided_faces; /* dropped because they cannot be oriented */
     STARG_ARRAY(double) vertices;
-    STARG_ARRAY(uint32_t) origin; /* per vertex: the one of the input, or REPAIR_NEW */
+    STARG_ARRAY(uint32_t) origin; /* per vertex: its input vertex, or REPAIR_NEW */
     STARG_ARRAY(uint32_t) faces;
     STARG_ARRAY(uint8_t) flags; /* per face */
 } repair_state;
@@ -53,13 +53,13 @@ starg_status repair_begin(repair_state *state, starg_context *context, const sta
                           const starg_repair_options *options);
 void repair_end(repair_state *state);
 
-/* The working mesh as it stands, borrowed: valid until vertices or faces are added. */
+/* View of the working mesh: valid until vertices or faces are added. */
 starg_mesh repair_view(const repair_state *state);
 
 /* Diagonal of the input's bounding box. */
 double repair_diagonal(const repair_state *state);
 
-/* Do the three vertices lie on one line? Exact. */
+/* Are the three vertices collinear? Exact. */
 bool repair_has_no_area(const repair_state *state, const uint32_t corner[3]);
 
 /* Errors of both: MEMORY. */
@@ -68,13 +68,13 @@ starg_status repair_add_vertex(repair_state *state, const double p[3], uint32_t 
 starg_status repair_add_face(repair_state *state, uint32_t a, uint32_t b, uint32_t c,
                              uint8_t flags);
 
-/* Turns a face over. */
+/* Reverses a face. */
 void repair_turn(repair_state *state, size_t face);
 
-/* Removes the faces that are marked REPAIR_GONE; the others keep their order. */
+/* Removes the faces marked REPAIR_GONE and keeps the order of the others. */
 void repair_compact(repair_state *state);
 
-/* Removes vertices of no face. Errors: MEMORY. */
+/* Removes isolated vertices. Errors: MEMORY. */
 starg_status repair_drop_isolated(repair_state *state);
 
 /* The faces at each vertex: list[start[v]] to list[start[v + 1] - 1], ascending. */

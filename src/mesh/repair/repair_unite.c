@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Replacing a surface that intersects itself by the boundary of what it encloses (mesh/union).
- * Faces that stay come first, in their order, then the parts of the others. Where the result
- * touches itself along edges or at vertices, it is to be cut apart afterwards. */
+/* Replaces a self-intersecting surface by the boundary of what it encloses (mesh/union). Kept faces
+ * come first, in order, then the parts of the others. The result may touch itself along edges or at
+ * vertices and must then be split. */
 #include "mesh/repair/repair.h"
 #include "mesh/union/union.h"
 
-/* New vertices follow those that are there. */
+/* Appends new vertices after the existing ones. */
 static starg_status take_vertices(repair_state *state, const union_surface *result) {
     starg_status status = STARG_OK;
     for (size_t v = repair_vertex_count(state); v < result->vertices.count / 3; v++) {

@@ -1,27 +1,27 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Local self-intersections of closed components.
+/* Resolves local self-intersections of closed components.
  *
- * In rounds: faces that cross others of their own component are gathered into patches that hang
- * together. For each patch, first its vertices are smoothed a little; if that does not help, the
- * patch is cut out with up to three rings about it and the hole is filled. A change stays only if
- * fewer pairs of faces cross after it, over the whole mesh, and if it keeps the topology: patches
- * that are no discs are not cut out. Changes of one round do not touch one another, so that the
- * tables of the round stay true. The rounds end when none is left, when nothing helps, or when
- * they are spent. Components that cross one another are left as they are: that is no local fault.
+ * Each round collects faces that cross others of their own component into connected patches. For
+ * each patch it first smooths the vertices a little; if that does not help, it removes the patch
+ * with up to three rings around it and fills the hole. A change is kept only if fewer pairs of
+ * faces cross in the whole mesh and the topology stays the same: patches that are not discs are not
+ * removed. Changes of one round are disjoint, so that the tables of the round stay valid. Rounds
+ * end when no crossing is left, when nothing helps, or at their limit. Intersections between
+ * components are not local and stay.
  *
- * To weigh a change, its faces are taken out of the mesh (REPAIR_GONE) and put in again at the
- * end: first as they were, then as they would become. */
+ * To evaluate a change, its faces are marked REPAIR_GONE and appended to the mesh again: first in
+ * their old, then in their new form. */
 #include "geometry/vec3.h"
 #include "mesh/contact.h"
 #include "mesh/repair/repair.h"
 #include "mesh/repair/repair_fill.h"
 
-/* No vertex of the input is moved further from where it was, as a fraction of the diagonal. */
+/* Largest displacement of an input vertex, as a fraction of the diagonal. */
 #define LARGEST_MOVE 0.01
 
 enum { SMOOTHING_STEPS = 8, MAX_RINGS = 3, MAX_REGION = 1024, MAX_LOOP = 96 };
 
-/* Searches for fillings stop after so many steps in all: some seconds. */
+/* Total steps of all fillings: some seconds. */
 #define MAX_WORK ((size_t)1 << 28)
 
 typedef STARG_ARRAY(double) double_list;
@@ -31,19 +31,19 @@ typedef struct untangler {
     repair_index index;
     mesh_topology *topology;
     repair_stars stars;
-    uint8_t *crossing; /* per face of the round                                    */
-    uint32_t *patch;   /* disjoint sets of crossing faces                          */
-    uint8_t *inside;   /* per face: in the region at hand                          */
-    uint8_t *marked;   /* per vertex: in the region at hand                        */
-    uint8_t *touched;  /* per vertex: of a change of this round                    */
-    uint32_t *next;    /* per vertex: the next one on the region's border          */
-    fill_list region;  /* its faces                                                */
-    fill_list points;  /* its vertices                                             */
+    uint8_t *crossing; /* per face of the round */
+    uint32_t *patch;   /* disjoint sets of crossing faces */
+    uint8_t *inside;   /* per face: in the current region */
+    uint8_t *marked;   /* per vertex: in the current region */
+    uint8_t *touched;  /* per vertex: changed in this round */
+    uint32_t *next;    /* per vertex: the next one on the region's border */
+    fill_list region;  /* its faces */
+    fill_list points;  /* its vertices */
     fill_list loop, triangles;
-    double_list before, best, moved; /* positions of `points`                      */
+    double_list before, best, moved; /* positions of `points` */
     double largest_move;
-    size_t *work; /* steps of all fillings so far               */
-    size_t base;  /* first of the faces that stand in for it    */
+    size_t *work; /* steps of all fillings so far */
+    size_t base;  /* first face of the region's replacement */
     bool changed;
 } untangler;
 
@@ -55,11 +55,11 @@ typedef struct crossing_count {
 
 static bool count_pair(void *user, uint32_t other) {
     crossing_count *c = user;
-    c->count += other < c->base || other > c->face; /* pairs of stand-ins once */
+    c->count += other < c->base || other > c->face; /* counts each pair of replacement faces once */
     return true;
 }
 
-/* Pairs that cross and of which one face stands in for the region. */
+/* Number of crossing pairs with a face of the replacement. */
 static size_t count_crossings(const untangler *u) {
     crossing_count c = {.base = u->base};
     for (c.face = u->base; c.face < repair_face_count(u->state); c.face++)
@@ -114,7 +114,7 @@ static bool region_is_free(const untangler *u) {
     return u->region.count <= MAX_REGION;
 }
 
-/* Puts copies of the region's faces in their place. */
+/* Replaces the region's faces by copies at the end of the mesh. */
 static starg_status stand_in(untangler *u) {
     starg_status status = STARG_OK;
     u->base = repair_face_count(u->state);
@@ -172,7 +172,7 @@ static bool moves_too_far(const untangler *u, uint32_t vertex, const double to[3
            vec3_distance(to, u->state->input->vertices + 3 * (size_t)origin) > u->largest_move;
 }
 
-/* Half way from a vertex to the mean of its neighbours, unless that is too far. */
+/* Midpoint of a vertex and the mean of its neighbours, within LARGEST_MOVE. */
 static void smooth_vertex(const untangler *u, uint32_t vertex, double out[3]) {
     const double *p = repair_position(u->state, vertex);
     double sum[3] = {0, 0, 0};
@@ -198,8 +198,8 @@ static void smooth_points(untangler *u) {
     load_positions(u, &u->moved);
 }
 
-/* Smooths the patch's vertices step by step and keeps the step with the fewest crossings, if that
- * at least halves them. The region is the patch and one ring. */
+/* Smooths the patch's vertices step by step and keeps the step with the fewest crossings if that at
+ * least halves them. The region is the patch and one ring. */
 static starg_status try_smoothing(untangler *u, size_t points, bool *helped) {
     starg_status status = STARG_OK;
     STARG_TRY(stand_in(u));
@@ -251,7 +251,7 @@ static starg_status collect_border(untangler *u, bool *is_disc) {
                u->points.count + u->region.count == edges + 1;
     for (uint32_t v = first; *is_disc && u->loop.count < border; v = u->next[v])
         STARG_PUSH(u->state->context, REPAIR_STAGE, &u->loop, v);
-    /* two loops would close before all of the border is listed */
+    /* several loops would close before the whole border is listed */
     for (size_t i = 1; i < u->loop.count; i++)
         *is_disc = *is_disc && u->loop.data[i] != first;
 done:
@@ -276,7 +276,7 @@ static bool all_have_area(const untangler *u) {
     return true;
 }
 
-/* Replaces the region, a disc, by a filling of its border when that crosses less. */
+/* Replaces the region, a disc, by a filling of its border if that has fewer crossings. */
 static starg_status try_filling(untangler *u, bool *helped) {
     starg_status status = STARG_OK;
     fill_job job = {u->state, &u->index, edge_is_taken, u};
@@ -341,7 +341,7 @@ static bool note_pair(void *user, uint32_t a, uint32_t b) {
     return true;
 }
 
-/* Crossing faces that share a vertex are of one patch. */
+/* Crossing faces that share a vertex belong to one patch. */
 static void join_patches(untangler *u) {
     sets_make(u->patch, u->index.tracked);
     for (size_t v = 0; v < repair_vertex_count(u->state); v++) {
@@ -361,7 +361,7 @@ static starg_status mend_patches(untangler *u) {
     starg_status status = STARG_OK;
     fill_list members = {0};
     size_t faces = u->index.tracked;
-    /* files the crossing faces by patch, a patch at its lowest face */
+    /* groups the crossing faces by patch, starting at its lowest face */
     uint32_t *chain = NULL;
     STARG_NEW(u->state->context, REPAIR_STAGE, chain, faces);
     for (size_t f = faces; f-- > 0;)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Welding: vertices at equal positions, or within the merge distance, become one.
+/* Welding: merges vertices at equal positions or within the merge distance.
  *
- * Vertices come in order; each joins the nearest earlier one that stands for itself and is near
- * enough, so that nothing moves further than the distance (chains of near vertices do not run
- * together). Candidates lie in the same cell of a hashed grid or the 26 about it; for distance 0
+ * Vertices are processed in order; each joins the nearest earlier representative within the
+ * distance, so that nothing moves farther than the distance (chains of close vertices do not
+ * collapse). Candidates lie in the same cell of a hashed grid or the 26 around it; for distance 0
  * the cell is the position itself. Cost O(n) as long as few vertices share a cell. */
 #include <math.h>
 
@@ -26,7 +26,7 @@ static void cell_of(const weld_grid *grid, const double p[3], double cell[3]) {
 static uint32_t *bucket(const weld_grid *grid, const double cell[3]) {
     uint64_t hash = 0;
     for (int k = 0; k < 3; k++) {
-        double value = cell[k] + 0.0; /* -0 is 0 */
+        double value = cell[k] + 0.0; /* -0 becomes 0 */
         uint64_t bits;
         memcpy(&bits, &value, sizeof bits);
         hash = starg_hash64(hash + bits + UINT64_C(0x9e3779b97f4a7c15));
@@ -34,7 +34,7 @@ static uint32_t *bucket(const weld_grid *grid, const double cell[3]) {
     return &grid->head[(size_t)hash & grid->mask];
 }
 
-/* Looks for a vertex nearer to p than *least in one cell. */
+/* Looks in one cell for a vertex closer to p than *least. */
 static void search_cell(const weld_grid *grid, const double cell[3], const double p[3],
                         double *least, uint32_t *found) {
     for (uint32_t slot = *bucket(grid, cell); slot != 0; slot = grid->next[slot - 1]) {

@@ -10,8 +10,8 @@
  * another one, or the outside, on its outer side. So the winding numbers of all pieces' surfaces
  * add up to that of the outer facets, which is 1 inside the solid and 0 outside. A piece whose
  * guard is strictly inside of all its facets and is wound around once has winding number 1 inside
- * itself and 0 elsewhere (star/kernel.c). Hence every point of the solid off the facets lies in
- * exactly one piece, and no other point in any.
+ * itself and 0 elsewhere (visibility/kernel.c). Hence every point of the solid off the facets lies
+ * in exactly one piece, and no other point in any.
  *
  * Cost: linear. */
 #include "star/strict/partition/partition.h"
