@@ -163,6 +163,12 @@ static void say_pieces(cli_session *session, const starg_decomposition *d) {
     if (d->faces_kept > 0)
         cli_say(session, "faces kept    %zu of %zu; the others intersect, or lie inside\n",
                 d->faces_kept, d->model_faces);
+    if (d->balls != STARG_BALLS_NONE)
+        cli_say(
+            session,
+            "balls         %zu, no tetrahedron inverted; stretch ratio %.3g on average, above 10 "
+            "in %g %% of the volume\n",
+            d->piece_count, d->ball_mean, cli_percent(d->ball_above_10));
     if (d->time_limited)
         cli_say(session, "time limit    reached; this is the best result found\n");
 }

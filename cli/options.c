@@ -188,6 +188,14 @@ static bool next_value(parser *p, const match *m, const char **word) {
     return true;
 }
 
+/* Does none of the option's words follow, though it needs none? */
+static bool stands_alone(const parser *p, const match *m) {
+    bool alone = (m->option->flags & STARG_FIELD_ALONE) != 0;
+    for (int i = 0; alone && m->option->words[i] != NULL; i++)
+        alone = p->next == p->argc || strcmp(p->argv[p->next], m->option->words[i]) != 0;
+    return alone;
+}
+
 static bool parse_long(parser *p, const char *text) {
     match m;
     const char *equals = strchr(text, '='), *word = NULL;
@@ -196,6 +204,8 @@ static bool parse_long(parser *p, const char *text) {
         return false;
     if (m.option->kind == STARG_FIELD_FLAG && equals != NULL)
         return fail_parse(p, "%s takes no value", m.shown);
+    if (equals == NULL && stands_alone(p, &m))
+        return starg_field_set_count(m.option, m.group->values, m.option->none);
     if (m.option->kind != STARG_FIELD_FLAG) {
         word = equals != NULL ? equals + 1 : NULL;
         if (word == NULL && !next_value(p, &m, &word))

@@ -22,6 +22,13 @@ typedef enum starg_decompose_mode {
     STARG_DECOMPOSE_PAPER = 1   /* section 4 of [YL11]: pieces are nearly star-shaped */
 } starg_decompose_mode;
 
+/* Which ball each piece is mapped to. */
+typedef enum starg_balls {
+    STARG_BALLS_NONE = 0,
+    STARG_BALLS_RAYS = 1, /* along the rays from the guard */
+    STARG_BALLS_EVEN = 2  /* faces get shares of the sphere nearer to those of the surface */
+} starg_balls;
+
 /* One piece. If `star` is true, its guard is strictly inside its kernel, by exact tests: strictly
  * on the inner side of each boundary face, and the boundary winds around it once. */
 typedef struct starg_piece {
@@ -32,6 +39,8 @@ typedef struct starg_piece {
     size_t tetrahedra;
     double volume;
     bool star;
+    bool spread; /* its map to the ball leaves the rays: rounding would turn a tetrahedron over, or
+                    EVEN was wanted */
 } starg_piece;
 
 /* Two pieces that share faces. */
@@ -72,9 +81,17 @@ typedef struct starg_decomposition {
     /* The least without tetrahedra over whole faces of the model that have an angle as small; -1:
      * the surface was not kept, or the model has tetrahedra */
     double smallest_angle_made;
-    bool time_limited;  /* the time limit stopped the search: another run may differ */
     size_t lower_bound; /* no fewer star-shaped pieces make up the model; 0: not sought */
     bool optimal;       /* as many pieces as lower_bound */
+    /* A piecewise linear homeomorphism from each piece to a polyhedral ball: the guard goes to the
+     * origin, boundary vertices to points at a distance of 1 (up to rounding), and each tetrahedron
+     * linearly; all images are positively oriented, exactly. */
+    starg_balls balls;
+    double *ball_corners; /* tetrahedra x 4 x 3: images of the corners; NULL for NONE */
+    /* Largest over smallest singular value of a tetrahedron's map: the largest of all, the mean
+     * weighted by volume, and the share of the volume where it is above 10. */
+    double ball_worst, ball_mean, ball_above_10;
+    bool time_limited; /* the time limit stopped the search: another run may differ */
 } starg_decomposition;
 
 /* Default density of initial tetrahedra: that of [YL11] for PAPER, and low for STRICT, which needs
@@ -103,6 +120,7 @@ typedef struct starg_decompose_options {
      * ends as soon as there are no more */
     bool prove;
     uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
+    starg_balls balls;   /* STRICT: map each piece to a ball */
 } starg_decompose_options;
 
 /* STRICT, as few pieces as possible. */
@@ -117,8 +135,8 @@ STARG_API const starg_fields *starg_decompose_options_fields(void);
  * intersects itself is first replaced by the boundary of what it encloses
  * (starg_repair_options.unite). PAPER, and a surface of which that cannot be made, is
  * tetrahedralized first. `options` may be NULL. Errors: ARGUMENT, MESH (`prove`: the surface is not
- * embedded), SOLVER (tetrahedralization failed), MEMORY, CANCELLED, TIME (not yet tetrahedralized).
- */
+ * embedded), SOLVER (tetrahedralization failed, or a piece does not fit on the sphere in double
+ * precision), MEMORY, CANCELLED, TIME (not yet tetrahedralized). */
 STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out);

@@ -59,8 +59,9 @@ enum {
     STARG_FIELD_ABOVE = 16,   /* a real above `low`, not `low` itself                            */
     STARG_FIELD_INPUT = 32,   /* an input file name, or a word of `value` */
     STARG_FIELD_COUNTED = 64, /* numbers of a column: count in the member at `length` */
-    STARG_FIELD_RARE = 128    /* with OPTIONAL: not in files where it is the default, which is 0 for
+    STARG_FIELD_RARE = 128,   /* with OPTIONAL: not in files where it is the default, which is 0 for
                                  NUMBERS; a RECORD, where all of it is */
+    STARG_FIELD_ALONE = 256   /* a CHOICE whose option needs no word: alone it stands for `none` */
 };
 
 typedef struct starg_fields starg_fields;

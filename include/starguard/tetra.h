@@ -135,6 +135,8 @@ typedef struct starg_tetmesh_write_options {
     bool binary;           /* default: text                                              */
     const int32_t *labels; /* one per tetrahedron, or NULL: the mesh's own, if it has any */
     const char *name;      /* of the labels, one word; default "piece"                   */
+    const double *corners; /* count x 4 x 3: a point for each corner of each tetrahedron, or NULL;
+                              written as an array "ball" of 12 numbers a cell, behind labels */
 } starg_tetmesh_write_options;
 
 STARG_API void starg_tetmesh_write_options_default(starg_tetmesh_write_options *options);

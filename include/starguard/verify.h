@@ -102,6 +102,7 @@ typedef struct starg_pieces_mesh {
     double *vertices;     /* vertex_count x 3           */
     uint32_t *tetrahedra; /* count x 4                  */
     int32_t *labels;      /* count: the piece of each   */
+    double *corners;      /* count x 4 x 3: images of the corners in balls, or NULL */
 } starg_pieces_mesh;
 
 /* The contents of PIECES.json. */
@@ -122,6 +123,9 @@ typedef struct starg_pieces_report {
     double smallest_angle, median_angle, smallest_angle_made; /* degrees; 0: not given */
     size_t lower_bound; /* no fewer star-shaped pieces make up the model; 0: not given   */
     bool optimal;       /* as many pieces as lower_bound; only with it                   */
+    /* Maps to balls; the rest only if there are any. */
+    bool balls;
+    double ball_worst, ball_mean, ball_above_10;
 } starg_pieces_report;
 
 /* Reads PIECES.vtk with a separate reader: a legacy VTK unstructured grid of tetrahedra with the

@@ -44,7 +44,7 @@ class Decomposition:
     mesh: TetMesh
     #: The piece of each tetrahedron, (m,).
     labels: Array
-    #: Structured: `guard` (k, 3), `radius`, `margin`, `tetrahedra`, `volume`, `star`.
+    #: Structured: `guard` (k, 3), `radius`, `margin`, `tetrahedra`, `volume`, `star`, `spread`.
     pieces: Array
     #: Pieces that share faces, structured: `first`, `second`, `area`.
     contacts: Array
@@ -63,6 +63,13 @@ class Decomposition:
     lower_bound: int
     #: As many pieces as `lower_bound`.
     optimal: bool
+    #: With `balls`: images of the corners of each tetrahedron in the unit ball of its piece, (m, 4, 3).
+    ball_corners: Array | None
+    #: Largest over smallest singular value of these maps: at most, and on average by volume; and the
+    #: share of the volume where it is above 10.
+    ball_worst: float
+    ball_mean: float
+    ball_above_10: float
     _handle: Any = field(repr=False)
 
     def __repr__(self) -> str:
@@ -232,5 +239,7 @@ def _of(d: Any, file: PathLike | None = None) -> Decomposition:
                 mode=OPTIONS.word("mode", d.mode),
                 tetra=TetraReport._of(d.tetra), mesh=mesh,
                 labels=_arrays.view(d, d.labels, (len(mesh.tetrahedra),), np.int32),
+                ball_corners=(_arrays.view(d, d.ball_corners, (len(mesh.tetrahedra), 4, 3),
+                                           np.float64) if d.ball_corners else None),
                 pieces=_arrays.records(d, d.pieces, d.piece_count),
                 contacts=_arrays.records(d, d.contacts, d.contact_count))

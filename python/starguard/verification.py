@@ -241,6 +241,7 @@ def pieces_mesh_of(d: Decomposition) -> Any:
     mesh.vertices = ffi.cast("double *", lib.starg_tetmesh_vertices(d.mesh._handle))
     mesh.tetrahedra = ffi.cast("uint32_t *", lib.starg_tetmesh_tetrahedra(d.mesh._handle))
     mesh.labels = d._handle.labels
+    mesh.corners = d._handle.ball_corners
     return mesh
 
 
@@ -261,4 +262,7 @@ def pieces_report_of(d: Decomposition) -> Any:
     for name in ("smallest_angle", "median_angle", "smallest_angle_made"):
         setattr(report, name, max(getattr(own, name), 0))
     report.lower_bound, report.optimal = own.lower_bound, own.optimal
+    report.balls = own.balls != lib.STARG_BALLS_NONE
+    for key in ("ball_worst", "ball_mean", "ball_above_10"):
+        setattr(report, key, getattr(own, key))
     return report

@@ -10,7 +10,7 @@
 
 #include "geometry/vec3.h"
 #include "morph/composition.h"
-#include "morph/relax.h"
+#include "sphere/relax.h"
 
 static const double ROUND = 0.05; /* weight of roundness */
 

@@ -3,7 +3,7 @@
 #ifndef STARG_MORPH_EXTREMITIES_H
 #define STARG_MORPH_EXTREMITIES_H
 
-#include "morph/sphere.h"
+#include "sphere/sphere.h"
 
 enum { EXTREMITIES_MOST = 16 };
 

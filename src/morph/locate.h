@@ -4,7 +4,7 @@
 #define STARG_MORPH_LOCATE_H
 
 #include "mesh/topology.h"
-#include "morph/sphere.h"
+#include "sphere/sphere.h"
 
 typedef struct locator {
     const sphere *sphere; /* borrowed */

@@ -7,6 +7,7 @@
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
 #include "star/angles.h"
+#include "star/balls.h"
 #include "star/decomposition.h"
 #include "star/lower_bound.h"
 #include "star/paper/paper.h"
@@ -81,6 +82,17 @@ static const starg_field OPTIONS[] = {
      .value = "N",
      .help = "--prove: budget, counted in tests of a vertex against a box (about a microsecond "
              "each)."},
+    {.key = "balls",
+     .option = "balls",
+     .kind = STARG_FIELD_CHOICE,
+     .flags = STARG_FIELD_ALONE,
+     FIELD_MEMBER(starg_decompose_options, balls),
+     .none = STARG_BALLS_RAYS,
+     .words = decompose_ball_words,
+     .value = "none|rays|even",
+     .help = "strict: map each piece to a ball, linearly on each tetrahedron and without "
+             "inversions; PIECES.vtk holds the images of the corners. rays: along the rays from "
+             "the guard. even: with less distortion."},
     TETRA_FIELDS(starg_decompose_options, tetra.),
 };
 static const starg_fields OPTIONS_TABLE = {
@@ -108,6 +120,10 @@ static starg_status check_options(starg_context *context, const starg_decompose_
     starg_status status = fields_check(context, STAGE, &OPTIONS_TABLE, o);
     if (status != STARG_OK)
         return status;
+    if (o->balls != STARG_BALLS_NONE && o->mode != STARG_DECOMPOSE_STRICT)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "only the pieces of --mode strict can be mapped to balls: those of the "
+                          "paper need not be star-shaped");
     for (size_t i = 0; o->guards != NULL && i < 3 * o->guard_count; i++)
         if (!(fabs(o->guards[i]) < STARG_COORDINATE_LIMIT)) {
             uint64_t guard = i / 3;
@@ -133,6 +149,22 @@ static starg_status run_mode(starg_context *context, const starg_tetmesh *mesh,
     return status;
 }
 
+/* What every result has, once its pieces are final. */
+static starg_status complete(starg_context *context, const starg_decompose_options *options,
+                             starg_decomposition *out) {
+    out->flattest = tetmesh_flattest(out->mesh);
+    return balls_make(context, out, options->balls);
+}
+
+static starg_status drop_failed(starg_context *context, starg_status status,
+                                starg_decomposition **out) {
+    if (status != STARG_OK) {
+        starg_decomposition_free(context, *out);
+        *out = NULL;
+    }
+    return status;
+}
+
 starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh *mesh,
                                      const starg_decompose_options *options,
                                      starg_decomposition **out) {
@@ -150,9 +182,9 @@ starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh
     STARG_TRY(run_mode(context, mesh, options, out));
     (*out)->model_vertices = mesh->vertex_count;
     (*out)->model_tetrahedra = mesh->count;
-    (*out)->flattest = tetmesh_flattest((*out)->mesh);
+    STARG_TRY(complete(context, options, *out));
 done:
-    return status;
+    return drop_failed(context, status, out);
 }
 
 /* Fills a solid, or an open surface: one of the two is NULL. */
@@ -252,15 +284,11 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     (*out)->model_vertices = model->vertex_count;
     (*out)->model_faces = model->face_count;
     (*out)->model_tetrahedra = 0;
-    (*out)->flattest = tetmesh_flattest((*out)->mesh);
+    STARG_TRY(complete(context, options, *out));
     if (solid != NULL && (*out)->tetra.surface_kept)
         STARG_TRY(angles_tell_apart(context, model, *out));
 done:
-    if (status != STARG_OK) {
-        starg_decomposition_free(context, *out);
-        *out = NULL;
-    }
-    return status;
+    return drop_failed(context, status, out);
 }
 
 /* Half of the time that is left is for the proof. */

@@ -237,5 +237,6 @@ void starg_decomposition_free(starg_context *context, starg_decomposition *decom
     starg_release(context, decomposition->labels);
     starg_release(context, decomposition->pieces);
     starg_release(context, decomposition->contacts);
+    starg_release(context, decomposition->ball_corners);
     starg_release(context, decomposition);
 }

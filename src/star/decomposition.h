@@ -9,6 +9,9 @@
 /* Words of starg_decompose_mode, by number; NULL behind the last. */
 extern const char *const decompose_mode_words[];
 
+/* Words of starg_balls, likewise. */
+extern const char *const decompose_ball_words[];
+
 /* PIECES.json as a starg_decomposition. */
 extern const starg_fields decomposition_file_fields;
 

@@ -11,6 +11,7 @@
 #define CONTACT(NAME) FIELD_MEMBER(starg_piece_contact, NAME)
 
 const char *const decompose_mode_words[] = {"strict", "paper", NULL};
+const char *const decompose_ball_words[] = {"none", "rays", "even", NULL};
 static const char *const SURFACES[] = {"approximated", "kept", NULL}; /* by surface_kept */
 
 static const starg_decomposition *of(const void *record) {
@@ -91,6 +92,11 @@ static const starg_field PIECES[] = {
      .high = DBL_MAX,
      .standard = -DBL_MAX,
      .help = "radius by the diagonal of the piece's bounding box."},
+    {.key = "spread",
+     .kind = STARG_FIELD_FLAG,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     PIECE(spread),
+     .help = "The piece's map to a ball does not follow the rays from its guard."},
 };
 static const starg_fields PIECES_TABLE = {
     .name = "pieces", .size = sizeof(starg_piece), FIELD_ROWS(PIECES)};
@@ -104,6 +110,34 @@ static const starg_fields CONTACTS_TABLE = {.name = "adjacency",
                                             .size = sizeof(starg_piece_contact),
                                             .form = STARG_FORM_TUPLE,
                                             FIELD_ROWS(CONTACTS)};
+
+static const starg_field BALLS[] = {
+    {.key = "kind",
+     .kind = STARG_FIELD_CHOICE,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     RESULT(balls),
+     .words = decompose_ball_words,
+     .help = "`rays`: along the rays from the guards; `even`: with less distortion."},
+    {.key = "worst",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     RESULT(ball_worst),
+     .high = DBL_MAX,
+     .help = "Largest over smallest singular value of the map: the most of any tetrahedron."},
+    {.key = "mean",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     RESULT(ball_mean),
+     .high = DBL_MAX,
+     .help = "Its mean, weighted by volume."},
+    {.key = "above_10",
+     .kind = STARG_FIELD_REAL,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     RESULT(ball_above_10),
+     .high = 1,
+     .help = "Share of the volume where it is above 10."},
+};
+static const starg_fields BALLS_TABLE = {.name = "balls", FIELD_ROWS(BALLS)};
 
 static const starg_field FILE_ROWS[] = {
     {.key = "format", .kind = STARG_FIELD_CONSTANT, .value = "starguard-pieces"},
@@ -196,6 +230,11 @@ static const starg_field FILE_ROWS[] = {
      .high = 180,
      .standard = -1,
      .help = "Median of the smallest dihedral angles of the tetrahedra, in degrees."},
+    {.key = "balls",
+     .kind = STARG_FIELD_RECORD,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_RARE,
+     .of = &BALLS_TABLE,
+     .help = "The maps of the pieces to balls; PIECES.vtk holds the images."},
     {.key = "adjacency",
      .kind = STARG_FIELD_LIST,
      .flags = STARG_FIELD_LINES,

@@ -84,6 +84,20 @@ done:
     return status;
 }
 
+/* Images of corners, which the tetrahedral mesh has kept. */
+static starg_status take_balls(starg_context *context, const starg_file_bytes *pieces,
+                               starg_decomposition *d) {
+    if ((d->mesh->corners != NULL) != (d->balls != STARG_BALLS_NONE) ||
+        (d->mesh->corners != NULL && d->mesh->turned > 0))
+        return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
+                          "'%.200s' and its report differ in maps to balls, or its cells are not "
+                          "positively oriented",
+                          pieces->name);
+    d->ball_corners = d->mesh->corners;
+    d->mesh->corners = NULL;
+    return STARG_OK;
+}
+
 starg_status starg_decomposition_read_memory(starg_context *context, const starg_file_bytes *pieces,
                                              const starg_file_bytes *report,
                                              starg_decomposition **out) {
@@ -95,6 +109,7 @@ starg_status starg_decomposition_read_memory(starg_context *context, const starg
     STARG_TRY(
         starg_tetmesh_read_memory(context, pieces->bytes, pieces->size, pieces->name, &d->mesh));
     STARG_TRY(take_labels(context, report, d));
+    STARG_TRY(take_balls(context, pieces, d));
     *out = d;
 done:
     if (status != STARG_OK)

@@ -13,6 +13,7 @@ starg_status starg_decomposition_write(starg_context *context,
     starg_tetmesh_write_options_default(&options);
     options.binary = binary;
     options.labels = decomposition->labels;
+    options.corners = decomposition->ball_corners;
     return starg_tetmesh_write(context, decomposition->mesh, path, &options);
 }
 

@@ -70,6 +70,8 @@ starg_status tet_builder_finish(tet_builder *builder, starg_tetmesh **out) {
         builder->points.vertices.data = NULL;
         builder->tetrahedra.data = NULL;
         builder->regions.data = NULL;
+        (*out)->corners = builder->corners;
+        builder->corners = NULL;
     }
     return status;
 }
@@ -78,6 +80,7 @@ void tet_builder_free(tet_builder *builder) {
     starg_context *context = builder->points.source->context;
     STARG_ARRAY_FREE(context, &builder->tetrahedra);
     STARG_ARRAY_FREE(context, &builder->regions);
+    starg_release(context, builder->corners);
     starg_builder_free(&builder->points);
 }
 

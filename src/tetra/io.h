@@ -11,6 +11,7 @@ typedef struct tet_builder {
     starg_mesh_builder points; /* vertices, ticks and source; has no faces */
     STARG_ARRAY(uint32_t) tetrahedra;
     STARG_ARRAY(int32_t) regions; /* one per tetrahedron */
+    double *corners;              /* twelve numbers per tetrahedron, or NULL */
 } tet_builder;
 
 /* Reserves space; the caller has checked the numbers against the size of the source. */

@@ -2,7 +2,8 @@
 /* Legacy VTK unstructured grids, text or binary (big endian), versions 1 to 5. Keywords are text in
  * both. Version 5.1 replaced the cell list (count, then indices, cell by cell) by offsets and
  * connectivity. Cell types come last, so tetrahedra are selected at the end. The first integer
- * array of the cells, if it follows at once, gives the regions. */
+ * array of the cells, if it follows at once, gives the regions; an array "ball" after it the images
+ * of corners. */
 #include <strings.h>
 
 #include "core/memory.h"
@@ -339,6 +340,40 @@ static bool begin_labels(vtk_reader *vtk, tet_type *type) {
            starg_scan_word(scan, &word);
 }
 
+/* FIELD name 1, ball 12 n double: false when something else stands here. */
+static bool begin_corners(vtk_reader *vtk) {
+    starg_scan *scan = &vtk->numbers.scan;
+    starg_word word;
+    int64_t arrays, components, count;
+    return starg_scan_word(scan, &word) && is(word, "FIELD") && starg_scan_word(scan, &word) &&
+           starg_scan_word(scan, &word) && starg_parse_integer(word.text, word.length, &arrays) &&
+           arrays == 1 && starg_scan_word(scan, &word) && is(word, "ball") &&
+           starg_scan_word(scan, &word) &&
+           starg_parse_integer(word.text, word.length, &components) && components == 12 &&
+           starg_scan_word(scan, &word) && starg_parse_integer(word.text, word.length, &count) &&
+           count >= 0 && (uint64_t)count == vtk->cells.count &&
+           vtk->cells.count + 1 == vtk->starts.count && starg_scan_word(scan, &word) &&
+           is(word, "double");
+}
+
+static starg_status read_corners(vtk_reader *vtk) {
+    starg_status status = STARG_OK;
+    size_t count = vtk->cells.count;
+    if (!begin_corners(vtk))
+        return STARG_OK;
+    begin_data(vtk);
+    STARG_TRY(tet_check_count(&vtk->numbers, (int64_t)count,
+                              12 * tet_least_bytes(&vtk->numbers, TET_FLOAT64), "images"));
+    STARG_NEW(source_of(vtk)->context, STAGE, vtk->builder->corners, 12 * count);
+    for (size_t i = 0; i < 12 * count; i++) {
+        STARG_TRY(tet_real(&vtk->numbers, TET_FLOAT64, "a coordinate of an image",
+                           &vtk->builder->corners[i]));
+        STARG_TRY(tick(vtk));
+    }
+done:
+    return status;
+}
+
 static starg_status read_labels(vtk_reader *vtk) {
     starg_status status = STARG_OK;
     tet_type type;
@@ -352,6 +387,7 @@ static starg_status read_labels(vtk_reader *vtk) {
             vtk->builder->regions.data[t++] = (int32_t)(uint32_t)(uint64_t)label;
         STARG_TRY(tick(vtk));
     }
+    status = read_corners(vtk);
 done:
     return status;
 }

@@ -187,6 +187,7 @@ void starg_tetmesh_free(starg_tetmesh *mesh) {
     starg_release(mesh->context, mesh->tetrahedra);
     starg_release(mesh->context, mesh->neighbours);
     starg_release(mesh->context, mesh->regions);
+    starg_release(mesh->context, mesh->corners);
     starg_release(mesh->context, mesh);
 }
 

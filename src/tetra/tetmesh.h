@@ -14,6 +14,7 @@ struct starg_tetmesh {
     uint32_t *tetrahedra; /* count x 4 */
     uint32_t *neighbours; /* count x 4 */
     int32_t *regions;     /* count, or NULL */
+    double *corners;      /* of a file: count x 4 x 3, in the order of its cells, or NULL */
 };
 
 /* Faces (four per tetrahedron) are numbered in 32 bits, with one number reserved for none. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Writes a legacy VTK unstructured grid of tetrahedra, as text or binary (big endian), with a label
- * for each. The file gets its name once it is complete. */
+ * and points for each. The file gets its name once it is complete. */
 #include <ctype.h>
 
 #include "core/file.h"
@@ -77,6 +77,13 @@ static void write_labels(const writer *w, const starg_tetmesh *mesh, const int32
     end_block(w);
 }
 
+static void write_corners(const writer *w, const starg_tetmesh *mesh, const double *corners) {
+    fprintf(w->stream, "FIELD FieldData 1\nball 12 %zu double\n", mesh->count);
+    for (size_t i = 0; i < 12 * mesh->count; i++)
+        put_real(w, corners[i], i % 12 == 11 ? '\n' : ' ');
+    end_block(w);
+}
+
 static starg_status check_name(starg_context *context, const char *name) {
     bool good = name != NULL && *name != '\0';
     for (const char *at = name; good && *at != '\0'; at++)
@@ -104,6 +111,8 @@ starg_status starg_tetmesh_write(starg_context *context, const starg_tetmesh *me
     write_geometry(&w, mesh);
     if (labels != NULL)
         write_labels(&w, mesh, labels, options->name);
+    if (labels != NULL && options->corners != NULL)
+        write_corners(&w, mesh, options->corners);
     STARG_TRY(starg_check_cancel(context, STARG_MESH_FILE));
     STARG_TRY(starg_output_commit(&output));
 done:

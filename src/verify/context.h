@@ -35,6 +35,8 @@ starg_status verify_claim_angles(const verify_context *own);
 
 /* No fewer star-shaped pieces are possible. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_fewest(const verify_context *own);
+/* Maps of pieces to balls, if there are any. Errors: MEMORY. */
+starg_status verify_claim_balls(const verify_context *own);
 
 /* ---- names of elements ---- */
 

@@ -84,6 +84,7 @@ static starg_status verify_against(starg_context *context, const verify_surface 
         STARG_TRY(verify_claim_angles(&own));
         STARG_TRY(verify_claim_stars(&own));
         STARG_TRY(verify_claim_fewest(&own));
+        STARG_TRY(verify_claim_balls(&own));
     } else {
         verify_leave(own.verdict, "guards, star-shapedness and numbers: there is no report");
     }

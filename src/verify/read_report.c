@@ -152,6 +152,17 @@ done:
         r->status = status;
 }
 
+static void read_balls(reader *r, const json_t *balls, starg_pieces_report *report) {
+    report->balls = balls != NULL;
+    if (!report->balls)
+        return;
+    read_word(r, balls, "kind", "rays", "even");
+    report->ball_worst = read_real(r, balls, "worst");
+    report->ball_mean = read_real(r, balls, "mean");
+    if (json_object_get(balls, "above_10") != NULL)
+        report->ball_above_10 = read_real(r, balls, "above_10");
+}
+
 static void read_document(reader *r, const json_t *root, starg_pieces_report *report) {
     const char *format = json_string_value(json_object_get(root, "format"));
     if (format == NULL || strcmp(format, "starguard-pieces") != 0)
@@ -179,6 +190,7 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
         report->lower_bound = read_count(r, root, "lower_bound");
         report->optimal = read_bool(r, root, "optimal");
     }
+    read_balls(r, json_object_get(root, "balls"), report);
 }
 
 starg_status starg_pieces_report_read_memory(starg_context *context, const void *bytes, size_t size,

@@ -7,8 +7,9 @@
  *     DATASET UNSTRUCTURED_GRID              SCALARS piece int 1
  *     POINTS n float or double               LOOKUP_TABLE default
  *
- * Binary numbers are big-endian, integers of 32 bits. Further sections after the labels are
- * skipped. Declared counts are compared with the remaining bytes before allocating. */
+ * and with maps to balls FIELD FieldData 1, ball 12 m double. Binary numbers are big-endian,
+ * integers of 32 bits. Further sections after the labels are skipped. Declared counts are compared
+ * with the remaining bytes before allocating. */
 #include <locale.h>
 #include <math.h>
 #include <stdio.h>
@@ -337,6 +338,35 @@ done:
     return status;
 }
 
+/* Images of the corners, if they come next. */
+static starg_status read_corners(reader *r, starg_pieces_mesh *mesh) {
+    starg_status status = STARG_OK;
+    char word[WORD];
+    const char *before = r->at;
+    if (!next_word(r, word) || strcasecmp(word, "FIELD") != 0) {
+        r->at = before;
+        return STARG_OK;
+    }
+    STARG_TRY(expect(r, "FieldData"));
+    STARG_TRY(expect_same(r, 1, "one array of data is expected"));
+    STARG_TRY(expect(r, "ball"));
+    STARG_TRY(expect_same(r, 12, "twelve numbers for each cell are expected"));
+    STARG_TRY(expect_same(r, mesh->count, "as many images as cells are expected"));
+    STARG_TRY(expect(r, "double"));
+    skip_line(r);
+    if (!r->binary && (size_t)(r->end - r->at) / 24 < mesh->count)
+        return reject(r, "more is declared than the file holds");
+    STARG_TRY(expect_bytes(r, 12 * mesh->count * sizeof(double)));
+    STARG_NEW(r->context, STAGE, mesh->corners, 12 * mesh->count);
+    r->single = false;
+    for (size_t i = 0; i < 12 * mesh->count; i++) {
+        STARG_TRY(check_cancel(r, i));
+        STARG_TRY(read_real(r, &mesh->corners[i]));
+    }
+done:
+    return status;
+}
+
 /* Rejects numbers beyond the declared count. */
 static starg_status read_end(reader *r) {
     skip_blanks(r);
@@ -352,6 +382,7 @@ static starg_status read_all(reader *r, starg_pieces_mesh *mesh) {
     STARG_TRY(read_cells(r, mesh));
     STARG_TRY(read_types(r, mesh));
     STARG_TRY(read_labels(r, mesh));
+    STARG_TRY(read_corners(r, mesh));
     STARG_TRY(read_end(r));
 done:
     return status;
@@ -385,5 +416,6 @@ void starg_pieces_mesh_free(starg_context *context, starg_pieces_mesh *mesh) {
     starg_release(context, mesh->vertices);
     starg_release(context, mesh->tetrahedra);
     starg_release(context, mesh->labels);
+    starg_release(context, mesh->corners);
     starg_release(context, mesh);
 }

@@ -121,6 +121,31 @@ class Decompose(support.Case):
         self.assertNotIn("tetgen", (out + err).lower())
         self.run_text("verify", model, "p.vtk", "p.json")
 
+    def test_balls(self):
+        """Maps to balls stand in the file, are verified, and are missed when they are spoiled."""
+        model = self.sample("horse")
+        base = ("decompose", model, "-o", "p.vtk", "--report", "p.json", "--effort", "5")
+        self.run_text(*base)
+        plain = self.read("p.vtk")
+        for words, kind in ((("--balls",), "rays"), (("--balls", "even"), "even")):
+            out, _ = self.run_text(*base, *words)
+            self.assertIn("no tetrahedron inverted", out)
+            self.assertEqual(self.agree("p.vtk", "p.json")["balls"]["kind"], kind)
+            self.assertTrue(self.read("p.vtk").startswith(plain))
+            self.assertIn("positive images", self.run_text("verify", model, "p.json", "p.vtk")[0])
+        lines = self.read("p.vtk").decode().split("\n")
+        first = next(i for i, line in enumerate(lines) if line.startswith("ball 12")) + 1
+        numbers = lines[first].split()
+        turned = numbers[3:6] + numbers[:3] + numbers[6:]
+        away = [repr(1.5 * float(x)) for x in numbers]
+        for spoiled, said in ((turned, "positive images"), (away, "spheres")):
+            self.write("q.vtk", "\n".join(lines[:first] + [" ".join(spoiled)] + lines[first + 1:]))
+            self.assertIn(said, self.run_text("verify", model, "p.json", "q.vtk", status=4)[0])
+        self.write("q.vtk", "\n".join(lines[:first - 2]) + "\n")
+        self.assertIn("agree", self.run_text("verify", model, "p.json", "q.vtk", status=4)[0])
+        _, err = self.run_text(*base, "--balls", "--mode", "paper", status=1)
+        self.assertIn("--mode strict", err)
+
     def test_no_time(self):
         """However short the time, there are pieces, all star-shaped."""
         model = self.sample("gallery")

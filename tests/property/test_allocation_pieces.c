@@ -135,7 +135,9 @@ static starg_status decompositions(starg_context *context) {
     FAILING_BY(starg_decompose_certified, "", certified(context));
     DECOMPOSE(starg_decompose, "paper", in.solid, &paper);
     DECOMPOSE(starg_decompose, "paper, given guards", in.solid, &given);
-    DECOMPOSE(starg_decompose_tetmesh, "strict", in.tetmesh, &strict);
+    starg_decompose_options even = strict;
+    even.balls = STARG_BALLS_EVEN;
+    DECOMPOSE(starg_decompose_tetmesh, "strict, balls", in.tetmesh, &even);
     DECOMPOSE(starg_decompose_open_mesh, "strict", in.open, &strict);
     FAILING_BY(starg_decomposition_surfaces, "", surfaces(context));
     FAILING(starg_decomposition_write_groups, "", in.decomposition, failing_output("p.obj"));

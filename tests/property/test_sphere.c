@@ -10,7 +10,7 @@
 #include "morph/compose.h"
 #include "morph/landmarks.h"
 #include "morph/map.h"
-#include "morph/sphere.h"
+#include "sphere/sphere.h"
 #include "starguard/morph.h"
 #include "starguard/sample.h"
 

@@ -73,15 +73,17 @@ static void place_guard(const result *r, size_t t, starg_piece *piece) {
 static result make_result(const starg_tetmesh *tetmesh) {
     size_t count = starg_tetmesh_count(tetmesh), vertices = starg_tetmesh_vertex_count(tetmesh);
     const uint32_t *neighbours = starg_tetmesh_neighbours(tetmesh);
-    result r = {{vertices, count,
-                 copy(starg_tetmesh_vertices(tetmesh), 3 * vertices * sizeof(double)),
-                 copy(starg_tetmesh_tetrahedra(tetmesh), 4 * count * sizeof(uint32_t)),
-                 calloc(count, sizeof(int32_t))},
-                {.tetrahedra = count,
-                 .piece_count = count,
-                 .pieces = calloc(count, sizeof(starg_piece)),
-                 .contacts = calloc(4 * count, sizeof(starg_piece_contact)),
-                 .visible_vertices = 1}};
+    result r = {
+        {.vertex_count = vertices,
+         .count = count,
+         .vertices = copy(starg_tetmesh_vertices(tetmesh), 3 * vertices * sizeof(double)),
+         .tetrahedra = copy(starg_tetmesh_tetrahedra(tetmesh), 4 * count * sizeof(uint32_t)),
+         .labels = calloc(count, sizeof(int32_t))},
+        {.tetrahedra = count,
+         .piece_count = count,
+         .pieces = calloc(count, sizeof(starg_piece)),
+         .contacts = calloc(4 * count, sizeof(starg_piece_contact)),
+         .visible_vertices = 1}};
     for (size_t t = 0; t < count; t++) {
         starg_piece *piece = &r.report.pieces[t];
         r.mesh.labels[t] = (int32_t)t;

@@ -87,6 +87,7 @@ static void make_pieces(failing_inputs *in) {
     options.tetra.target = 60;
     tetra.generator = STARG_TETRA_STUFFING;
     tetra.target = 20;
+    options.balls = STARG_BALLS_RAYS;
     test_ok(in->context, starg_decompose(in->context, in->solid, &options, &in->decomposition));
     test_ok(in->context,
             starg_tetmesh_from_solid(in->context, in->simple, &tetra, NULL, &in->tetmesh));

@@ -760,7 +760,11 @@ static void expect_seen(starg_context *context, const starg_tetmesh *model, cons
     starg_piece piece = {
         .guard = {p[0], p[1], p[2]}, .radius = NAN, .tetrahedra = b->count, .volume = CELLS};
     int32_t *labels = calloc(b->count, sizeof *labels);
-    const starg_pieces_mesh mesh = {b->vertex_count, b->count, b->vertices, b->tetrahedra, labels};
+    const starg_pieces_mesh mesh = {.vertex_count = b->vertex_count,
+                                    .count = b->count,
+                                    .vertices = b->vertices,
+                                    .tetrahedra = b->tetrahedra,
+                                    .labels = labels};
     const starg_pieces_report report = {.mode = STARG_DECOMPOSE_PAPER,
                                         .tetrahedra = b->count,
                                         .piece_count = 1,

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Relaxes an embedding of a triangulated sphere in the unit sphere. */
-#ifndef STARG_MORPH_RELAX_H
-#define STARG_MORPH_RELAX_H
+#ifndef STARG_SPHERE_RELAX_H
+#define STARG_SPHERE_RELAX_H
 
-#include "morph/rings.h"
+#include "sphere/rings.h"
 
 typedef struct relaxation {
     const rings *rings;
@@ -18,6 +18,7 @@ typedef struct relaxation {
 void relax_sweep(const relaxation *relaxation);
 
 /* Is every triangle at a vertex positive as seen from outside? Exact. */
-bool relax_is_positive(const ring *around, const double *directions, const double at[3]);
+bool relax_is_positive(const ring *around, const double *directions, const double at[3])
+    STARG_PRIVATE(relax_is_positive);
 
 #endif

@@ -15,13 +15,14 @@
  * the sphere once, and moving or adding a vertex within the kernel changes only its polygon.
  *
  * Cost: O(n log n + sweeps n); each level costs a sixth more than the next coarser one. */
-#include "morph/sphere.h"
+#include "sphere/sphere.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "geometry/linear_program.h"
 #include "geometry/vec3.h"
-#include "morph/relax.h"
+#include "sphere/relax.h"
 
 static const char STAGE[] = "sphere";
 enum { BASE = 4, LEVEL_SWEEPS = 8, FINAL_SWEEPS = 40, HALVINGS = 40 };
@@ -101,6 +102,9 @@ static bool place_near(const sphere *s, const ring *around, double out[3]) {
         step *= 0.5;
         vec3_subtract(middle, a, d);
         vec3_along(a, step, d, out);
+        double length = vec3_length(out);
+        for (int k = 0; k < 3; k++)
+            out[k] /= length;
         if (relax_is_positive(around, s->directions, out))
             return true;
     }
@@ -185,18 +189,44 @@ bool sphere_is_positive(const sphere *s) {
     return true;
 }
 
-starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out) {
+/* With all vertices, and no directions yet. */
+static starg_status begin(starg_context *context, const starg_mesh *mesh, sphere **out) {
     starg_status status = STARG_OK;
     sphere *s = NULL;
-    sphere_work work = {0};
-    *out = NULL;
     STARG_NEW_ZERO(context, STAGE, s, 1);
+    *out = s;
     s->context = context;
     s->mesh = mesh;
     s->floor = FLOOR * starg_mesh_area(mesh) / (double)mesh->face_count;
     STARG_NEW_ZERO(context, STAGE, s->directions, 3 * mesh->vertex_count);
     STARG_NEW(context, STAGE, s->alive, mesh->vertex_count);
-    STARG_TRY(rings_create(context, mesh, &s->rings));
+    status = rings_create(context, mesh, &s->rings);
+done:
+    return status;
+}
+
+starg_status sphere_even(starg_context *context, const starg_mesh *mesh, const double *directions,
+                         sphere **out) {
+    starg_status status = STARG_OK;
+    sphere *s = NULL;
+    *out = NULL;
+    STARG_TRY(begin(context, mesh, &s));
+    memcpy(s->directions, directions, 3 * mesh->vertex_count * sizeof *directions);
+    sphere_list_alive(s);
+    STARG_TRY(sphere_relax(s, NULL, FINAL_SWEEPS));
+    *out = s;
+    s = NULL;
+done:
+    sphere_free(s);
+    return status;
+}
+
+starg_status sphere_create(starg_context *context, const starg_mesh *mesh, sphere **out) {
+    starg_status status = STARG_OK;
+    sphere *s = NULL;
+    sphere_work work = {0};
+    *out = NULL;
+    STARG_TRY(begin(context, mesh, &s));
     STARG_TRY(rings_reduce(s->rings, &(rings_limits){.least = BASE}));
     place_base(s);
     STARG_TRY(refine(s, &work));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A closed triangulated sphere with removable vertices. */
-#ifndef STARG_MORPH_RINGS_H
-#define STARG_MORPH_RINGS_H
+#ifndef STARG_SPHERE_RINGS_H
+#define STARG_SPHERE_RINGS_H
 
 #include <stdbool.h>
 
@@ -40,7 +40,7 @@ typedef struct rings_limits {
 } rings_limits;
 
 /* Removes vertices, short edges first, within the limits. Errors: MEMORY, CANCELLED. */
-starg_status rings_reduce(rings *r, const rings_limits *limits);
+starg_status rings_reduce(rings *r, const rings_limits *limits) STARG_PRIVATE(rings_reduce);
 
 /* Restores the last removed vertex. Errors: MEMORY. */
 starg_status rings_restore(rings *r);

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Maps of star pieces to balls: by rationals, is every image positive, has each vertex one image on
+ * the sphere, and are directions covered once? And where the rays do not fit into doubles. */
+#include <gmp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/rng.h"
+#include "geometry/singular_values.h"
+#include "models.h"
+#include "starguard/decompose.h"
+#include "starguard/sample.h"
+#include "starguard/verify.h"
+
+/* Sign of det(a, b, c) in rational numbers. */
+static int slow_sign(const double *a, const double *b, const double *c) {
+    mpq_t sum, product, factor;
+    mpq_inits(sum, product, factor, NULL);
+    for (int i = 0; i < 6; i++) {
+        int x = i % 3, y = (x + 1 + i / 3) % 3, z = 3 - x - y;
+        mpq_set_d(product, a[x]);
+        mpq_set_d(factor, b[y]);
+        mpq_mul(product, product, factor);
+        mpq_set_d(factor, c[z]);
+        mpq_mul(product, product, factor);
+        if (i < 3)
+            mpq_add(sum, sum, product);
+        else
+            mpq_sub(sum, sum, product);
+    }
+    int sign = mpq_sgn(sum);
+    mpq_clears(sum, product, factor, NULL);
+    return sign;
+}
+
+/* The three images that are not the centre, in the order of a positive tetrahedron with it in
+ * front: cyclic moves of three of four corners are even. */
+static bool outer_images(const double *corners, const double *out[3]) {
+    static const int order[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    int centre = 0;
+    while (centre < 4 && (corners[3 * centre] != 0 || corners[3 * centre + 1] != 0 ||
+                          corners[3 * centre + 2] != 0))
+        centre++;
+    for (int k = 0; k < 3 && centre < 4; k++)
+        out[k] = corners + 3 * order[centre][k];
+    return centre < 4;
+}
+
+static void check_one_image(const starg_decomposition *d) {
+    const uint32_t *tetrahedra = starg_tetmesh_tetrahedra(d->mesh);
+    size_t vertices = starg_tetmesh_vertex_count(d->mesh);
+    const double **image = calloc(vertices, sizeof *image);
+    assert_non_null(image);
+    for (size_t p = 0; p < d->piece_count; p++) {
+        memset(image, 0, vertices * sizeof *image);
+        for (size_t i = 0; i < 4 * d->tetrahedra; i++) {
+            if (d->labels[i / 4] != (int32_t)p)
+                continue;
+            const double *at = d->ball_corners + 3 * i, **before = &image[tetrahedra[i]];
+            if (*before != NULL)
+                assert_memory_equal(*before, at, 3 * sizeof *at);
+            *before = at;
+        }
+    }
+    free(image);
+}
+
+/* How many tetrahedra of a piece hold a direction. */
+static size_t covering(const starg_decomposition *d, size_t piece, const double x[3]) {
+    size_t count = 0;
+    for (size_t t = 0; t < d->tetrahedra; t++) {
+        const double *at[3];
+        if (d->labels[t] != (int32_t)piece || !outer_images(d->ball_corners + 12 * t, at))
+            continue;
+        count += slow_sign(at[0], at[1], x) > 0 && slow_sign(at[1], at[2], x) > 0 &&
+                 slow_sign(at[2], at[0], x) > 0;
+    }
+    return count;
+}
+
+static void check_balls(const starg_decomposition *d) {
+    starg_rng rng = starg_rng_make(3, 3, 3);
+    assert_non_null(d->ball_corners);
+    for (size_t t = 0; t < d->tetrahedra; t++) {
+        const double *at[3];
+        assert_true(outer_images(d->ball_corners + 12 * t, at));
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(hypot(hypot(at[k][0], at[k][1]), at[k][2]) - 1) < 1e-14);
+        assert_int_equal(slow_sign(at[0], at[1], at[2]), 1);
+    }
+    check_one_image(d);
+    for (size_t p = 0; p < d->piece_count; p++) {
+        const double x[3] = {starg_rng_unit(&rng) - 0.5, starg_rng_unit(&rng) - 0.5,
+                             starg_rng_unit(&rng) - 0.5};
+        assert_int_equal(covering(d, p, x), 1);
+    }
+    assert_true(d->ball_worst >= d->ball_mean && d->ball_mean >= 1);
+    assert_true(d->ball_above_10 >= 0 && d->ball_above_10 <= 1);
+}
+
+static size_t count_spread(const starg_decomposition *d) {
+    size_t count = 0;
+    for (size_t p = 0; p < d->piece_count; p++)
+        count += d->pieces[p].spread;
+    return count;
+}
+
+static starg_decomposition *cut(starg_context *context, const starg_solid *solid,
+                                starg_balls balls) {
+    starg_decomposition *d = NULL;
+    starg_decompose_options options;
+    starg_decompose_options_default(&options);
+    options.effort = 20;
+    options.balls = balls;
+    test_ok(context, starg_decompose(context, solid, &options, &d));
+    return d;
+}
+
+/* Even maps are more even; files hold what there is. */
+static void check_solid(starg_context *context, const starg_solid *solid) {
+    double mean = 0;
+    for (int kind = STARG_BALLS_RAYS; kind <= STARG_BALLS_EVEN; kind++) {
+        starg_decomposition *d = cut(context, solid, (starg_balls)kind);
+        check_balls(d);
+        if (kind == STARG_BALLS_EVEN) {
+            assert_int_equal(count_spread(d), d->piece_count);
+            assert_true(d->ball_mean < mean);
+        }
+        mean = d->ball_mean;
+        starg_decomposition_free(context, d);
+    }
+}
+
+static void test_samples(void **state) {
+    (void)state;
+    static const char *const names[] = {"l-room", "gallery", "horse", "knot", "plate"};
+    for (size_t i = 0; i < test_rounds(3, sizeof names / sizeof *names); i++) {
+        starg_context *context = test_context(2);
+        starg_solid *solid = test_sample(context, names[i], 500);
+        check_solid(context, solid);
+        starg_solid_free(solid);
+        test_context_free(context);
+    }
+}
+
+/* An octahedron, out of its middle, one of whose corners is cut off by a triangle of a size that no
+ * direction from the guard can tell: rays coincide, and the piece is spread over the sphere. */
+static starg_solid *blunt_octahedron(starg_context *context, double size) {
+    const double vertices[8][3] = {{1, size, 0},   {1, -size, size}, {1, -size, -size},
+                                   {-1, 0.3, 0.2}, {0, 1.3, 0.2},    {0, -0.7, 0.2},
+                                   {0, 0.3, 1.2},  {0, 0.3, -0.8}};
+    const uint32_t faces[12][3] = {{0, 1, 2}, {0, 4, 6}, {0, 6, 1}, {1, 6, 5},
+                                   {1, 5, 2}, {2, 5, 7}, {2, 7, 0}, {0, 7, 4},
+                                   {3, 6, 4}, {3, 5, 6}, {3, 7, 5}, {3, 4, 7}};
+    starg_mesh *mesh = NULL;
+    starg_solid *solid = NULL;
+    test_ok(context, starg_mesh_create(context, vertices[0], 8, faces[0], 12, &mesh));
+    test_ok(context, starg_solid_create(context, mesh, &solid));
+    starg_mesh_free(mesh);
+    return solid;
+}
+
+static void test_rays_that_coincide(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    size_t spread = 0;
+    for (int power = -2; power >= -40; power -= 2) {
+        starg_solid *solid = blunt_octahedron(context, pow(10, power));
+        starg_decomposition *d = cut(context, solid, STARG_BALLS_RAYS);
+        check_balls(d);
+        spread += count_spread(d);
+        if (power == -2)
+            assert_int_equal(spread, 0);
+        starg_decomposition_free(context, d);
+        starg_solid_free(solid);
+    }
+    assert_true(spread > 0);
+    test_context_free(context);
+}
+
+/* Maps that are known: a scaling along turned axes. */
+static void test_singular_values(void **state) {
+    (void)state;
+    starg_rng rng = starg_rng_make(8, 8, 8);
+    for (int round = 0; round < 1000; round++) {
+        double from[3][3], to[3][3], found[3], turn = 6.283 * starg_rng_unit(&rng);
+        double scales[3] = {exp(6 * starg_rng_unit(&rng)), 1, exp(-6 * starg_rng_unit(&rng))};
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++)
+                from[i][k] = starg_rng_unit(&rng) - 0.5 + (i == k);
+        for (int i = 0; i < 3; i++) { /* a turn about x, the scales, a turn about z */
+            double y = cos(turn) * from[i][1] - sin(turn) * from[i][2];
+            double z = sin(turn) * from[i][1] + cos(turn) * from[i][2];
+            double x = scales[0] * from[i][0];
+            to[i][0] = cos(turn) * x - sin(turn) * scales[1] * y;
+            to[i][1] = sin(turn) * x + cos(turn) * scales[1] * y;
+            to[i][2] = scales[2] * z;
+        }
+        singular_values(from, to, found);
+        for (int k = 0; k < 3; k++)
+            assert_true(fabs(found[k] / scales[k] - 1) < 1e-9);
+    }
+}
+
+static void test_paper_mode(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_solid *solid = test_sample(context, "l-room", 500);
+    starg_decomposition *d = NULL;
+    starg_decompose_options options;
+    starg_decompose_options_default(&options);
+    options.mode = STARG_DECOMPOSE_PAPER;
+    options.balls = STARG_BALLS_RAYS;
+    assert_int_equal(starg_decompose(context, solid, &options, &d), STARG_ERROR_ARGUMENT);
+    assert_non_null(strstr(starg_context_error(context)->message, "--mode strict"));
+    assert_null(d);
+    starg_solid_free(solid);
+    test_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_samples), cmocka_unit_test(test_rays_that_coincide),
+        cmocka_unit_test(test_singular_values), cmocka_unit_test(test_paper_mode)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
