@@ -16,7 +16,7 @@
 static const double APART = 0.18; /* pictures: displacement of the pieces from the common centre */
 
 typedef struct values {
-    const char *output, *report, *guards, *tets, *surfaces, *picture;
+    const char *output, *report, *guards, *tets, *surfaces, *picture, *certificate;
     starg_decompose_options wanted;
     bool binary;
 } values;
@@ -40,6 +40,9 @@ static const cli_option options[] = {
         "piece_0000.ply, piece_0001.ply, ..., in colour, and all of them as groups of pieces.obj."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
                     "Coloured, slightly exploded view of the pieces."),
+    CLI_TEXT_OPTION("certificate", certificate, "FILE",
+                    "With --prove: writes why no fewer pieces are possible than lower_bound says, "
+                    "for 'starguard verify' (docs/formats.md)."),
     CLI_FLAG_OPTION(
         "binary", binary,
         "Write PIECES.vtk in binary: smaller and faster to read, with the same numbers."),
@@ -71,8 +74,24 @@ static starg_status read_subject(cli_session *session, const values *v, subject 
 
 /* ---- cutting ---- */
 
+/* Why the bound holds, if a certificate is wanted. */
+typedef struct proof {
+    bool wanted;
+    char *text;
+    size_t size;
+} proof;
+
+static starg_status cut_solid(cli_session *session, const starg_solid *solid,
+                              const starg_decompose_options *wanted, proof *why,
+                              starg_decomposition **out) {
+    return why->wanted ? starg_decompose_certified(session->context, solid, wanted, out, &why->text,
+                                                   &why->size)
+                       : starg_decompose(session->context, solid, wanted, out);
+}
+
 static starg_status cut(cli_session *session, const subject *s,
-                        const starg_decompose_options *wanted, starg_decomposition **out) {
+                        const starg_decompose_options *wanted, proof *why,
+                        starg_decomposition **out) {
     starg_solid *solid = NULL;
     if (s->tets != NULL)
         return starg_decompose_tetmesh(session->context, s->tets, wanted, out);
@@ -87,7 +106,7 @@ static starg_status cut(cli_session *session, const subject *s,
         return starg_decompose_open_mesh(session->context, s->surface, wanted, out);
     }
     if (status == STARG_OK)
-        status = starg_decompose(session->context, solid, wanted, out);
+        status = cut_solid(session, solid, wanted, why, out);
     starg_solid_free(solid);
     return status;
 }
@@ -101,12 +120,41 @@ static size_t count_single(const starg_decomposition *d) {
     return count;
 }
 
+static void say_count(cli_session *session, const starg_decomposition *d) {
+    cli_say(session, "pieces        %zu", d->piece_count);
+    if (d->optimal)
+        cli_say(session, ", the fewest possible");
+    else if (d->lower_bound > 0)
+        cli_say(session, "; at least %zu %s needed, however the model is cut", d->lower_bound,
+                d->lower_bound == 1 ? "is" : "are");
+    cli_say(session, "\n");
+}
+
+/* By rank; the quadratic count is nothing beside the search. */
+static double margin_at(const starg_decomposition *d, size_t rank) {
+    for (size_t i = 0; i < d->piece_count; i++) {
+        size_t below = 0, same = 0;
+        for (size_t k = 0; k < d->piece_count; k++) {
+            below += d->pieces[k].margin < d->pieces[i].margin;
+            same += d->pieces[k].margin == d->pieces[i].margin;
+        }
+        if (below <= rank && rank < below + same)
+            return d->pieces[i].margin;
+    }
+    return 0;
+}
+
 static void say_pieces(cli_session *session, const starg_decomposition *d) {
-    cli_say(session, "pieces        %zu\n", d->piece_count);
+    say_count(session, d);
     cli_say(session, "star-shaped   %zu (proven)\n", d->strictly_star);
     cli_say(session, "visible       %g %% of the vertices, from their guards\n",
             cli_percent(d->visible_vertices));
     cli_say(session, "tetrahedra    %zu\n", starg_tetmesh_count(d->mesh));
+    cli_say(session, "angles        %.3g degrees at least, median %.3g\n", d->smallest_angle,
+            d->median_angle);
+    if (d->strictly_star == d->piece_count)
+        cli_say(session, "margins       %.3g of a piece's size at least, median %.3g\n",
+                margin_at(d, 0), margin_at(d, d->piece_count / 2));
     if (d->tetra.surface_kept)
         cli_say(session, "surface       kept\n");
     else
@@ -292,6 +340,10 @@ static starg_status announce_files(cli_session *session, const values *v) {
         return cli_fail(session, STARG_ERROR_ARGUMENT, "no output; add -o PIECES.vtk");
     CLI_TRY(cli_announce(session, v->output));
     CLI_TRY(cli_announce(session, v->report));
+    CLI_TRY(cli_announce(session, v->certificate));
+    if (v->certificate != NULL && !v->wanted.prove)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "--certificate says why the bound of --prove holds; add --prove");
     CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
     CLI_TRY(cli_announce_folder(session, v->surfaces));
 done:
@@ -315,9 +367,12 @@ done:
 }
 
 static starg_status write_files(cli_session *session, const values *v, const char *file,
-                                const starg_decomposition *d) {
+                                const starg_decomposition *d, const proof *why) {
     starg_status status = STARG_OK;
     shells s = {0};
+    if (why->wanted)
+        CLI_TRY(starg_certificate_write(session->context, why->text, why->size,
+                                        cli_outputs_place(&session->outputs, v->certificate)));
     if (v->surfaces != NULL || v->picture != NULL)
         CLI_TRY(starg_decomposition_surfaces(session->context, d, &s.mesh, &s.first));
     if (v->surfaces != NULL)
@@ -354,15 +409,17 @@ static starg_status run(cli_session *session, void *data) {
     subject what = {0};
     starg_decomposition *pieces = NULL;
     double *points = NULL;
+    proof why = {.wanted = v->certificate != NULL};
     CLI_TRY(announce_files(session, v));
     CLI_TRY(make_options(session, v, &points, &wanted));
     CLI_TRY(read_subject(session, v, &what));
-    CLI_TRY(cut(session, &what, &wanted, &pieces));
-    CLI_TRY(write_files(session, v, what.file, pieces));
+    CLI_TRY(cut(session, &what, &wanted, &why, &pieces));
+    CLI_TRY(write_files(session, v, what.file, pieces, &why));
     say_pieces(session, pieces);
     if (session->report != NULL)
         CLI_TRY(report_pieces(session, pieces, what.file, v));
 done:
+    starg_text_free(session->context, why.text);
     starg_decomposition_free(session->context, pieces);
     starg_points_free(session->context, points);
     subject_free(&what);
@@ -386,10 +443,16 @@ const cli_command cli_command_decompose = {
         "By default the search stops after a fixed amount of work (about 15 seconds), so that the "
         "same input gives the same bytes. --effort sets the number of trials instead; with "
         "--time-limit the search continues until that time and returns the best result; however "
-        "short the time is, there is one.",
+        "short the time is, there is one.\n"
+        "--prove finds a lower bound that holds for all ways to cut the model into star-shaped "
+        "pieces, and ends the search when no more pieces are left than that.",
     .examples = "# pieces with their proofs and a picture\n"
                 "starguard decompose model.off -o pieces.vtk --report pieces.json \\\n"
                 "    --picture pieces.png\n"
+                "# are there fewer? A bound for all partitions, checked independently\n"
+                "starguard decompose model.off -o pieces.vtk --report pieces.json --prove \\\n"
+                "    --certificate why.txt\n"
+                "starguard verify model.off pieces.json pieces.vtk why.txt\n"
                 "# the published method, from given guards\n"
                 "starguard guard model.off -o guards.json\n"
                 "starguard decompose model.off -o pieces.vtk --mode paper --guards guards.json\n"

@@ -70,19 +70,28 @@ static starg_status read_results(cli_session *session, starg_result **results) {
     return status;
 }
 
-/* A certificate must follow the guards that it belongs to. */
+/* A certificate must follow the guards or pieces that it belongs to. */
 static starg_status check_certificates(cli_session *session, starg_result *const *results) {
     for (size_t i = 1; i < session->operand_count; i++)
-        if (results[i]->certificate != NULL && (i == 1 || results[i - 1]->guards == NULL))
+        if (results[i]->certificate != NULL && (i == 1 || results[i - 1]->certificate != NULL))
             return cli_fail(session, STARG_ERROR_ARGUMENT,
-                            "'%.200s' is a certificate; it belongs behind its GUARDS.json",
+                            "'%.200s' is a certificate; it belongs behind its GUARDS.json, or "
+                            "behind PIECES.json and PIECES.vtk",
                             session->operands[i]);
     return STARG_OK;
 }
 
-/* The two files of a decomposition: operand numbers, 0 if missing. */
+/* The certificate directly behind an operand, or 0. */
+static size_t certificate_behind(const cli_session *session, starg_result *const *results,
+                                 size_t operand) {
+    bool certified = operand != 0 && operand + 1 < session->operand_count &&
+                     results[operand + 1]->certificate != NULL;
+    return certified ? operand + 1 : 0;
+}
+
+/* The files of a decomposition: operand numbers, 0 if missing. */
 typedef struct decomposition {
-    size_t pieces, report;
+    size_t pieces, report, certificate;
 } decomposition;
 
 static starg_status find_decomposition(cli_session *session, starg_result *const *results,
@@ -101,6 +110,13 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
                 session->operands[*place], session->operands[i]);
         *place = i;
     }
+    const size_t behind[2] = {certificate_behind(session, results, found->pieces),
+                              certificate_behind(session, results, found->report)};
+    found->certificate = behind[0] != 0 ? behind[0] : behind[1];
+    if (found->certificate != 0 && found->report == 0)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "'%.200s' is a certificate of the bound in PIECES.json, which is missing",
+                        session->operands[found->certificate]);
     if (found->report != 0 && found->pieces == 0)
         return cli_fail(session, STARG_ERROR_READ,
                         "'%.200s' is a report without tetrahedra; add its PIECES.vtk",
@@ -122,17 +138,16 @@ static starg_status verify_guards(cli_session *session, const model *given, size
     starg_verdict *verdict = NULL;
     starg_mesh **obstacles = NULL;
     const starg_guards *guards = results[operand]->guards;
-    bool certified =
-        operand + 1 < session->operand_count && results[operand + 1]->certificate != NULL;
+    size_t behind = certificate_behind(session, results, operand);
     CLI_TRY(cli_scene_read_obstacles(session, guards, &obstacles));
-    const starg_guards_evidence evidence = {
-        .obstacles = (const starg_mesh *const *)obstacles,
-        .obstacle_count = guards->obstacle_count,
-        .certificate = certified ? results[operand + 1]->certificate : NULL};
+    const starg_guards_evidence evidence = {.obstacles = (const starg_mesh *const *)obstacles,
+                                            .obstacle_count = guards->obstacle_count,
+                                            .certificate =
+                                                behind != 0 ? results[behind]->certificate : NULL};
     CLI_TRY(starg_verify_guards_with(session->context, given->mesh, &evidence, guards, &verdict));
     json_t *entry = json_object();
-    if (certified)
-        cli_put(session, entry, "certificate", cli_json_text(session->operands[operand + 1]));
+    if (behind != 0)
+        cli_put(session, entry, "certificate", cli_json_text(session->operands[behind]));
     tell_verdict(session, session->operands[operand], verdict, entry, list);
 done:
     cli_scene_free_obstacles(obstacles, guards->obstacle_count);
@@ -145,14 +160,23 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
     starg_verdict *verdict = NULL;
     const starg_pieces_mesh *pieces = results[found.pieces]->pieces;
     const starg_pieces_report *report = found.report != 0 ? results[found.report]->report : NULL;
-    starg_status status =
-        given->tetmesh != NULL
-            ? starg_verify_pieces_of_tetmesh(session->context, given->tetmesh, pieces, report,
-                                             &verdict)
-            : starg_verify_pieces(session->context, given->mesh, pieces, report, &verdict);
+    const starg_certificate *why =
+        found.certificate != 0 ? results[found.certificate]->certificate : NULL;
+    if (given->tetmesh != NULL && why != NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "'%.200s' is a certificate, and such are of surfaces; '%.200s' is a "
+                        "tetrahedral mesh",
+                        session->operands[found.certificate], session->operands[0]);
+    starg_status status = given->tetmesh != NULL
+                              ? starg_verify_pieces_of_tetmesh(session->context, given->tetmesh,
+                                                               pieces, report, &verdict)
+                              : starg_verify_pieces_with(session->context, given->mesh, why, pieces,
+                                                         report, &verdict);
     if (status != STARG_OK)
         return status;
     json_t *entry = json_object();
+    if (why != NULL)
+        cli_put(session, entry, "certificate", cli_json_text(session->operands[found.certificate]));
     cli_put(session, entry, "tetrahedra", json_integer((json_int_t)pieces->count));
     if (report != NULL) {
         cli_put(session, entry, "report", cli_json_text(session->operands[found.report]));
@@ -220,7 +244,8 @@ const cli_command cli_command_verify = {
         "are positive, conforming and labelled, fill the model and do not overlap; each "
         "piece is connected, has the stated size and contacts, and is star-shaped about "
         "its guard where this is stated. MODEL may also be a tetrahedral mesh. For "
-        "PIECES.vtk alone, guards are not checked.",
+        "PIECES.vtk alone, guards are not checked. With the certificate of 'starguard decompose "
+        "--prove --certificate' behind them, it is checked that no fewer pieces are possible.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
                 "# and that no fewer guards would do, wherever they stand\n"

@@ -78,12 +78,12 @@ const call calls[] = {
 const size_t call_count = sizeof calls / sizeof *calls;
 
 bool is_required(const starg_field *f) {
-    /* A list is present together with the list whose length it has; any other may be missing. So is
-     * a number whose default is below its range. */
+    /* A list is present together with the list whose length it has; any other may be missing. So
+     * may a number whose default is below its range, and what is not written at its default. */
     bool part = f->kind == STARG_FIELD_LIST || f->kind == STARG_FIELD_RECORD;
     bool unset = f->kind == STARG_FIELD_COUNT && f->initial < f->least;
-    bool may_lack =
-        (part || unset) && (f->flags & STARG_FIELD_OPTIONAL) && !(f->flags & STARG_FIELD_MATCHING);
+    bool may_lack = (part || unset || (f->flags & STARG_FIELD_RARE)) &&
+                    (f->flags & STARG_FIELD_OPTIONAL) && !(f->flags & STARG_FIELD_MATCHING);
     return f->applies == NULL && !may_lack;
 }
 

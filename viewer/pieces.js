@@ -122,6 +122,12 @@ export class PiecesView extends View {
             ],
         ];
         if (told.reported && stars < number) rows.push(["Star-shaped", count(stars), "proven"]);
+        if (told.lower_bound > 0)
+            rows.push(
+                told.optimal
+                    ? ["Needed", count(told.lower_bound), "however it is cut: optimal", "good"]
+                    : ["Needed", count(told.lower_bound), "at least, however it is cut"],
+            );
         rows.push(["Tetrahedra", count(told.tetrahedra)]);
         this.explode = slider({
             name: "Explode",

@@ -35,6 +35,7 @@ typedef struct starg_piece {
     double guard[3];
     double radius; /* distance from the guard to the nearest plane of a boundary face, negative
                       behind it; rounded */
+    double margin; /* the same by the diagonal of the piece's bounding box; -DBL_MAX: not told */
     size_t tetrahedra;
     double volume;
     bool star;
@@ -74,6 +75,14 @@ typedef struct starg_decomposition {
     double
         flattest; /* smallest ratio of height to longest edge of a tetrahedron (regular: 0.816) */
     double flattest_given; /* the same for the initial tetrahedra; -1: there were none */
+    /* Of the smallest dihedral angle of each tetrahedron, in degrees: the least and the median; -1:
+     * not told */
+    double smallest_angle, median_angle;
+    /* The least without tetrahedra over whole faces of the model that have an angle as small; -1:
+     * the surface was not kept, or the model has tetrahedra */
+    double smallest_angle_made;
+    size_t lower_bound; /* no fewer star-shaped pieces make up the model; 0: not sought */
+    bool optimal;       /* as many pieces as lower_bound */
     /* A piecewise linear homeomorphism from each piece to a polyhedral ball: the guard goes to the
      * origin, boundary vertices to points at a distance of 1 (up to rounding), and each tetrahedron
      * linearly; all images are positively oriented, exactly. */
@@ -103,7 +112,15 @@ typedef struct starg_decompose_options {
     uint64_t effort;
     /* starg_decompose_open_mesh: fill the surface even if the filled volume is far from it */
     bool fill;
-    starg_balls balls; /* STRICT: map each piece to a ball */
+    /* STRICT: spend more on guards away from the planes of their pieces' faces, and so on the
+     * angles of tetrahedra */
+    bool quality;
+    /* STRICT, embedded surfaces: prove first how few star-shaped pieces can make up the solid,
+     * however it is cut (lower_bound), in half of the time that the context allows; the search then
+     * ends as soon as there are no more */
+    bool prove;
+    uint64_t prove_work; /* budget, in tests of a vertex against a box (about a microsecond each) */
+    starg_balls balls;   /* STRICT: map each piece to a ball */
 } starg_decompose_options;
 
 /* STRICT, as few pieces as possible. */
@@ -117,12 +134,21 @@ STARG_API const starg_fields *starg_decompose_options_fields(void);
  * search returns its best result; without any, the first one is finished in a hurry. A surface that
  * intersects itself is first replaced by the boundary of what it encloses
  * (starg_repair_options.unite). PAPER, and a surface of which that cannot be made, is
- * tetrahedralized first. `options` may be NULL. Errors: ARGUMENT, SOLVER (tetrahedralization
- * failed, or a piece does not fit on the sphere in double precision), MEMORY, CANCELLED, TIME (not
- * yet tetrahedralized). */
+ * tetrahedralized first. `options` may be NULL. Errors: ARGUMENT, MESH (`prove`: the surface is not
+ * embedded), SOLVER (tetrahedralization failed, or a piece does not fit on the sphere in double
+ * precision), MEMORY, CANCELLED, TIME (not yet tetrahedralized). */
 STARG_API starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out);
+
+/* The same with `prove`, and the certificate of lower_bound: a text (docs/formats.md) of `size`
+ * bytes, followed by a zero byte, that starg_verify_pieces_with checks. Free it with
+ * starg_text_free. Errors: those of starg_decompose, ARGUMENT (without `prove`), TIME (no bound
+ * yet). */
+STARG_API starg_status starg_decompose_certified(starg_context *context, const starg_solid *solid,
+                                                 const starg_decompose_options *options,
+                                                 starg_decomposition **out, char **certificate,
+                                                 size_t *size);
 
 /* Cuts a tetrahedral mesh. STRICT returns new tetrahedra with the boundary of the mesh, possibly
  * subdivided; PAPER labels a copy of the mesh. Errors: as for starg_decompose, and MESH (STRICT: a

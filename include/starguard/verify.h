@@ -47,7 +47,8 @@ STARG_API starg_status starg_verify_guards(starg_context *context, const starg_m
                                            const starg_guards *guards, starg_verdict **out);
 STARG_API void starg_verdict_free(starg_context *context, starg_verdict *verdict);
 
-/* Why lower_bound_everywhere holds, as read (docs/formats.md). */
+/* Why lower_bound_everywhere of guards or lower_bound of pieces holds, as read (docs/formats.md).
+ */
 typedef struct starg_certificate starg_certificate;
 
 /* Reads a certificate; `name` is used in messages. Errors: FORMAT (with the line), MEMORY,
@@ -110,7 +111,7 @@ typedef struct starg_pieces_report {
     starg_decompose_mode mode;
     size_t tetrahedra;
     size_t piece_count;
-    starg_piece *pieces; /* a radius that is no number: not told */
+    starg_piece *pieces; /* a radius or margin that is no number: not told */
     size_t contact_count;
     starg_piece_contact *contacts;
     size_t strictly_star;
@@ -119,6 +120,9 @@ typedef struct starg_pieces_report {
     double distance;      /* largest distance from the boundary to the model's surface */
     double distance_back; /* and back; infinite if not given */
     double flattest;      /* least height over longest edge of a tetrahedron; 0: not given */
+    double smallest_angle, median_angle, smallest_angle_made; /* degrees; 0: not given */
+    size_t lower_bound; /* no fewer star-shaped pieces make up the model; 0: not given   */
+    bool optimal;       /* as many pieces as lower_bound; only with it                   */
     /* Maps to balls; the rest only if there are any. */
     bool balls;
     double ball_worst, ball_mean, ball_above_10;
@@ -148,6 +152,14 @@ STARG_API void starg_pieces_report_free(starg_context *context, starg_pieces_rep
 STARG_API starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model,
                                            const starg_pieces_mesh *pieces,
                                            const starg_pieces_report *report, starg_verdict **out);
+
+/* The same with the certificate of lower_bound (or NULL: then it is listed in `not_checked`). Any
+ * text may stand in it: a false one fails, and no solver's word is taken. */
+STARG_API starg_status starg_verify_pieces_with(starg_context *context, const starg_mesh *model,
+                                                const starg_certificate *certificate,
+                                                const starg_pieces_mesh *pieces,
+                                                const starg_pieces_report *report,
+                                                starg_verdict **out);
 
 /* The same for a tetrahedral model, against its boundary. */
 STARG_API starg_status starg_verify_pieces_of_tetmesh(starg_context *context,

@@ -27,7 +27,13 @@ typedef enum starg_visibility_engine {
     STARG_VISIBILITY_FASTEST = 4   /* the faster of contours and grid per point */
 } starg_visibility_engine;
 
-typedef enum starg_target { STARG_TARGET_FACES = 0, STARG_TARGET_VERTICES = 1 } starg_target;
+typedef enum starg_target {
+    STARG_TARGET_FACES = 0,
+    STARG_TARGET_VERTICES = 1,
+    STARG_TARGET_CORNERS = 2 /* 3 f + k: corner k of face f, seen from points that see its vertex
+                                and are strictly on the inner side of f. Of bounds for star-shaped
+                                pieces (starg_decompose_options.prove); not to be asked for */
+} starg_target;
 
 typedef enum starg_face_rule {
     STARG_FACES_VERTICES = 0, /* the three vertices are visible                      */

@@ -14,7 +14,7 @@ from ._library import ffi, lib, text
 from ._options import Options, takes
 from ._session import Session, logger
 from ._types import Array, PathLike, Progress
-from .errors import MeshError
+from .errors import ArgumentError, MeshError
 from .guards import name_of
 from .mesh import Mesh
 from .tetra import TetMesh, TetraReport, as_shape
@@ -44,7 +44,7 @@ class Decomposition:
     mesh: TetMesh
     #: The piece of each tetrahedron, (m,).
     labels: Array
-    #: Structured: `guard` (k, 3), `radius`, `tetrahedra`, `volume`, `star`, `spread`.
+    #: Structured: `guard` (k, 3), `radius`, `margin`, `tetrahedra`, `volume`, `star`, `spread`.
     pieces: Array
     #: Pieces that share faces, structured: `first`, `second`, `area`.
     contacts: Array
@@ -54,7 +54,15 @@ class Decomposition:
     visible_vertices: float
     flattest: float
     flattest_given: float
+    #: Dihedral angles in degrees; -1: not told.
+    smallest_angle: float
+    median_angle: float
+    smallest_angle_made: float
     time_limited: bool
+    #: No fewer star-shaped pieces make up the model, however it is cut; 0: not sought.
+    lower_bound: int
+    #: As many pieces as `lower_bound`.
+    optimal: bool
     #: With `balls`: images of the corners of each tetrahedron in the unit ball of its piece, (m, 4, 3).
     ball_corners: Array | None
     #: Largest over smallest singular value of these maps: at most, and on average by volume; and the
@@ -155,8 +163,23 @@ class Decomposition:
                      _arrays.path(path))
 
 
+def _certified(session: Session, path: PathLike, solid: Any, wanted: Any, **call: Any) -> Any:
+    """Pieces, and the file that says why no fewer are possible than their bound says."""
+    text, size = ffi.new("char **"), ffi.new("size_t *")
+    out = ffi.new("starg_decomposition **")
+    try:
+        session.call(lib.starg_decompose_certified, session.context, solid, wanted, out, text, size,
+                     **call)
+    finally:  # an interrupted call may still have finished
+        handle = session.own(out[0], lib.starg_decomposition_free, shared=True) if out[0] else None
+        why = session.own(text[0], lib.starg_text_free, shared=True) if text[0] else None
+    session.call(lib.starg_certificate_write, session.context, why, size[0], _arrays.path(path))
+    return handle
+
+
 @takes(OPTIONS)
-def decompose(model: Any, *, guards: ArrayLike | None = None, threads: int | None = None,
+def decompose(model: Any, *, guards: ArrayLike | None = None,
+              certificate: PathLike | None = None, threads: int | None = None,
               seed: int | None = None, time_limit: float | None = None,
               progress: Progress | None = None,
               **options: Unpack[DecomposeOptions]) -> Decomposition:
@@ -166,7 +189,9 @@ def decompose(model: Any, *, guards: ArrayLike | None = None, threads: int | Non
     notice, if the filled volume is near the surface or `fill` is true. `guards` (n, 3) are seeds, or
     points to try first. The search stops after `effort` trials, or by default after a fixed amount
     of work (about 15 seconds), which gives the same result everywhere. With `time_limit` and no
-    `effort` it continues until that time and returns its best result.
+    `effort` it continues until that time and returns its best result. With `prove=True`,
+    `lower_bound` holds for all ways to cut a surface into star-shaped pieces, and `certificate` is a
+    file to write that says why; `verify(model, pieces, file)` checks it.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -182,9 +207,15 @@ def decompose(model: Any, *, guards: ArrayLike | None = None, threads: int | Non
         wanted.pointer.guards = points
         wanted.pointer.guard_count = len(places)
     function, handle = _subject(shape)
-    made = session.make("starg_decomposition", lib.starg_decomposition_free, function,
-                        session.context, handle, wanted.pointer, shared=True, progress=progress,
-                        time_limit=time_limit)
+    if certificate is not None:
+        if function != lib.starg_decompose:
+            raise ArgumentError("a certificate says why a bound for pieces of a closed surface holds")
+        made = _certified(session, certificate, handle, wanted.pointer, progress=progress,
+                          time_limit=time_limit)
+    else:
+        made = session.make("starg_decomposition", lib.starg_decomposition_free, function,
+                            session.context, handle, wanted.pointer, shared=True,
+                            progress=progress, time_limit=time_limit)
     return _of(made, shape.file)
 
 

@@ -82,6 +82,13 @@ class PiecesReport:
     distance_back: float
     #: 0 where it is not told.
     flattest: float
+    #: Degrees; 0 where they are not told.
+    smallest_angle: float
+    median_angle: float
+    smallest_angle_made: float
+    #: 0 where it is not told.
+    lower_bound: int
+    optimal: bool
     _handle: Any = field(repr=False)
     _owner: Any = field(repr=False)
 
@@ -101,8 +108,8 @@ class PiecesReport:
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Why `lower_bound_everywhere` of guards holds, as `guard(prove=True, certificate=FILE)` writes
-    it."""
+    """Why `lower_bound_everywhere` of guards or `lower_bound` of pieces holds, as
+    `guard(prove=True, certificate=FILE)` and `decompose` write it."""
 
     _handle: Any = field(repr=False)
     _owner: Any = field(repr=False)
@@ -153,7 +160,7 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
            seed: int | None = None, progress: Progress | None = None) -> Verdict:
     """Checks the claims of results about a model with independent algorithms. A result is an object
     from `guard` or `decompose`, or a file name; a PIECES.vtk and its PIECES.json are checked
-    together, and a certificate with the guards before it.
+    together, and a certificate with what is before it.
 
     >>> import starguard
     >>> room = starguard.sample("l-room", vertices=500)
@@ -170,8 +177,8 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     claims: list[Claim] = []
     rest: list[str] = []
     for before, result in zip([None, *given], given):
-        if isinstance(result, Certificate) and not isinstance(before, Guards):
-            raise ArgumentError("a certificate belongs behind its guards")
+        if isinstance(result, Certificate) and isinstance(before, (Certificate, type(None))):
+            raise ArgumentError("a certificate belongs behind its guards or pieces")
     for result, behind in zip(given, [*given[1:], None]):
         if isinstance(result, Guards):
             surface = shape.surface()[0] if isinstance(shape, TetMesh) else shape
@@ -183,10 +190,15 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
                 evidence.certificate = behind._handle
             _judge(session, lib.starg_verify_guards_with, surface, evidence, result._handle,
                    claims=claims, rest=rest, progress=progress)
-    for mesh, report in _decompositions(given):
-        function = (lib.starg_verify_pieces_of_tetmesh if isinstance(shape, TetMesh)
-                    else lib.starg_verify_pieces)
-        _judge(session, function, shape, mesh, report, claims=claims, rest=rest, progress=progress)
+    for mesh, report, why in _decompositions(given):
+        if isinstance(shape, TetMesh):
+            if why != ffi.NULL:
+                raise ArgumentError("a certificate is of a surface, not of tetrahedra")
+            _judge(session, lib.starg_verify_pieces_of_tetmesh, shape, mesh, report, claims=claims,
+                   rest=rest, progress=progress)
+        else:
+            _judge(session, lib.starg_verify_pieces_with, shape, why, mesh, report, claims=claims,
+                   rest=rest, progress=progress)
     return Verdict(all(claim.holds for claim in claims), claims, rest)
 
 
@@ -199,18 +211,26 @@ def _judge(session: Session, function: Any, shape: Any, *arguments: Any, claims:
     rest += [text(verdict.not_checked[i].text) for i in range(verdict.not_checked_count)]
 
 
-def _decompositions(results: list[Any]) -> list[tuple[Any, Any]]:
-    """Pairs tetrahedra with their reports: Decompositions, and files."""
+def _decompositions(results: list[Any]) -> list[tuple[Any, Any, Any]]:
+    """Tetrahedra with their reports and certificates: Decompositions, and files."""
     meshes = [r for r in results if isinstance(r, PiecesMesh)]
     reports = [r for r in results if isinstance(r, PiecesReport)]
     if len(meshes) > 1 or len(reports) > 1:
         raise ArgumentError("these files belong to several decompositions; verify them separately")
     if reports and not meshes:
         raise ArgumentError("a PIECES.json has no tetrahedra; add its PIECES.vtk")
-    pairs = [(pieces_mesh_of(r), pieces_report_of(r)) for r in results if isinstance(r, Decomposition)]
+    found, why = [], ffi.NULL
+    for result, behind in zip(results, [*results[1:], None]):
+        certificate = behind._handle if isinstance(behind, Certificate) else ffi.NULL
+        if isinstance(result, Decomposition):
+            found.append((pieces_mesh_of(result), pieces_report_of(result), certificate))
+        elif isinstance(result, (PiecesMesh, PiecesReport)) and certificate != ffi.NULL:
+            why = certificate
+    if why != ffi.NULL and not reports:
+        raise ArgumentError("a certificate is of the bound in a PIECES.json, which is missing")
     if meshes:
-        pairs.append((meshes[0]._handle, reports[0]._handle if reports else ffi.NULL))
-    return pairs
+        found.append((meshes[0]._handle, reports[0]._handle if reports else ffi.NULL, why))
+    return found
 
 
 def pieces_mesh_of(d: Decomposition) -> Any:
@@ -239,6 +259,9 @@ def pieces_report_of(d: Decomposition) -> Any:
     report.distance = own.tetra.to_surface + own.tetra.step
     report.distance_back = own.tetra.from_surface + own.tetra.step
     report.flattest = own.flattest
+    for name in ("smallest_angle", "median_angle", "smallest_angle_made"):
+        setattr(report, name, max(getattr(own, name), 0))
+    report.lower_bound, report.optimal = own.lower_bound, own.optimal
     report.balls = own.balls != lib.STARG_BALLS_NONE
     for key in ("ball_worst", "ball_mean", "ball_above_10"):
         setattr(report, key, getattr(own, key))

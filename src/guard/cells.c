@@ -19,6 +19,7 @@
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
 #include "guard/candidates.h"
+#include "visibility/columns.h"
 
 static const char STAGE[] = "search";
 
@@ -28,9 +29,13 @@ enum { RANDOM_STAGE = 27, ROOT_BITS = 20 };
 
 static void fill_places(search_scene *scene) {
     const visibility_scene *points = scene->points;
+    const starg_mesh *mesh = scene->solid->mesh;
     if (scene->view->target == STARG_TARGET_VERTICES)
-        for (size_t v = 0; v < scene->solid->mesh->vertex_count; v++)
+        for (size_t v = 0; v < mesh->vertex_count; v++)
             scene->places[v] = points->slot_of[v];
+    else if (scene->view->target == STARG_TARGET_CORNERS)
+        for (size_t j = 0; j < 3 * mesh->face_count; j++)
+            scene->places[j] = points->slot_of[mesh->faces[j]];
     else
         for (size_t rank = 0; rank < points->face_count; rank++)
             scene->places[points->face_of[rank]] = (uint32_t)rank;
@@ -40,12 +45,10 @@ starg_status search_scene_open(starg_context *context, const starg_solid *solid,
                                const starg_visibility_options *view, double clearance,
                                search_scene *out) {
     starg_status status = STARG_OK;
-    bool vertices = view->target == STARG_TARGET_VERTICES;
     *out = (search_scene){.context = context, .solid = solid, .view = view, .clearance = clearance};
     STARG_TRY(scene_create(context, solid, &out->points));
     STARG_TRY(box_scene_create(context, solid, &out->boxes));
-    STARG_NEW(context, STAGE, out->places,
-              vertices ? solid->mesh->vertex_count : solid->mesh->face_count);
+    STARG_NEW(context, STAGE, out->places, target_columns(solid->mesh, view->target));
     fill_places(out);
 done:
     if (status != STARG_OK)
@@ -68,8 +71,9 @@ void search_scene_close(search_scene *scene) {
 void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) {
     const visibility_scene *points = scene->points;
     uint32_t column = scene->witnesses.data[j], place = scene->places[column];
-    if (scene->view->target == STARG_TARGET_VERTICES) {
-        vec3_copy(points->mesh->vertices + 3 * (size_t)column, centre);
+    if (scene->view->target != STARG_TARGET_FACES) {
+        const double at[3] = {points->x[place], points->y[place], points->z[place]};
+        vec3_copy(at, centre);
         return;
     }
     for (int k = 0; k < 3; k++)
@@ -77,22 +81,34 @@ void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) 
                     scene_corner(points, place, 2)[k] / 3;
 }
 
+/* Is p strictly on the inner side of the face of a corner? */
+static bool is_before(const search_scene *scene, uint32_t corner, const double p[3]) {
+    const starg_mesh *mesh = scene->solid->mesh;
+    const uint32_t *c = mesh->faces + 3 * (size_t)(corner / 3);
+    return orient3d(mesh->vertices + 3 * (size_t)c[0], mesh->vertices + 3 * (size_t)c[1],
+                    mesh->vertices + 3 * (size_t)c[2], p) > 0;
+}
+
 bool search_scene_sees(const search_scene *scene, const search_point *point, size_t j,
                        uint64_t *work) {
     starg_visibility_options view = *scene->view;
-    uint32_t place = scene->places[scene->witnesses.data[j]];
-    bool vertices = view.target == STARG_TARGET_VERTICES;
+    uint32_t column = scene->witnesses.data[j], place = scene->places[column];
+    bool whole = view.target == STARG_TARGET_FACES;
     view.directions = point->direction;
     view.ups = point->up;
-    bool sees = vertices ? scene_sees_vertex(scene->points, point->place, place, &view)
-                         : scene_sees_face(scene->points, point->place, place, &view);
-    *work += sees && !vertices ? 3 : 1;
+    bool sees =
+        whole ? scene_sees_face(scene->points, point->place, place, &view)
+              : (view.target == STARG_TARGET_VERTICES || is_before(scene, column, point->place)) &&
+                    scene_sees_vertex(scene->points, point->place, place, &view);
+    *work += sees && whole ? 3 : 1;
     return sees;
 }
 
 bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j) {
     const visibility_scene *points = scene->points;
-    uint32_t place = scene->places[scene->witnesses.data[j]];
+    uint32_t column = scene->witnesses.data[j], place = scene->places[column];
+    if (scene->view->target == STARG_TARGET_CORNERS)
+        return is_before(scene, column, p);
     return scene->view->target == STARG_TARGET_VERTICES ||
            scene_back(points, place) != SCENE_NONE ||
            orient3d(scene_corner(points, place, 0), scene_corner(points, place, 1),

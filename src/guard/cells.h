@@ -16,7 +16,8 @@ typedef struct search_scene {
     double clearance;
     visibility_scene *points; /* what a point sees                                           */
     box_scene *boxes;         /* what a box may see                                          */
-    uint32_t *places;         /* by column: where `points` has it: rank of the face, or slot */
+    uint32_t
+        *places; /* by column: where `points` has it: rank of the face, or slot of the vertex */
     STARG_ARRAY(uint32_t) witnesses; /* columns: the faces or vertices that stand for all    */
     uint64_t work; /* vertices held against boxes and points, each about a microsecond       */
 } search_scene;
@@ -34,7 +35,7 @@ typedef struct search_point {
     uint32_t candidate; /* of the pool, or UINT32_MAX */
 } search_point;
 
-/* The middle of the face of witness j, or its vertex. */
+/* The middle of the face of witness j, or the vertex. */
 void search_scene_centre(const search_scene *scene, size_t j, double centre[3]);
 
 /* Does the point see witness j? Its place is in the free space. */

@@ -251,7 +251,9 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_o
     fprintf(stream, "starguard-certificate 1\nvertices %zu\nfaces %zu\nchecksum %016llx\n",
             mesh->vertex_count, mesh->face_count, (unsigned long long)sum);
     fprintf(stream, "target %s\nrange",
-            view->target == STARG_TARGET_VERTICES ? "vertices" : "faces");
+            view->target == STARG_TARGET_VERTICES  ? "vertices"
+            : view->target == STARG_TARGET_CORNERS ? "corners"
+                                                   : "faces");
     if (isinf(view->range))
         fprintf(stream, " none");
     else
@@ -266,11 +268,21 @@ static void put_head(FILE *stream, const starg_solid *solid, const starg_guard_o
     fprintf(stream, "\n");
 }
 
+/* A corner by its face and vertex. */
+static void put_witness(FILE *stream, const starg_solid *solid, const starg_guard_options *options,
+                        uint32_t column) {
+    if (options->visibility.target == STARG_TARGET_CORNERS)
+        fprintf(stream, "%u %u\n", column / 3, solid->mesh->faces[column]);
+    else
+        fprintf(stream, "%u\n", column);
+}
+
 static void put_witnesses(FILE *stream, const making *m) {
     fprintf(stream, "witnesses %zu\n", starg_bit_count(m->wanted.bits, WITNESS_WORDS));
     for (size_t w = 0; w < WITNESS_WORDS; w++)
         STARG_FOR_BITS (bit, m->wanted.bits[w])
-            fprintf(stream, "%u\n", m->scene->witnesses.data[64 * w + bit]);
+            put_witness(stream, m->scene->solid, m->options,
+                        m->scene->witnesses.data[64 * w + bit]);
 }
 
 static void put_rows(FILE *stream, const making *m) {
@@ -399,10 +411,10 @@ typedef struct single {
 static void put_single(FILE *stream, const void *what) {
     const single *s = what;
     put_head(stream, s->solid, s->options, &s->solid->tree->nodes[0].box, s->witness != UINT32_MAX);
-    if (s->witness == UINT32_MAX)
-        fprintf(stream, "witnesses 0\nrows 0\ncells 1\n.\nnodes 0\n");
-    else
-        fprintf(stream, "witnesses 1\n%u\nrows 0\ncells 1\n.\nnodes 0\n", s->witness);
+    fprintf(stream, "witnesses %d\n", s->witness != UINT32_MAX);
+    if (s->witness != UINT32_MAX)
+        put_witness(stream, s->solid, s->options, s->witness);
+    fprintf(stream, "rows 0\ncells 1\n.\nnodes 0\n");
 }
 
 starg_status certificate_of_one(starg_context *context, const starg_solid *solid,

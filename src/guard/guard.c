@@ -17,6 +17,7 @@
 #include "core/fields.h"
 #include "guard/baseline.h"
 #include "guard/certificate.h"
+#include "guard/corners.h"
 #include "guard/proxy.h"
 #include "guard/stages.h"
 #include "starguard/kernel.h"
@@ -260,8 +261,8 @@ static bool sees_everything(const guard_pool *pool) {
     const starg_mesh *mesh = pool->solid->mesh;
     if (pool_count(pool) != 1)
         return false;
-    if (pool->options->visibility.target == STARG_TARGET_FACES)
-        return starg_bits_count(pool->rows, 0) == mesh->face_count;
+    if (pool->options->visibility.target != STARG_TARGET_VERTICES)
+        return starg_bits_count(pool->rows, 0) == pool->columns;
     for (size_t k = 0; k < 3 * mesh->face_count; k++)
         if (!starg_bits_test(pool->rows, 0, mesh->faces[k]))
             return false;
@@ -417,6 +418,62 @@ starg_status starg_guard_certified(starg_context *context, const starg_solid *so
     }
     certificate_free(context, &why);
     return status;
+}
+
+/* ---- corners ---- */
+
+static starg_status take_corner_guards(const guard_problem *problem, const guard_outcome *outcome,
+                                       corner_guards *out) {
+    starg_status status = STARG_OK;
+    const guard_selection *selection = &outcome->selection;
+    STARG_NEW(problem->context, STAGE, out->positions, 3 * selection->chosen.count);
+    out->count = selection->chosen.count;
+    out->bound = outcome->search.bound;
+    for (size_t i = 0; i < out->count; i++)
+        memcpy(out->positions + 3 * i, pool_point(&outcome->pool, selection->chosen.data[i]),
+               3 * sizeof *out->positions);
+    if (problem->certificate != NULL) {
+        out->certificate = problem->certificate->text;
+        out->size = problem->certificate->size;
+        problem->certificate->text = NULL;
+    }
+done:
+    return status;
+}
+
+starg_status corner_guards_find(starg_context *context, const starg_solid *solid, uint64_t work,
+                                bool certified, corner_guards *out) {
+    starg_status status = STARG_OK;
+    starg_guard_options used;
+    guard_certificate why = {0};
+    guard_outcome outcome = {0};
+    *out = (corner_guards){0};
+    starg_guard_options_default(&used);
+    used.visibility.target = STARG_TARGET_CORNERS;
+    used.prove = true;
+    used.prove_work = work;
+    set_defaults(&used, solid->mesh->vertex_count);
+    guard_problem problem = {.context = context,
+                             .solid = solid,
+                             .options = &used,
+                             .certificate = certified ? &why : NULL};
+    STARG_TRY(column_weights_create(context, solid, used.visibility.target, &problem.weights));
+    STARG_TRY(find_guards(&problem, &outcome));
+    STARG_TRY(certify_one(&problem, &outcome));
+    STARG_TRY(take_corner_guards(&problem, &outcome, out));
+done:
+    outcome_free(context, &outcome);
+    column_weights_free(context, &problem.weights);
+    certificate_free(context, &why);
+    if (status != STARG_OK)
+        corner_guards_free(context, out);
+    return status;
+}
+
+void corner_guards_free(starg_context *context, corner_guards *guards) {
+    starg_release(context, guards->positions);
+    starg_release(context, guards->certificate);
+    *guards = (corner_guards){0};
 }
 
 static starg_status choose_all(const guard_problem *problem, const guard_pool *pool,

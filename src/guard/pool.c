@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "guard/pool.h"
 
+#include "visibility/columns.h"
 #include "visibility/scene.h"
 
 static const char STAGE[] = "guard";
@@ -8,12 +9,10 @@ static const char STAGE[] = "guard";
 starg_status pool_create(starg_context *context, const starg_solid *solid,
                          const starg_guard_options *options, guard_pool *pool) {
     starg_status status = STARG_OK;
-    const starg_mesh *mesh = solid->mesh;
-    bool vertices = options->visibility.target == STARG_TARGET_VERTICES;
     *pool = (guard_pool){.context = context,
                          .solid = solid,
                          .options = options,
-                         .columns = vertices ? mesh->vertex_count : mesh->face_count};
+                         .columns = target_columns(solid->mesh, options->visibility.target)};
     STARG_NEW_ZERO(context, STAGE, pool->coverable, starg_bit_words(pool->columns));
 done:
     return status;
@@ -155,19 +154,17 @@ done:
     return status;
 }
 
-/* Marks the faces that are wanted but not coverable; with vertices as the target, the faces around
- * a vertex that is not. */
+/* Marks the faces that are wanted but not coverable; with vertices or corners as the target, the
+ * faces around one that is not. */
 static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
     const starg_mesh *mesh = pool->solid->mesh;
-    bool vertices = pool->options->visibility.target == STARG_TARGET_VERTICES;
+    starg_target target = pool->options->visibility.target;
     for (size_t f = 0; f < mesh->face_count; f++) {
-        const uint32_t *c = mesh->faces + 3 * f;
-        if (vertices)
-            unseen[f] = !starg_bit_test(pool->coverable, c[0]) ||
-                        !starg_bit_test(pool->coverable, c[1]) ||
-                        !starg_bit_test(pool->coverable, c[2]);
-        else
-            unseen[f] = !starg_bit_test(pool->coverable, f);
+        unseen[f] = target == STARG_TARGET_FACES && !starg_bit_test(pool->coverable, f);
+        for (size_t k = 3 * f; k < 3 * f + 3 && target != STARG_TARGET_FACES; k++) {
+            size_t column = target == STARG_TARGET_VERTICES ? mesh->faces[k] : k;
+            unseen[f] = unseen[f] || !starg_bit_test(pool->coverable, column);
+        }
         unseen[f] = unseen[f] && solid_is_target(pool->solid, false, f);
     }
 }

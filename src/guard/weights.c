@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "geometry/vec3.h"
+#include "visibility/columns.h"
 
 static const char STAGE[] = "guard";
 
@@ -45,17 +46,17 @@ starg_status column_weights_create(starg_context *context, const starg_solid *so
                                    starg_target target, column_weights *out) {
     starg_status status = STARG_OK;
     const starg_mesh *mesh = solid->mesh;
-    bool vertices = target == STARG_TARGET_VERTICES;
-    size_t columns = vertices ? mesh->vertex_count : mesh->face_count;
+    bool vertices = target == STARG_TARGET_VERTICES, faces = target == STARG_TARGET_FACES;
+    size_t columns = target_columns(mesh, target);
     *out = (column_weights){0};
     STARG_TRY(measure_areas(context, solid, out));
     STARG_NEW(context, STAGE, out->weights, columns);
     for (size_t j = 0; j < columns; j++) {
-        if (!solid_is_target(solid, vertices, j)) {
+        if (!solid_is_target(solid, vertices, target == STARG_TARGET_CORNERS ? j / 3 : j)) {
             out->weights[j] = 0;
             continue;
         }
-        double share = vertices || !(out->area > 0) ? 0 : out->areas[j] / out->area;
+        double share = !faces || !(out->area > 0) ? 0 : out->areas[j] / out->area;
         uint64_t weight = (uint64_t)llround(share * 0x1p40);
         out->weights[j] = weight > 0 ? weight : 1;
         out->total += out->weights[j];

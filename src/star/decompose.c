@@ -6,8 +6,10 @@
 #include "geometry/vec3.h"
 #include "mesh/mesh.h"
 #include "mesh/solid.h"
+#include "star/angles.h"
 #include "star/balls.h"
 #include "star/decomposition.h"
+#include "star/lower_bound.h"
 #include "star/paper/paper.h"
 #include "star/strict/strict.h"
 #include "star/touching.h"
@@ -62,6 +64,24 @@ static const starg_field OPTIONS[] = {
      FIELD_MEMBER(starg_decompose_options, fill),
      .help = "Fill a surface with holes even if the filled volume is farther from it than a fifth "
              "of its diagonal."},
+    {.option = "quality",
+     .kind = STARG_FIELD_FLAG,
+     FIELD_MEMBER(starg_decompose_options, quality),
+     .help = "strict: spend more on room for the guards, which makes better tetrahedra."},
+    {.option = "prove",
+     .kind = STARG_FIELD_FLAG,
+     FIELD_MEMBER(starg_decompose_options, prove),
+     .help =
+         "strict: prove first how few star-shaped pieces there can be, however the solid is cut; "
+         "the search ends as soon as there are no more."},
+    {.option = "prove-work",
+     .kind = STARG_FIELD_COUNT,
+     FIELD_MEMBER(starg_decompose_options, prove_work),
+     .most = UINT64_MAX >> 1,
+     .initial = 90000000,
+     .value = "N",
+     .help = "--prove: budget, counted in tests of a vertex against a box (about a microsecond "
+             "each)."},
     {.key = "balls",
      .option = "balls",
      .kind = STARG_FIELD_CHOICE,
@@ -113,6 +133,9 @@ static starg_status check_options(starg_context *context, const starg_decompose_
                                  "1e100 in magnitude",
                                  i / 3, o->guards[i]);
         }
+    if (o->prove && o->mode == STARG_DECOMPOSE_PAPER)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a bound for star-shaped pieces is proven in strict mode only");
     return STARG_OK;
 }
 
@@ -152,6 +175,10 @@ starg_status starg_decompose_tetmesh(starg_context *context, const starg_tetmesh
         options = &defaults;
     *out = NULL;
     STARG_TRY(check_options(context, options));
+    if (options->prove)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a bound for pieces is proven for surfaces only; give the boundary of "
+                          "the tetrahedra as a surface");
     STARG_TRY(run_mode(context, mesh, options, out));
     (*out)->model_vertices = mesh->vertex_count;
     (*out)->model_tetrahedra = mesh->count;
@@ -246,12 +273,7 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
                                     const starg_decompose_options *options,
                                     starg_decomposition **out) {
     starg_status status = STARG_OK;
-    starg_decompose_options defaults;
-    starg_decompose_options_default(&defaults);
-    if (options == NULL)
-        options = &defaults;
     *out = NULL;
-    STARG_TRY(check_options(context, options));
     if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT)
         STARG_TRY(decompose_surface(context, solid, options, out));
     if (solid != NULL && options->mode == STARG_DECOMPOSE_STRICT && *out == NULL)
@@ -263,17 +285,106 @@ static starg_status decompose_model(starg_context *context, const starg_solid *s
     (*out)->model_faces = model->face_count;
     (*out)->model_tetrahedra = 0;
     STARG_TRY(complete(context, options, *out));
+    if (solid != NULL && (*out)->tetra.surface_kept)
+        STARG_TRY(angles_tell_apart(context, model, *out));
 done:
     return drop_failed(context, status, out);
 }
 
+/* Half of the time that is left is for the proof. */
+static starg_status find_bound(starg_context *context, const starg_solid *solid,
+                               const starg_decompose_options *options, bool certified,
+                               corner_guards *out) {
+    const starg_deadline all = context->deadline;
+    if (all.at > 0)
+        context->deadline.at -= fmax(starg_seconds_left(context), 0) / 2;
+    starg_status status = piece_bound_find(context, solid, options->prove_work, certified, out);
+    context->deadline.at = all.at;
+    return status;
+}
+
+/* No fewer pieces are looked for than there can be; what sees all corners may see pieces. */
+static starg_status decompose_proven(starg_context *context, const starg_solid *solid,
+                                     const starg_decompose_options *options, bool certified,
+                                     corner_guards *bound, starg_decomposition **out) {
+    starg_status status = STARG_OK;
+    starg_decompose_options own = *options;
+    STARG_TRY(find_bound(context, solid, options, certified, bound));
+    if (own.max_pieces < bound->bound)
+        own.max_pieces = bound->bound;
+    if (own.guards == NULL) {
+        own.guards = bound->positions;
+        own.guard_count = bound->count;
+    }
+    STARG_TRY(decompose_model(context, solid, NULL, &own, out));
+    (*out)->lower_bound = bound->bound;
+    (*out)->optimal = bound->bound == (*out)->piece_count;
+done:
+    return status;
+}
+
 starg_status starg_decompose(starg_context *context, const starg_solid *solid,
                              const starg_decompose_options *options, starg_decomposition **out) {
-    return decompose_model(context, solid, NULL, options, out);
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    corner_guards bound = {0};
+    starg_decompose_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    if (options->prove)
+        STARG_TRY(decompose_proven(context, solid, options, false, &bound, out));
+    else
+        STARG_TRY(decompose_model(context, solid, NULL, options, out));
+done:
+    corner_guards_free(context, &bound);
+    return status;
+}
+
+starg_status starg_decompose_certified(starg_context *context, const starg_solid *solid,
+                                       const starg_decompose_options *options,
+                                       starg_decomposition **out, char **text, size_t *size) {
+    starg_status status = STARG_OK;
+    corner_guards bound = {0};
+    *out = NULL;
+    *text = NULL;
+    *size = 0;
+    if (options == NULL || !options->prove)
+        return starg_fail(context, STARG_ERROR_ARGUMENT, STAGE,
+                          "a certificate says why a bound for pieces holds, which is not asked "
+                          "for; ask for a proof (prove)");
+    STARG_TRY(check_options(context, options));
+    STARG_TRY(decompose_proven(context, solid, options, true, &bound, out));
+    if (bound.certificate == NULL) {
+        starg_decomposition_free(context, *out);
+        *out = NULL;
+        status = starg_fail_time(context, STAGE);
+        goto done;
+    }
+    *text = bound.certificate;
+    *size = bound.size;
+    bound.certificate = NULL;
+done:
+    corner_guards_free(context, &bound);
+    return status;
 }
 
 starg_status starg_decompose_open_mesh(starg_context *context, const starg_mesh *surface,
                                        const starg_decompose_options *options,
                                        starg_decomposition **out) {
-    return decompose_model(context, NULL, surface, options, out);
+    starg_status status = STARG_OK;
+    starg_decompose_options defaults;
+    starg_decompose_options_default(&defaults);
+    if (options == NULL)
+        options = &defaults;
+    *out = NULL;
+    STARG_TRY(check_options(context, options));
+    if (options->prove)
+        return starg_fail(context, STARG_ERROR_MESH, STAGE,
+                          "a bound for pieces is proven for closed surfaces only; close it with "
+                          "'starguard repair', or leave out the proof");
+    STARG_TRY(decompose_model(context, NULL, surface, options, out));
+done:
+    return status;
 }

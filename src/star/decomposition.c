@@ -19,6 +19,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "geometry/vec3.h"
+#include "star/angles.h"
 #include "star/piece_faces.h"
 
 static const char STAGE[] = "pieces";
@@ -72,6 +73,20 @@ static double find_radius(const measuring *m, const kernel_faces *surface, const
     return isfinite(radius) ? ldexp(radius, m->exponent) : 0;
 }
 
+/* Of the bounding box of a surface, in units. */
+static double find_diagonal(const measuring *m, const kernel_faces *surface) {
+    double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double extent[3];
+    for (size_t i = 0; i < 3 * surface->count; i++)
+        for (int k = 0; k < 3; k++) {
+            double x = surface->vertices[3 * (size_t)surface->faces[i] + (size_t)k];
+            least[k] = fmin(least[k], x);
+            most[k] = fmax(most[k], x);
+        }
+    scaled_difference(m, most, least, extent);
+    return vec3_length(extent);
+}
+
 static starg_status measure_piece(starg_context *context, void *shared, void *scratch,
                                   size_t index) {
     const measuring *m = shared;
@@ -80,6 +95,7 @@ static starg_status measure_piece(starg_context *context, void *shared, void *sc
     (void)context;
     (void)scratch;
     piece->radius = find_radius(m, &surface, piece->guard);
+    piece->margin = ldexp(piece->radius, -m->exponent) / find_diagonal(m, &surface);
     piece->star =
         kernel_sees_all(&surface, piece->guard) && kernel_winding(&surface, piece->guard) == 1;
     return STARG_OK;
@@ -201,6 +217,7 @@ starg_status decomposition_finish(starg_context *context, starg_decompose_mode m
     STARG_TRY(add_pieces(context, d, guards, count));
     STARG_TRY(measure_pieces(context, d));
     STARG_TRY(find_contacts(context, d));
+    STARG_TRY(angles_measure(context, d));
     STARG_TRY(decomposition_find_sight(context, d));
     *out = d;
 done:

@@ -140,6 +140,50 @@ static void claim_radius(const verify_context *own) {
                      "guards are as far from the planes of their pieces' faces as claimed");
 }
 
+/* ---- margins ---- */
+
+/* The diagonal of the bounding box of a piece's walls. */
+static double find_diagonal(const verify_context *own, size_t piece) {
+    const verify_pieces *pieces = own->pieces;
+    double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t wall = pieces->wall_start[piece]; wall < pieces->wall_start[piece + 1]; wall++) {
+        const double *t[3];
+        verify_corners(pieces->walls, wall, t);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++) {
+                lower[k] = fmin(lower[k], t[i][k]);
+                upper[k] = fmax(upper[k], t[i][k]);
+            }
+    }
+    return hypot(hypot(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+}
+
+/* Radii are checked by themselves. */
+static void claim_margins(const verify_context *own) {
+    const starg_pieces_report *report = own->report;
+    size_t bad = 0, first = 0, told = 0;
+    for (size_t p = report->piece_count; p-- > 0;) {
+        double claimed = report->pieces[p].margin;
+        double found = report->pieces[p].radius / find_diagonal(own, p);
+        bool known = !isnan(claimed) && !isnan(report->pieces[p].radius);
+        told += known;
+        if (!known || fabs(claimed - found) <= 1e-9 * fabs(found))
+            continue;
+        bad++;
+        first = p;
+    }
+    if (told < report->piece_count)
+        verify_leave(own->verdict,
+                     "the margin of %zu pieces: the report does not tell it, or not the radius",
+                     report->piece_count - told);
+    if (told > 0)
+        verify_claim(own->verdict, bad == 0,
+                     bad == 0 ? "margins are radii by the diagonals of the pieces"
+                              : "margins are radii by the diagonals of the pieces: %zu are not, "
+                                "first piece %zu",
+                     bad, first);
+}
+
 /* ---- flatness ---- */
 
 /* Least height over longest edge of a tetrahedron, which is independent of scale. */
@@ -176,8 +220,7 @@ static void claim_flattest(const verify_context *own) {
     } else {
         verify_leave(own->verdict, "the flattest tetrahedron: the report does not tell it");
     }
-    verify_leave(own->verdict, "how flat tetrahedra were to begin with, and whether fewer pieces "
-                               "would do");
+    verify_leave(own->verdict, "how flat tetrahedra were to begin with");
 }
 
 starg_status verify_claim_numbers(const verify_context *own) {
@@ -190,6 +233,7 @@ starg_status verify_claim_numbers(const verify_context *own) {
     STARG_TRY(claim_volumes(own));
     STARG_TRY(claim_contacts(own));
     claim_radius(own);
+    claim_margins(own);
 done:
     return status;
 }

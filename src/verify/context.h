@@ -12,6 +12,7 @@ typedef struct verify_context {
     const starg_pieces_mesh *mesh;
     const starg_pieces_report *report; /* or NULL */
     const verify_surface *model;
+    const starg_certificate *certificate; /* of the report's lower bound, or NULL */
     verify_pieces *pieces;
     starg_verdict *verdict;
 } verify_context;
@@ -29,6 +30,11 @@ starg_status verify_claim_numbers(const verify_context *own);
 /* Star-shapedness, and what guards see. Requires valid labels. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_stars(const verify_context *own);
 
+/* Dihedral angles. Errors: MEMORY. */
+starg_status verify_claim_angles(const verify_context *own);
+
+/* No fewer star-shaped pieces are possible. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_fewest(const verify_context *own);
 /* Maps of pieces to balls, if there are any. Errors: MEMORY. */
 starg_status verify_claim_balls(const verify_context *own);
 

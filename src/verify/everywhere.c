@@ -55,6 +55,19 @@ static bool is_barred(const checking *own, const verify_box *box) {
                clearance * (0.9995 - sqrt(squared));
 }
 
+/* A corner is seen from the inner side of its face, past what hides its vertex: as a face is, but
+ * for the other two vertices. */
+static bool is_hidden(const starg_certificate *c, verify_watch *watch,
+                      const verify_reason *reason) {
+    starg_target target = c->target;
+    if (target == STARG_TARGET_CORNERS) {
+        target = STARG_TARGET_FACES;
+        if (reason->kind != 'n' && reason->vertex != c->corners[reason->witness])
+            return false;
+    }
+    return verify_box_hides(watch, target, c->witnesses[reason->witness], c->range, reason);
+}
+
 static starg_status check_cell(starg_context *context, void *shared, void *scratch, size_t item) {
     const checking *own = shared;
     const starg_certificate *c = own->certificate;
@@ -66,8 +79,7 @@ static starg_status check_cell(starg_context *context, void *shared, void *scrat
         (cell->kind == EVERYWHERE_BARRED && !is_barred(own, &cell->box)))
         own->wrong[item] = SIZE_MAX;
     for (size_t k = cell->first; k < cell->first + cell->count; k++)
-        if (!verify_box_hides(scratch, c->target, c->witnesses[c->reasons.data[k].witness],
-                              c->range, &c->reasons.data[k])) {
+        if (!is_hidden(c, scratch, &c->reasons.data[k])) {
             own->wrong[item] = k;
             break;
         }
@@ -111,13 +123,18 @@ done:
 
 /* ---- claims ---- */
 
+bool verify_certificate_is_of(const starg_certificate *c, const verify_surface *surface) {
+    uint64_t sum = STARG_CHECKSUM_BEGIN;
+    for (size_t f = 0; f < surface->face_count; f++)
+        sum = starg_checksum_face(sum, surface->vertices, surface->faces + 3 * f);
+    return c->vertex_count == surface->vertex_count && c->face_count == surface->face_count &&
+           c->checksum == sum;
+}
+
 static bool is_of_this(const starg_certificate *c, const verify_facts *known,
                        const char **difference) {
     const verify_surface *surface = known->surface;
     const starg_visibility_options *view = &known->guards->options.visibility;
-    uint64_t sum = STARG_CHECKSUM_BEGIN;
-    for (size_t f = 0; f < surface->face_count; f++)
-        sum = starg_checksum_face(sum, surface->vertices, surface->faces + 3 * f);
     *difference = NULL;
     if (surface->ambient != 0 || surface->importance != NULL ||
         surface->model_faces != surface->face_count ||
@@ -125,8 +142,7 @@ static bool is_of_this(const starg_certificate *c, const verify_facts *known,
         *difference = ": such are of plain solids alone";
     else if (known->guards->options.coverage < 1 || known->guards->options.max_guards > 0)
         *difference = ": guards that see a part need not see what it speaks of";
-    else if (c->vertex_count != surface->vertex_count || c->face_count != surface->face_count ||
-             c->checksum != sum)
+    else if (!verify_certificate_is_of(c, surface))
         *difference = ": it is of another model";
     else if (c->target != view->target)
         *difference = ": its targets are others";
@@ -192,7 +208,7 @@ static const char *word_of(char kind) {
     }
 }
 
-static starg_status claim_cells(starg_verdict *verdict, const verify_facts *known,
+starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *known,
                                 const starg_certificate *c) {
     size_t cell, reason;
     if (!holds_all(&c->cells[0], known->surface)) {
@@ -219,10 +235,30 @@ static starg_status claim_cells(starg_verdict *verdict, const verify_facts *know
         verify_claim(verdict, false,
                      "reasons of the certificate are right: the cell on line %zu may see %s %u in "
                      "spite of reason %zu there (%s)",
-                     c->cell_line + cell, c->target == STARG_TARGET_VERTICES ? "vertex" : "face",
+                     c->cell_line + cell,
+                     c->target == STARG_TARGET_VERTICES  ? "vertex"
+                     : c->target == STARG_TARGET_CORNERS ? "a corner of face"
+                                                         : "face",
                      c->witnesses[r->witness], reason - c->cells[cell].first + 1, word_of(r->kind));
     }
     return STARG_OK;
+}
+
+starg_status verify_claim_follows(starg_verdict *verdict, const starg_certificate *c,
+                                  const char *claim, size_t claimed) {
+    starg_status status = STARG_OK;
+    bool follows;
+    everywhere_words why = {""};
+    STARG_TRY(verify_check_bound(c, &follows, &why));
+    if (follows && claimed <= c->bound)
+        verify_claim(verdict, true, "%s: the certificate's bound of %zu follows", claim, c->bound);
+    else if (follows)
+        verify_claim(verdict, false, "%s: the certificate says no more than %zu", claim, c->bound);
+    else
+        verify_claim(verdict, false, "%s: the certificate's bound of %zu does not follow (%s)",
+                     claim, c->bound, why.text);
+done:
+    return status;
 }
 
 starg_status verify_claim_everywhere(starg_verdict *verdict, const verify_facts *known,
@@ -230,31 +266,16 @@ starg_status verify_claim_everywhere(starg_verdict *verdict, const verify_facts 
     starg_status status = STARG_OK;
     size_t claimed = known->guards->lower_bound_everywhere;
     const char *difference;
-    bool follows;
-    everywhere_words why = {""};
+    char claim[96];
     bool same = is_of_this(c, known, &difference);
     verify_claim(verdict, same, "the certificate is of this model and question%s",
                  same ? "" : difference);
     if (!same)
         return STARG_OK;
     claim_witnesses(verdict, known, c);
-    STARG_TRY(claim_cells(verdict, known, c));
-    STARG_TRY(verify_check_bound(c, &follows, &why));
-    if (follows && claimed <= c->bound)
-        verify_claim(verdict, true,
-                     "at least %zu guards are needed, wherever they stand: the certificate's bound "
-                     "of %zu follows",
-                     claimed, c->bound);
-    else if (follows)
-        verify_claim(verdict, false,
-                     "at least %zu guards are needed, wherever they stand: the certificate says no "
-                     "more than %zu",
-                     claimed, c->bound);
-    else
-        verify_claim(verdict, false,
-                     "at least %zu guards are needed, wherever they stand: the certificate's bound "
-                     "of %zu does not follow (%s)",
-                     claimed, c->bound, why.text);
+    STARG_TRY(verify_claim_cells(verdict, known, c));
+    snprintf(claim, sizeof claim, "at least %zu guards are needed, wherever they stand", claimed);
+    STARG_TRY(verify_claim_follows(verdict, c, claim, claimed));
 done:
     return status;
 }

@@ -45,7 +45,8 @@ struct starg_certificate {
     starg_target target;
     double range, clearance;
     size_t redundancy, bound;
-    uint32_t *witnesses;
+    uint32_t *witnesses; /* faces or vertices; of corners the faces */
+    uint32_t *corners;   /* by witness: the vertex of a corner; NULL where none are the target */
     size_t witness_count, words; /* words of a row of bits over the witnesses */
     uint64_t *rows;
     size_t row_count;
@@ -80,6 +81,18 @@ typedef struct everywhere_words {
 } everywhere_words;
 starg_status verify_check_bound(const starg_certificate *certificate, bool *follows,
                                 everywhere_words *why);
+
+/* Is it of the surface with these faces? */
+bool verify_certificate_is_of(const starg_certificate *certificate, const verify_surface *surface);
+
+/* Claims that the cells hold all of the model and that all reasons are right. Of `known` surface,
+ * tree and scale are needed. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_cells(starg_verdict *verdict, const verify_facts *known,
+                                const starg_certificate *certificate);
+
+/* Claims that `claimed` follows as the bound, in these words. Errors: MEMORY, CANCELLED. */
+starg_status verify_claim_follows(starg_verdict *verdict, const starg_certificate *certificate,
+                                  const char *claim, size_t claimed);
 
 /* Adds the claims about lower_bound_everywhere to the verdict. Errors: MEMORY, CANCELLED. */
 starg_status verify_claim_everywhere(starg_verdict *verdict, const verify_facts *known,

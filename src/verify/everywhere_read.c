@@ -135,8 +135,11 @@ static starg_status read_question(reader *r) {
     starg_status status = STARG_OK;
     starg_certificate *own = r->own;
     STARG_TRY(take_text(r, "target "));
-    own->target = r->at < r->end && *r->at == 'v' ? STARG_TARGET_VERTICES : STARG_TARGET_FACES;
-    STARG_TRY(take_text(r, own->target == STARG_TARGET_VERTICES ? "vertices" : "faces"));
+    char first = r->at < r->end ? *r->at : 'f';
+    own->target = first == 'v'   ? STARG_TARGET_VERTICES
+                  : first == 'c' ? STARG_TARGET_CORNERS
+                                 : STARG_TARGET_FACES;
+    STARG_TRY(take_text(r, first == 'v' ? "vertices" : first == 'c' ? "corners" : "faces"));
     STARG_TRY(end_line(r));
     STARG_TRY(take_text(r, "range "));
     own->range = INFINITY;
@@ -191,10 +194,17 @@ static starg_status read_witnesses(reader *r) {
         return reject(r, "there are too many witnesses");
     own->words = starg_bit_words(own->witness_count);
     STARG_NEW(r->context, STAGE, own->witnesses, own->witness_count);
+    if (own->target == STARG_TARGET_CORNERS)
+        STARG_NEW(r->context, STAGE, own->corners, own->witness_count);
     for (size_t i = 0; i < own->witness_count; i++) {
         uint64_t value;
         STARG_TRY(take_number(r, most - 1, &value));
         own->witnesses[i] = (uint32_t)value;
+        if (own->corners != NULL) {
+            STARG_TRY(take_text(r, " "));
+            STARG_TRY(take_number(r, own->vertex_count > 0 ? own->vertex_count - 1 : 0, &value));
+            own->corners[i] = (uint32_t)value;
+        }
         STARG_TRY(end_line(r));
     }
 done:
@@ -436,6 +446,7 @@ void starg_certificate_free(starg_certificate *own) {
         return;
     starg_context *context = own->context;
     starg_release(context, own->witnesses);
+    starg_release(context, own->corners);
     starg_release(context, own->rows);
     starg_release(context, own->cells);
     STARG_ARRAY_FREE(context, &own->reasons);

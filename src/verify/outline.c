@@ -55,7 +55,7 @@ starg_status starg_certificate_outline_create(starg_context *context,
     STARG_NEW_ZERO(context, STAGE, s.out, 1);
     s.out->vertex_count = own->vertex_count;
     s.out->face_count = own->face_count;
-    s.out->target = own->target;
+    s.out->target = own->target == STARG_TARGET_CORNERS ? STARG_TARGET_FACES : own->target;
     s.out->bound = own->bound;
     s.out->witness_count = own->witness_count;
     STARG_NEW(context, STAGE, s.out->witnesses, own->witness_count);

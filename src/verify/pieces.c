@@ -65,10 +65,15 @@ done:
 /* ---- all of it ---- */
 
 static starg_status verify_against(starg_context *context, const verify_surface *model,
+                                   const starg_certificate *certificate,
                                    const starg_pieces_mesh *mesh, const starg_pieces_report *report,
                                    starg_verdict **out) {
     starg_status status = STARG_OK;
-    verify_context own = {.context = context, .mesh = mesh, .report = report, .model = model};
+    verify_context own = {.context = context,
+                          .mesh = mesh,
+                          .report = report,
+                          .model = model,
+                          .certificate = certificate};
     STARG_TRY(check_arrays(context, mesh, report));
     STARG_TRY(verify_pieces_create(context, mesh, report, &own.pieces));
     STARG_TRY(verify_verdict_create(context, &own.verdict));
@@ -76,7 +81,9 @@ static starg_status verify_against(starg_context *context, const verify_surface 
     STARG_TRY(verify_claim_boundary(&own));
     if (report != NULL) {
         STARG_TRY(verify_claim_numbers(&own));
+        STARG_TRY(verify_claim_angles(&own));
         STARG_TRY(verify_claim_stars(&own));
+        STARG_TRY(verify_claim_fewest(&own));
         STARG_TRY(verify_claim_balls(&own));
     } else {
         verify_leave(own.verdict, "guards, star-shapedness and numbers: there is no report");
@@ -105,9 +112,10 @@ done:
     return status;
 }
 
-starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model,
-                                 const starg_pieces_mesh *pieces, const starg_pieces_report *report,
-                                 starg_verdict **out) {
+starg_status starg_verify_pieces_with(starg_context *context, const starg_mesh *model,
+                                      const starg_certificate *certificate,
+                                      const starg_pieces_mesh *pieces,
+                                      const starg_pieces_report *report, starg_verdict **out) {
     starg_status status = STARG_OK;
     verify_surface *surface = NULL;
     *out = NULL;
@@ -116,11 +124,17 @@ starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model
         STARG_TRY(wrap_model(context, model, &surface));
     else
         STARG_TRY(verify_surface_create(context, model, &surface));
-    STARG_TRY(verify_against(context, surface, pieces, report, out));
+    STARG_TRY(verify_against(context, surface, certificate, pieces, report, out));
 done:
     starg_time_end(context, former);
     verify_surface_free(surface);
     return status;
+}
+
+starg_status starg_verify_pieces(starg_context *context, const starg_mesh *model,
+                                 const starg_pieces_mesh *pieces, const starg_pieces_report *report,
+                                 starg_verdict **out) {
+    return starg_verify_pieces_with(context, model, NULL, pieces, report, out);
 }
 
 /* The boundary of the model's tetrahedra. */
@@ -152,7 +166,7 @@ starg_status starg_verify_pieces_of_tetmesh(starg_context *context, const starg_
     *out = NULL;
     starg_time_rule former = starg_time_begin(context, STARG_TIME_FAILS);
     STARG_TRY(wrap_boundary(context, model, &surface));
-    STARG_TRY(verify_against(context, surface, pieces, report, out));
+    STARG_TRY(verify_against(context, surface, NULL, pieces, report, out));
 done:
     starg_time_end(context, former);
     verify_surface_free(surface);

@@ -92,6 +92,8 @@ static void read_pieces(reader *r, const json_t *list, starg_pieces_report *repo
         piece->star = read_bool(r, object, "star");
         piece->radius =
             json_object_get(object, "radius") != NULL ? read_real(r, object, "radius") : NAN;
+        piece->margin =
+            json_object_get(object, "margin") != NULL ? read_real(r, object, "margin") : NAN;
     }
 done:
     if (status != STARG_OK)
@@ -177,7 +179,17 @@ static void read_document(reader *r, const json_t *root, starg_pieces_report *re
     report->visible_vertices = read_real(r, root, "visible_vertices");
     if (json_object_get(root, "flattest") != NULL)
         report->flattest = read_real(r, root, "flattest");
+    if (json_object_get(root, "smallest_angle") != NULL) {
+        report->smallest_angle = read_real(r, root, "smallest_angle");
+        report->median_angle = read_real(r, root, "median_angle");
+    }
+    if (json_object_get(root, "smallest_angle_made") != NULL)
+        report->smallest_angle_made = read_real(r, root, "smallest_angle_made");
     read_surface(r, root, report);
+    if (json_object_get(root, "lower_bound") != NULL) {
+        report->lower_bound = read_count(r, root, "lower_bound");
+        report->optimal = read_bool(r, root, "optimal");
+    }
     read_balls(r, json_object_get(root, "balls"), report);
 }
 

@@ -368,7 +368,9 @@ static box_reason hidden_by(const box_scene *scene, box_reason_kind kind, uint32
                         clipped};
 }
 
-static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, bool recorded) {
+/* About the corners of the face from number `first` on, before `end`: hidden if one of them is. */
+static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, int first, int end,
+                           bool recorded) {
     const box_scene *scene = w->scene;
     const box_triangle *t = &scene->triangles[scene->rank_of[face]];
     bvh_box left;
@@ -376,7 +378,7 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
     clip_result inner = clip(scene, t, &w->box, &left);
     if (inner == CLIP_NOTHING_LEFT)
         return (box_reason){BOX_PLANE, BOX_NONE, BOX_NONE, false};
-    for (int k = 0; k < 3; k++) {
+    for (int k = first; k < end; k++) {
         box_reason_kind kind = ask_vertex_once(w, q, t->corner[k], recorded, &seed);
         if (kind != BOX_OPEN)
             return hidden_by(scene, kind, t->corner[k], seed, false);
@@ -385,7 +387,7 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
     if (inner == CLIP_ALL_LEFT)
         return reason;
     set_current(w, &left);
-    for (int k = 0; k < 3 && reason.kind == BOX_OPEN; k++) {
+    for (int k = first; k < end && reason.kind == BOX_OPEN; k++) {
         box_reason_kind kind = ask_vertex(w, q, t->corner[k], recorded, &seed);
         if (kind != BOX_OPEN)
             reason = hidden_by(scene, kind, t->corner[k], seed, true);
@@ -398,9 +400,9 @@ static box_reason ask_face(box_worker *w, const box_question *q, uint32_t face, 
  * certificates, so that nobody asks for both reasons. */
 static box_reason ask_sides(box_worker *w, const box_question *q, uint32_t face, bool recorded) {
     const starg_solid *solid = w->scene->solid;
-    box_reason reason = ask_face(w, q, face, recorded);
+    box_reason reason = ask_face(w, q, face, 0, 3, recorded);
     if (reason.kind != BOX_OPEN && solid_is_two_sided(solid) && solid->other_side[face] != BOX_NONE)
-        reason = ask_face(w, q, solid->other_side[face], recorded);
+        reason = ask_face(w, q, solid->other_side[face], 0, 3, recorded);
     return reason;
 }
 
@@ -408,6 +410,8 @@ static box_reason ask(box_worker *w, const box_question *q, uint32_t target, boo
     uint32_t seed;
     if (q->target == STARG_TARGET_FACES)
         return ask_sides(w, q, target, recorded);
+    if (q->target == STARG_TARGET_CORNERS)
+        return ask_face(w, q, target / 3, (int)(target % 3), (int)(target % 3) + 1, recorded);
     box_reason_kind kind = ask_vertex_once(w, q, target, recorded, &seed);
     return hidden_by(w->scene, kind, target, seed, false);
 }

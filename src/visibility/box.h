@@ -70,7 +70,7 @@ typedef struct box_reason {
 typedef struct box_question {
     bvh_box box;             /* lower <= upper, below 1e100 in magnitude                      */
     starg_target target;     /* what the targets are                                          */
-    const uint32_t *targets; /* faces or vertices of the mesh; NULL: all of them, in order    */
+    const uint32_t *targets; /* faces, vertices or corners of the mesh; NULL: all, in order   */
     size_t count;
     double range;          /* vertices farther than that are not seen; INFINITY: any are    */
     const uint64_t *among; /* bits by target: ask about these only, the others are hidden (a

@@ -9,6 +9,7 @@
  * Cost: per helper about 36 bytes a face, and its search structures; a bit per column of each
  * row. */
 #include "core/bits.h"
+#include "visibility/columns.h"
 #include "visibility/rows.h"
 
 static const char STAGE[] = "visibility";
@@ -125,7 +126,7 @@ done:
 /* Is this a valid job? Excessive counts are caught later. */
 static bool is_sound(const job_head *head, size_t left) {
     return head->points <= left / 24 && head->vertices <= left / 24 && head->faces <= left / 12 &&
-           head->engine <= STARG_VISIBILITY_FASTEST && head->target <= STARG_TARGET_VERTICES &&
+           head->engine <= STARG_VISIBILITY_FASTEST && head->target <= STARG_TARGET_CORNERS &&
            head->face_rule <= STARG_FACES_WHOLE && head->ambient <= 1 && head->cone > 0 &&
            head->range >= 0;
 }
@@ -174,8 +175,7 @@ static starg_status run(starg_context *context, void *state, size_t first, size_
     starg_bits *rows = NULL;
     uint8_t *finished = NULL;
     const starg_mesh *mesh = all->solid->mesh;
-    size_t columns =
-        options.target == STARG_TARGET_VERTICES ? mesh->vertex_count : mesh->face_count;
+    size_t columns = target_columns(mesh, options.target);
     if (count > all->count || first > all->count - count)
         return STARG_ERROR_RANK;
     if (all->directions != NULL)

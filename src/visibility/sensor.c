@@ -157,7 +157,7 @@ starg_status sensor_check(starg_context *context, const char *stage, size_t coun
                           "nothing is at least %g and at most %g away; the near distance must be "
                           "below the range",
                           o->near, o->range);
-    if (o->incidence > 0 && o->target == STARG_TARGET_VERTICES)
+    if (o->incidence > 0 && o->target != STARG_TARGET_FACES)
         return starg_fail(context, STARG_ERROR_ARGUMENT, stage,
                           "vertices are seen from any side: a limited incidence is for faces");
     return sensor_is_directed(o) ? check_directions(context, stage, count, o) : STARG_OK;

@@ -7,6 +7,7 @@
 #include "core/fields.h"
 #include "core/memory.h"
 #include "geometry/vec3.h"
+#include "visibility/columns.h"
 #include "visibility/rows.h"
 
 static const char STAGE[] = "visibility";
@@ -88,6 +89,15 @@ static void write_vertices(const job *all, const uint8_t *visible, uint64_t *row
             starg_bit_set(row, all->scene->vertex_of[slot]);
 }
 
+/* The scene keeps the corners of a face in the order of the mesh. */
+static void write_corners(const job *all, const worker *w, const uint8_t *visible, uint64_t *row) {
+    const visibility_scene *scene = all->scene;
+    for (size_t rank = 0; rank < scene->face_count; rank++)
+        for (size_t k = 0; k < 3 && w->side[rank] > 0; k++)
+            if (visible[scene->corners[3 * rank + k]])
+                starg_bit_set(row, 3 * (size_t)scene->face_of[rank] + k);
+}
+
 static bool sees_whole(const job *all, const worker *w, const double p[3], size_t rank) {
     const visibility_engine *engine = all->engine;
     if (engine->sees_plainly != NULL && engine->sees_plainly(all->scene, w->engine_scratch, rank))
@@ -128,6 +138,8 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
         }
         if (all->options->target == STARG_TARGET_VERTICES)
             write_vertices(all, visible, row);
+        else if (all->options->target == STARG_TARGET_CORNERS)
+            write_corners(all, w, visible, row);
         else
             write_faces(all, w, visible, p, row);
     }
@@ -138,7 +150,10 @@ static starg_status find_row(starg_context *context, void *shared, void *scratch
 
 static starg_status check_arguments(starg_context *context, const double *points, size_t count,
                                     const starg_visibility_options *options) {
-    starg_status status = fields_check(context, STAGE, starg_visibility_options_fields(), options);
+    starg_visibility_options public = *options;
+    if (public.target == STARG_TARGET_CORNERS)
+    public.target = STARG_TARGET_VERTICES;
+    starg_status status = fields_check(context, STAGE, starg_visibility_options_fields(), &public);
     for (size_t i = 0; i < 3 * count && status == STARG_OK; i++) {
         uint64_t point = i / 3;
         if (!(fabs(points[i]) < 1e100))
@@ -215,9 +230,8 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     STARG_TRY(check_arguments(context, points, count, options));
     STARG_TRY(sensor_check(context, STAGE, count, options));
     STARG_TRY(visibility_scene_for(context, solid, options, count, &scene));
-    size_t columns = options->target == STARG_TARGET_VERTICES ? solid->mesh->vertex_count
-                                                              : solid->mesh->face_count;
-    STARG_TRY(starg_bits_create(context, count, columns, &rows));
+    STARG_TRY(
+        starg_bits_create(context, count, target_columns(solid->mesh, options->target), &rows));
     const job all = {.scene = scene,
                      .options = options,
                      .points = points,
@@ -228,7 +242,7 @@ starg_status visibility_rows(starg_context *context, const starg_solid *solid, c
     if (status == STARG_ERROR_TIME && finished != NULL)
         status = STARG_OK;
     STARG_TRY(status);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count && options->target != STARG_TARGET_CORNERS; i++)
         solid_finish_row(solid, options->target == STARG_TARGET_VERTICES,
                          starg_bits_row_mutable(rows, i));
     *out = rows;

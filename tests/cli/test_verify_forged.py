@@ -155,6 +155,90 @@ class Forged(support.Case):
             forged["flattest"] *= change
             self.refused_pieces(forged, "the flattest tetrahedron")
 
+    def test_angles_and_margins(self):
+        report = self.decompose()
+        self.assertLessEqual(report["smallest_angle"], report["smallest_angle_made"])
+        for key, text in [("smallest_angle", "the smallest dihedral angle is"),
+                          ("median_angle", "the median of the smallest"),
+                          ("smallest_angle_made", "faces of the model do not force")]:
+            for change in [1 + 1e-4, 0.5, 2]:
+                forged = dict(report)
+                forged[key] = report[key] * change
+                self.refused_pieces(forged, text)
+        forged = json.loads(json.dumps(report))
+        forged["pieces"][0]["margin"] *= 1 + 1e-6
+        self.refused_pieces(forged, "margins are radii")
+        for key in ["smallest_angle", "smallest_angle_made"]:
+            del forged[key]
+        for piece in forged["pieces"]:
+            del piece["margin"]
+        self.write("short.json", json.dumps(forged))
+        out, _ = self.run_text("verify", "m.off", "p.vtk", "short.json")
+        self.assertIn("not checked: dihedral angles", out)
+        self.assertRegex(out, r"not checked: the margin of \d+ pieces")
+
+    def test_bound_for_pieces(self):
+        self.run_text("sample", "gallery", "--vertices", "500", "-o", "maze.off")
+        prove = ["--prove", "--prove-work", "300000"]
+        self.decompose(*prove, model="maze.off")
+        plain = self.read("p.json")
+        report = self.decompose(*prove, "--certificate", "why.txt", model="maze.off")
+        self.assertEqual(self.read("p.json"), plain)
+        self.assertTrue(self.read("why.txt").startswith(b"starguard-certificate 1\n"))
+        self.assertIn(b"\ntarget corners\n", self.read("why.txt"))
+        bound, pieces = report["lower_bound"], len(report["pieces"])
+        self.assertLessEqual(bound, pieces)
+        self.assertEqual(report["optimal"], bound == pieces)
+        out, _ = self.run_text("verify", "maze.off", "p.vtk", "p.json")
+        self.assertRegex(out, f"not checked: that no fewer than {bound} star-shaped pieces")
+        for order in [["p.json", "p.vtk"], ["p.vtk", "p.json"]]:
+            told = self.run_json("verify", "maze.off", *order, "why.txt")["results"]
+            self.assertEqual([(r["certificate"], r["passed"]) for r in told], [("why.txt", True)])
+            self.assertTrue(any("no fewer than" in c["claim"] for c in told[0]["claims"]))
+        for change in [{"lower_bound": bound + 1, "optimal": bound + 1 == pieces},
+                       {"optimal": not report["optimal"]},
+                       {"lower_bound": pieces + 1, "optimal": False}]:
+            self.write("forged.json", json.dumps({**report, **change}))
+            out, _ = self.run_text("verify", "maze.off", "p.vtk", "forged.json", "why.txt", status=4)
+            self.assertRegex(out, "FAILED (no fewer than|the lower bound is)")
+        # a certificate of another model, of guards, and damaged ones
+        self.run_text("decompose", "m.off", "-o", "o.vtk", "--effort", "10", *prove,
+                      "--certificate", "other.txt")
+        self.run_text("guard", "maze.off", "-o", "g.json", *prove, "--certificate", "guards.txt")
+        for name, text in [("other.txt", "another model"), ("guards.txt", "not about corners")]:
+            out, _ = self.run_text("verify", "maze.off", "p.vtk", "p.json", name, status=4)
+            self.assertRegex(out, "FAILED the certificate is about pieces.*" + text)
+        self.write("raised.txt", self.read("why.txt").decode().replace(
+            f"\nbound {bound}\n", f"\nbound {bound + 1}\n"))
+        self.write("forged.json", json.dumps({**report, "lower_bound": bound + 1,
+                                              "optimal": bound + 1 == pieces}))
+        out, _ = self.run_text("verify", "maze.off", "p.vtk", "forged.json", "raised.txt", status=4)
+        self.assertRegex(out, "FAILED .*does not follow")
+        err = self.run_text("verify", "maze.off", "p.vtk", "why.txt", status=1)[1]
+        self.assertIn("PIECES.json, which is missing", err)
+
+    def test_bounds_that_are_not_proven(self):
+        self.write("tets.mesh", """MeshVersionFormatted 2
+Dimension 3
+Vertices
+4
+0 0 0 0
+1 0 0 0
+0 1 0 0
+0 0 1 0
+Tetrahedra
+1
+1 2 3 4 0
+End
+""")
+        for words, status, text in [
+                (["m.off", "--certificate", "no.txt"], 1, "add --prove"),
+                (["m.off", "--prove", "--mode", "paper"], 1, "in strict mode only"),
+                (["tets.mesh", "--prove"], 1, "for surfaces only")]:
+            err = self.run_text("decompose", *words, "-o", "no.vtk", status=status)[1]
+            self.assertIn(text, err)
+        self.assertFalse({"no.vtk", "no.txt"} & set(self.names()))
+
     def test_pieces_of_another_model(self):
         self.run_text("sample", "star", "--vertices", "500", "-o", "other.off")
         report = self.decompose(model="other.off")

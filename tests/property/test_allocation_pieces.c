@@ -8,6 +8,7 @@
 
 static failing_inputs in;
 static input_bytes tets_text, pieces_text, report_text;
+static starg_certificate *why; /* that there is a piece */
 
 /* ---- tetrahedra ---- */
 
@@ -92,6 +93,29 @@ static starg_status decompose_crossed(starg_context *context,
     return status;
 }
 
+static starg_decompose_options proving(void) {
+    starg_decompose_options options;
+    starg_decompose_options_default(&options);
+    options.effort = 3;
+    options.quality = options.prove = true;
+    options.prove_work = 3000;
+    return options;
+}
+
+static starg_status certified(starg_context *context) {
+    const starg_decompose_options options = proving();
+    starg_decomposition *out = NULL;
+    char *text = NULL;
+    size_t size = 0;
+    starg_status status =
+        starg_decompose_certified(context, in.solid, &options, &out, &text, &size);
+    assert_true((status == STARG_OK) == (text != NULL) && (text != NULL) == (size > 0));
+    failing_result(status, out);
+    starg_text_free(context, text);
+    starg_decomposition_free(context, out);
+    return status;
+}
+
 static starg_status decompositions(starg_context *context) {
     starg_decompose_options strict, paper;
     starg_decompose_options_default(&strict);
@@ -108,6 +132,7 @@ static starg_status decompositions(starg_context *context) {
                            report = {report_text.data, report_text.size, "report"};
     DECOMPOSE(starg_decompose, "strict", in.solid, &strict);
     FAILING_BY(starg_decompose, "strict, self-intersecting", decompose_crossed(context, &strict));
+    FAILING_BY(starg_decompose_certified, "", certified(context));
     DECOMPOSE(starg_decompose, "paper", in.solid, &paper);
     DECOMPOSE(starg_decompose, "paper, given guards", in.solid, &given);
     starg_decompose_options even = strict;
@@ -139,6 +164,7 @@ static starg_status verification(starg_context *context) {
     FAILING_MAKES(starg_pieces_report_read_memory, "", starg_pieces_report,
                   starg_pieces_report_free(context, out), report_text.data, report_text.size, "r");
     VERDICT(starg_verify_pieces, "", in.room, in.pieces, in.report);
+    VERDICT(starg_verify_pieces_with, "", in.room, why, in.pieces, in.report);
     VERDICT(starg_verify_pieces_of_tetmesh, "", in.decomposition->mesh, in.pieces, NULL);
     RESULT(starg_result_read, "guards", "guards.json");
     RESULT(starg_result_read, "pieces", "pieces.vtk");
@@ -161,6 +187,15 @@ static int set_up(void **state) {
     tets_text = failing_input_bytes("tets.vtk");
     pieces_text = failing_input_bytes("pieces.vtk");
     report_text = failing_input_bytes("pieces.json");
+    const starg_decompose_options options = proving();
+    starg_decomposition *pieces = NULL;
+    char *text = NULL;
+    size_t size = 0;
+    test_ok(in.context,
+            starg_decompose_certified(in.context, in.solid, &options, &pieces, &text, &size));
+    test_ok(in.context, starg_certificate_read_memory(in.context, text, size, "c", &why));
+    starg_text_free(in.context, text);
+    starg_decomposition_free(in.context, pieces);
     return 0;
 }
 
@@ -169,6 +204,7 @@ static int tear_down(void **state) {
     free(tets_text.data);
     free(pieces_text.data);
     free(report_text.data);
+    starg_certificate_free(why);
     failing_inputs_free(&in);
     return 0;
 }

@@ -140,7 +140,8 @@ class Out(Case):
         pieces = starguard.decompose(starguard.sample("gallery", vertices=1000), effort=30)
         self.assertGreater(len(pieces), 1)
         records = pieces.pieces
-        self.assertEqual(records.dtype.names, ("guard", "radius", "tetrahedra", "volume", "star"))
+        self.assertEqual(records.dtype.names, ("guard", "radius", "margin", "tetrahedra", "volume", "star",
+                                               "spread"))
         self.assertTrue(records["star"].all())
         self.assertEqual(records["tetrahedra"].sum(), len(pieces.labels))
         self.assertAlmostEqual(records["volume"].sum(), pieces.mesh.volume)

@@ -152,6 +152,65 @@ static double area_of(const starg_tetmesh *mesh, size_t face) {
     return (double)(sqrtl(dot(n, n)) / 2);
 }
 
+/* Of the bounding box of a piece. */
+static double diagonal_of(const starg_decomposition *d, int32_t piece) {
+    long double squared = 0;
+    for (int k = 0; k < 3; k++) {
+        double lower = INFINITY, upper = -INFINITY;
+        for (size_t i = 0; i < 4 * starg_tetmesh_count(d->mesh); i++) {
+            uint32_t v = starg_tetmesh_tetrahedra(d->mesh)[i];
+            double x = starg_tetmesh_vertices(d->mesh)[3 * (size_t)v + (size_t)k];
+            lower = d->labels[i / 4] == piece ? fmin(lower, x) : lower;
+            upper = d->labels[i / 4] == piece ? fmax(upper, x) : upper;
+        }
+        squared += ((long double)upper - lower) * ((long double)upper - lower);
+    }
+    return (double)sqrtl(squared);
+}
+
+/* The smallest dihedral angle of a tetrahedron in degrees: heights by distances of a corner from
+ * edges. */
+static double dihedral_of(const starg_tetmesh *mesh, size_t t) {
+    const uint32_t *v = starg_tetmesh_tetrahedra(mesh) + 4 * t;
+    const double *p = starg_tetmesh_vertices(mesh);
+    long double least = 180;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++) {
+            long double e[3], u[3], w[3], n[3], m[3];
+            int c = 0;
+            if (i == j)
+                continue;
+            while (c == i || c == j)
+                c++;
+            difference(p + 3 * v[j], p + 3 * v[i], e);
+            difference(p + 3 * v[c], p + 3 * v[i], u);
+            difference(p + 3 * v[6 - i - j - c], p + 3 * v[i], w);
+            cross(e, u, n);
+            cross(e, w, m);
+            long double sine = fabsl(dot(n, w)) * sqrtl(dot(e, e));
+            least = fminl(least, atan2l(sine, dot(n, m)) * 180 / acosl(-1));
+        }
+    return (double)least;
+}
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void check_angles(const starg_decomposition *d) {
+    size_t n = starg_tetmesh_count(d->mesh);
+    double *angles = malloc(n * sizeof *angles);
+    assert_non_null(angles);
+    for (size_t t = 0; t < n; t++)
+        angles[t] = dihedral_of(d->mesh, t);
+    qsort(angles, n, sizeof *angles, ascending);
+    assert_true(fabs(d->smallest_angle - angles[0]) <= 1e-6 * angles[0] + 1e-9);
+    assert_true(fabs(d->median_angle - angles[n / 2]) <= 1e-6 * angles[n / 2] + 1e-9);
+    assert_true(d->smallest_angle_made < 0 || d->smallest_angle_made >= d->smallest_angle);
+    free(angles);
+}
+
 static void check_pieces(const starg_decomposition *d) {
     size_t stars = 0, n = starg_tetmesh_count(d->mesh);
     double extent = (double)extent_of(d->mesh), all = 0;
@@ -169,6 +228,8 @@ static void check_pieces(const starg_decomposition *d) {
         assert_true(count > 0);
         assert_true(close_to(piece->volume, volume, extent * extent * extent));
         assert_true(close_to(piece->radius, radius_of(d, (int32_t)i), extent));
+        assert_true(fabs(piece->margin * diagonal_of(d, (int32_t)i) - piece->radius) <=
+                    1e-12 * extent);
         assert_int_equal(piece->star, is_star(d, (int32_t)i));
         stars += piece->star;
     }
@@ -206,6 +267,7 @@ void decomposition_oracle_check(const starg_decomposition *d) {
     for (size_t t = 0; t < starg_tetmesh_count(d->mesh); t++)
         assert_true(d->labels[t] >= 0 && (size_t)d->labels[t] < d->piece_count);
     check_pieces(d);
+    check_angles(d);
     check_contacts(d);
 }
 

@@ -5,7 +5,8 @@
  * star-shaped (bsp_start.c); neighbours are joined where that can be done; then unions of
  * neighbours are cut again into fewer pieces, every step with an exact certificate (improve.c),
  * until nothing is found any more; then the same from more starts, with other random numbers, and
- * the best result is kept. At the end each piece is made of tetrahedra about its guard (cone.c).
+ * the best result is kept. At the end guards get room (widen.c), and each piece is made of
+ * tetrahedra about its guard (cone.c).
  *
  * The first start runs to its end whatever the time limit says, in a hurry once that has passed:
  * so there is a result. Where it fails, which takes roundings that spoil every cut of some piece,
@@ -14,6 +15,7 @@
 #include "star/strict/strict.h"
 
 #include "star/decomposition.h"
+#include "star/strict/finish/widen.h"
 #include "star/strict/partition/cone.h"
 #include "star/strict/search/improve.h"
 #include "star/strict/start/bsp_start.h"
@@ -30,6 +32,10 @@ enum {
 /* Of all searches, unless trials or time are limited: vertices, facets and rows looked at, which
  * are counted the same at any number of threads. About 4e8 take a second. */
 static const uint64_t WORK_MOST = 6000000000;
+
+/* The same for the room of guards at the end: so much and what the searches have taken, up to the
+ * second; the third if more is asked for. */
+static const uint64_t ROOM_LEAST = 50000000, ROOM_USUAL = 600000000, ROOM_MOST = 6000000000;
 
 static starg_status collect_guards(const partition *p, double **guards) {
     starg_status status = STARG_OK;
@@ -120,7 +126,7 @@ static void keep_better(partition *p, partition *other) {
 typedef struct searches {
     model of;
     const starg_decompose_options *options;
-    uint64_t trials_left, work_left;
+    uint64_t trials_left, work_left, work_done;
     size_t enough;
     size_t budget;  /* of another start */
     uint64_t count; /* searches so far */
@@ -180,9 +186,15 @@ static starg_status run_search(searches *s, partition *p) {
     starg_status status = improve(p, &wanted, &report);
     s->trials_left -= report.trials < s->trials_left ? report.trials : s->trials_left;
     s->work_left -= report.work < s->work_left ? report.work : s->work_left;
+    s->work_done += report.work;
     s->time_limited = report.time_limited;
     s->count++;
     return status;
+}
+
+static uint64_t room_for(const searches *s) {
+    uint64_t work = ROOM_LEAST + s->work_done;
+    return s->options->quality ? ROOM_MOST : work < ROOM_USUAL ? work : ROOM_USUAL;
 }
 
 /* Two pieces are as few as can be when one was not enough. */
@@ -228,6 +240,7 @@ static starg_status decompose(starg_context *context, model of,
     STARG_TRY(run_search(&s, &p));
     while (may_search_again(&s, &p))
         STARG_TRY(search_again(&s, &p));
+    STARG_TRY(widen(&p, room_for(&s)));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
 done:

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Room for guards: partitions stay partitions with as many pieces (partition_oracle.h, in
+ * rationals), and no margin that was small gets smaller. */
+#include "support.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "partition_oracle.h"
+#include "star/strict/finish/widen.h"
+#include "star/strict/search/improve.h"
+
+static const uint64_t WORK = 40000000;
+
+/* The smallest radius by the diagonal of a piece, by brute force. */
+static double smallest_margin(const partition *p) {
+    double least = INFINITY;
+    for (uint32_t i = 0; i < p->pieces.count; i++) {
+        double lower[3] = {INFINITY, INFINITY, INFINITY},
+               upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+        for (size_t f = 0; f < p->facets.count; f++)
+            for (int c = 0; c < 6; c++) {
+                const double *at = partition_unit(p, p->facets.data[f].corners[c % 3]);
+                for (int k = 0; k < 3 && p->facets.data[f].side[c / 3] == i; k++) {
+                    lower[k] = fmin(lower[k], at[k]);
+                    upper[k] = fmax(upper[k], at[k]);
+                }
+            }
+        double squared = 0;
+        for (int k = 0; k < 3; k++)
+            squared += (upper[k] - lower[k]) * (upper[k] - lower[k]);
+        least = fmin(least, p->pieces.data[i].radius / sqrt(squared));
+    }
+    return least;
+}
+
+/* `first` (may be NULL) gets it as it was before the search. */
+static partition searched_sample(starg_context *context, const char *name, partition *first) {
+    partition p = grown_sample(context, name, 3000);
+    const improve_options options = {.trials = 200, .work = UINT64_MAX, .enough = 1};
+    improve_report report;
+    if (first != NULL)
+        *first = partition_oracle_copy(&p);
+    test_ok(context, improve(&p, &options, &report));
+    return p;
+}
+
+static void test_samples(void **state) {
+    (void)state;
+    static const char *const names[] = {"horse", "gallery", "labyrinth", "knot", "star"};
+    size_t wider = 0;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        starg_context *context = test_context(2);
+        partition first, p = searched_sample(context, names[i], &first);
+        size_t count = p.pieces.count;
+        double margin = smallest_margin(&p);
+        test_ok(context, widen(&p, WORK));
+        partition_oracle_check(&p);
+        partition_oracle_check_guards(&p);
+        partition_oracle_check_surface(&first, &p);
+        assert_int_equal(p.pieces.count, count);
+        print_message("%s: %zu pieces, smallest margin %.2g, then %.2g\n", names[i], count, margin,
+                      smallest_margin(&p));
+        assert_true(smallest_margin(&p) >= 0.5 * margin);
+        wider += smallest_margin(&p) > 1.2 * margin;
+        partition_free(&first);
+        partition_free(&p);
+        test_context_free(context);
+    }
+    assert_true(wider >= 2);
+}
+
+/* Whatever the number of threads; and nothing without work. */
+static void test_same(void **state) {
+    (void)state;
+    starg_context *one = test_context(1), *five = test_context(5);
+    partition a = searched_sample(one, "gallery", NULL), b = searched_sample(five, "gallery", NULL);
+    partition still = partition_oracle_copy(&a);
+    test_ok(one, widen(&still, 0));
+    assert_true(partition_oracle_same(&a, &still));
+    test_ok(one, widen(&a, WORK));
+    test_ok(five, widen(&b, WORK));
+    assert_true(partition_oracle_same(&a, &b));
+    assert_false(partition_oracle_same(&a, &still));
+    partition_free(&a);
+    partition_free(&b);
+    partition_free(&still);
+    test_context_free(one);
+    test_context_free(five);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_samples), cmocka_unit_test(test_same)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
