@@ -6,10 +6,11 @@
 #include "fields.h"
 
 static void put_type(FILE *stub, const starg_field *f) {
-    static const char *const names[] = {
-        [STARG_FIELD_FLAG] = "bool",          [STARG_FIELD_COUNT] = "SupportsIndex",
-        [STARG_FIELD_REAL] = "SupportsFloat", [STARG_FIELD_TEXT] = "PathLike",
-        [STARG_FIELD_NUMBERS] = "Iterable[SupportsFloat]"};
+    static const char *const names[] = {[STARG_FIELD_FLAG] = "bool",
+                                        [STARG_FIELD_COUNT] = "SupportsIndex",
+                                        [STARG_FIELD_REAL] = "SupportsFloat",
+                                        [STARG_FIELD_TEXT] = "PathLike",
+                                        [STARG_FIELD_NUMBERS] = "Iterable[SupportsFloat]"};
     if (f->kind != STARG_FIELD_CHOICE) {
         fprintf(stub, "%s | None\n", names[f->kind]);
         return;

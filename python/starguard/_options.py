@@ -50,7 +50,7 @@ class Field:
 
     def _fits(self, number: float) -> bool:
         above = number > self._row.low if self._row.flags & lib.STARG_FIELD_ABOVE else number >= self._row.low
-        return above and number <= self._row.high
+        return bool(above and number <= self._row.high)
 
     def _expectation(self) -> str:
         said = self._text(lib.starg_field_expectation)
