@@ -306,7 +306,7 @@ static void check_more_work(starg_context *context, const starg_solid *solid) {
 static void test_more_work(void **state) {
     (void)state;
     starg_context *context = test_context(2);
-    for (size_t vertices = 300; vertices <= 600; vertices += 100) {
+    for (size_t vertices = 500; vertices <= 800; vertices += 100) {
         starg_solid *solid = test_sample(context, "gallery", vertices);
         check_more_work(context, solid);
         starg_solid_free(solid);
