@@ -258,33 +258,51 @@ static size_t next_aim(const search *s) {
     return s->bound < most ? s->bound + (most - s->bound + 2) / 3 : most;
 }
 
-static starg_status prove_round(search *s, row_list *list) {
+/* Splits leaves that stand in the way of the next bound. *changed: there are some. */
+static starg_status split_costly(search *s, bool *changed) {
     starg_status status = STARG_OK;
     scored_leaf *leaves = NULL;
-    size_t count;
+    size_t count, aim = next_aim(s);
+    double most = aim > 1 ? search_value(s) / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
+    STARG_TRY(search_list_leaves(s, most, &leaves, &count));
+    if (count > 0)
+        STARG_TRY(search_split(s, leaves, count, TRIES));
+    *changed = count > 0;
+done:
+    starg_release(context_of(s), leaves);
+    return status;
+}
+
+/* The prices stand in no leaf's way and prove no more: better guards, more witnesses, or cells that
+ * an integer program chooses. */
+static starg_status ask_further(search *s, const row_list *list, bool *changed) {
+    starg_status status = STARG_OK;
+    STARG_TRY(look_for_guards(s, true, changed));
+    if (!*changed)
+        STARG_TRY(search_add_short(s, list, changed));
+    if (!*changed)
+        STARG_TRY(search_ask_cells(s, changed));
+    s->ended = !*changed;
+done:
+    return status;
+}
+
+/* Every round ends with the bound that its prices prove of the cells as they are then: what less
+ * work proves, more work proves too. */
+static starg_status prove_round(search *s, row_list *list) {
+    starg_status status = STARG_OK;
+    size_t before = s->bound;
     bool changed;
     STARG_TRY(search_find_prices(s, list));
     STARG_TRY(look_for_guards(s, false, &changed));
-    if (changed)
-        goto done;
-    size_t aim = next_aim(s), before = s->bound;
-    double most = aim > 1 ? search_value(s) / (double)(aim - 1) * (1 - ROUNDING) : INFINITY;
-    STARG_TRY(search_list_leaves(s, most, &leaves, &count));
-    if (count > 0) {
-        STARG_TRY(search_split(s, leaves, count, TRIES));
-        goto done;
-    }
+    if (!changed)
+        STARG_TRY(split_costly(s, &changed));
     STARG_TRY(prove(s));
-    if (s->bound >= s->count || s->bound > before)
-        goto done;
-    STARG_TRY(look_for_guards(s, true, &changed));
-    if (!changed)
-        STARG_TRY(search_add_short(s, list, &changed));
-    if (!changed)
-        STARG_TRY(search_ask_cells(s, &changed));
-    s->ended = !changed;
+    if (!changed && s->bound < s->count && s->bound == before) {
+        STARG_TRY(ask_further(s, list, &changed));
+        STARG_TRY(prove(s));
+    }
 done:
-    starg_release(context_of(s), leaves);
     return status;
 }
 
@@ -347,7 +365,9 @@ done:
 static starg_status begin(search *s, const guard_detail *detail, const guard_selection *selection) {
     starg_status status = STARG_OK;
     const guard_problem *p = s->problem;
-    s->count = selection->chosen.count;
+    for (size_t i = 0; i < selection->chosen.count; i++)
+        STARG_PUSH(p->context, STAGE, &s->guards, selection->chosen.data[i]);
+    s->count = s->guards.count;
     s->bound = s->count > 0;
     s->redundancy = p->options->redundancy;
     s->first_count = pool_count(s->pool);
@@ -438,8 +458,7 @@ static starg_status choose_again(search *s, guard_selection *selection) {
     guard_selection next = {0};
     bool enough = false;
     const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
-    const uint32_t *best = s->better ? s->guards.data : selection->chosen.data;
-    STARG_TRY(check_enough(s, best, s->count, &enough));
+    STARG_TRY(check_enough(s, s->guards.data, s->count, &enough));
     if (!enough)
         STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
     else if (s->better)

@@ -1,28 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Better guards, without a bound: what `guard` does with its candidates unless told otherwise.
  *
- * A round does the first of these that finds something, by turns:
- *   1. points that are worth more than 1 by the prices, by moving known ones
- * (guard/search_moves.c);
- *   2. the linear program over all faces and the candidates: faces that it pays for become
- *      witnesses, and what covers everything with fewer guards is taken;
- *   3. the integer program over the points: better guards, or witnesses that these miss;
- *   4. faces that the fractional cover sees too little become witnesses;
- *   5. cells that may be worth more than 1 are split, each with two more points.
- * It ends when rounds have found nothing PATIENCE times, or with the budget. At last the points are
- * asked again; if that comes to no end, the most valuable points become candidates, and an integer
- * program over all faces chooses among these. */
+ * A round finds prices, and does the first of these that finds something, by turns:
+ *   1. points that are worth more than 1, by moving known ones (guard/search_moves.c);
+ *   2. local search for a guard less among known points and others (guard/search_fewer.c): better
+ *      guards, or witnesses that these miss;
+ *   3. faces that the fractional cover sees too little become witnesses;
+ *   4. cells that may be worth more than 1 are split, each with two more points.
+ * It ends when local search has found no better guards PATIENCE times, or a third as often where
+ * the prices leave no room for them, or with the budget. At last the points are asked by integer
+ * programs, for a bound of them and for what local search has missed: over the witnesses where
+ * these are few; and where that comes to no end, over all faces and the candidates that fewer
+ * guards could be among, which the most valuable points have joined. */
 #include <stdlib.h>
 
 #include "guard/search_parts.h"
 
-enum { TRIES = 2, PATIENCE = 4, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
+enum { TRIES = 2, PATIENCE = 8, HOPELESS = 3, MOST_HELD = 250, ASKED = 4, MOST_ASKED_OF = 300 };
 
 static const char STAGE[] = "search";
 
 /* Programs grow with the guards, and what each point is held against with the faces. */
 static uint64_t default_work(const search *s) {
-    return 400000 + 70 * s->pool->columns + 40000 * s->count + 5 * s->count * s->pool->columns;
+    return 400000 + 40 * s->pool->columns + 50000 * s->count + 4 * s->count * s->pool->columns;
 }
 
 uint64_t search_improve_work(const search *s) {
@@ -33,35 +33,29 @@ uint64_t search_improve_work(const search *s) {
 starg_status search_improve(search *s, row_list *list) {
     starg_status status = STARG_OK;
     scored_leaf *leaves = NULL;
-    size_t count;
+    size_t count, before = s->count;
     double most;
     bool changed = false;
     STARG_TRY(search_find_prices(s, list));
-    if (s->moves % 4 < 2) {
+    if (s->moves % 2 == 0) {
         STARG_TRY(search_move(s, &most));
         if (most > 1 + SEARCH_GAP)
             goto done;
     }
-    if (s->moves++ % 4 != 3) {
-        STARG_TRY(search_ask_pool(s, list, &changed));
-        if (changed)
-            goto done;
-    }
-    if (search_has_room(s)) {
-        size_t before = s->count;
-        STARG_TRY(search_ask_points(s, &changed));
-        if (s->count < before)
-            s->idle = 0;
-    }
-    if (changed)
+    STARG_TRY(search_fewer(s, &changed));
+    s->idle = s->count < before ? 0 : s->idle + (search_has_room(s) ? 1 : HOPELESS);
+    if (s->idle > PATIENCE) {
+        s->ended = true;
         goto done;
-    STARG_TRY(search_add_short(s, list, &changed));
+    }
+    if (!changed)
+        STARG_TRY(search_add_short(s, list, &changed));
     if (changed)
         goto done;
     STARG_TRY(search_list_leaves(s, 1, &leaves, &count));
     if (count > 0)
         STARG_TRY(search_split(s, leaves, count, TRIES));
-    s->ended = count == 0 || ++s->idle > PATIENCE;
+    s->ended = count == 0;
 done:
     starg_release(context_of(s), leaves);
     return status;
@@ -75,13 +69,12 @@ static starg_status ask_again(search *s, bool *open) {
     *open = true;
     s->known = 0; /* it was that of fewer points */
     STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
-    if (s->scene.witnesses.count > MOST_ASKED_OF)
-        goto done;
-    for (int k = 0; k < ASKED && *open; k++) {
+    bool few = s->scene.witnesses.count <= MOST_ASKED_OF;
+    for (int k = 0; k < (few ? ASKED : 1) && *open; k++) {
         STARG_TRY(search_find_prices(s, &list));
         STARG_TRY(search_bound_points(s));
         *open = s->known < s->count;
-        if (*open)
+        if (*open && few)
             STARG_TRY(search_ask_points(s, open));
     }
 done:
@@ -117,17 +110,12 @@ done:
 
 starg_status search_close(search *s) {
     starg_status status = STARG_OK;
-    starg_cover *cover = NULL;
     bool open = false;
-    const choice how = {.method = STARG_COVER_ILP, .max_nodes = s->problem->options->max_nodes};
     STARG_TRY(ask_again(s, &open));
     if (!open || starg_time_is_over(context_of(s)))
         goto done;
     STARG_TRY(hold_best(s));
-    STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
-    STARG_TRY(search_take_cover(s, cover));
-    s->known = cover->lower_bound > s->known ? cover->lower_bound : s->known;
+    STARG_TRY(search_ask_candidates(s));
 done:
-    starg_cover_free(cover);
     return status;
 }

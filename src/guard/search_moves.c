@@ -66,6 +66,7 @@ typedef struct moving {
     proposal *proposals; /* of a generation: `each` a source */
     size_t each;
     witness_row rest; /* witnesses that are no sources */
+    search_points worthy;
 } moving;
 
 static int by_price(const void *a, const void *b) {
@@ -147,36 +148,39 @@ static void random_ball(starg_rng *rng, double out[3]) {
     } while (vec3_dot(out, out) > 1);
 }
 
-static void propose(const moving *m, const source *n, int kind, double step, starg_rng *rng,
-                    double p[3]) {
-    const double *best = n->best.place;
-    double shift[3], reach = vec3_distance(best, n->centre);
-    random_ball(rng, shift);
-    if (kind == 1 && n->near_count > 0) {
-        const double *other =
-            m->sources[n->near[starg_rng_below(rng, (uint64_t)n->near_count)]].best.place;
-        double t = starg_rng_unit(rng);
-        for (int k = 0; k < 3; k++)
-            p[k] = best[k] + t * (other[k] - best[k]);
-        vec3_along(p, 0.3 * step * vec3_distance(best, other), shift, p);
-    } else if (kind == 2) {
-        double t = 0.3 + 1.2 * starg_rng_unit(rng);
-        for (int k = 0; k < 3; k++)
-            p[k] = n->centre[k] + t * (best[k] - n->centre[k]);
-        vec3_along(p, step * t * reach, shift, p);
-    } else {
-        vec3_along(best, step * reach, shift, p);
-    }
-}
-
-/* A direction near that of the source's best. */
-static void turn(const source *n, double step, starg_rng *rng, double direction[3]) {
+/* A direction near the one that is there. */
+static void turn(double step, starg_rng *rng, double direction[3]) {
     double shift[3];
     random_ball(rng, shift);
-    vec3_along(n->best.direction, step, shift, direction);
+    vec3_along(direction, step, shift, direction);
     double length = vec3_length(direction);
     for (int k = 0; k < 3 && length > 0; k++)
         direction[k] /= length;
+}
+
+void search_propose(const search_point *best, const double centre[3], const double *other, int kind,
+                    double step, starg_rng *rng, search_point *out) {
+    const double *from = best->place;
+    double shift[3], reach = vec3_distance(from, centre);
+    *out = (search_point){.candidate = UINT32_MAX};
+    random_ball(rng, shift);
+    if (kind == 1 && other != NULL) {
+        double t = starg_rng_unit(rng);
+        for (int k = 0; k < 3; k++)
+            out->place[k] = from[k] + t * (other[k] - from[k]);
+        vec3_along(out->place, 0.3 * step * vec3_distance(from, other), shift, out->place);
+    } else if (kind == 2) {
+        double t = 0.3 + 1.2 * starg_rng_unit(rng);
+        for (int k = 0; k < 3; k++)
+            out->place[k] = centre[k] + t * (from[k] - centre[k]);
+        vec3_along(out->place, step * t * reach, shift, out->place);
+    } else {
+        vec3_along(from, step * reach, shift, out->place);
+    }
+    vec3_copy(best->direction, out->direction);
+    vec3_copy(best->up, out->up);
+    if (vec3_dot(out->direction, out->direction) > 0)
+        turn(step, rng, out->direction);
 }
 
 static bool look_at(const search_scene *scene, proposal *q, uint32_t witness) {
@@ -223,7 +227,6 @@ static starg_status look_from(starg_context *context, void *shared, void *scratc
 static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, double step) {
     starg_status status = STARG_OK;
     search_scene *scene = &m->s->scene;
-    bool looks = sensor_is_directed(scene->view);
     for (size_t i = 0; i < m->count; i++) {
         const source *n = &m->sources[i];
         starg_rng rng =
@@ -231,14 +234,12 @@ static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, 
                            scene->witnesses.data[n->witness]);
         for (size_t kind = 0; kind < m->each; kind++) {
             proposal *q = &m->proposals[m->each * i + kind];
-            *q = (proposal){.point.candidate = UINT32_MAX,
-                            .by = n->witness,
-                            .least = fmin(n->value, WORTH) - TIE};
-            propose(m, n, (int)kind % 3, step, &rng, q->point.place);
-            if (looks) {
-                turn(n, step, &rng, q->point.direction);
-                vec3_copy(n->best.up, q->point.up);
-            }
+            *q = (proposal){.by = n->witness, .least = fmin(n->value, WORTH) - TIE};
+            const double *other =
+                kind % 3 == 1 && n->near_count > 0
+                    ? m->sources[n->near[starg_rng_below(&rng, (uint64_t)n->near_count)]].best.place
+                    : NULL;
+            search_propose(&n->best, n->centre, other, (int)kind % 3, step, &rng, &q->point);
         }
     }
     const starg_parallel_loop loop = {.stage = STAGE,
@@ -251,6 +252,8 @@ static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, 
         const proposal *q = &m->proposals[k];
         if (q->value > 0)
             offer(m, &q->point, q->value, true);
+        if (q->value > 1 + SEARCH_GAP)
+            STARG_PUSH(scene->context, STAGE, &m->worthy, q->point);
         scene->work += q->work;
     }
 done:
@@ -272,6 +275,8 @@ static starg_status take_best(moving *m, double *most) {
     search *s = m->s;
     size_t first = s->points.count;
     *most = 0;
+    for (size_t i = 0; i < m->worthy.count; i++)
+        STARG_PUSH(context_of(s), STAGE, &s->points, m->worthy.data[i]);
     for (size_t i = 0; i < m->count; i++)
         if (m->sources[i].is_new && m->sources[i].value > WORTH && !stands_before(m, i)) {
             STARG_PUSH(context_of(s), STAGE, &s->points, m->sources[i].best);
@@ -303,6 +308,7 @@ starg_status search_move(search *s, double *most) {
     STARG_TRY(take_best(&m, most));
 done:
     starg_release(context, m.sources);
+    STARG_ARRAY_FREE(context, &m.worthy);
     starg_release(context, m.proposals);
     return status;
 }

@@ -3,6 +3,7 @@
 #ifndef STARG_GUARD_SEARCH_PARTS_H
 #define STARG_GUARD_SEARCH_PARTS_H
 
+#include "core/rng.h"
 #include "guard/cells.h"
 #include "guard/prices.h"
 #include "guard/stages.h"
@@ -125,17 +126,18 @@ starg_status search_try_guards(search *s, const uint32_t *points, size_t count, 
  * CANCELLED. */
 starg_status search_hold(search *s, const uint32_t *points, size_t count);
 
-/* The linear program over all columns and the candidates, which the points of the fractional cover
- * join: the columns that it pays for become witnesses, and what covers all of them guards.
- * *changed: either. Errors: MEMORY, CANCELLED. */
-starg_status search_ask_pool(search *s, const row_list *list, bool *changed);
-
-/* What was chosen among all of the pool as guards, if it is fewer. Errors: MEMORY. */
-starg_status search_take_cover(search *s, const starg_cover *cover);
-
 /* Points that are worth more than known ones join them (guard/search_moves.c). *most: what the best
  * is worth, 0 where there is none. Errors: MEMORY, CANCELLED. */
 starg_status search_move(search *s, double *most);
+
+/* A point near `best`, which sees a face about `centre`: by 0 about it, by 1 towards `other` (NULL:
+ * none), by 2 in front of the face. Where views are cones it is turned, too. */
+void search_propose(const search_point *best, const double centre[3], const double *other, int kind,
+                    double step, starg_rng *rng, search_point *out);
+
+/* Local search for a guard less (guard/search_fewer.c). *changed: there are better guards, or more
+ * witnesses. Errors: MEMORY, CANCELLED. */
+starg_status search_fewer(search *s, bool *changed);
 
 /* A leaf that is to be split, the highest score first. */
 typedef struct scored_leaf {
@@ -157,6 +159,10 @@ starg_status search_list_leaves(const search *s, double most, scored_leaf **out,
 /* The integer program over the points: do fewer guards see all witnesses? *changed: there are
  * better guards, or more witnesses. Errors: MEMORY, CANCELLED. */
 starg_status search_ask_points(search *s, bool *changed);
+
+/* The integer program over all columns and the candidates that may be among fewer guards, by the
+ * prices: `known` is raised to its bound. Errors: MEMORY, CANCELLED. */
+starg_status search_ask_candidates(search *s);
 
 /* The integer program over cells and points: what holds all witnesses with fewer of them than there
  * are guards is followed, by splitting its cells or trying its points; where nothing does,

@@ -88,6 +88,55 @@ done:
     return status;
 }
 
+/* The candidates that may be among fewer guards than there are, as `list_useful`; but none is left
+ * out for another one, which may see less of what is no witness. */
+static void list_useful_candidates(const search *s, uint32_t *list, size_t *count) {
+    double most = search_largest_value(s);
+    double least = search_value(s) - ((double)s->count - 2) * most - ROUNDING;
+    *count = 0;
+    for (size_t i = 0; i < s->points.count; i++)
+        if (s->points.data[i].candidate != UINT32_MAX &&
+            row_value(&s->points.data[i].seen, s->prices.price) >= least)
+            list[(*count)++] = (uint32_t)i;
+}
+
+starg_status search_ask_candidates(search *s) {
+    starg_status status = STARG_OK;
+    starg_context *context = context_of(s);
+    const starg_bits *all = s->pool->rows;
+    starg_cover_problem problem;
+    starg_cover_options options;
+    starg_bits *rows = NULL;
+    starg_cover *cover = NULL;
+    uint32_t *list = NULL;
+    size_t count;
+    bool changed;
+    starg_cover_problem_default(&problem);
+    starg_cover_options_default(&options);
+    STARG_NEW(context, STAGE, list, s->points.count);
+    list_useful_candidates(s, list, &count);
+    STARG_TRY(starg_bits_create(context, count, all->columns, &rows));
+    for (size_t k = 0; k < count; k++)
+        memcpy(starg_bits_row_mutable(rows, k),
+               starg_bits_row(all, s->points.data[list[k]].candidate),
+               all->words * sizeof *all->data);
+    problem.rows = rows;
+    problem.redundancy = (uint32_t)s->redundancy;
+    options.max_nodes = s->problem->options->max_nodes;
+    STARG_TRY(starg_cover_solve(context, &problem, &options, &cover));
+    size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;
+    for (size_t k = 0; k < cover->count; k++)
+        cover->rows[k] = list[cover->rows[k]];
+    if (cover->count < s->count)
+        STARG_TRY(search_try_guards(s, cover->rows, cover->count, &changed));
+    s->known = bound > s->known ? bound : s->known;
+done:
+    starg_release(context, list);
+    starg_bits_free(rows);
+    starg_cover_free(cover);
+    return status;
+}
+
 /* ---- cells and points ---- */
 
 /* Columns of the program: what no other one holds. Leaves that see no more than a point does are

@@ -281,44 +281,6 @@ done:
     return status;
 }
 
-starg_status search_take_cover(search *s, const starg_cover *cover) {
-    starg_status status = STARG_OK;
-    if (cover->count >= s->count)
-        return STARG_OK;
-    s->guards.count = 0;
-    for (size_t i = 0; i < cover->count; i++)
-        STARG_PUSH(context_of(s), STAGE, &s->guards, cover->rows[i]);
-    s->count = cover->count;
-    s->better = true;
-done:
-    return status;
-}
-
-starg_status search_ask_pool(search *s, const row_list *list, bool *changed) {
-    starg_status status = STARG_OK;
-    starg_context *context = context_of(s);
-    starg_cover *cover = NULL;
-    uint32_t *held = NULL;
-    size_t count = 0, before = s->count, added;
-    const choice how = {.method = STARG_COVER_LP, .prices = true};
-    STARG_NEW(context, STAGE, held, list->count);
-    for (size_t i = 0; i < list->count; i++)
-        if (s->prices.share[i] >= LEAST_SHARE)
-            held[count++] = list->points[i];
-    STARG_TRY(search_hold(s, held, count));
-    STARG_TRY(choose_candidates(s->pool, &s->problem->weights, &how, &cover));
-    STARG_TRY(search_take_cover(s, cover));
-    for (size_t j = 0; j < s->pool->columns; j++)
-        cover->prices[j] = -cover->prices[j];
-    STARG_TRY(add_witnesses(s, cover->prices, -LEAST_SHARE, MORE_WITNESSES + s->count, &added));
-    s->scene.work += pool_count(s->pool) * s->pool->columns / 100;
-    *changed = added > 0 || s->count < before;
-done:
-    starg_release(context, held);
-    starg_cover_free(cover);
-    return status;
-}
-
 starg_status search_add_short(search *s, const row_list *list, bool *changed) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);

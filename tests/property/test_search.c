@@ -289,6 +289,31 @@ static void test_same_bytes(void **state) {
     free(first);
 }
 
+/* More work never proves less, nor does it end with more guards. */
+static void check_more_work(starg_context *context, const starg_solid *solid) {
+    size_t bound = 0, count = SIZE_MAX;
+    for (uint64_t work = 1000; work < 300000; work += work / 2) {
+        starg_guard_options options = proving(work);
+        starg_guards *guards = test_guard(context, solid, &options);
+        assert_true(guards->lower_bound_everywhere >= bound);
+        assert_true(guards->count <= count);
+        bound = guards->lower_bound_everywhere;
+        count = guards->count;
+        starg_guards_free(context, guards);
+    }
+}
+
+static void test_more_work(void **state) {
+    (void)state;
+    starg_context *context = test_context(2);
+    for (size_t vertices = 500; vertices <= 800; vertices += 100) {
+        starg_solid *solid = test_sample(context, "gallery", vertices);
+        check_more_work(context, solid);
+        starg_solid_free(solid);
+    }
+    test_context_free(context);
+}
+
 /* One guard in the kernel is enough, with or without the search, and is reported as such. */
 static void test_star_shaped(void **state) {
     (void)state;
@@ -574,6 +599,7 @@ int main(void) {
         cmocka_unit_test(test_questions),
         cmocka_unit_test(test_cells_hold_their_points),
         cmocka_unit_test(test_same_bytes),
+        cmocka_unit_test(test_more_work),
         cmocka_unit_test(test_star_shaped),
         cmocka_unit_test(test_number_given),
         cmocka_unit_test(test_part_of_the_area),

@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* Local search of a search: do all witnesses need as many guards as there are?
+ *
+ * Problem. One guard less than there are is to see all witnesses often enough, from any points.
+ *
+ * The guards without one of them begin. In each step, after Gao, Weise and Li (EJOR 246, 2015; as
+ * in cover/local.c, but over points that are not all known):
+ *   1. the guard goes whose witnesses weigh least, of those that it is needed for;
+ *   2. a witness that lacks guards is drawn. Of all known points that see it the one comes in that
+ *      adds most weight. Before that it climbs: points about it, in front of the witness, and
+ *      towards the other guards take its place where they add as much or more. If the climb ends
+ *      higher, its point is known from then on;
+ *   3. each witness that still lacks guards weighs one more.
+ * When none lacks any, the guards are held against all faces: they are better ones, or what they do
+ * not see becomes witnesses, of weight 1, and it goes on with these and a guard less.
+ *
+ * A climb looks at the witnesses that lack guards only, which are few: it costs less than one
+ * point that is held against all witnesses. The linear program's prices tell where points are
+ * missing for a fractional cover (guard/search_moves.c), weights where for a whole one.
+ *
+ * Cost of a step: a row of each known point; CLIMB points, each held against a few witnesses. It
+ * ends after PATIENCE steps without better guards, or with the budget. */
+#include <math.h>
+
+#include "geometry/vec3.h"
+#include "guard/candidates.h"
+#include "guard/search_parts.h"
+
+static const char STAGE[] = "search";
+
+enum { RANDOM_STAGE = 29, CLIMB = 30, PATIENCE = 500, PATIENCE_PER_GUARD = 50 };
+
+static const double FIRST_STEP = 0.5, STEP_FACTOR = 0.9;
+
+typedef struct local_search {
+    search *s;
+    uint32_t *chosen; /* points of the search */
+    size_t *moved;    /* by chosen point: the step in which it came in */
+    size_t count;
+    size_t step, last; /* this one; the one that found better guards   */
+    uint32_t held[MOST_WITNESSES];
+    double weight[MOST_WITNESSES];
+    witness_row open; /* witnesses that lack guards */
+    size_t fewest;    /* of them after a step: as few as there have been */
+    size_t known;     /* witnesses that `held` has counted */
+    starg_rng rng;
+} local_search;
+
+static void count_in(local_search *l, size_t j, size_t held) {
+    l->held[j] = (uint32_t)held;
+    if (held < l->s->redundancy)
+        starg_bit_set(l->open.bits, j);
+    else
+        starg_bit_clear(l->open.bits, j);
+}
+
+static const witness_row *row_of(const local_search *l, uint32_t point) {
+    return &l->s->points.data[point].seen;
+}
+
+static void add_point(local_search *l, uint32_t point) {
+    const witness_row *row = row_of(l, point);
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w])
+            count_in(l, 64 * w + bit, l->held[64 * w + bit] + 1);
+    l->moved[l->count] = l->step;
+    l->chosen[l->count++] = point;
+}
+
+static uint32_t remove_point(local_search *l, size_t at) {
+    uint32_t point = l->chosen[at];
+    const witness_row *row = row_of(l, point);
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w])
+            count_in(l, 64 * w + bit, l->held[64 * w + bit] - 1);
+    l->count--;
+    l->chosen[at] = l->chosen[l->count];
+    l->moved[at] = l->moved[l->count];
+    return point;
+}
+
+/* Counts witnesses that are new. */
+static void take_witnesses(local_search *l) {
+    for (; l->known < l->s->scene.witnesses.count; l->known++) {
+        size_t held = 0;
+        for (size_t i = 0; i < l->count; i++)
+            held += starg_bit_test(row_of(l, l->chosen[i])->bits, l->known);
+        l->weight[l->known] = 1;
+        count_in(l, l->known, held);
+    }
+}
+
+/* What the witnesses weigh that would lack the guard. */
+static double loss_of(const local_search *l, size_t at) {
+    const witness_row *row = row_of(l, l->chosen[at]);
+    double loss = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w])
+            if (l->held[64 * w + bit] == l->s->redundancy)
+                loss += l->weight[64 * w + bit];
+    return loss;
+}
+
+/* The guard of least loss, the one that has stood longest among equals; not the last to come. */
+static size_t choose_to_remove(const local_search *l) {
+    size_t best = SIZE_MAX;
+    double least = INFINITY;
+    for (size_t i = 0; i < l->count; i++) {
+        double loss = loss_of(l, i);
+        if (l->moved[i] + 1 == l->step && l->count > 1)
+            continue;
+        if (loss < least || (loss <= least && l->moved[i] < l->moved[best])) {
+            least = loss;
+            best = i;
+        }
+    }
+    return best;
+}
+
+static double gain_of(const local_search *l, const witness_row *row) {
+    double gain = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, row->bits[w] & l->open.bits[w])
+            gain += l->weight[64 * w + bit];
+    return gain;
+}
+
+static size_t draw_open(local_search *l) {
+    uint64_t left = starg_rng_below(&l->rng, starg_bit_count(l->open.bits, WITNESS_WORDS));
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, l->open.bits[w])
+            if (left-- == 0)
+                return 64 * w + bit;
+    return 0;
+}
+
+/* How many witnesses lack guards after the point has come in. */
+static size_t count_left(const local_search *l, uint32_t point) {
+    size_t left = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        left += (size_t)__builtin_popcountll(l->open.bits[w] & ~row_of(l, point)->bits[w]);
+    return left;
+}
+
+static bool is_chosen(const local_search *l, size_t point) {
+    for (size_t i = 0; i < l->count; i++)
+        if (l->chosen[i] == point)
+            return true;
+    return false;
+}
+
+/* Of the known points that see a witness the one of the largest gain, the latest among equals, but
+ * not the one that has gone. */
+static uint32_t choose_to_add(local_search *l, size_t witness, uint32_t gone, double *most) {
+    uint32_t best = gone;
+    *most = 0;
+    for (size_t i = 0; i < l->s->points.count; i++) {
+        const witness_row *row = &l->s->points.data[i].seen;
+        if (i == gone || !starg_bit_test(row->bits, witness))
+            continue;
+        double gain = gain_of(l, row);
+        if (gain >= *most && !is_chosen(l, i)) {
+            *most = gain;
+            best = (uint32_t)i;
+        }
+    }
+    l->s->scene.work += 1 + l->s->points.count / 100;
+    return best;
+}
+
+/* What a point adds; 0 as soon as that is less than `least`. */
+static double look_from(local_search *l, search_point *point, size_t witness, double least) {
+    search_scene *scene = &l->s->scene;
+    double left = gain_of(l, &l->open);
+    uint64_t work = 1;
+    bool sees = candidates_allowed(scene->solid, point->place, scene->clearance) &&
+                search_scene_sees(scene, point, witness, &work);
+    if (sees)
+        starg_bit_set(point->seen.bits, witness);
+    for (size_t w = 0; w < WITNESS_WORDS && sees && left >= least; w++)
+        STARG_FOR_BITS (bit, l->open.bits[w]) {
+            size_t j = 64 * w + bit;
+            if (j == witness || left < least)
+                continue;
+            if (search_scene_may_see(scene, point->place, j) &&
+                search_scene_sees(scene, point, j, &work))
+                starg_bit_set(point->seen.bits, j);
+            else
+                left -= l->weight[j];
+        }
+    scene->work += 2 * work;
+    return sees && left >= least ? left : 0;
+}
+
+/* A point that adds more than `point` does joins the known ones; or `point`. */
+static starg_status climb(local_search *l, uint32_t *point, size_t witness, double gain) {
+    starg_status status = STARG_OK;
+    search *s = l->s;
+    search_point best = s->points.data[*point];
+    double centre[3], most = gain, step = FIRST_STEP;
+    search_scene_centre(&s->scene, witness, centre);
+    for (int k = 0; k < CLIMB; k++, step *= STEP_FACTOR) {
+        const double *other = NULL;
+        search_point next;
+        if (k % 3 == 1 && l->count > 0)
+            other = s->points.data[l->chosen[starg_rng_below(&l->rng, l->count)]].place;
+        search_propose(&best, centre, other, k % 3, step, &l->rng, &next);
+        double found = look_from(l, &next, witness, most);
+        if (found >= most) {
+            most = found;
+            best = next;
+        }
+    }
+    if (most > gain) {
+        witness_row rest = all_witnesses(s);
+        for (int w = 0; w < WITNESS_WORDS; w++)
+            rest.bits[w] &= ~l->open.bits[w];
+        STARG_TRY(points_look_at(&s->scene, &best, 1, &rest));
+        *point = (uint32_t)s->points.count;
+        STARG_PUSH(context_of(s), STAGE, &s->points, best);
+    }
+done:
+    return status;
+}
+
+static starg_status take_step(local_search *l) {
+    starg_status status = STARG_OK;
+    double gain;
+    l->step++;
+    size_t out = choose_to_remove(l);
+    uint32_t gone = out != SIZE_MAX ? remove_point(l, out) : UINT32_MAX;
+    size_t witness = draw_open(l);
+    uint32_t in = choose_to_add(l, witness, gone, &gain);
+    if (in != UINT32_MAX) {
+        size_t left = count_left(l, in);
+        if (left <= l->fewest)
+            STARG_TRY(climb(l, &in, witness, gain));
+        l->fewest = left < l->fewest ? left : l->fewest;
+        add_point(l, in);
+    }
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, l->open.bits[w])
+            l->weight[64 * w + bit]++;
+done:
+    return status;
+}
+
+static bool is_open(const local_search *l) {
+    return starg_bit_count(l->open.bits, WITNESS_WORDS) > 0;
+}
+
+/* The guards as points of the search, all but one. */
+static starg_status begin(local_search *l) {
+    starg_status status = STARG_OK;
+    const search *s = l->s;
+    STARG_NEW(context_of(s), STAGE, l->chosen, s->count);
+    STARG_NEW_ZERO(context_of(s), STAGE, l->moved, s->count);
+    for (size_t j = 0; j < MOST_WITNESSES; j++)
+        l->weight[j] = 1;
+    for (size_t i = 0; i < s->points.count; i++)
+        for (size_t k = 0; k < s->count; k++)
+            if (s->points.data[i].candidate == s->guards.data[k])
+                add_point(l, (uint32_t)i);
+    take_witnesses(l);
+done:
+    return status;
+}
+
+/* The guards see all witnesses. */
+static starg_status try_guards(local_search *l, bool *changed) {
+    starg_status status = STARG_OK;
+    size_t before = l->s->count;
+    bool found = false;
+    STARG_TRY(search_try_guards(l->s, l->chosen, l->count, &found));
+    *changed = *changed || found;
+    if (l->s->count < before)
+        l->last = l->step;
+    l->fewest = SIZE_MAX;
+    take_witnesses(l);
+done:
+    return status;
+}
+
+static bool may_go_on(const local_search *l) {
+    const search *s = l->s;
+    return l->step < l->last + PATIENCE + PATIENCE_PER_GUARD * s->count &&
+           s->scene.work < s->budget && !starg_time_is_over(context_of(s)) && s->count > 1;
+}
+
+starg_status search_fewer(search *s, bool *changed) {
+    starg_status status = STARG_OK;
+    local_search l = {.s = s, .fewest = SIZE_MAX};
+    size_t first = s->points.count;
+    *changed = false;
+    l.rng = starg_rng_make(context_of(s)->seed, RANDOM_STAGE, s->moves++);
+    STARG_TRY(begin(&l));
+    while (may_go_on(&l)) {
+        STARG_TRY(starg_check_cancel(context_of(s), STAGE));
+        while (l.count >= s->count)
+            remove_point(&l, choose_to_remove(&l));
+        if (is_open(&l)) {
+            STARG_TRY(take_step(&l));
+            continue;
+        }
+        size_t witnesses = s->scene.witnesses.count, guards = s->count;
+        STARG_TRY(try_guards(&l, changed));
+        if (s->scene.witnesses.count == witnesses && s->count == guards)
+            break;
+    }
+    search_prune_points(s, first);
+done:
+    starg_release(context_of(s), l.chosen);
+    starg_release(context_of(s), l.moved);
+    return status;
+}
