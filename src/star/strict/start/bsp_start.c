@@ -34,6 +34,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "geometry/vec3.h"
+#include "star/strict/partition/extract.h"
 #include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/partition/separate.h"
 #include "star/strict/partition/slice.h"
@@ -204,23 +205,24 @@ static bool is_flat(const partition *p, size_t old_points, double most) {
     return true;
 }
 
-/* On a copy: the piece cut, and both sides parted into what is connected. */
-static starg_status cut(bsp_builder *b, const job *j, partition *copy, bool *done) {
+/* In the extract: the piece cut, and both sides parted into what is connected. */
+static starg_status cut(bsp_builder *b, const job *j, partition_extract *e, bool *done) {
     starg_status status = STARG_OK;
     const piece fresh = {.stamp = ++b->p->stamps};
-    STARG_TRY(partition_copy(b->p, copy));
-    uint32_t first = (uint32_t)copy->pieces.count;
-    STARG_PUSH(copy->context, PARTITION_STAGE, &copy->pieces, fresh);
-    STARG_TRY(partition_slice(copy, j->number, first, &j->plane, done));
-    *done = *done && is_flat(copy, b->p->points.count / 3, fmin(TURN / ease_of(j), TURN_MOST));
+    partition *part = &e->part;
+    STARG_TRY(extract_make(b->p, &j->number, 1, &b->scratch, e));
+    uint32_t first = (uint32_t)part->pieces.count;
+    STARG_PUSH(part->context, PARTITION_STAGE, &part->pieces, fresh);
+    STARG_TRY(partition_slice(part, 0, first, &j->plane, done));
+    *done = *done && is_flat(part, e->points.count, fmin(TURN / ease_of(j), TURN_MOST));
     if (!*done)
         goto done;
-    STARG_TRY(partition_build_index(copy));
-    STARG_TRY(partition_separate(copy, j->number));
-    STARG_TRY(partition_separate(copy, first));
-    for (uint32_t i = j->number; i < copy->pieces.count && *done; i = i < first ? first : i + 1) {
+    STARG_TRY(partition_build_index(part));
+    STARG_TRY(partition_separate(part, 0));
+    STARG_TRY(partition_separate(part, first));
+    for (uint32_t i = 0; i < part->pieces.count && *done; i = i < first ? first : i + 1) {
         bool small;
-        STARG_TRY(is_small_component(b, copy, i, j, &small));
+        STARG_TRY(is_small_component(b, part, i, j, &small));
         *done = !small;
     }
 done:
@@ -242,23 +244,22 @@ static starg_status try_again(bsp_builder *b, const job *j) {
 
 static starg_status carry_out(bsp_builder *b, const job *j) {
     starg_status status = STARG_OK;
-    partition copy = {.context = b->p->context};
+    partition_extract e = {.part = {.context = b->p->context}};
     bool done = false;
     if (j->found)
-        STARG_TRY(cut(b, j, &copy, &done));
+        STARG_TRY(cut(b, j, &e, &done));
     if (!done) {
         STARG_TRY(try_again(b, j));
         goto done;
     }
     uint32_t first = (uint32_t)b->p->pieces.count;
-    partition before = *b->p;
-    *b->p = copy;
-    copy = before;
+    STARG_TRY(extract_return(&e, b->p));
+    STARG_TRY(partition_build_index(b->p));
     STARG_TRY(open_piece(b, j->number, j->attempts / 2));
     for (uint32_t i = first; i < b->p->pieces.count; i++)
         STARG_TRY(open_piece(b, i, j->attempts / 2));
 done:
-    partition_free(&copy);
+    extract_free(&e);
     return status;
 }
 
