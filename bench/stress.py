@@ -55,7 +55,7 @@ def write(path, mesh):
 def sample(options, rng, folder, names, most):
     path = os.path.join(folder, "sample.off")
     name = rng.choice(names)
-    words = ["sample", name, "-o", path, "--vertices", str(rng.randrange(100, most))]
+    words = ["sample", name, "-o", path, "--vertices", str(rng.randrange(500, most))]
     if name in FIGURES:
         words += ["--pose", str(rng.randrange(5))]
     status, _, told = run(options, *words)
@@ -85,7 +85,7 @@ def turned(rng, points):
 def together(options, rng, folder, may_subtract):
     points, faces = [], []
     for number in range(rng.randrange(2, 5)):
-        more, corners = sample(options, rng, folder, RIGID + FIGURES, 500)
+        more, corners = sample(options, rng, folder, RIGID + FIGURES, 700)
         sizes = [rng.uniform(.4, 1.2) for _ in range(3)]
         more = turned(rng, [[point[k] * sizes[k] for k in range(3)] for point in more])
         place = [rng.uniform(-.3, .3) if number else 0 for _ in range(3)]

@@ -61,6 +61,7 @@ typedef struct job {
     double guard[3]; /* the middle of it, in those of the solid */
     partition_plane plane;
     bool found;
+    uint64_t work;
 } job;
 
 typedef struct bsp_builder {
@@ -75,6 +76,8 @@ typedef struct bsp_builder {
     size_t merge_from; /* facets from which on it is time to merge */
     double volume;     /* of the solid, in unit coordinates */
     double finished;   /* of it, in pieces that have a guard */
+    uint64_t began;    /* with this stamp */
+    uint64_t work;
     bool hopeless;
 } bsp_builder;
 
@@ -152,6 +155,8 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     starg_rng rng =
         starg_rng_make(context->seed, 78 + STREAMS * b->options->stream, b->done + item);
     uint32_t facets = b->p->start.data[j->number + 1] - b->p->start.data[j->number];
+    region_scratch *own = scratch;
+    uint64_t before = own->work;
     j->found = false;
     for (int all = facets < 2 * SAMPLE || j->attempts >= HALVE_FROM; all < 2; all++) {
         STARG_TRY(region_gather_some(b->p, &j->number, 1, all ? UINT32_MAX : SAMPLE, scratch, &r));
@@ -161,6 +166,7 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     }
     if (!is_star(j))
         STARG_TRY(find_plane(b, j, &r, &rng, scratch));
+    j->work = own->work - before;
 done:
     region_free(context, &r);
     return status;
@@ -267,6 +273,7 @@ static void settle(bsp_builder *b, const job *j) {
     piece *it = &b->p->pieces.data[j->number];
     vec3_copy(j->guard, it->guard);
     it->radius = j->radius;
+    it->stamp = ++b->p->stamps;
     b->finished += it->volume;
     starg_progress_step(b->p->context, (size_t)(1e6 * fmin(1, b->finished / b->volume)), 1000000);
 }
@@ -297,6 +304,7 @@ static starg_status run_round(bsp_builder *b) {
     b->next.count = 0;
     for (size_t i = 0; i < b->jobs.count; i++) {
         const job *j = &b->jobs.data[i];
+        b->work += j->work;
         STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
         if (b->hopeless)
             continue;
@@ -346,8 +354,8 @@ static starg_status certify(bsp_builder *b, int round) {
         triangles.count = 0;
         STARG_TRY(partition_gather(p, i, &triangles));
         size_t count = triangles.count / 3;
-        p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
-        p->pieces.data[i].stamp = ++p->stamps;
+        if (p->pieces.data[i].stamp > b->began)
+            p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
         if (!partition_certify(p, triangles.data, count, p->pieces.data[i].guard))
             STARG_TRY(reopen(b, i, round));
     }
@@ -359,13 +367,17 @@ done:
 
 static starg_status open_all(bsp_builder *b) {
     starg_status status = STARG_OK;
-    uint32_t given = (uint32_t)b->p->pieces.count;
-    for (uint32_t i = 0; i < given; i++)
-        STARG_TRY(partition_separate(b->p, i));
-    for (uint32_t i = 0; i < b->p->pieces.count; i++) {
-        b->volume += b->p->pieces.data[i].volume;
-        STARG_TRY(open_piece(b, i, 0));
+    size_t given = b->p->pieces.count, chosen = b->options->piece_count;
+    size_t count = b->options->pieces != NULL ? chosen : given;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t number = b->options->pieces != NULL ? b->options->pieces[i] : (uint32_t)i;
+        STARG_TRY(partition_separate(b->p, number));
+        STARG_TRY(open_piece(b, number, 0));
     }
+    for (size_t i = given; i < b->p->pieces.count; i++)
+        STARG_TRY(open_piece(b, (uint32_t)i, 0));
+    for (size_t i = 0; i < b->next.count; i++)
+        b->volume += b->p->pieces.data[b->next.data[i].number].volume;
 done:
     return status;
 }
@@ -384,9 +396,9 @@ done:
 
 starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *report) {
     starg_status status = STARG_OK;
-    bsp_builder b = {.p = p, .options = options, .scratch = {.context = p->context}};
+    bsp_builder b = {
+        .p = p, .options = options, .scratch = {.context = p->context}, .began = p->stamps};
     *report = (bsp_report){.done = false};
-    starg_progress_begin(p->context, "planes");
     STARG_TRY(take_hints(&b));
     STARG_TRY(open_all(&b));
     b.merge_from = p->facets.count + p->facets.count / 8;
@@ -397,13 +409,13 @@ starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *rep
             swap_lists(&b);
         }
         report->evaluations = b.done;
+        report->work = b.work;
         if (b.jobs.count > 0)
             goto done;
         STARG_TRY(certify(&b, round));
     }
     report->done = !b.hopeless;
 done:
-    starg_progress_end(p->context);
     region_scratch_free(&b.scratch);
     STARG_ARRAY_FREE(p->context, &b.hints);
     STARG_ARRAY_FREE(p->context, &b.jobs);
