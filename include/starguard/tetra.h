@@ -60,8 +60,8 @@ STARG_API void starg_tetmesh_map_free(starg_context *context, uint32_t *vertex_m
 /* ---- generators ---- */
 
 typedef enum starg_tetra_generator {
-    STARG_TETRA_AUTO = 0,    /* TetGen if available, else stuffing, with a notice */
-    STARG_TETRA_TETGEN = 1,  /* the program tetgen: preserves the surface */
+    STARG_TETRA_AUTO = 0,    /* stuffing, with a warning that it approximates the surface */
+    STARG_TETRA_TETGEN = 1,  /* the program tetgen: preserves the surface, or fails */
     STARG_TETRA_STUFFING = 2 /* isosurface stuffing: any solid, dihedral angles from 10.7 to 164.8
                                 degrees, approximates the surface */
 } starg_tetra_generator;
@@ -96,9 +96,8 @@ typedef struct starg_tetra_report {
 
 /* Fills a solid with tetrahedra. If the surface is preserved, the solid's vertices used by faces
  * come first, in order. `options` and `report` may be NULL. The program runs in a private temporary
- * folder (in TMPDIR or /tmp), which is removed; with AUTO its absence, failure, crash or timeout is
- * not an error. Errors: ARGUMENT, SOLVER (TETGEN: why it failed; else a solid so thin that it
- * contains no lattice point), MEMORY, CANCELLED. */
+ * folder (in TMPDIR or /tmp), which is removed. Errors: ARGUMENT, SOLVER (TETGEN: why it failed;
+ * else a solid so thin that it contains no lattice point), MEMORY, CANCELLED. */
 STARG_API starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid *solid,
                                                 const starg_tetra_options *options,
                                                 starg_tetra_report *report, starg_tetmesh **out);

@@ -14,12 +14,13 @@ extern const char *const tetra_generator_words[];
 /* All but the density, for a struct T with the options at PREFIX. */
 #define TETRA_FIELDS(T, PREFIX)                                                                    \
     {.key = "generator",                                                                           \
+     .option = "generator",                                                                        \
      .kind = STARG_FIELD_CHOICE,                                                                   \
      FIELD_MEMBER(T, PREFIX generator),                                                            \
      .words = tetra_generator_words,                                                               \
      .value = "auto|tetgen|stuffing",                                                              \
-     .help = "Tetrahedra generator: the program tetgen, which preserves the surface, isosurface "  \
-             "stuffing, or whichever is applicable."},                                             \
+     .help = "Tetrahedra generator: isosurface stuffing (auto: with a warning that it "            \
+             "approximates the surface), or the program tetgen, which preserves it."},             \
         {.key = "target",                                                                          \
          .kind = STARG_FIELD_COUNT,                                                                \
          FIELD_MEMBER(T, PREFIX target),                                                           \

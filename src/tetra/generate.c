@@ -13,7 +13,6 @@ static const char STAGE[] = TETRA_STAGE;
 
 static const double LARGEST_VOLUME = 1.8; /* of TetGen's tetrahedra, relative to the mean volume */
 static const double LATTICE_DENSITY = 12; /* lattice tetrahedra per cube */
-static const double THIN = 1e-4;          /* thickness over extent that is worth a message */
 static const double STEPS_PER_CUBE = 4;   /* for measuring distances */
 
 const char *const tetra_generator_words[] = {"auto", "tetgen", "stuffing", NULL};
@@ -90,33 +89,9 @@ static starg_status try_tetgen(starg_context *context, const starg_solid *solid,
                                starg_tetmesh **out) {
     const char *reason = unfit_for_tetgen(solid);
     if (reason != NULL)
-        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "%s%s", reason,
-                          o->generator == STARG_TETRA_TETGEN ? ", which TetGen does not support"
-                                                             : "");
+        return starg_fail(context, STARG_ERROR_SOLVER, STAGE, "%s, which TetGen does not support",
+                          reason);
     return by_tetgen(context, solid, o, report, out);
-}
-
-/* Twice the volume over the area: the thickness of a plate, about half the width of a needle. */
-static double thickness_of(const starg_solid *solid) {
-    return 2 * solid->check->volume / starg_mesh_area(solid->mesh);
-}
-
-static bool is_thin(const starg_solid *solid) {
-    return thickness_of(solid) < THIN * ldexp(1, starg_mesh_exponent(solid->mesh));
-}
-
-/* Reports why the surface is not kept: defects of the model before messages of the program. */
-static void log_stuffing(starg_context *context, const starg_solid *solid) {
-    char thin[96];
-    snprintf(thin, sizeof thin, "the solid is very thin (about %.2g)", thickness_of(solid));
-    starg_log(context, STARG_LOG_WARNING,
-              "%s; using isosurface stuffing instead, whose surface only approximates the model's",
-              is_thin(solid) ? thin : starg_context_error(context)->message);
-}
-
-static bool is_final(starg_status status) {
-    return status == STARG_OK || status == STARG_ERROR_MEMORY || status == STARG_ERROR_CANCELLED ||
-           status == STARG_ERROR_TIME;
 }
 
 starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid *solid,
@@ -134,12 +109,13 @@ starg_status starg_tetmesh_from_solid(starg_context *context, const starg_solid 
     *report = (starg_tetra_report){.generator = options->generator};
     starg_progress_begin(context, STAGE);
     STARG_TRY(fields_check(context, STAGE, &OPTIONS_TABLE, options));
-    if (options->generator != STARG_TETRA_STUFFING) {
+    if (options->generator == STARG_TETRA_TETGEN) {
         status = try_tetgen(context, solid, options, report, out);
-        if (is_final(status) || options->generator == STARG_TETRA_TETGEN)
-            goto done;
-        log_stuffing(context, solid);
+        goto done;
     }
+    if (options->generator == STARG_TETRA_AUTO)
+        starg_log(context, STARG_LOG_WARNING,
+                  "isosurface stuffing fills the solid; its surface only approximates the model's");
     const tetra_shape shape = {
         .mesh = solid->mesh, .tree = solid->tree, .volume = solid->check->volume};
     STARG_TRY(by_stuffing(context, &shape, options, report, out));

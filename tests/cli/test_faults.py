@@ -78,8 +78,8 @@ class Full(Writing):
             self.refuse("db", "create", "disk/new.db", says=["full", "No space left"])
             self.assertEqual(os.listdir(disk), ["filler"])
 
-    def test_no_room_for_temporary_files(self):
-        """TetGen's files cannot be written: stuffing takes over."""
+    def test_no_temporary_files(self):
+        """Nothing is written anywhere but where the options say."""
         self.run_text("decompose", "room.off", "-o", "p.vtk", "--report", "p.json", "--mode", "paper",
                       environment={"TMPDIR": "/nowhere"})
         self.run_text("verify", "room.off", "p.vtk", "p.json")

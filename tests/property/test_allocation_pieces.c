@@ -29,19 +29,18 @@ static starg_status surface(starg_context *context) {
     return mesh_and_map(context, status, mesh, map);
 }
 
-static const starg_tetra_options *filling(starg_tetra_generator generator, const char *program) {
+static const starg_tetra_options *filling(starg_tetra_generator generator) {
     static starg_tetra_options options;
     starg_tetra_options_default(&options);
     options.generator = generator;
     options.target = 20;
-    options.tetgen = program;
     return &options;
 }
 
 #define TETMESH(NAME, VARIANT, ...)                                                                \
     FAILING_MAKES(NAME, VARIANT, starg_tetmesh, starg_tetmesh_free(out), __VA_ARGS__)
-#define FILL(NAME, VARIANT, GENERATOR, PROGRAM)                                                    \
-    TETMESH(NAME, VARIANT, in.simple, filling(STARG_TETRA_##GENERATOR, PROGRAM), &report)
+#define FILL(NAME, VARIANT, GENERATOR)                                                             \
+    TETMESH(NAME, VARIANT, in.simple, filling(STARG_TETRA_##GENERATOR), &report)
 
 static starg_status tetrahedra(starg_context *context) {
     starg_tetra_report report;
@@ -49,10 +48,8 @@ static starg_status tetrahedra(starg_context *context) {
             starg_tetmesh_vertex_count(in.tetmesh), starg_tetmesh_tetrahedra(in.tetmesh),
             starg_tetmesh_count(in.tetmesh), NULL);
     FAILING_BY(starg_tetmesh_surface, "", surface(context));
-    FILL(starg_tetmesh_from_solid, "stuffing", STUFFING, NULL);
-    /* a missing program: files are written, then stuffing takes over */
-    FILL(starg_tetmesh_from_solid, "no tetgen, stuffing", AUTO, "/nowhere/tetgen");
-    TETMESH(starg_tetmesh_from_open_mesh, "", in.open, filling(STARG_TETRA_AUTO, NULL), NULL);
+    FILL(starg_tetmesh_from_solid, "stuffing", STUFFING);
+    TETMESH(starg_tetmesh_from_open_mesh, "", in.open, filling(STARG_TETRA_AUTO), NULL);
     TETMESH(starg_tetmesh_read, "medit", failing_input("tets.mesh"));
     TETMESH(starg_tetmesh_read, "gmsh", failing_input("tets.msh"));
     TETMESH(starg_tetmesh_read, "tetgen", failing_input("tets.node"));
@@ -63,7 +60,7 @@ static starg_status tetrahedra(starg_context *context) {
 
 static starg_status by_tetgen(starg_context *context) {
     starg_tetra_report report;
-    FILL(starg_tetmesh_from_solid, "tetgen", TETGEN, NULL);
+    FILL(starg_tetmesh_from_solid, "tetgen", TETGEN);
     return STARG_OK;
 }
 

@@ -11,6 +11,7 @@
 #include "models.h"
 #include "partition_oracle.h"
 #include "star/strict/partition/apply.h"
+#include "star/strict/partition/extract.h"
 #include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/partition/slice.h"
 #include "star/strict/search/improve.h"
@@ -453,6 +454,119 @@ static void test_edge_contact(void **state) {
     test_context_free(context);
 }
 
+/* ---- extracts ---- */
+
+static size_t choose_pieces(const partition *p, starg_rng *rng, uint32_t pieces[3]) {
+    size_t wanted = 1 + starg_rng_below(rng, 3), count = 0;
+    for (int i = 0; i < 20 && count < wanted; i++) {
+        uint32_t next = (uint32_t)starg_rng_below(rng, p->pieces.count);
+        bool known = false;
+        for (size_t k = 0; k < count; k++)
+            known = known || pieces[k] == next;
+        if (!known)
+            pieces[count++] = next;
+    }
+    return count;
+}
+
+static bool is_one_of(const uint32_t *numbers, size_t count, uint32_t number) {
+    for (size_t i = 0; i < count; i++)
+        if (numbers[i] == number)
+            return true;
+    return false;
+}
+
+static bool belongs_to(const facet *f, const uint32_t *pieces, size_t count) {
+    return is_one_of(pieces, count, f->side[0]) || is_one_of(pieces, count, f->side[1]);
+}
+
+/* All facets of the pieces, all others with an edge of these, none that has no vertex of them; and
+ * the same facets in the part. */
+static void check_extract(const partition *p, const partition_extract *e, const uint32_t *pieces,
+                          size_t count) {
+    size_t points = p->points.count / 3;
+    bool *known = calloc(points, sizeof *known);
+    assert_non_null(known);
+    assert_memory_equal(e->pieces.data, pieces, count * sizeof *pieces);
+    for (size_t i = 0; i < p->facets.count; i++)
+        for (int k = 0; k < 3; k++)
+            known[p->facets.data[i].corners[k]] |= belongs_to(&p->facets.data[i], pieces, count);
+    size_t next = 0;
+    for (uint32_t i = 0; i < p->facets.count; i++) {
+        const facet *f = &p->facets.data[i];
+        int shared = known[f->corners[0]] + known[f->corners[1]] + known[f->corners[2]];
+        bool taken = next < e->facets.count && e->facets.data[next] == i;
+        assert_int_equal(taken, shared >= 2);
+        if (!taken)
+            continue;
+        const facet *own = &e->part.facets.data[next++];
+        for (int k = 0; k < 3; k++) {
+            assert_int_equal(e->points.data[own->corners[k]], f->corners[k]);
+            assert_memory_equal(partition_point(&e->part, own->corners[k]),
+                                partition_point(p, f->corners[k]), 3 * sizeof(double));
+        }
+        for (int side = 0; side < 2; side++)
+            assert_int_equal(own->side[side] == PARTITION_OUTSIDE ? PARTITION_OUTSIDE
+                                                                  : e->pieces.data[own->side[side]],
+                             f->side[side]);
+        assert_memory_equal(&e->part.planes.data[own->plane], &p->planes.data[f->plane],
+                            sizeof(partition_plane));
+    }
+    assert_int_equal(next, e->part.facets.count);
+    free(known);
+}
+
+/* Returned as it is, an extract changes nothing; cut, what a cut of the whole does. */
+static void test_extracts(void **state) {
+    starg_status status = STARG_OK;
+    (void)state;
+    starg_context *context = test_context(1);
+    region_scratch scratch = {.context = context};
+    size_t cuts = 0;
+    for (uint64_t seed = 1; seed <= 30; seed++) {
+        starg_rng rng = starg_rng_make(seed, 78, 0);
+        partition p = random_cells(context, seed, 12 + (size_t)seed), whole;
+        partition before = partition_oracle_copy(&p);
+        partition_extract e;
+        uint32_t pieces[3];
+        size_t count = choose_pieces(&p, &rng, pieces);
+        test_ok(context, extract_make(&p, pieces, count, &scratch, &e));
+        check_extract(&p, &e, pieces, count);
+        test_ok(context, extract_return(&e, &p));
+        test_ok(context, partition_build_index(&p));
+        assert_true(partition_oracle_same(&p, &before));
+        extract_free(&e);
+
+        const partition_plane plane = random_plane_across(&p, pieces[0], &rng);
+        bool done = false;
+        test_ok(context, extract_make(&p, pieces, count, &scratch, &e));
+        uint32_t high = (uint32_t)e.part.pieces.count;
+        const piece fresh = {.stamp = 1};
+        STARG_PUSH(context, "test", &e.part.pieces, fresh);
+        test_ok(context, partition_slice(&e.part, 0, high, &plane, &done));
+        if (done && slice(&before, pieces[0], &plane, &whole)) {
+            test_ok(context, extract_return(&e, &p));
+            test_ok(context, partition_build_index(&p));
+            partition_oracle_check(&p);
+            check_slice(&before, &p, pieces[0], &plane);
+            assert_int_equal(p.facets.count, whole.facets.count);
+            for (uint32_t i = 0; i < p.pieces.count; i++)
+                assert_true(fabs(partition_oracle_volume(&p, i) -
+                                 partition_oracle_volume(&whole, i)) < 1e-13);
+            partition_free(&whole);
+            cuts++;
+        }
+        extract_free(&e);
+        partition_free(&before);
+        partition_free(&p);
+    }
+    assert_true(cuts > 20);
+done:
+    assert_int_equal(status, STARG_OK);
+    region_scratch_free(&scratch);
+    test_context_free(context);
+}
+
 /* ---- joining ---- */
 
 static void test_join(void **state) {
@@ -626,7 +740,12 @@ static void test_merge_after_search(void **state) {
         starg_rng rng = starg_rng_make(seed, 78, 0);
         partition first = random_cells(context, seed, 30);
         partition p = partition_oracle_copy(&first);
-        const improve_options options = {.trials = 320, .work = UINT64_MAX, .enough = 1};
+        improve_tallies tallies = {0};
+        const improve_options options = {.trials = 320,
+                                         .work = UINT64_MAX,
+                                         .patience = UINT64_MAX,
+                                         .enough = 1,
+                                         .tallies = &tallies};
         improve_report report;
         test_ok(context, improve(&p, &options, &report));
         assert_int_equal(p.pieces.count, first.pieces.count - report.joins - report.repartitions -
@@ -647,6 +766,14 @@ static void test_merge_after_search(void **state) {
     test_context_free(context);
 }
 
+static improve_options search_with(uint64_t work, improve_tallies *tallies) {
+    return (improve_options){.trials = UINT64_MAX,
+                             .work = work,
+                             .patience = UINT64_MAX,
+                             .enough = 1,
+                             .tallies = tallies};
+}
+
 /* The search ends by its work count, which is the same for any number of threads. */
 static void test_search_ends_by_work(void **state) {
     (void)state;
@@ -656,7 +783,8 @@ static void test_search_ends_by_work(void **state) {
     for (int i = 0; i < 2; i++) {
         contexts[i] = test_context(1 + i);
         done[i] = random_cells(contexts[i], 3, 30);
-        const improve_options options = {.trials = UINT64_MAX, .work = 2000000, .enough = 1};
+        improve_tallies tallies = {0};
+        const improve_options options = search_with(2000000, &tallies);
         test_ok(contexts[i], improve(&done[i], &options, &report[i]));
         assert_true(report[i].work >= options.work && report[i].trials > 0);
         assert_false(report[i].time_limited);
@@ -664,7 +792,8 @@ static void test_search_ends_by_work(void **state) {
     assert_int_equal(report[0].work, report[1].work);
     assert_int_equal(report[0].trials, report[1].trials);
     assert_true(partition_oracle_same(&done[0], &done[1]));
-    const improve_options twice = {.trials = UINT64_MAX, .work = 20000000, .enough = 1};
+    improve_tallies tallies = {0};
+    const improve_options twice = search_with(20000000, &tallies);
     partition more = random_cells(contexts[0], 3, 30);
     test_ok(contexts[0], improve(&more, &twice, &report[1]));
     assert_true(report[1].trials > report[0].trials);
@@ -932,6 +1061,7 @@ int main(void) {
         cmocka_unit_test(test_slices_through_edges),
         cmocka_unit_test(test_planes_at_vertices),
         cmocka_unit_test(test_edge_contact),
+        cmocka_unit_test(test_extracts),
         cmocka_unit_test(test_join),
         cmocka_unit_test(test_merge_undoes_cuts),
         cmocka_unit_test(test_merge_twice),

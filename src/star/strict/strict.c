@@ -2,29 +2,33 @@
 /* Strict star decomposition: few pieces, each proven to be star-shaped.
  *
  * Stages: the surface is one piece (partition.c), which is cut by planes until every part is
- * star-shaped (bsp_start.c); neighbours are joined where that can be done; then unions of
- * neighbours are cut again into fewer pieces, every step with an exact certificate (improve.c),
- * until nothing is found any more; then the same from more starts, with other random numbers, and
- * the best result is kept. At the end guards get room (widen.c), and each piece is made of
- * tetrahedra about its guard (cone.c).
+ * star-shaped (bsp_start.c); neighbours are joined where that can be done; then, in turns, small
+ * changes save pieces (improve.c) and some neighbouring pieces are cut anew (renew.c), every step
+ * with an exact certificate, until nothing is found any more. At the end guards get room
+ * (widen.c), and each piece is made of tetrahedra about its guard (cone.c).
  *
- * The first start runs to its end whatever the time limit says, in a hurry once that has passed:
- * so there is a result. Where it fails, which takes roundings that spoil every cut of some piece,
- * others are tried. Given tetrahedra are grown into regions first (region_growing.c), which always
- * succeeds, and the better one of both starts is searched. */
+ * The start runs to its end whatever the time limit says, in a hurry once that has passed: so there
+ * is a result. Where it fails, which takes roundings that spoil every cut of some piece, others are
+ * tried. Given tetrahedra are grown into regions first (region_growing.c), which always succeeds,
+ * and the better one of both starts is searched. */
 #include "star/strict/strict.h"
+
+#include <math.h>
 
 #include "star/decomposition.h"
 #include "star/strict/finish/widen.h"
+#include "star/strict/partition/apply.h"
 #include "star/strict/partition/cone.h"
+#include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/search/improve.h"
+#include "star/strict/search/renew.h"
 #include "star/strict/start/bsp_start.h"
 #include "star/strict/start/region_growing.h"
 
 enum {
-    SEARCHES = 6,
-    IDLE_MOST = 2,         /* searches in a row that bring nothing: then no more */
-    EVALUATIONS_TIMES = 4, /* of the first start, that another one may take      */
+    STARTS = 6, /* until one succeeds */
+    IDLE = 1,   /* rounds for each piece that save nothing: then no more */
+    IDLE_LEAST = 25,
     EVALUATIONS_LEAST = 50,
     EVALUATIONS_EACH = 3 /* for each grown region */
 };
@@ -36,6 +40,12 @@ static const uint64_t WORK_MOST = 6000000000;
 /* The same for the room of guards at the end: so much and what the searches have taken, up to the
  * second; the third if more is asked for. */
 static const uint64_t ROOM_LEAST = 50000000, ROOM_USUAL = 600000000, ROOM_MOST = 6000000000;
+
+/* Of small changes in a round; about as much as a renewal takes. */
+static const uint64_t WORK_EACH = 100000000;
+
+/* Each round, what there was before counts so much less. */
+static const double FADING = 0.95;
 
 static starg_status collect_guards(const partition *p, double **guards) {
     starg_status status = STARG_OK;
@@ -103,6 +113,7 @@ done:
 static starg_status start_by_bsp(const model *m, const bsp_options *options, partition *p,
                                  bsp_report *report) {
     starg_status status = STARG_OK;
+    starg_progress_begin(p->context, "planes");
     STARG_TRY(make_one_piece(m, p));
     STARG_TRY(bsp_start(p, options, report));
     if (report->done)
@@ -110,6 +121,7 @@ static starg_status start_by_bsp(const model *m, const bsp_options *options, par
     else
         partition_free(p);
 done:
+    starg_progress_end(p->context);
     return status;
 }
 
@@ -121,105 +133,159 @@ static void keep_better(partition *p, partition *other) {
     *other = before;
 }
 
-/* ---- searches ---- */
-
-typedef struct searches {
-    model of;
-    const starg_decompose_options *options;
-    uint64_t trials_left, work_left, work_done;
-    size_t enough;
-    size_t budget;  /* of another start */
-    uint64_t count; /* searches so far */
-    int idle;       /* of them, since the last that was better */
-    bool time_limited;
-} searches;
-
-static bsp_options start_options(const searches *s) {
-    return (bsp_options){.stream = s->count,
-                         .budget = s->budget,
-                         .guards = s->options->guards,
-                         .guard_count = s->options->guard_count};
-}
-
 /* Where there are tetrahedra, regions of them are a start at once, and in a solid full of holes the
  * better one; planes are worth no more than a few evaluations for each. */
-static starg_status begin_with_tetrahedra(searches *s, partition *p) {
+static starg_status begin_with_tetrahedra(const model *of, const starg_decompose_options *options,
+                                          partition *p) {
     starg_status status = STARG_OK;
     partition other = {.context = p->context};
     bsp_report report;
-    STARG_TRY(start_by_region_growing(s->of.mesh, s->options, p));
-    s->budget = EVALUATIONS_LEAST + EVALUATIONS_EACH * p->pieces.count;
+    STARG_TRY(start_by_region_growing(of->mesh, options, p));
     if (p->pieces.count < 2 || starg_time_is_over(p->context))
         goto done;
-    const bsp_options options = start_options(s);
-    STARG_TRY(start_by_bsp(&s->of, &options, &other, &report));
+    const bsp_options wanted = {.budget = EVALUATIONS_LEAST + EVALUATIONS_EACH * p->pieces.count,
+                                .guards = options->guards,
+                                .guard_count = options->guard_count};
+    STARG_TRY(start_by_bsp(of, &wanted, &other, &report));
     if (report.done)
         keep_better(p, &other);
-    else
-        s->count = SEARCHES;
 done:
     partition_free(&other);
     return status;
 }
 
-/* The first start; the partition has no pieces when there is none. */
-static starg_status begin(searches *s, partition *p) {
+/* The partition has no pieces when there is no start. */
+static starg_status begin(const model *of, const starg_decompose_options *options, partition *p) {
     starg_status status = STARG_OK;
     bsp_report report = {.done = false};
-    bsp_options options = start_options(s);
-    if (s->of.mesh != NULL)
-        return begin_with_tetrahedra(s, p);
-    options.to_the_end = true;
-    for (; !report.done && options.stream < SEARCHES; options.stream++)
-        STARG_TRY(start_by_bsp(&s->of, &options, p, &report));
-    s->budget = EVALUATIONS_TIMES * report.evaluations;
+    bsp_options wanted = {
+        .guards = options->guards, .guard_count = options->guard_count, .to_the_end = true};
+    if (of->mesh != NULL)
+        return begin_with_tetrahedra(of, options, p);
+    for (; !report.done && wanted.stream < STARTS; wanted.stream++)
+        STARG_TRY(start_by_bsp(of, &wanted, p, &report));
 done:
     return status;
 }
 
-static starg_status run_search(searches *s, partition *p) {
+/* ---- searches ---- */
+
+/* What one way to save pieces has cost and brought lately. */
+typedef struct record {
+    double work, saved;
+} record;
+
+typedef struct searches {
+    uint64_t trials, trials_left, work, work_left;
+    size_t enough;
+    uint64_t rounds; /* so far */
+    size_t idle;     /* of them, since the last that saved a piece */
+    record changes, renewals;
+    bool time_limited;
+    double began; /* clock */
+    improve_tallies tallies;
+} searches;
+
+static uint64_t least(uint64_t a, uint64_t b) {
+    return a < b ? a : b;
+}
+
+static void spend(searches *s, record *on, uint64_t trials, uint64_t work, size_t saved) {
+    s->trials += trials;
+    s->work += work;
+    s->trials_left -= least(trials, s->trials_left);
+    s->work_left -= least(work, s->work_left);
+    s->idle = saved > 0 ? 0 : s->idle + 1;
+    on->work += (double)work;
+    on->saved += (double)saved;
+}
+
+/* Small changes, for a while. */
+static starg_status change_some(searches *s, partition *p) {
+    starg_status status = STARG_OK;
     improve_report report;
     const improve_options wanted = {.trials = s->trials_left,
-                                    .work = s->work_left,
+                                    .work = least(s->work_left, WORK_EACH),
+                                    .patience = UINT64_MAX,
                                     .enough = s->enough,
-                                    .first = s->count << 40};
-    starg_status status = improve(p, &wanted, &report);
-    s->trials_left -= report.trials < s->trials_left ? report.trials : s->trials_left;
-    s->work_left -= report.work < s->work_left ? report.work : s->work_left;
-    s->work_done += report.work;
+                                    .first = s->trials,
+                                    .tallies = &s->tallies};
+    size_t before = p->pieces.count;
+    STARG_TRY(improve(p, &wanted, &report));
+    spend(s, &s->changes, report.trials, report.work, before - p->pieces.count);
     s->time_limited = report.time_limited;
-    s->count++;
+done:
     return status;
 }
 
-static uint64_t room_for(const searches *s) {
-    uint64_t work = ROOM_LEAST + s->work_done;
-    return s->options->quality ? ROOM_MOST : work < ROOM_USUAL ? work : ROOM_USUAL;
+/* Some pieces anew. */
+static starg_status renew_some(searches *s, partition *p) {
+    starg_status status = STARG_OK;
+    renew_report report;
+    const renew_options wanted = {
+        .trials = s->trials_left, .work = s->work_left, .round = s->rounds, .tallies = &s->tallies};
+    size_t before = p->pieces.count;
+    STARG_TRY(renew(p, &wanted, &report));
+    spend(s, &s->renewals, report.trials, report.work, before - p->pieces.count);
+    s->time_limited = report.time_limited;
+done:
+    return status;
+}
+
+static double gain_of(const record *of) {
+    return (of->saved + 1) / (of->work + (double)WORK_EACH);
+}
+
+static void fade(record *of) {
+    of->work *= FADING;
+    of->saved *= FADING;
+}
+
+static size_t idle_most(const partition *p) {
+    return IDLE * p->pieces.count + IDLE_LEAST;
+}
+
+static uint64_t room_for(const searches *s, const starg_decompose_options *options) {
+    uint64_t work = ROOM_LEAST + s->work;
+    return options->quality ? ROOM_MOST : least(work, ROOM_USUAL);
 }
 
 /* Two pieces are as few as can be when one was not enough. */
-static bool may_search_again(const searches *s, const partition *p) {
-    return s->count < SEARCHES && s->idle < IDLE_MOST && s->trials_left > 0 && s->work_left > 0 &&
-           !s->time_limited && p->pieces.count > (s->enough > 2 ? s->enough : 2);
+static bool may_go_on(const searches *s, const partition *p) {
+    return s->idle < idle_most(p) && s->trials_left > 0 && s->work_left > 0 && !s->time_limited &&
+           p->pieces.count > (s->enough > 2 ? s->enough : 2);
 }
 
-/* From another start; the better result stays. */
-static starg_status search_again(searches *s, partition *p) {
+/* How far the search is, by whatever will end it. */
+static void tell_progress(const searches *s, const partition *p) {
+    double part = (double)s->idle / (double)idle_most(p), passed = starg_clock() - s->began;
+    if (s->trials_left != UINT64_MAX)
+        part = fmax(part, (double)s->trials / (double)(s->trials + s->trials_left));
+    if (s->work_left <= WORK_MOST)
+        part = fmax(part, 1 - (double)s->work_left / (double)WORK_MOST);
+    part = fmax(part, passed / (passed + fmax(0, starg_seconds_left(p->context))));
+    starg_progress_step(p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
+}
+
+/* The way that has lately saved more for its work is gone on with. */
+static starg_status search(searches *s, partition *p) {
     starg_status status = STARG_OK;
-    partition other = {.context = p->context};
-    bsp_report report;
-    const bsp_options options = start_options(s);
-    STARG_TRY(start_by_bsp(&s->of, &options, &other, &report));
-    if (report.done) {
-        STARG_TRY(run_search(s, &other));
-        s->idle = other.pieces.count < p->pieces.count ? 0 : s->idle + 1;
-        keep_better(p, &other);
-    } else {
-        s->count = SEARCHES;
-        s->time_limited = starg_time_is_over(p->context);
+    s->began = starg_clock();
+    starg_progress_begin(p->context, PARTITION_STAGE);
+    STARG_TRY(change_some(s, p));
+    while (may_go_on(s, p)) {
+        STARG_TRY(starg_check_cancel(p->context, PARTITION_STAGE));
+        s->rounds++;
+        if (gain_of(&s->changes) >= gain_of(&s->renewals))
+            STARG_TRY(change_some(s, p));
+        else
+            STARG_TRY(renew_some(s, p));
+        fade(&s->changes);
+        fade(&s->renewals);
+        tell_progress(s, p);
     }
 done:
-    partition_free(&other);
+    starg_progress_end(p->context);
     return status;
 }
 
@@ -227,23 +293,25 @@ static starg_status decompose(starg_context *context, model of,
                               const starg_decompose_options *options, starg_decomposition **out) {
     starg_status status = STARG_OK;
     partition p = {.context = context};
-    searches s = {.of = of,
-                  .options = options,
-                  .trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
+    region_scratch scratch = {.context = context};
+    searches s = {.trials_left = options->effort > 0 ? options->effort : UINT64_MAX,
                   .work_left =
                       options->effort > 0 || context->deadline.at > 0 ? UINT64_MAX : WORK_MOST,
                   .enough = options->max_pieces > 0 ? options->max_pieces : 1};
     *out = NULL;
-    STARG_TRY(begin(&s, &p));
+    STARG_TRY(begin(&of, options, &p));
     if (p.pieces.count == 0)
         goto done;
-    STARG_TRY(run_search(&s, &p));
-    while (may_search_again(&s, &p))
-        STARG_TRY(search_again(&s, &p));
-    STARG_TRY(widen(&p, room_for(&s)));
+    if (!starg_time_is_over(context))
+        STARG_TRY(merge_coplanar(&p));
+    STARG_TRY(search(&s, &p));
+    STARG_TRY(merge_coplanar(&p));
+    STARG_TRY(apply_centers(&p, &scratch));
+    STARG_TRY(widen(&p, room_for(&s, options)));
     STARG_TRY(finish(&p, out));
     (*out)->time_limited = s.time_limited;
 done:
+    region_scratch_free(&scratch);
     partition_free(&p);
     return status;
 }

@@ -1,71 +1,68 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Carrying out a plan of cuts, with proof.
  *
- * Stages: a copy of the partition; the pieces joined, the union sliced; numbers without facets
- * closed up; a guard for each new piece and the exact certificate for it; facets of other pieces
- * that were split on the way must still have the guard of their piece strictly inside; then the
- * copy takes the partition's place.
+ * Stages: an extract of the partition (star/strict/partition/extract.c); there the pieces are
+ * joined, and the union sliced; a guard for each new piece and the exact certificate for it; facets
+ * of other pieces that were split on the way must still have the guard of their piece strictly
+ * inside; then the extract returns, and numbers without facets are closed up.
  *
- * Invariants: the partition is either untouched or again as its invariants say. Cost: linear in the
- * facets of the partition. */
+ * Invariants: the partition is either untouched or again as its invariants say. Cost: of a plan
+ * that fails, linear in the facets of its pieces; of one that succeeds, a pass over all facets. */
 #include "star/strict/partition/apply.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
+#include "star/strict/partition/extract.h"
 #include "star/strict/partition/slice.h"
 
 enum { PARTS_MOST = FAN_TAKERS_MOST }; /* more than a cut makes */
 
+/* Pieces have the extract's numbers. */
 typedef struct change {
-    partition *p; /* the copy */
-    uint32_t parts[PARTS_MOST];
+    partition_extract extract;
+    uint32_t parts[PARTS_MOST]; /* pieces that are new */
     size_t part_count;
-    size_t old_points;
     double margin;
     region_scratch *scratch;
-    apply_effect *effect;
 } change;
 
 /* ---- numbers ---- */
 
-/* The joined pieces but the parts have no facets: the last numbers take the place of theirs, the
- * highest first, so that what moves is never one of them. */
-static void drop_pieces(change *c, const uint32_t *unused, size_t count) {
+/* Pieces of the partition that are left without facets: the last numbers take the place of theirs,
+ * the highest first, so that what moves is never one of them. The index is built again. */
+static starg_status drop_pieces(partition *p, const uint32_t *unused, size_t count,
+                                apply_effect *effect) {
     bool gone[APPLY_MOST] = {false};
     for (size_t left = count; left > 0; left--) {
-        uint32_t last = (uint32_t)c->p->pieces.count - 1;
+        uint32_t last = (uint32_t)p->pieces.count - 1;
         size_t hole = count;
         for (size_t i = 0; i < count; i++)
             if (!gone[i] && (hole == count || unused[i] > unused[hole]))
                 hole = i;
         gone[hole] = true;
-        partition_renumber(c->p, last, unused[hole]);
-        for (size_t i = 0; i < c->part_count; i++)
-            if (c->parts[i] == last)
-                c->parts[i] = unused[hole];
-        c->effect->moves[c->effect->move_count++] = (apply_move){last, unused[hole]};
+        partition_renumber(p, last, unused[hole]);
+        effect->moves[effect->move_count++] = (apply_move){last, unused[hole]};
     }
+    return partition_build_index(p);
 }
 
 /* ---- cuts ---- */
 
-static starg_status cut(change *c, const uint32_t *pieces, size_t count,
-                        const repartition_plan *plan, bool *done) {
+/* Of pieces 0 to count - 1 of the extract. */
+static starg_status cut(change *c, size_t count, const repartition_plan *plan, bool *done) {
+    static const uint32_t numbers[APPLY_MOST] = {0, 1, 2, 3, 4};
     starg_status status = STARG_OK;
+    partition *p = &c->extract.part;
     *done = true;
-    partition_join(c->p, pieces, count);
-    c->parts[0] = pieces[0];
-    c->part_count = 1;
-    for (int i = 0; i < plan->cuts && *done; i++) {
-        uint32_t fresh = pieces[c->part_count];
-        STARG_TRY(
-            partition_slice(c->p, c->parts[c->part_count - 1], fresh, &plan->planes[i], done));
-        c->parts[c->part_count++] = fresh;
-    }
-    if (*done)
-        drop_pieces(c, pieces + c->part_count, count - c->part_count);
+    partition_join(p, numbers, count);
+    for (int i = 0; i < plan->cuts && *done; i++)
+        STARG_TRY(partition_slice(p, numbers[i], numbers[i + 1], &plan->planes[i], done));
+    c->part_count = (size_t)plan->cuts + 1;
+    for (size_t i = 0; i < c->part_count; i++)
+        c->parts[i] = numbers[i];
 done:
     return status;
 }
@@ -81,7 +78,7 @@ double sum_of_squares(const partition *p, const uint32_t *pieces, size_t count) 
 
 static starg_status settle_piece(change *c, uint32_t number, bool *done) {
     starg_status status = STARG_OK;
-    partition *p = c->p;
+    partition *p = &c->extract.part;
     region r = {.vertices = {0}};
     partition_triangles triangles = {0};
     piece fresh = {.stamp = ++p->stamps};
@@ -111,11 +108,11 @@ static bool is_new(const change *c, uint32_t number) {
 
 /* Split facets of pieces that the plan does not name: do their guards still see them? */
 static bool check_others(const change *c) {
-    const partition *p = c->p;
+    const partition *p = &c->extract.part;
+    size_t old_points = c->extract.points.count;
     for (size_t i = 0; i < p->facets.count; i++) {
         const facet *f = &p->facets.data[i];
-        if (f->corners[0] < c->old_points && f->corners[1] < c->old_points &&
-            f->corners[2] < c->old_points)
+        if (f->corners[0] < old_points && f->corners[1] < old_points && f->corners[2] < old_points)
             continue;
         for (int side = 0; side < 2; side++) {
             uint32_t k[3];
@@ -133,7 +130,7 @@ static bool check_others(const change *c) {
 /* Certified guards for all parts. */
 static starg_status settle_parts(change *c, bool *done) {
     starg_status status = STARG_OK;
-    STARG_TRY(partition_build_index(c->p));
+    STARG_TRY(partition_build_index(&c->extract.part));
     *done = true;
     for (size_t i = 0; i < c->part_count && *done; i++)
         STARG_TRY(settle_piece(c, c->parts[i], done));
@@ -141,55 +138,95 @@ done:
     return status;
 }
 
-static void swap(partition *p, partition *other) {
-    partition before = *p;
-    *p = *other;
-    *other = before;
-}
-
 starg_status apply_plan(partition *p, const uint32_t *pieces, size_t count,
                         const repartition_plan *plan, double margin, double least,
                         region_scratch *scratch, apply_effect *effect) {
     starg_status status = STARG_OK;
-    partition copy = {.context = p->context};
-    change c = {.p = &copy,
-                .old_points = p->points.count / 3,
-                .margin = margin,
-                .scratch = scratch,
-                .effect = effect};
+    change c = {.margin = margin, .scratch = scratch};
     bool done = false;
     *effect = (apply_effect){.done = false};
-    STARG_TRY(partition_copy(p, &copy));
-    STARG_TRY(cut(&c, pieces, count, plan, &done));
-    if (!done)
+    STARG_TRY(extract_make(p, pieces, count, scratch, &c.extract));
+    STARG_TRY(cut(&c, count, plan, &done));
+    if (done)
+        STARG_TRY(settle_parts(&c, &done));
+    effect->done =
+        done && sum_of_squares(&c.extract.part, c.parts, c.part_count) > least && check_others(&c);
+    if (!effect->done)
         goto done;
-    STARG_TRY(settle_parts(&c, &done));
-    effect->done = done && sum_of_squares(&copy, c.parts, c.part_count) > least && check_others(&c);
-    if (effect->done)
-        swap(p, &copy);
+    STARG_TRY(extract_return(&c.extract, p));
+    STARG_TRY(drop_pieces(p, pieces + c.part_count, count - c.part_count, effect));
 done:
-    partition_free(&copy);
+    extract_free(&c.extract);
     return status;
 }
 
 /* ---- sharing out ---- */
 
+static uint32_t place_of(const uint32_t *numbers, size_t count, uint32_t number) {
+    uint32_t place = 0;
+    while (place < count && numbers[place] != number)
+        place++;
+    return place;
+}
+
+static int ascending(const void *x, const void *y) {
+    uint32_t a = *(const uint32_t *)x, b = *(const uint32_t *)y;
+    return (a > b) - (a < b);
+}
+
+/* The plan with the numbers of the extract. */
+static starg_status translate(const change *c, const fan_plan *plan, fan_plan *out) {
+    starg_status status = STARG_OK;
+    const partition_extract *e = &c->extract;
+    *out = *plan;
+    out->entries.data = NULL;
+    out->entries.count = out->entries.capacity = 0;
+    for (size_t i = 0; i < plan->piece_count; i++)
+        out->pieces[i] = place_of(e->pieces.data, e->pieces.count, plan->pieces[i]);
+    for (size_t i = 0; i < plan->taker_count; i++)
+        out->takers[i] = place_of(e->pieces.data, e->pieces.count, plan->takers[i]);
+    for (size_t i = 0; i < plan->entries.count; i++) {
+        uint32_t entry = plan->entries.data[i], number = entry / 2;
+        const uint32_t *found =
+            bsearch(&number, e->facets.data, e->facets.count, sizeof number, ascending);
+        STARG_PUSH(e->part.context, PARTITION_STAGE, &out->entries,
+                   2 * (uint32_t)(found - e->facets.data) + entry % 2);
+    }
+done:
+    return status;
+}
+
+/* The pieces of a plan, and those that take from them. */
+static size_t list_concerned(const fan_plan *plan, uint32_t *out) {
+    size_t count = 0;
+    for (size_t i = 0; i < plan->piece_count; i++)
+        out[count++] = plan->pieces[i];
+    for (size_t i = 0; i < plan->taker_count; i++)
+        if (place_of(out, count, plan->takers[i]) == count)
+            out[count++] = plan->takers[i];
+    return count;
+}
+
 starg_status apply_fan(partition *p, const fan_plan *plan, double margin, region_scratch *scratch,
                        apply_effect *effect) {
     starg_status status = STARG_OK;
-    partition copy = {.context = p->context};
-    change c = {.p = &copy, .margin = margin, .scratch = scratch, .effect = effect};
+    change c = {.margin = margin, .scratch = scratch};
+    fan_plan own = {.piece_count = 0};
+    uint32_t concerned[FAN_PIECES_MOST + FAN_TAKERS_MOST];
     *effect = (apply_effect){.done = false};
-    STARG_TRY(partition_copy(p, &copy));
-    STARG_TRY(partition_fan(&copy, plan));
-    for (size_t i = 0; i < plan->taker_count; i++)
-        c.parts[c.part_count++] = plan->takers[i];
-    drop_pieces(&c, plan->pieces + plan->kept, plan->piece_count - plan->kept);
+    STARG_TRY(extract_make(p, concerned, list_concerned(plan, concerned), scratch, &c.extract));
+    STARG_TRY(translate(&c, plan, &own));
+    STARG_TRY(partition_fan(&c.extract.part, &own));
+    for (size_t i = 0; i < own.taker_count; i++)
+        c.parts[c.part_count++] = own.takers[i];
     STARG_TRY(settle_parts(&c, &effect->done));
-    if (effect->done)
-        swap(p, &copy);
+    if (!effect->done)
+        goto done;
+    STARG_TRY(extract_return(&c.extract, p));
+    STARG_TRY(drop_pieces(p, plan->pieces + plan->kept, plan->piece_count - plan->kept, effect));
 done:
-    partition_free(&copy);
+    STARG_ARRAY_FREE(p->context, &own.entries);
+    extract_free(&c.extract);
     return status;
 }
 

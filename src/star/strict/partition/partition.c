@@ -211,6 +211,8 @@ void partition_free(partition *p) {
     STARG_ARRAY_FREE(p->context, &p->pieces);
     STARG_ARRAY_FREE(p->context, &p->start);
     STARG_ARRAY_FREE(p->context, &p->index);
+    STARG_ARRAY_FREE(p->context, &p->first_at);
+    STARG_ARRAY_FREE(p->context, &p->next_at);
     *p = (partition){.context = p->context};
 }
 
@@ -245,14 +247,41 @@ done:
     return status;
 }
 
-/* ---- facets of a piece ---- */
+/* ---- facets of a piece, corners at a point ---- */
+
+/* TO has room for COUNT elements, whose values are not defined. */
+#define FIT_ARRAY(CONTEXT, TO, COUNT)                                                              \
+    do {                                                                                           \
+        if ((TO)->capacity < (COUNT)) {                                                            \
+            starg_release((CONTEXT), (TO)->data);                                                  \
+            (TO)->data = NULL;                                                                     \
+            (TO)->count = (TO)->capacity = 0;                                                      \
+            STARG_NEW((CONTEXT), PARTITION_STAGE, (TO)->data, (COUNT) + (COUNT) / 4);              \
+            (TO)->capacity = (COUNT) + (COUNT) / 4;                                                \
+        }                                                                                          \
+        (TO)->count = (COUNT);                                                                     \
+    } while (0)
+
+static starg_status list_corners(partition *p) {
+    starg_status status = STARG_OK;
+    size_t points = p->points.count / 3, corners = 3 * p->facets.count;
+    FIT_ARRAY(p->context, &p->first_at, points);
+    FIT_ARRAY(p->context, &p->next_at, corners);
+    memset(p->first_at.data, 0xff, points * sizeof *p->first_at.data);
+    for (size_t c = corners; c-- > 0;) {
+        uint32_t *first = &p->first_at.data[p->facets.data[c / 3].corners[c % 3]];
+        p->next_at.data[c] = *first;
+        *first = (uint32_t)c;
+    }
+done:
+    return status;
+}
 
 starg_status partition_build_index(partition *p) {
     starg_status status = STARG_OK;
     size_t pieces = p->pieces.count;
-    p->start.count = p->index.count = 0;
-    for (size_t i = 0; i < pieces + 2; i++)
-        STARG_PUSH(p->context, PARTITION_STAGE, &p->start, 0);
+    FIT_ARRAY(p->context, &p->start, pieces + 2);
+    memset(p->start.data, 0, (pieces + 2) * sizeof *p->start.data);
     /* counted one place further on, so that filling leaves each start where it belongs */
     uint32_t total = 0, *start = p->start.data;
     for (size_t i = 0; i < 2 * p->facets.count; i++) {
@@ -262,20 +291,14 @@ starg_status partition_build_index(partition *p) {
     }
     for (size_t i = 2; i < pieces + 2; i++)
         start[i] += start[i - 1];
-    if (p->index.capacity < total) {
-        starg_release(p->context, p->index.data);
-        p->index.data = NULL;
-        p->index.capacity = 0;
-        STARG_NEW(p->context, PARTITION_STAGE, p->index.data, (size_t)total + total / 4);
-        p->index.capacity = (size_t)total + total / 4;
-    }
-    p->index.count = total;
+    FIT_ARRAY(p->context, &p->index, (size_t)total);
     for (size_t i = 0; i < 2 * p->facets.count; i++) {
         uint32_t owner = p->facets.data[i / 2].side[i % 2];
         if (owner != PARTITION_OUTSIDE)
             p->index.data[start[owner + 1]++] = (uint32_t)i;
     }
     p->start.count = pieces + 1;
+    STARG_TRY(list_corners(p));
 done:
     return status;
 }

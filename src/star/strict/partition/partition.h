@@ -18,6 +18,9 @@ typedef struct partition_plane {
 
 enum { FACET_INNER = 0, FACET_OUTER = 1 };
 
+/* The end of a list of corners. */
+#define PARTITION_NO_CORNER UINT32_MAX
+
 /* What lies beyond the surface of the solid. */
 #define PARTITION_OUTSIDE UINT32_MAX
 
@@ -58,6 +61,11 @@ typedef struct partition {
      * 2 * facet + side */
     STARG_ARRAY(uint32_t) start;
     STARG_ARRAY(uint32_t) index;
+
+    /* Corner k of facet f is 3 * f + k. Those at point i are a list: first_at[i], then next_at of
+     * each, until there is none. */
+    STARG_ARRAY(uint32_t) first_at;
+    STARG_ARRAY(uint32_t) next_at;
 } partition;
 
 static inline const double *partition_point(const partition *p, uint32_t vertex) {
@@ -85,7 +93,7 @@ void partition_free(partition *p);
 /* A copy without an index, on which operations can be tried. Errors: MEMORY. */
 starg_status partition_copy(const partition *from, partition *to);
 
-/* Fills start and index. Errors: MEMORY. */
+/* Fills start and index, and the lists of corners. Errors: MEMORY. */
 starg_status partition_build_index(partition *p);
 
 /* Appends a point in the solid's coordinates; its number. Errors: MEMORY. */

@@ -33,6 +33,7 @@ enum { ROUNDS_MOST = 500, ROW = 4 };
 void region_scratch_free(region_scratch *scratch) {
     STARG_ARRAY_FREE(scratch->context, &scratch->vertex_of);
     STARG_ARRAY_FREE(scratch->context, &scratch->row_of);
+    STARG_ARRAY_FREE(scratch->context, &scratch->piece_of);
     STARG_ARRAY_FREE(scratch->context, &scratch->heights);
     STARG_ARRAY_FREE(scratch->context, &scratch->lowest);
     STARG_ARRAY_FREE(scratch->context, &scratch->lowest_back);
@@ -76,6 +77,18 @@ static starg_status grow_zero(starg_context *context, uint32_t **data, size_t *c
         *capacity = needed + needed / 4;
     }
     *count = needed;
+done:
+    return status;
+}
+
+starg_status region_scratch_fit(region_scratch *scratch, const partition *p) {
+    starg_status status = STARG_OK;
+    STARG_TRY(grow_zero(p->context, &scratch->vertex_of.data, &scratch->vertex_of.count,
+                        &scratch->vertex_of.capacity, p->points.count / 3));
+    STARG_TRY(grow_zero(p->context, &scratch->row_of.data, &scratch->row_of.count,
+                        &scratch->row_of.capacity, 2 * p->planes.count));
+    STARG_TRY(grow_zero(p->context, &scratch->piece_of.data, &scratch->piece_of.count,
+                        &scratch->piece_of.capacity, p->pieces.count));
 done:
     return status;
 }
@@ -172,10 +185,7 @@ starg_status region_gather_some(const partition *p, const uint32_t *pieces, size
                                 uint32_t most, region_scratch *scratch, region *out) {
     starg_status status = STARG_OK;
     out->vertices.count = out->triangles.count = out->rows.count = 0;
-    STARG_TRY(grow_zero(p->context, &scratch->vertex_of.data, &scratch->vertex_of.count,
-                        &scratch->vertex_of.capacity, p->points.count / 3));
-    STARG_TRY(grow_zero(p->context, &scratch->row_of.data, &scratch->row_of.count,
-                        &scratch->row_of.capacity, 2 * p->planes.count));
+    STARG_TRY(region_scratch_fit(scratch, p));
     for (size_t i = 0; i < count; i++)
         for (uint32_t k = p->start.data[pieces[i]]; k < p->start.data[pieces[i] + 1];
              k += stride_of(p, pieces[i], most)) {

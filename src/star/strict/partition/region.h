@@ -36,6 +36,7 @@ typedef struct region_scratch {
     starg_context *context;
     STARG_ARRAY(uint32_t) vertex_of; /* by the partition's vertex: 1 + the region's, or 0 */
     STARG_ARRAY(uint32_t) row_of;    /* by 2 * plane + side: likewise */
+    STARG_ARRAY(uint32_t) piece_of;  /* by piece: likewise            */
     region_values heights;           /* of vertices along a direction */
     region_values lowest;            /* of rows likewise: their lowest vertex */
     region_values lowest_back;       /* the same along the opposite direction */
@@ -43,6 +44,10 @@ typedef struct region_scratch {
 } region_scratch;
 
 void region_scratch_free(region_scratch *scratch);
+
+/* Makes room in the tables, which are all zero between calls, for what a partition has. Errors:
+ * MEMORY. */
+starg_status region_scratch_fit(region_scratch *scratch, const partition *p);
 
 /* For the threads of a parallel loop (core/parallel.h); nothing is shared. Errors: MEMORY. */
 starg_status region_make_scratch(starg_context *context, void *shared, void **out);

@@ -31,7 +31,10 @@
 enum {
     APEXES = 16,
     NEIGHBOURS_MOST = FAN_TAKERS_MOST - FAN_PIECES_MOST,
-    OWN_GUARD = 3 /* one in so many times */
+    OWN_GUARD = 3, /* one in so many times */
+    /* in the work counted */
+    SORTING = 45,
+    LABELLING = 6
 };
 
 static const double FLAT = 1e-16; /* twice the area of a triangle that has no plane */
@@ -199,6 +202,7 @@ static label_set takers_of(const eliminator *d, size_t facet_number) {
 static starg_status find_takers(eliminator *d, bool *fine) {
     starg_status status = STARG_OK;
     *fine = true;
+    d->scratch->work += d->entries.count * d->taker_count;
     for (size_t i = 0; i < d->entries.count && *fine; i++) {
         label_set set = takers_of(d, i);
         *fine = set != 0;
@@ -234,6 +238,7 @@ static bool pair_edges(union_edge *edges, size_t count) {
 static starg_status find_edges(eliminator *d, bool *fine) {
     starg_status status = STARG_OK;
     starg_context *context = d->p->context;
+    d->scratch->work += SORTING * d->entries.count;
     for (uint32_t i = 0; i < d->entries.count; i++)
         for (int k = 0; k < 3; k++) {
             const uint32_t *c = d->own.triangles.data[i].corners;
@@ -359,6 +364,7 @@ static bool will_do(const eliminator *d, const fan_plan *plan) {
 static starg_status try_apex(eliminator *d, fan_plan *plan, bool *found) {
     starg_status status = STARG_OK;
     choose_apex(d, plan->apex);
+    d->scratch->work += d->edges.count * (LABELLING + d->taker_count);
     for (size_t i = 0; i < d->edges.count; i++)
         find_fits(d, plan->apex, &d->edges.data[i], &d->labelling.edges.data[i]);
     STARG_TRY(labelling_solve(&d->labelling, d->rng, found));

@@ -6,9 +6,13 @@
  * Method: large neighbourhood search. First every two neighbours whose union is star-shaped are
  * joined, small pieces first. Then trials: some neighbouring pieces at random, their union to be
  * cut flat into one piece less (star/strict/search/repartition.c), or shared out among the pieces
- * around (star/strict/search/eliminate.c). Now and then a trial is a move instead: as many pieces
- * as before, which are kept when large pieces get larger and small ones smaller, so that the small
- * ones vanish in the end.
+ * around (star/strict/search/eliminate.c). Others are moves: as many pieces as before, which are
+ * kept when large pieces get larger and small ones smaller, so that the small ones vanish in the
+ * end.
+ *
+ * There are several sorts of trials, which differ in cost by a factor of a hundred, and none is the
+ * best everywhere. So moves get fixed shares of the work, and the others share the rest by what
+ * each has lately saved for its work (adaptive operator selection [Ropke and Pisinger 2006]).
  *
  * Invariants: trials come in batches that look at the same partition, each with random numbers of
  * its own, and are carried out in their order unless an earlier one of the batch has changed a
@@ -24,23 +28,39 @@
 #include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/search/eliminate.h"
 
-enum {
-    BATCH = 16,
-    UNION_MOST = APPLY_MOST,
-    PATIENCE = 150, /* trials for each piece without a piece less, after which the search ends */
-    PATIENCE_LEAST = 2000
-};
+enum { BATCH = 16, UNION_MOST = APPLY_MOST };
+
+/* Of all work, that goes to each sort of trials whatever it saves. */
+static const double FLOOR = 0.03;
+
+/* Each batch, tallies of the former ones count so much less. */
+static const double FADING = 0.998;
+
+/* What no tally says yet. */
+static const double USUAL_WORK = 1e5, USUAL_SAVED = 1, USUAL_SPENT = 3e7;
 
 /* Of guards to planes, in unit coordinates; the diagonal is at least 1/2. Searches ask for more
  * than proofs do, for they are rounded. */
 static const double MARGIN = 4e-6, REPARTITION_MARGIN = 1e-5, ELIMINATE_MARGIN = 5e-6;
 
-typedef struct trial {
-    uint32_t pieces[UNION_MOST];
+/* What a trial looks for. */
+typedef struct sort {
     size_t count, parts; /* pieces before and after */
-    bool eliminates;
-    repartition_plan plan; /* if it does not */
-    fan_plan fan;          /* if it does     */
+    bool eliminates;     /* or cuts flat */
+    double share;        /* of the work, for moves */
+} sort;
+
+static const sort SORTS[IMPROVE_SORTS] = {
+    {2, 2, false, 0.12}, {1, 1, true, 0.1}, {3, 2, false, 0},
+    {4, 3, false, 0},    {1, 0, true, 0},   {2, 1, true, 0},
+};
+
+typedef struct trial {
+    size_t sort;
+    uint32_t pieces[UNION_MOST];
+    size_t count;
+    repartition_plan plan; /* if it cuts       */
+    fan_plan fan;          /* if it eliminates */
     bool found;
     uint64_t work;
 } trial;
@@ -49,9 +69,8 @@ typedef STARG_ARRAY(uint32_t) numbers;
 
 typedef struct improver {
     partition *p;
+    const improve_options *options;
     improve_report *report;
-    double began;      /* clock */
-    uint64_t offset;   /* number of the first trial */
     uint64_t stalled;  /* trials since the last success */
     size_t merge_from; /* facets from which on it is time to merge */
     trial trials[BATCH];
@@ -59,7 +78,8 @@ typedef struct improver {
     /* neighbours of piece i: neighbours[first[i]] to neighbours[first[i + 1] - 1] */
     numbers neighbours;
     numbers first;
-    numbers met; /* by piece: 1 + the last piece that met it */
+    numbers met;   /* by piece: 1 + the last piece that met it */
+    numbers seeds; /* pieces that unions grow from */
 } improver;
 
 /* ---- neighbours ---- */
@@ -67,9 +87,12 @@ typedef struct improver {
 static starg_status find_contacts(improver *m) {
     starg_status status = STARG_OK;
     const partition *p = m->p;
-    m->neighbours.count = m->first.count = m->met.count = 0;
-    for (size_t i = 0; i < p->pieces.count; i++)
+    m->neighbours.count = m->first.count = m->met.count = m->seeds.count = 0;
+    for (uint32_t i = 0; i < p->pieces.count; i++) {
         STARG_PUSH(p->context, PARTITION_STAGE, &m->met, 0);
+        if (p->pieces.data[i].stamp > m->options->since)
+            STARG_PUSH(p->context, PARTITION_STAGE, &m->seeds, i);
+    }
     for (uint32_t a = 0; a < p->pieces.count; a++) {
         STARG_PUSH(p->context, PARTITION_STAGE, &m->first, (uint32_t)m->neighbours.count);
         for (uint32_t k = p->start.data[a]; k < p->start.data[a + 1]; k++) {
@@ -112,7 +135,6 @@ done:
 static starg_status join_all(improver *m) {
     starg_status status = STARG_OK;
     bool any = true;
-    starg_progress_begin(m->p->context, "join");
     while (any && !starg_time_is_over(m->p->context)) {
         any = false;
         for (uint32_t a = 0; a < m->p->pieces.count; a++) {
@@ -126,7 +148,6 @@ static starg_status join_all(improver *m) {
         }
     }
 done:
-    starg_progress_end(m->p->context);
     return status;
 }
 
@@ -139,14 +160,18 @@ static bool is_in(const trial *t, uint32_t number) {
     return false;
 }
 
-/* A random piece and random neighbours of what is chosen. */
-static void choose_union(const improver *m, starg_rng *rng, size_t wanted, trial *t) {
-    t->count = 0;
-    uint32_t seed = (uint32_t)starg_rng_below(rng, m->p->pieces.count);
-    uint32_t other = (uint32_t)starg_rng_below(rng, m->p->pieces.count);
+static uint32_t random_seed(const improver *m, starg_rng *rng) {
+    return m->seeds.data[starg_rng_below(rng, m->seeds.count)];
+}
+
+/* The smaller one of two random pieces and random neighbours of what is chosen; *found is false if
+ * that has not so many. */
+static void choose_union(const improver *m, starg_rng *rng, size_t wanted, trial *t, bool *found) {
+    uint32_t seed = random_seed(m, rng), other = random_seed(m, rng);
     if (m->p->pieces.data[other].volume < m->p->pieces.data[seed].volume)
         seed = other;
-    t->pieces[t->count++] = seed;
+    t->pieces[0] = seed;
+    t->count = 1;
     for (int attempt = 0; attempt < 20 && t->count < wanted; attempt++) {
         uint32_t from = t->pieces[starg_rng_below(rng, t->count)];
         uint32_t degree = m->first.data[from + 1] - m->first.data[from];
@@ -156,6 +181,7 @@ static void choose_union(const improver *m, starg_rng *rng, size_t wanted, trial
         if (!is_in(t, next))
             t->pieces[t->count++] = next;
     }
+    *found = t->count == wanted;
 }
 
 /* Would a move make the pieces more uneven? */
@@ -172,23 +198,20 @@ done:
     return status;
 }
 
+static bool is_move(const sort *what) {
+    return what->parts == what->count;
+}
+
 static starg_status try_repartition(const improver *m, starg_rng *rng, region_scratch *scratch,
                                     trial *t) {
     starg_status status = STARG_OK;
-    static const size_t sizes[8] = {2, 2, 3, 3, 3, 4, 4, 5};
+    const sort *what = &SORTS[t->sort];
     region r = {.vertices = {0}};
-    choose_union(m, rng, sizes[starg_rng_below(rng, 8)], t);
-    if (t->count < 2)
-        goto done;
-    bool move = t->count == 2 || starg_rng_below(rng, 4) == 0;
-    t->parts = move ? 2 : t->count - 1;
-    if (move)
-        t->count = 2;
     const repartition_options options = {
-        .margin = REPARTITION_MARGIN, .directions = 24, .steps = 16, .anywhere = move};
+        .margin = REPARTITION_MARGIN, .directions = 24, .steps = 16, .anywhere = is_move(what)};
     STARG_TRY(region_gather(m->p, t->pieces, t->count, scratch, &r));
-    STARG_TRY(repartition_find(&r, (int)t->parts, &options, rng, scratch, &t->plan, &t->found));
-    if (move && t->found)
+    STARG_TRY(repartition_find(&r, (int)what->parts, &options, rng, scratch, &t->plan, &t->found));
+    if (is_move(what) && t->found)
         STARG_TRY(is_uneven(m, &r, t, &t->found));
 done:
     region_free(m->p->context, &r);
@@ -215,13 +238,10 @@ static starg_status try_eliminate(const improver *m, starg_rng *rng, region_scra
                                   trial *t) {
     starg_status status = STARG_OK;
     numbers around = {0};
-    choose_union(m, rng, starg_rng_below(rng, 4) == 0 ? 2 : 1, t);
-    t->eliminates = true;
-    t->parts = t->count == 1 ? starg_rng_below(rng, 2) : 1;
     STARG_TRY(gather_around(m, t, &around));
     const eliminate_task task = {.pieces = t->pieces,
                                  .piece_count = t->count,
-                                 .kept = t->parts,
+                                 .kept = SORTS[t->sort].parts,
                                  .neighbours = around.data,
                                  .neighbour_count = around.count,
                                  .margin = ELIMINATE_MARGIN};
@@ -232,38 +252,48 @@ done:
 }
 
 static starg_status run_trial(starg_context *context, void *shared, void *scratch, size_t item) {
+    starg_status status = STARG_OK;
     improver *m = shared;
     trial *t = &m->trials[item];
-    starg_rng rng = starg_rng_make(context->seed, 77, m->offset + m->report->trials + item);
+    const sort *what = &SORTS[t->sort];
+    starg_rng rng = starg_rng_make(context->seed, 77, m->options->first + m->report->trials + item);
     region_scratch *own = scratch;
     uint64_t before = own->work;
-    *t = (trial){.found = false};
-    starg_status status = starg_rng_below(&rng, 2) == 0 ? try_repartition(m, &rng, own, t)
-                                                        : try_eliminate(m, &rng, own, t);
+    choose_union(m, &rng, what->count, t, &t->found);
+    if (!t->found)
+        return STARG_OK;
+    if (what->eliminates)
+        STARG_TRY(try_eliminate(m, &rng, own, t));
+    else
+        STARG_TRY(try_repartition(m, &rng, own, t));
+done:
     t->work = own->work - before;
     return status;
 }
 
 static bool saves(const trial *t) {
-    return t->parts < t->count;
+    return SORTS[t->sort].parts < SORTS[t->sort].count;
 }
 
 static starg_status carry_out(improver *m, const trial *t, apply_effect *effect) {
     starg_status status = STARG_OK;
+    const sort *what = &SORTS[t->sort];
     double least = saves(t) ? -1 : sum_of_squares(m->p, t->pieces, t->count);
-    if (t->eliminates)
+    if (what->eliminates)
         STARG_TRY(apply_fan(m->p, &t->fan, MARGIN, &m->scratch, effect));
     else
         STARG_TRY(
             apply_plan(m->p, t->pieces, t->count, &t->plan, MARGIN, least, &m->scratch, effect));
-    if (!effect->done)
+    if (!effect->done) {
         m->report->refused++;
-    else if (!saves(t))
-        m->report->moves++;
-    else if (t->eliminates)
-        m->report->eliminated += t->count - t->parts, m->stalled = 0;
-    else
-        m->report->repartitions++, m->stalled = 0;
+        goto done;
+    }
+    m->report->moves += is_move(what);
+    *(what->eliminates ? &m->report->eliminated : &m->report->repartitions) +=
+        what->count - what->parts;
+    m->options->tallies->of[t->sort].saved += (double)(what->count - what->parts);
+    if (saves(t))
+        m->stalled = 0;
 done:
     return status;
 }
@@ -280,7 +310,7 @@ static bool have_common(const trial *t, const uint32_t *pieces, size_t count) {
 static void follow(improver *m, size_t count, const trial *done, const apply_effect *effect) {
     for (size_t i = 0; i < count; i++) {
         trial *t = &m->trials[i];
-        if (t->eliminates || have_common(t, done->pieces, done->count) ||
+        if (SORTS[t->sort].eliminates || have_common(t, done->pieces, done->count) ||
             have_common(t, done->fan.takers, done->fan.taker_count))
             t->found = false;
     }
@@ -323,6 +353,61 @@ done:
     return status;
 }
 
+/* ---- sorts ---- */
+
+/* Pieces saved for the work, lately. */
+static double gain_of(const improver *m, size_t number) {
+    const improve_tallies *tallies = m->options->tallies;
+    return (tallies->of[number].saved + USUAL_SAVED) / (tallies->of[number].work + USUAL_SPENT);
+}
+
+/* Of the work. */
+static double share_of(const improver *m, size_t number) {
+    double gain = 0, left = 1;
+    if (SORTS[number].share > 0)
+        return SORTS[number].share;
+    for (size_t i = 0; i < IMPROVE_SORTS; i++) {
+        bool is_fixed = SORTS[i].share > 0;
+        left -= is_fixed ? SORTS[i].share : FLOOR;
+        gain += is_fixed ? 0 : gain_of(m, i);
+    }
+    return FLOOR + left * gain_of(m, number) / gain;
+}
+
+/* Each trial is of the sort that is due first; the next one of that is due after as much work as
+ * trials of it cost, over its share. */
+static void choose_sorts(improver *m) {
+    improve_tallies *tallies = m->options->tallies;
+    double delay[IMPROVE_SORTS];
+    for (size_t i = 0; i < IMPROVE_SORTS; i++)
+        delay[i] =
+            (tallies->of[i].work + USUAL_WORK) / (tallies->of[i].trials + 1) / share_of(m, i);
+    for (size_t n = 0; n < BATCH; n++) {
+        size_t next = 0;
+        for (size_t i = 1; i < IMPROVE_SORTS; i++)
+            if (tallies->of[i].due < tallies->of[next].due)
+                next = i;
+        tallies->of[next].due += delay[next];
+        m->trials[n] = (trial){.sort = next};
+    }
+}
+
+static void count_batch(improver *m) {
+    improve_tallies *tallies = m->options->tallies;
+    for (size_t i = 0; i < IMPROVE_SORTS; i++) {
+        tallies->of[i].work *= FADING;
+        tallies->of[i].trials *= FADING;
+        tallies->of[i].saved *= FADING;
+    }
+    for (size_t n = 0; n < BATCH; n++) {
+        tallies->of[m->trials[n].sort].work += (double)m->trials[n].work;
+        tallies->of[m->trials[n].sort].trials++;
+        m->report->work += m->trials[n].work;
+    }
+    m->report->trials += BATCH;
+    m->stalled += BATCH;
+}
+
 static starg_status run_batch(improver *m) {
     starg_status status = STARG_OK;
     const starg_parallel_loop loop = {.stage = PARTITION_STAGE,
@@ -332,42 +417,27 @@ static starg_status run_batch(improver *m) {
                                       .make_scratch = region_make_scratch,
                                       .free_scratch = region_free_scratch,
                                       .silent = true};
+    choose_sorts(m);
     STARG_TRY(starg_parallel_for(m->p->context, &loop));
-    m->stalled += BATCH;
+    count_batch(m);
     STARG_TRY(carry_out_batch(m, BATCH));
-    for (int i = 0; i < BATCH; i++)
-        m->report->work += m->trials[i].work;
-    m->report->trials += BATCH;
 done:
     for (int i = 0; i < BATCH; i++)
         fan_plan_free(m->p->context, &m->trials[i].fan);
     return status;
 }
 
-/* How far the search is, by whatever will end it. */
-static void tell_progress(const improver *m, const improve_options *options, uint64_t patience) {
-    double part = (double)m->stalled / (double)patience, passed = starg_clock() - m->began;
-    if (options->trials != UINT64_MAX)
-        part = fmax(part, (double)m->report->trials / (double)options->trials);
-    if (options->work != UINT64_MAX)
-        part = fmax(part, (double)m->report->work / (double)options->work);
-    part = fmax(part, passed / (passed + fmax(0, starg_seconds_left(m->p->context))));
-    starg_progress_step(m->p->context, (size_t)(1e6 * fmin(1, part)), 1000000);
-}
-
 /* Until there are few enough, or trials, work, time or patience are at an end. */
-static starg_status search(improver *m, const improve_options *options) {
+static starg_status search(improver *m) {
     starg_status status = STARG_OK;
+    const improve_options *options = m->options;
     improve_report *report = m->report;
     report->time_limited = m->p->pieces.count > 1 && starg_time_is_over(m->p->context);
-    while (!report->time_limited && m->p->pieces.count > options->enough &&
-           report->trials < options->trials && report->work < options->work) {
-        uint64_t patience = PATIENCE * m->p->pieces.count + PATIENCE_LEAST;
-        if (m->stalled >= patience)
-            break;
+    while (!report->time_limited && m->p->pieces.count > options->enough && m->seeds.count > 0 &&
+           report->trials < options->trials && report->work < options->work &&
+           m->stalled < options->patience) {
         STARG_TRY(starg_check_cancel(m->p->context, PARTITION_STAGE));
         STARG_TRY(run_batch(m));
-        tell_progress(m, options, patience);
         report->time_limited = starg_time_is_over(m->p->context);
     }
 done:
@@ -379,15 +449,20 @@ static void improver_free(improver *m) {
     STARG_ARRAY_FREE(m->p->context, &m->neighbours);
     STARG_ARRAY_FREE(m->p->context, &m->met);
     STARG_ARRAY_FREE(m->p->context, &m->first);
+    STARG_ARRAY_FREE(m->p->context, &m->seeds);
 }
 
 starg_status improve_join(partition *p) {
     starg_status status = STARG_OK;
+    const improve_options options = {.since = 0};
     improve_report report = {.trials = 0};
-    improver m = {.p = p, .report = &report, .scratch = {.context = p->context}};
+    improver m = {
+        .p = p, .options = &options, .report = &report, .scratch = {.context = p->context}};
+    starg_progress_begin(p->context, "join");
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
 done:
+    starg_progress_end(p->context);
     improver_free(&m);
     return status;
 }
@@ -395,21 +470,15 @@ done:
 starg_status improve(partition *p, const improve_options *options, improve_report *report) {
     starg_status status = STARG_OK;
     improver m = {.p = p,
+                  .options = options,
                   .report = report,
                   .scratch = {.context = p->context},
-                  .began = starg_clock(),
-                  .offset = options->first};
+                  .merge_from = p->facets.count + p->facets.count / 8};
     *report = (improve_report){.trials = 0};
     starg_progress_begin(p->context, PARTITION_STAGE);
     STARG_TRY(find_contacts(&m));
     STARG_TRY(join_all(&m));
-    if (!starg_time_is_over(p->context))
-        STARG_TRY(merge_coplanar(p));
-    STARG_TRY(find_contacts(&m));
-    m.merge_from = p->facets.count + p->facets.count / 8;
-    STARG_TRY(search(&m, options));
-    STARG_TRY(merge_coplanar(p));
-    STARG_TRY(apply_centers(p, &m.scratch));
+    STARG_TRY(search(&m));
 done:
     starg_progress_end(p->context);
     improver_free(&m);

@@ -5,11 +5,24 @@
 
 #include "star/strict/partition/partition.h"
 
+enum { IMPROVE_SORTS = 6 };
+
+/* What trials of each sort have cost and brought lately. All zero at first. */
+typedef struct improve_tallies {
+    struct {
+        double work, trials, saved;
+        double due; /* when the next one is */
+    } of[IMPROVE_SORTS];
+} improve_tallies;
+
 typedef struct improve_options {
     uint64_t trials; /* to be made at most                             */
     uint64_t work;   /* likewise, in vertices, facets and rows looked at; whole batches are made */
-    size_t enough;   /* stop when there are no more pieces than that   */
-    uint64_t first;  /* number of the first trial: others try other things */
+    uint64_t patience;        /* trials that save nothing, after which the search ends */
+    size_t enough;            /* stop when there are no more pieces than that   */
+    uint64_t first;           /* number of the first trial: others try other things */
+    uint64_t since;           /* unions contain a piece with a later stamp */
+    improve_tallies *tallies; /* are read and kept up */
 } improve_options;
 
 typedef struct improve_report {
@@ -22,9 +35,8 @@ typedef struct improve_report {
 starg_status improve_join(partition *p);
 
 /* Joins pieces whose union is star-shaped and cuts unions again into fewer pieces, until no trial
- * helps for long, or the trials, the work or the time are used up; then every guard goes where
- * it is farthest from all planes. The partition is valid at all times.
- * Errors: MEMORY, CANCELLED. */
+ * helps for long, or the trials, the work or the time are used up. The partition is valid at all
+ * times. Errors: MEMORY, CANCELLED. */
 starg_status improve(partition *p, const improve_options *options, improve_report *report);
 
 #endif

@@ -26,11 +26,11 @@
 
 enum {
     BINS = 48,
-    GUARDS = 96, /* of each effort: those about places and directions */
-    NEEDED = 48, /* those about what is missed                         */
-    DIRECTIONS = 64,
-    TURNS = 24,
-    EDGES = 64,
+    GUARDS = 48, /* of each effort: those about places and directions */
+    NEEDED = 24, /* those about what is missed                         */
+    DIRECTIONS = 32,
+    TURNS = 16,
+    EDGES = 32,
     EDGE_TURNS = 8,
     HURRY = 8,
     SAMPLE = 12000 /* triangles */
@@ -134,6 +134,7 @@ static starg_status add_place(plane_search *d, const double at[3]) {
     starg_status status = STARG_OK;
     place fresh = {.first = d->missed.count};
     vec3_copy(at, fresh.at);
+    d->scratch->work += d->row_is_missed.count + d->r->triangles.count;
     for (size_t i = 0; i < d->row_is_missed.count; i++) {
         const double *row = d->r->rows.data + 4 * i;
         d->row_is_missed.data[i] = vec3_dot(row, at) - row[3] > -2 * d->options->margin;
@@ -242,8 +243,8 @@ static void find_bins(plane_search *d, const double normal[3], histogram *h) {
     h->low = INFINITY;
     for (size_t i = 0; i < d->r->vertices.count / 3; i++) {
         height[i] = vec3_dot(normal, d->r->vertices.data + 3 * i);
-        h->low = fmin(h->low, height[i]);
-        high = fmax(high, height[i]);
+        h->low = height[i] < h->low ? height[i] : h->low;
+        high = height[i] > high ? height[i] : high;
     }
     h->scale = BINS / (high - h->low);
     for (int i = 0; i < BINS; i++) {
@@ -253,7 +254,8 @@ static void find_bins(plane_search *d, const double normal[3], histogram *h) {
     for (size_t i = 0; i < d->r->triangles.count; i++) {
         const uint32_t *k = d->r->triangles.data[i].corners;
         double a = height[k[0]], b = height[k[1]], c = height[k[2]];
-        int first = bin_of(h, fmin(a, fmin(b, c))), last = bin_of(h, fmax(a, fmax(b, c)));
+        double low = a < b ? a : b, top = a < b ? b : a;
+        int first = bin_of(h, low < c ? low : c), last = bin_of(h, top < c ? c : top);
         d->bins.data[2 * i] = (unsigned char)first;
         d->bins.data[2 * i + 1] = (unsigned char)last;
         if (first + 1 < BINS)
@@ -275,13 +277,13 @@ static void count_place(const plane_search *d, const double normal[3], const pla
     for (int i = 1; i < BINS; i++) {
         sum += begins[i - 1];
         if (own < i)
-            h->below[i] = fmin(h->below[i], sum);
+            h->below[i] = sum < h->below[i] ? sum : h->below[i];
     }
     sum = 0;
     for (int i = BINS - 1; i > 0; i--) {
         sum += ends[i];
         if (own >= i)
-            h->above[i] = fmin(h->above[i], sum);
+            h->above[i] = sum < h->above[i] ? sum : h->above[i];
     }
 }
 
@@ -294,6 +296,7 @@ static void offer(cut *best, const double normal[3], double height, double cost,
 
 static void try_direction(plane_search *d, const double normal[3]) {
     histogram h;
+    d->scratch->work += d->sides.count + 2 * d->r->triangles.count + 2 * d->missed.count;
     find_bins(d, normal, &h);
     for (size_t i = 0; i < d->places.count; i++)
         count_place(d, normal, &d->places.data[i], &h);
@@ -357,6 +360,7 @@ static double cost_of_plane(plane_search *d, const double normal[3], double heig
         double above = vec3_dot(normal, d->r->vertices.data + 3 * i) - height;
         d->sides.data[i] = above < -1e-12 ? BELOW : above > 1e-12 ? ABOVE : 0;
     }
+    d->scratch->work += d->sides.count + d->missed.count / 2;
     for (size_t i = 0; i < d->places.count; i++) {
         const place *p = &d->places.data[i];
         double above = vec3_dot(normal, p->at) - height, sum = 0;

@@ -34,6 +34,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "geometry/vec3.h"
+#include "star/strict/partition/extract.h"
 #include "star/strict/partition/merge_coplanar.h"
 #include "star/strict/partition/separate.h"
 #include "star/strict/partition/slice.h"
@@ -60,6 +61,7 @@ typedef struct job {
     double guard[3]; /* the middle of it, in those of the solid */
     partition_plane plane;
     bool found;
+    uint64_t work;
 } job;
 
 typedef struct bsp_builder {
@@ -74,6 +76,8 @@ typedef struct bsp_builder {
     size_t merge_from; /* facets from which on it is time to merge */
     double volume;     /* of the solid, in unit coordinates */
     double finished;   /* of it, in pieces that have a guard */
+    uint64_t began;    /* with this stamp */
+    uint64_t work;
     bool hopeless;
 } bsp_builder;
 
@@ -151,6 +155,8 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     starg_rng rng =
         starg_rng_make(context->seed, 78 + STREAMS * b->options->stream, b->done + item);
     uint32_t facets = b->p->start.data[j->number + 1] - b->p->start.data[j->number];
+    region_scratch *own = scratch;
+    uint64_t before = own->work;
     j->found = false;
     for (int all = facets < 2 * SAMPLE || j->attempts >= HALVE_FROM; all < 2; all++) {
         STARG_TRY(region_gather_some(b->p, &j->number, 1, all ? UINT32_MAX : SAMPLE, scratch, &r));
@@ -160,6 +166,7 @@ static starg_status look_at(starg_context *context, void *shared, void *scratch,
     }
     if (!is_star(j))
         STARG_TRY(find_plane(b, j, &r, &rng, scratch));
+    j->work = own->work - before;
 done:
     region_free(context, &r);
     return status;
@@ -204,23 +211,24 @@ static bool is_flat(const partition *p, size_t old_points, double most) {
     return true;
 }
 
-/* On a copy: the piece cut, and both sides parted into what is connected. */
-static starg_status cut(bsp_builder *b, const job *j, partition *copy, bool *done) {
+/* In the extract: the piece cut, and both sides parted into what is connected. */
+static starg_status cut(bsp_builder *b, const job *j, partition_extract *e, bool *done) {
     starg_status status = STARG_OK;
     const piece fresh = {.stamp = ++b->p->stamps};
-    STARG_TRY(partition_copy(b->p, copy));
-    uint32_t first = (uint32_t)copy->pieces.count;
-    STARG_PUSH(copy->context, PARTITION_STAGE, &copy->pieces, fresh);
-    STARG_TRY(partition_slice(copy, j->number, first, &j->plane, done));
-    *done = *done && is_flat(copy, b->p->points.count / 3, fmin(TURN / ease_of(j), TURN_MOST));
+    partition *part = &e->part;
+    STARG_TRY(extract_make(b->p, &j->number, 1, &b->scratch, e));
+    uint32_t first = (uint32_t)part->pieces.count;
+    STARG_PUSH(part->context, PARTITION_STAGE, &part->pieces, fresh);
+    STARG_TRY(partition_slice(part, 0, first, &j->plane, done));
+    *done = *done && is_flat(part, e->points.count, fmin(TURN / ease_of(j), TURN_MOST));
     if (!*done)
         goto done;
-    STARG_TRY(partition_build_index(copy));
-    STARG_TRY(partition_separate(copy, j->number));
-    STARG_TRY(partition_separate(copy, first));
-    for (uint32_t i = j->number; i < copy->pieces.count && *done; i = i < first ? first : i + 1) {
+    STARG_TRY(partition_build_index(part));
+    STARG_TRY(partition_separate(part, 0));
+    STARG_TRY(partition_separate(part, first));
+    for (uint32_t i = 0; i < part->pieces.count && *done; i = i < first ? first : i + 1) {
         bool small;
-        STARG_TRY(is_small_component(b, copy, i, j, &small));
+        STARG_TRY(is_small_component(b, part, i, j, &small));
         *done = !small;
     }
 done:
@@ -242,23 +250,22 @@ static starg_status try_again(bsp_builder *b, const job *j) {
 
 static starg_status carry_out(bsp_builder *b, const job *j) {
     starg_status status = STARG_OK;
-    partition copy = {.context = b->p->context};
+    partition_extract e = {.part = {.context = b->p->context}};
     bool done = false;
     if (j->found)
-        STARG_TRY(cut(b, j, &copy, &done));
+        STARG_TRY(cut(b, j, &e, &done));
     if (!done) {
         STARG_TRY(try_again(b, j));
         goto done;
     }
     uint32_t first = (uint32_t)b->p->pieces.count;
-    partition before = *b->p;
-    *b->p = copy;
-    copy = before;
+    STARG_TRY(extract_return(&e, b->p));
+    STARG_TRY(partition_build_index(b->p));
     STARG_TRY(open_piece(b, j->number, j->attempts / 2));
     for (uint32_t i = first; i < b->p->pieces.count; i++)
         STARG_TRY(open_piece(b, i, j->attempts / 2));
 done:
-    partition_free(&copy);
+    extract_free(&e);
     return status;
 }
 
@@ -266,6 +273,7 @@ static void settle(bsp_builder *b, const job *j) {
     piece *it = &b->p->pieces.data[j->number];
     vec3_copy(j->guard, it->guard);
     it->radius = j->radius;
+    it->stamp = ++b->p->stamps;
     b->finished += it->volume;
     starg_progress_step(b->p->context, (size_t)(1e6 * fmin(1, b->finished / b->volume)), 1000000);
 }
@@ -296,6 +304,7 @@ static starg_status run_round(bsp_builder *b) {
     b->next.count = 0;
     for (size_t i = 0; i < b->jobs.count; i++) {
         const job *j = &b->jobs.data[i];
+        b->work += j->work;
         STARG_TRY(starg_check_cancel(b->p->context, PARTITION_STAGE));
         if (b->hopeless)
             continue;
@@ -345,8 +354,8 @@ static starg_status certify(bsp_builder *b, int round) {
         triangles.count = 0;
         STARG_TRY(partition_gather(p, i, &triangles));
         size_t count = triangles.count / 3;
-        p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
-        p->pieces.data[i].stamp = ++p->stamps;
+        if (p->pieces.data[i].stamp > b->began)
+            p->pieces.data[i].volume = partition_volume(p, triangles.data, count);
         if (!partition_certify(p, triangles.data, count, p->pieces.data[i].guard))
             STARG_TRY(reopen(b, i, round));
     }
@@ -358,13 +367,17 @@ done:
 
 static starg_status open_all(bsp_builder *b) {
     starg_status status = STARG_OK;
-    uint32_t given = (uint32_t)b->p->pieces.count;
-    for (uint32_t i = 0; i < given; i++)
-        STARG_TRY(partition_separate(b->p, i));
-    for (uint32_t i = 0; i < b->p->pieces.count; i++) {
-        b->volume += b->p->pieces.data[i].volume;
-        STARG_TRY(open_piece(b, i, 0));
+    size_t given = b->p->pieces.count, chosen = b->options->piece_count;
+    size_t count = b->options->pieces != NULL ? chosen : given;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t number = b->options->pieces != NULL ? b->options->pieces[i] : (uint32_t)i;
+        STARG_TRY(partition_separate(b->p, number));
+        STARG_TRY(open_piece(b, number, 0));
     }
+    for (size_t i = given; i < b->p->pieces.count; i++)
+        STARG_TRY(open_piece(b, (uint32_t)i, 0));
+    for (size_t i = 0; i < b->next.count; i++)
+        b->volume += b->p->pieces.data[b->next.data[i].number].volume;
 done:
     return status;
 }
@@ -383,9 +396,9 @@ done:
 
 starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *report) {
     starg_status status = STARG_OK;
-    bsp_builder b = {.p = p, .options = options, .scratch = {.context = p->context}};
+    bsp_builder b = {
+        .p = p, .options = options, .scratch = {.context = p->context}, .began = p->stamps};
     *report = (bsp_report){.done = false};
-    starg_progress_begin(p->context, "planes");
     STARG_TRY(take_hints(&b));
     STARG_TRY(open_all(&b));
     b.merge_from = p->facets.count + p->facets.count / 8;
@@ -396,13 +409,13 @@ starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *rep
             swap_lists(&b);
         }
         report->evaluations = b.done;
+        report->work = b.work;
         if (b.jobs.count > 0)
             goto done;
         STARG_TRY(certify(&b, round));
     }
     report->done = !b.hopeless;
 done:
-    starg_progress_end(p->context);
     region_scratch_free(&b.scratch);
     STARG_ARRAY_FREE(p->context, &b.hints);
     STARG_ARRAY_FREE(p->context, &b.jobs);

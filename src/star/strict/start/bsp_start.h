@@ -11,15 +11,18 @@ typedef struct bsp_options {
     bool to_the_end;      /* neither budget nor time end it; once the time is over, it hurries */
     const double *guards; /* guard_count x 3, or NULL: places to choose guards from */
     size_t guard_count;
+    const uint32_t *pieces; /* those to be cut, or NULL: all */
+    size_t piece_count;
 } bsp_options;
 
 typedef struct bsp_report {
     bool done;          /* else the partition is of no use */
     size_t evaluations; /* of open pieces: some two or three for each piece if none resists */
+    uint64_t work;      /* vertices, facets and rows looked at */
 } bsp_report;
 
-/* Cuts the pieces of a partition, whose guards need not see anything, until each has a certified
- * guard. Errors: MEMORY, CANCELLED. */
+/* Cuts pieces of a partition, whose guards need not see anything, until each has a certified guard.
+ * The stamps of pieces that are not cut stay. Errors: MEMORY, CANCELLED. */
 starg_status bsp_start(partition *p, const bsp_options *options, bsp_report *report);
 
 #endif
