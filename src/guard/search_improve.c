@@ -22,7 +22,7 @@ static const char STAGE[] = "search";
 
 /* Programs grow with the guards, and what each point is held against with the faces. */
 static uint64_t default_work(const search *s) {
-    return 400000 + 40 * s->pool->columns + 50000 * s->count + 4 * s->count * s->pool->columns;
+    return 400000 + 45 * s->pool->columns + 30000 * s->count + 8 * s->count * s->pool->columns;
 }
 
 uint64_t search_improve_work(const search *s) {
