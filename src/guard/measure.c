@@ -35,8 +35,8 @@ done:
     return status;
 }
 
-/* The area that the first k guards see together, for each k; `joined` ends as what all of them
- * see. */
+/* The faces and the area that the first k guards see together, for each k; `joined` ends as what
+ * all of them see. */
 static starg_status measure_curve(const guard_problem *problem, const starg_bits *seen,
                                   uint64_t *joined, starg_guards *result) {
     starg_status status = STARG_OK;
