@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Candidates for faces that no candidate sees yet.
  *
- * The paper adds the invisible vertices themselves as candidates [YL11, section 3.2]; a guard must
- * lie inside, and one deep inside sees more. In an embedded boundary every face with area is seen
- * from all points close enough above its middle: the cone over it gets flat, and no other face
- * comes into a flat enough cone. So, for each face: along the inward normal from its centroid and
- * along directions that lean away from it, the depths of a falling geometric series are tried
- * until the face is seen. The deepest point of the normal and the deepest point of all directions
- * become candidates. Thin crevices end at depths near the rounding of the coordinates; faces that
- * are not even seen from there stay unseen; with a cone of view, which looks at the centroid, so do
- * those that fill more than the cone from wherever they are seen.
+ * The paper adds the invisible vertices themselves as candidates [YL11, section 3.2]. Here a guard
+ * must lie inside, and a point deep inside sees more. If the boundary is embedded, every face with
+ * area is visible from all points close enough above its centroid: the cone over the face flattens
+ * until no other face enters it. So, for each face, the depths of a decreasing geometric series are
+ * tried along the inward normal at its centroid and along directions tilted from it, until a point
+ * sees the face. The deepest point on the normal and the deepest point over all directions become
+ * candidates. In thin crevices the depths approach the rounding error of the coordinates; faces
+ * that are invisible even from there stay unseen. With a cone of view, which is aimed at the
+ * centroid, faces too large for the cone from every point that sees them also stay unseen.
  *
- * Cost: O(log n) for each of at most DIRECTIONS x DEPTHS points a face; parallel over the faces. */
+ * Cost: O(log n) for each of at most DIRECTIONS x DEPTHS points per face; parallel over the
+ * faces. */
 #include <math.h>
 
 #include "core/parallel.h"
@@ -44,7 +45,7 @@ static void look_at(const double from[3], const double at[3], double direction[3
         direction[k] /= length;
 }
 
-/* May a guard stand at p, and does it see the face, looking at its centroid? */
+/* May a guard stand at p, and does it see the face when it looks at the face's centroid? */
 static bool is_good(const augmentation_job *job, const double p[3], const double centroid[3],
                     size_t rank) {
     starg_visibility_options options = *job->all->visibility;
@@ -56,7 +57,7 @@ static bool is_good(const augmentation_job *job, const double p[3], const double
            scene_sees_face(job->scene, p, rank, &options);
 }
 
-/* The depth, from `limit` (exclusive) down, at which a point along the direction sees the face. */
+/* The largest depth below `limit` at which a point along the direction sees the face. */
 static double deepest(const augmentation_job *job, size_t rank, const double from[3],
                       const double direction[3], double limit, double p[3]) {
     double depth = 0.5 * job->all->solid->check->diagonal;
@@ -68,7 +69,7 @@ static double deepest(const augmentation_job *job, size_t rank, const double fro
     return 0;
 }
 
-/* Direction 0 is the inward normal; the others lean 35 and 65 degrees to six sides of it. */
+/* Direction 0 is the inward normal; the others tilt by 35 and 65 degrees towards six sides. */
 static void lean(const double normal[3], const double side[2][3], int index, double out[3]) {
     if (index == 0) {
         vec3_copy(normal, out);
@@ -81,7 +82,7 @@ static void lean(const double normal[3], const double side[2][3], int index, dou
     vec3_along(out, sin(tilt) * sin(turn), side[1], out);
 }
 
-/* Centroid, and an orthonormal frame of the inward normal and two directions in the plane. */
+/* The centroid, and an orthonormal frame: the inward normal and two directions in the plane. */
 static bool make_frame(const visibility_scene *scene, size_t rank, double centroid[3],
                        double normal[3], double side[2][3]) {
     const double *a = scene_corner(scene, rank, 0), *b = scene_corner(scene, rank, 1);
@@ -129,7 +130,7 @@ static starg_status augment_face(starg_context *context, void *shared, void *scr
     return STARG_OK;
 }
 
-/* Picks the batch evenly from all unseen faces that were not tried. */
+/* Picks the batch evenly from all unseen faces that have not been tried. */
 static size_t pick_faces(const augmentation *all, const uint8_t *unseen, size_t face_count,
                          uint32_t *faces) {
     size_t waiting = 0, picked = 0, index = 0;

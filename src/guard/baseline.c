@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Baselines: each face is to be seen by two guards that are at least an angle apart, as seen from
- * its centroid, because depth is measured from two directions.
+/* Baselines: two guards must see each face, at least a given angle apart as seen from its centroid,
+ * because depth is measured from two directions.
  *
- * Input: guards that see every face as often as redundancy asks for, which is at least twice. A
- * face is paired if two of them are so far apart. Stages:
- *   1. While faces are not paired: the candidate joins that pairs most of them with guards that
- * there are. Where no single candidate pairs any, the two that pair the first such face join; a
- * face that no two candidates pair is given up.
- *   2. Guards that are not needed any more, neither for redundancy nor for a pair, leave, those
- * that see least first. Guards that are paired see each face twice: so the bound of redundancy
- * stays one. Of many faces that are not paired some count in a round (MOST_FACES), so that a round
- * is quick; rounds go on until none is left. Signs of angles are exact (compare_parallax).
+ * Input: guards that see every face as often as the redundancy requires, at least twice. A face is
+ * paired if two guards that see it are that far apart. Stages:
+ *   1. While unpaired faces remain, the candidate that pairs the most of them with existing guards
+ *      is added. If no single candidate pairs any, two candidates that pair the first such face are
+ *      added; a face that no two candidates pair is given up.
+ *   2. Guards that neither redundancy nor a pair needs are removed, starting with those that see
+ *      least. Both guards of a pair see the face, so the bound for redundancy stays valid. At most
+ *      MOST_FACES unpaired faces are considered per round, to keep rounds fast; rounds repeat until
+ *      none is left. Signs of angles are exact (compare_parallax).
  *
- * Cost: a round looks at every candidate and guard of MOST_FACES faces. */
+ * Cost: a round visits every candidate and guard of MOST_FACES faces. */
 #include "guard/baseline.h"
 
 #include <stdlib.h>
@@ -28,9 +28,9 @@ typedef struct pairing {
     const guard_pool *pool;
     guard_selection *selection;
     double cosine;
-    STARG_ARRAY(uint32_t) lacking; /* faces that are not paired, ascending */
+    STARG_ARRAY(uint32_t) lacking; /* unpaired faces, ascending */
     uint32_t *gain;                /* by candidate */
-    uint8_t *chosen;               /* by candidate: is a guard */
+    uint8_t *chosen;               /* by candidate: is it a guard? */
 } pairing;
 
 bool baseline_holds(const starg_mesh *mesh, size_t face, double cosine, const double p[3],
@@ -70,7 +70,7 @@ static bool is_paired(const pairing *own, size_t face, uint32_t without) {
     return false;
 }
 
-/* ---- adding ---- */
+/* ---- adding guards ---- */
 
 static starg_status list_lacking(pairing *own) {
     starg_status status = STARG_OK;
@@ -95,7 +95,7 @@ static size_t step_of(const pairing *own) {
     return (own->lacking.count + MOST_FACES - 1) / MOST_FACES;
 }
 
-/* The candidate that pairs most, or UINT32_MAX. */
+/* The candidate that pairs the most faces, or UINT32_MAX. */
 static uint32_t find_best(pairing *own) {
     uint32_t best = UINT32_MAX;
     memset(own->gain, 0, pool_count(own->pool) * sizeof *own->gain);
@@ -122,8 +122,7 @@ static bool find_pair(const pairing *own, size_t face, uint32_t pair[2]) {
     return false;
 }
 
-/* Two candidates for the first face that some pair; faces before it, which none do, are given up.
- */
+/* Adds two candidates for the first face that some two pair; gives up the faces before it. */
 static starg_status join_pair(pairing *own) {
     starg_status status = STARG_OK;
     uint32_t pair[2];
@@ -167,10 +166,9 @@ done:
     return status;
 }
 
-/* ---- leaving ---- */
+/* ---- removing guards ---- */
 
-/* Is every face that it sees seen often enough by the others, and paired by them if it is by all?
- */
+/* Do the other guards see each of its faces often enough, and pair those that are paired now? */
 static bool can_leave(const pairing *own, uint32_t guard, const uint32_t *held,
                       const uint32_t *available) {
     const uint64_t *row = starg_bits_row(own->pool->rows, guard);
@@ -201,7 +199,7 @@ static void leave(guard_selection *selection, size_t at) {
     selection->levels.count--;
 }
 
-/* By position in the selection: those that see least first. */
+/* Positions in the selection, by how much the guard sees, ascending. */
 static void order_by_sight(const pairing *own, uint32_t *order) {
     const guard_selection *s = own->selection;
     for (uint32_t i = 0; i < s->chosen.count; i++) {

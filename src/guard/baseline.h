@@ -4,13 +4,12 @@
 
 #include "guard/stages.h"
 
-/* Are p and q, as seen from the centroid of the face, at least as far apart as the angle of the
- * cosine? */
+/* Are p and q, as seen from the centroid of the face, at least the angle with this cosine apart? */
 bool baseline_holds(const starg_mesh *mesh, size_t face, double cosine, const double p[3],
                     const double q[3]);
 
-/* Adds candidates to a choice until two guards that are the baseline apart see each face, as far as
- * candidates allow, and takes those out that are not needed then. Nothing without a baseline.
+/* Adds candidates to a choice until two guards at least the baseline apart see each face, as far as
+ * candidates allow, then removes guards that are no longer needed. Does nothing without a baseline.
  * Errors: MEMORY, CANCELLED. */
 starg_status baseline_guards(const guard_problem *problem, const guard_pool *pool,
                              guard_selection *selection);

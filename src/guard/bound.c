@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The bound of a search, in whole numbers: whatever floating point has found the prices, this sum
- * and this maximum are exact. Prices are below 2^44 and witnesses at most 2^10, so that sums stay
- * below 2^54, and below 2^64 when each witness is to be seen 1,000 times. */
+/* The bound of a search, in integers: however floating point found the prices, this sum and this
+ * maximum are exact. Prices are below 2^44 and there are at most 2^10 witnesses, so sums stay below
+ * 2^54, and below 2^64 when each witness must be seen 1,000 times. */
 #include "guard/bound.h"
 
 #include "guard/prices.h"
@@ -47,8 +47,8 @@ typedef struct branching {
     starg_context *context;
     const witness_row *const *rows;
     size_t count;
-    uint8_t *gone;         /* by row: a branch before has dealt with the covers that have it */
-    size_t nodes;          /* that may still be looked at */
+    uint8_t *gone;         /* by row: an earlier branch covers all solutions with this row */
+    size_t nodes;          /* nodes left in the budget */
     branch_record *record; /* or NULL */
     uint64_t work;
 } branching;
@@ -76,8 +76,8 @@ done:
     return status;
 }
 
-/* Rows that may be taken, each cut down to the witnesses that are wanted, without those that are
- * within another one. */
+/* The rows still available, restricted to the wanted witnesses, without rows that another
+ * contains. */
 typedef struct rest {
     witness_row *cut;
     const witness_row **rows; /* `cut`, one by one */
@@ -113,7 +113,7 @@ static void rest_free(starg_context *context, rest *r) {
     starg_release(context, r->names);
 }
 
-/* The large rows come first, so that none is within a later one. */
+/* Large rows come first, so that no row is contained in a later one. */
 static starg_status rest_make(const branching *b, const witness_row *wanted, rest *r) {
     starg_status status = STARG_OK;
     size_t by_size[MOST_WITNESSES + 2] = {0}, hint = 0;
@@ -147,7 +147,7 @@ done:
     return status;
 }
 
-/* The wanted witness that the fewest rows hold; *fewest: how many. */
+/* The wanted witness in the fewest rows; *fewest: the number of those rows. */
 static size_t rarest(const rest *r, const witness_row *wanted, size_t *fewest) {
     size_t best = MOST_WITNESSES, held[MOST_WITNESSES] = {0};
     for (size_t i = 0; i < r->count; i++)
@@ -197,7 +197,7 @@ done:
 
 static starg_status branch(branching *b, const witness_row *wanted, size_t most, bool *proven);
 
-/* One branch for each row that holds the witness; the rows of branches before are gone. */
+/* One branch for each row with the witness; rows of earlier branches are excluded. */
 static starg_status branch_on(branching *b, const rest *r, size_t witness,
                               const witness_row *wanted, size_t most, bool *proven) {
     starg_status status = STARG_OK;

@@ -81,7 +81,7 @@ done:
     return status;
 }
 
-/* How many points of the lattice are in the box, about. */
+/* The approximate number of lattice points in the box. */
 static double lattice_size(const double extent[3], double step) {
     double size = 2;
     for (int k = 0; k < 3; k++)
@@ -89,8 +89,8 @@ static double lattice_size(const double extent[3], double step) {
     return size;
 }
 
-/* The step, doubled until there are no more points to look at than that: a solid may be so thin in
- * its box that none of very many is inside. */
+/* Doubles the step until the lattice has at most `most` points: a solid may be so thin in its box
+ * that very few of them are inside. */
 static double coarse_enough(const starg_solid *solid, double step, double most) {
     double extent[3];
     bvh_box all;
@@ -103,8 +103,8 @@ static double coarse_enough(const starg_solid *solid, double step, double most) 
     return step;
 }
 
-/* Points of a body-centred cubic lattice: the most even one for covering. The half step that
- * shifts it off the box keeps points off walls that follow the axes. */
+/* Points of a body-centred cubic lattice, which covers space most evenly. The half-step offset from
+ * the box keeps points off axis-aligned walls. */
 static starg_status lattice_points(starg_context *context, const starg_solid *solid, double step,
                                    double clearance, candidate_points *points) {
     starg_status status = STARG_OK;
@@ -130,7 +130,7 @@ done:
     return status;
 }
 
-/* Of a scene that of the box in which guards may stand. */
+/* For a scene, the volume of the box in which guards may stand. */
 static double free_volume(const starg_solid *solid) {
     bvh_box reach;
     if (!solid->scene)
@@ -144,8 +144,8 @@ static double free_volume(const starg_solid *solid) {
     return volume;
 }
 
-/* The step follows from the volume, two points a cubic cell; where clearance or thin walls leave
- * fewer points than wanted it is made smaller, some times. */
+/* The step follows from the volume, two points per cubic cell; if clearance or thin walls leave too
+ * few points, the step is reduced, a few times. */
 static starg_status interior_candidates(starg_context *context, const candidate_shape *shape,
                                         size_t wanted, candidate_points *points) {
     enum { ROUNDS = 6 };
@@ -178,7 +178,7 @@ starg_status candidates_check(starg_context *context, starg_candidates source, s
     return STARG_OK;
 }
 
-/* Curve skeletons are of solids, the medial axis is of an inside. */
+/* Curve skeletons need a solid, the medial axis needs an inside. */
 static starg_candidates source_in(const starg_solid *solid, starg_candidates wanted) {
     if (solid->ambient > 0)
         return STARG_CANDIDATES_INTERIOR;

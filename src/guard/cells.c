@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Cells: the space in which guards may stand, cut into boxes, each with the witnesses that it may
- * see by visibility/box.h.
+ * see, by visibility/box.h.
  *
  * The root is the box of the solid, rounded outwards to multiples of a power of two, and a cell is
  * cut in the middle of its longest side, so that corners of cells are short binary fractions. A
- * part is asked only about what the whole may see, and not about what a point of it is known to
- * see. Cells are numbered in the order in which they are made, work is addressed by that number,
- * and so is the random point of a cell: nothing depends on the number of threads.
+ * child is tested only for what its parent may see, and not for what one of its points is known to
+ * see. Cells are numbered in the order of creation. Work is addressed by that number, and so is the
+ * random point of a cell: nothing depends on the number of threads.
  *
- * Invariant: a witness that is not open in a cell is seen by no point of the cell in the free
- * space. Cost: a box test for each open vertex, some 10 sight lines for each it sees. */
+ * Invariant: no point of a cell in the free space sees a witness that is not open in the cell.
+ * Cost: a box test for each open vertex, about 10 sight lines for each vertex that it sees. */
 #include "guard/cells.h"
 
 #include <math.h>
@@ -115,7 +115,7 @@ bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j
                     scene_corner(points, place, 2), p) > 0;
 }
 
-/* Sets what the point sees of the witnesses in `among`; returns how many were looked at. */
+/* Sets which witnesses in `among` the point sees; returns the number of tests. */
 static uint64_t look_from(const search_scene *scene, search_point *point,
                           const witness_row *among) {
     uint64_t work = 0;
@@ -177,8 +177,8 @@ static double middle(const bvh_box *box, int k) {
     return 0.5 * box->lower[k] + 0.5 * box->upper[k];
 }
 
-/* Half the diagonal and the distance of the middle from the boundary are off by rounding: a
- * thousandth of the clearance is more than that, unless coordinates are huge beside it. */
+/* Half the diagonal and the distance of the centre from the boundary have rounding errors, below a
+ * thousandth of the clearance unless coordinates are huge relative to it. */
 bool search_scene_bars(const search_scene *scene, const bvh_box *box) {
     double centre[3], reach = 0.5 * vec3_distance(box->lower, box->upper), largest = 0;
     if (!(scene->clearance > 0) || !(reach < scene->clearance))
@@ -254,7 +254,7 @@ void cells_worker_free(starg_context *context, void *scratch) {
     box_worker_free(scratch);
 }
 
-/* Sets what the box may see of the witnesses in `among`; returns the number of tests. */
+/* Sets which witnesses in `among` the box may see; returns the number of tests. */
 static uint64_t look_from_box(const search_scene *scene, box_worker *worker, const bvh_box *box,
                               const witness_row *among, const witness_row *known,
                               witness_row *open) {
@@ -274,10 +274,10 @@ static uint64_t look_from_box(const search_scene *scene, box_worker *worker, con
     return box_worker_tests(worker) - before;
 }
 
-/* ---- looking at more witnesses ---- */
+/* ---- testing more witnesses ---- */
 
 typedef struct asking {
-    const search_scene *scene; /* first: as cells_worker_make wants it */
+    const search_scene *scene; /* first member, as cells_worker_make requires */
     search_cell *cells;
     const uint32_t *list, *parents; /* by item */
     witness_row among;
@@ -305,7 +305,7 @@ static bool sees_any(const search_cell *cell, const witness_row *among) {
     return any != 0;
 }
 
-/* One generation after the other: children are asked about what their parents may see. */
+/* One generation after the other: children are tested for what their parents may see. */
 starg_status cells_look(search_scene *scene, search_cells *cells, size_t first) {
     starg_status status = STARG_OK;
     starg_context *context = scene->context;
@@ -362,7 +362,7 @@ typedef struct part {
 } part;
 
 typedef struct splitting {
-    const search_scene *scene; /* first: as cells_worker_make wants it */
+    const search_scene *scene; /* first member, as cells_worker_make requires */
     const search_cell *cells;
     const uint32_t *leaves;
     size_t first; /* number of the first part among the cells */
@@ -370,7 +370,7 @@ typedef struct splitting {
     part *parts;
 } splitting;
 
-/* Where views are directed: towards a witness at random, of those that the cell may see. */
+/* If views are directed: aims at a random witness among those that the cell may see. */
 static void look_somewhere(const search_scene *scene, search_point *point, const witness_row *among,
                            starg_rng *rng) {
     size_t count = starg_bit_count(among->bits, WITNESS_WORDS), at = 0;
@@ -443,7 +443,7 @@ starg_status cells_split(search_scene *scene, search_cells *cells, const uint32_
     for (size_t i = 0; i < 2 * count; i++) {
         const part *p = &s.parts[i];
         STARG_PUSH(context, STAGE, cells, p->cell);
-        if (i % 2 != 0) /* only now: a cell has both children or none */
+        if (i % 2 != 0) /* only after the second child: a cell has both children or none */
             cells->data[leaves[i / 2]].children = (uint32_t)(cells->count - 2);
         for (int k = 0; k < p->count; k++)
             STARG_PUSH(context, STAGE, points, p->points[k]);

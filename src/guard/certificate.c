@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The certificate of a bound for guards anywhere: docs/formats.md has its text,
- * docs/verification.md why it suffices.
+/* The certificate of a bound for guards anywhere: docs/formats.md specifies the text,
+ * docs/verification.md explains why it suffices.
  *
- * While it searches, a search remembers only what has proven its bound: prices, or rows of
- * witnesses and how branching went. Everything else is found again from the final tree of cells:
- *   1. the coarsest tree that does: from the root down, a cell is a leaf as soon as the witnesses
- *      that it may see are worth little enough, or lie in one of the rows;
- *   2. for each cell of it, why it does not see what the cell around it may see and it does not
- *      (visibility/box.h), in parallel; reasons do not depend on what was asked before;
+ * A search remembers only what proved its bound: prices, or rows of witnesses and the branching.
+ * Everything else is recomputed from the final tree of cells:
+ *   1. the coarsest sufficient tree: from the root down, a cell becomes a leaf as soon as the total
+ *      price of the witnesses that it may see is small enough, or these lie in one of the rows;
+ *   2. for each of its cells, the reasons why it does not see witnesses that its parent may see
+ *      (visibility/box.h), in parallel; reasons do not depend on earlier tests;
  *   3. the text, in the order of the tree.
  *
- * Invariant: what a leaf may see is what no reason of it or of a cell around it takes away. Cost:
- * about the box tests of the search that ended in "hidden", once more. */
+ * Invariant: a leaf may see exactly the witnesses that no reason of it or of an ancestor removes.
+ * Cost: about that of the search's box tests that ended in "hidden". */
 #include "guard/certificate.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ void certificate_free(starg_context *context, guard_certificate *why) {
     *why = (guard_certificate){0};
 }
 
-/* ---- what proves the bound ---- */
+/* ---- the proof of the bound ---- */
 
 void certificate_note_prices(guard_certificate *why, size_t bound,
                              const uint64_t price[MOST_WITNESSES]) {
@@ -62,15 +62,15 @@ done:
 
 /* ---- the tree ---- */
 
-/* A cell of the certificate. Its number is that among the cells of the search. */
+/* A cell of the certificate, numbered as among the cells of the search. */
 typedef struct kept_cell {
     uint32_t number;
-    uint32_t around; /* the number of the cell around it; UINT32_MAX: the root */
-    uint32_t row;    /* a leaf: that it lies in, if there are rows             */
+    uint32_t around; /* the number of its parent; UINT32_MAX: the root */
+    uint32_t row;    /* of a leaf: the row that contains it, if there are rows */
     bool leaf;
-    bool outside;        /* no point of it is in the free space                    */
-    bool barred;         /* all points of it are too close to the boundary         */
-    size_t first, count; /* of the reasons                                         */
+    bool outside;        /* no point of it is in the free space */
+    bool barred;         /* all points of it are too close to the boundary */
+    size_t first, count; /* of the reasons */
 } kept_cell;
 
 typedef struct stored_reason {
@@ -81,15 +81,15 @@ typedef struct stored_reason {
 } stored_reason;
 
 typedef struct making {
-    const search_scene *scene; /* first: as cells_worker_make wants it */
+    const search_scene *scene; /* first member, as cells_worker_make requires */
     const search_cells *cells;
     const bound_proof *proof;
     const starg_guard_options *options;
-    witness_row wanted;              /* witnesses that the proof speaks of */
-    uint32_t number[MOST_WITNESSES]; /* of each of them in the text        */
-    uint64_t most;                   /* that a leaf may be worth           */
-    size_t hint;                     /* a row                              */
-    STARG_ARRAY(kept_cell) kept;     /* cells before their halves          */
+    witness_row wanted;              /* witnesses that the proof uses */
+    uint32_t number[MOST_WITNESSES]; /* the number of each in the text */
+    uint64_t most;                   /* largest total price of a leaf */
+    size_t hint;                     /* a row */
+    STARG_ARRAY(kept_cell) kept;     /* parents before children */
     stored_reason *reasons;
 } making;
 
@@ -116,7 +116,7 @@ static bool is_cheap(const making *m, const witness_row *open) {
     return sum <= m->most;
 }
 
-/* The row that holds the witnesses, the one of the last time if it does; or UINT32_MAX. */
+/* The row that contains the witnesses, starting with that of the last call; or UINT32_MAX. */
 static uint32_t row_around(making *m, const witness_row *open) {
     const witness_row *rows = m->proof->rows.data;
     if (row_is_within(open, &rows[m->hint]))
@@ -167,7 +167,7 @@ done:
 
 /* ---- reasons ---- */
 
-/* What the cell does not see and the cell around it may see. */
+/* What the parent may see and the cell does not. */
 static witness_row hidden_here(const making *m, const kept_cell *kept) {
     witness_row row = m->wanted;
     for (int w = 0; w < WITNESS_WORDS; w++) {
@@ -232,7 +232,7 @@ done:
 
 /* ---- the text ---- */
 
-/* A double as a whole number and a power of two. */
+/* A double as an integer and a power of two. */
 static void put_double(FILE *stream, double x) {
     int exponent;
     long long whole = (long long)ldexp(frexp(x, &exponent), 53);

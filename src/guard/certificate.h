@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Why a bound for guards anywhere holds, as a text that verify checks (docs/formats.md). */
+/* The proof of a bound for guards anywhere, as a text that verify checks (docs/formats.md). */
 #ifndef STARG_GUARD_CERTIFICATE_H
 #define STARG_GUARD_CERTIFICATE_H
 
@@ -7,7 +7,7 @@
 #include "guard/cells.h"
 #include "starguard/guard.h"
 
-/* What proves the bound: prices, or rows that cannot do with fewer, by branching. */
+/* What proves the bound: prices, or rows that need a cover of this size, by branching. */
 typedef struct bound_proof {
     size_t bound;
     uint64_t price[MOST_WITNESSES]; /* without rows */
@@ -17,26 +17,26 @@ typedef struct bound_proof {
 
 typedef struct guard_certificate {
     bound_proof proof;
-    char *text; /* NULL until it is written */
+    char *text; /* NULL until written */
     size_t size;
 } guard_certificate;
 
 void certificate_free(starg_context *context, guard_certificate *why);
 
-/* Remembers what has proven `bound`, if that is more than before. `why` may be NULL. */
+/* Records the prices that proved `bound`, if it improves on the previous one. `why` may be NULL. */
 void certificate_note_prices(guard_certificate *why, size_t bound,
                              const uint64_t price[MOST_WITNESSES]);
-/* The same for rows; `branches` is taken over. Errors: MEMORY. */
+/* The same for rows; takes `branches` over. Errors: MEMORY. */
 starg_status certificate_note_rows(starg_context *context, guard_certificate *why, size_t bound,
                                    const witness_row *const *rows, size_t count,
                                    branch_record *branches);
 
-/* Writes the text from what was noted and the tree of cells, whose reasons are found again. Errors:
+/* Writes the text from the record and the tree of cells, whose reasons are recomputed. Errors:
  * MEMORY, CANCELLED. */
 starg_status certificate_of_search(const search_scene *scene, const search_cells *cells,
                                    const starg_guard_options *options, guard_certificate *why);
 
-/* The text for a bound of 1, where `witness` is to be seen, or of 0 where nothing is (UINT32_MAX).
+/* The text for a bound of 1, where `witness` must be seen, or of 0 where nothing must (UINT32_MAX).
  * Errors: MEMORY. */
 starg_status certificate_of_one(starg_context *context, const starg_solid *solid,
                                 const starg_guard_options *options, uint32_t witness,

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* The weight of which a part is wanted: of all that can be seen. Where that is not known, for want
- * of looking at the last faces, it is at most that of all columns. */
+/* The weight that the coverage is a fraction of: that of everything that can be seen. If that is
+ * unknown because the last faces were not tested, it is at most that of all columns. */
 static double whole_weight(const guard_pool *pool, const column_weights *weights) {
     return (double)(pool->curtailed ? weights->total : pool_coverable_weight(pool, weights));
 }

@@ -7,20 +7,20 @@
 #include "guard/weights.h"
 #include "starguard/cover.h"
 
-/* What a stage wants of the cover. */
+/* What a stage asks of the cover. */
 typedef struct choice {
     starg_cover_method method;
     size_t max_nodes;
-    const uint32_t *given; /* candidates that are chosen already */
+    const uint32_t *given; /* candidates that are already chosen */
     size_t given_count;
     bool prices;
 } choice;
 
-/* The weight that is to be seen: UINT64_MAX for all that can be. */
+/* The weight that must be seen: UINT64_MAX for all that can be. */
 uint64_t choose_target(const guard_pool *pool, const column_weights *weights);
 
-/* Chooses candidates of a pool that is not empty: as many as the options' coverage, redundancy and
- * limit ask for. Errors: MEMORY, CANCELLED. */
+/* Chooses candidates of a non-empty pool: as many as the options' coverage, redundancy and limit
+ * require. Errors: MEMORY, CANCELLED. */
 starg_status choose_candidates(const guard_pool *pool, const column_weights *weights,
                                const choice *how, starg_cover **out);
 

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How many points are needed to see all corners of a solid (STARG_TARGET_CORNERS). */
+/* How many points are needed to see all corners of a solid (STARG_TARGET_CORNERS)? */
 #ifndef STARG_GUARD_CORNERS_H
 #define STARG_GUARD_CORNERS_H
 
 #include "mesh/solid.h"
 
 typedef struct corner_guards {
-    size_t bound; /* no fewer points see all that these see, wherever they stand */
+    size_t bound; /* no fewer points, wherever they stand, see all that these see */
     size_t count;
     double *positions; /* count x 3 */
-    char *certificate; /* of `bound`, or NULL where none is asked for */
+    char *certificate; /* of `bound`, or NULL if not requested */
     size_t size;       /* of the certificate */
 } corner_guards;
 
-/* `work` is that of starg_guard_options.prove_work. Errors: those of starg_guard. */
+/* `work` is starg_guard_options.prove_work. Errors: those of starg_guard. */
 starg_status corner_guards_find(starg_context *context, const starg_solid *solid, uint64_t work,
                                 bool certified, corner_guards *out);
 void corner_guards_free(starg_context *context, corner_guards *guards);

@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Where sensors that look in one direction look from a place.
+/* Directions of sensors with a limited view at a given place.
  *
- * Problem: from a place faces are seen all around, each with a weight. A view holds a face if it
- * holds its corners. Find a few directions whose views together hold as much as possible.
+ * Problem: a place sees faces all around, each with a weight. A view holds a face if it holds its
+ * corners. Find a few directions whose views together hold as much weight as possible.
  *
- * Stages: what every place sees all around; the direction whose view holds most of it; then the one
- * that holds most of the rest, and so on, which is the greedy algorithm for maximum coverage
- * [Nemhauser, Wolsey, Fisher 1978]. Each direction is searched by branch and bound over rectangles
- * of yaw and pitch about what is up. Turning by a yaw and a pitch of at most s in all moves the
- * view by an angle of at most s; so a face with a corner that is farther than s outside of the view
- * in the middle of a rectangle is held by no view in it. The bound of a rectangle is the weight of
- * the other faces, and its parts ask for these alone.
+ * Stages: find what every place sees all around; find the direction whose view holds the most
+ * weight; then the one that holds the most of the rest, and so on: the greedy algorithm for maximum
+ * coverage [Nemhauser, Wolsey, Fisher 1978]. Each direction is found by branch and bound over
+ * rectangles of yaw and pitch about the up vector. A change of yaw and pitch by at most s in total
+ * moves the view by an angle of at most s; so no view in a rectangle holds a face with a corner
+ * farther than s outside the view at its centre. The bound of a rectangle is the weight of the
+ * other faces, and its children consider only these.
  *
- * What is exact: nothing here decides what counts as seen; the views that are found are candidates
- * like any, whose rows come from visibility_rows. A search that ends within its budget is proven:
- * no direction holds more than 1 + GAP times as much of the faces that were asked for, except in
- * rectangles of less than two degrees. Of more than MOST_FACES faces some stand for all.
+ * What is exact: nothing here decides what counts as seen; the views found are ordinary candidates,
+ * whose rows come from visibility_rows. A search that ends within its budget is proven: no
+ * direction holds more than 1 + GAP times as much of the faces considered, except in rectangles
+ * below two degrees. If there are more than MOST_FACES faces, a subset represents them.
  *
- * Cost: for each place one look and at most LOOKS x NODES visits of its faces, of which most have
+ * Cost: for each place one look and at most LOOKS x NODES visits of its faces, most of them with
  * short lists. Parallel over places; independent of the number of threads. */
 #include <math.h>
 #include <stdlib.h>
@@ -40,11 +40,11 @@ enum {
 
 static const char STAGE[] = "directions";
 static const double PI = 3.14159265358979323846, GAP = 0.02, LEAST_SHARE = 0.01,
-                    SMALLEST = 0.017; /* radians of half a rectangle's sides */
+                    SMALLEST = 0.017; /* half side of a rectangle, in radians */
 
-/* A face, or a vertex, as a place sees it. */
+/* A face, or a vertex, as seen from a place. */
 typedef struct aim_item {
-    double corner[3][3]; /* directions of unit length; of a vertex all the same */
+    double corner[3][3]; /* unit directions; all equal for a vertex */
     double weight;
 } aim_item;
 
@@ -56,7 +56,7 @@ typedef struct aim_list {
 /* Memory for one thread. */
 typedef struct aim_scratch {
     aim_item items[MOST_FACES];
-    aim_list lists[DEPTH + 2]; /* of the rectangles on the way to the current one */
+    aim_list lists[DEPTH + 2]; /* of the rectangles on the path to the current one */
     size_t count, nodes;
     double best, direction[3];
 } aim_scratch;
@@ -84,10 +84,10 @@ static void direction_of(const aiming *a, double yaw, double pitch, double out[3
                  sin(pitch) * a->frame[1][k];
 }
 
-/* The planes, or for a cone one bound of a cosine, by which items are held against a view. */
+/* The planes, or for a cone one bound on a cosine, that items are tested against. */
 typedef struct aim_view {
     double normal[4][3], least,
-        loose; /* n . q of all is at least that: held; perhaps held nearby */
+        loose; /* n . q of all items is at least this: held; possibly held nearby */
     int count;
 } aim_view;
 
@@ -117,7 +117,7 @@ static double depth_in(const aim_view *v, const aim_item *item) {
     return depth;
 }
 
-/* The bound of a rectangle; `left` are the items that its views may hold. */
+/* The bound of a rectangle; `left` receives the items that its views may hold. */
 static double look(const aiming *a, aim_scratch *w, const rectangle *r, const aim_list *among,
                    aim_list *left, double *in_middle) {
     double direction[3], held = 0, most = 0;
@@ -142,7 +142,7 @@ static double look(const aiming *a, aim_scratch *w, const rectangle *r, const ai
     return most;
 }
 
-/* A rectangle with its bound, and what the view in its middle holds. */
+/* A rectangle with its bound, and what the view at its centre holds. */
 typedef struct part {
     rectangle at;
     double most, held;
@@ -153,7 +153,7 @@ static void look_at_part(const aiming *a, aim_scratch *w, const aim_list *among,
     p->most = look(a, w, &p->at, among, left, &p->held);
 }
 
-/* Those that promise most first. */
+/* The largest bound first. */
 static int by_promise(const void *x, const void *y) {
     const part *a = x, *b = y;
     double first = a->most + a->held, second = b->most + b->held;
@@ -196,7 +196,7 @@ static void search(const aiming *a, aim_scratch *w, const rectangle *r, int dept
     }
 }
 
-/* The best direction for the items of the first list: from rectangles of 45 degrees. */
+/* The best direction for the items of the first list, starting from rectangles of 45 degrees. */
 static void find_direction(const aiming *a, aim_scratch *w) {
     part parts[START_YAWS * START_PITCHES];
     const double half_yaw = PI / START_YAWS, half_pitch = 0.5 * PI / START_PITCHES;
@@ -237,7 +237,7 @@ static void set_item(const aiming *a, const double p[3], size_t column, aim_item
     item->weight = a->weights[column];
 }
 
-/* Where there are too many, every so manieth. */
+/* If there are too many, takes every k-th. */
 static void list_items(const aiming *a, aim_scratch *w, size_t place) {
     const uint64_t *row = starg_bits_row(a->seen, place);
     size_t all = starg_bits_count(a->seen, place), index = 0;
@@ -249,7 +249,7 @@ static void list_items(const aiming *a, aim_scratch *w, size_t place) {
                 set_item(a, a->points + 3 * place, 64 * word + bit, &w->items[w->count++]);
 }
 
-/* Leaves the items that the direction holds out of the first list; returns their weight. */
+/* Removes the items that the direction holds from the first list; returns their weight. */
 static void drop_held(const aiming *a, aim_scratch *w) {
     const aim_view v = view_at(a, w->direction, 0);
     aim_list *list = &w->lists[0];
@@ -308,7 +308,7 @@ static void make_frame(const starg_visibility_options *view, double frame[3][3])
     vec3_cross(frame[0], frame[1], frame[2]);
 }
 
-/* Faces by what they matter, vertices alike. */
+/* Faces have their weights, vertices weigh the same. */
 static starg_status weigh(starg_context *context, const starg_solid *solid,
                           const starg_visibility_options *view, double **out) {
     starg_status status = STARG_OK;

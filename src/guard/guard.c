@@ -2,14 +2,13 @@
 /* Guarding a solid [YL11, section 3]: candidates, what they see, the fewest that see everything.
  *
  * Stages: a star-shaped solid needs one guard (starguard/kernel.h); levels of detail; candidate
- * points, of a large model from one of the levels (guard/proxy.c); their visibility rows; more
- * candidates until every face that can be seen is seen by one (guard/augment.c); the choice, by
- * one cover problem or from coarse to fine (guard/progressive.c); refinement and, on request, the
- * search over every point of the solid (both guard/search.c); what the chosen guards see
- * (guard/measure.c).
+ * points, for a large model from one of the levels (guard/proxy.c); their visibility rows; more
+ * candidates until one sees every face that can be seen (guard/augment.c); the choice, by one cover
+ * problem or from coarse to fine (guard/progressive.c); refinement and, on request, the search over
+ * every point of the solid (both guard/search.c); what the chosen guards see (guard/measure.c).
  *
- * The lower bound is that of the cover problem: it holds for guards taken from the final candidate
- * set. That of the search holds for guards anywhere. */
+ * The lower bound is that of the cover problem: it holds for guards from the final candidate set.
+ * That of the search holds for guards anywhere. */
 #include "starguard/guard.h"
 
 #include <math.h>
@@ -24,8 +23,8 @@
 
 static const char STAGE[] = "guard";
 
-/* Are the fewest of the given candidates asked for, and a bound for guards anywhere? Then the
- * choice is exact, whatever the method. */
+/* Does the caller ask for the fewest of the given candidates and a bound for guards anywhere? Then
+ * the choice is exact, whatever the method. */
 static bool chooses_exactly(const starg_guard_options *o) {
     return o->prove && o->candidates == STARG_CANDIDATES_GIVEN;
 }
@@ -57,7 +56,7 @@ done:
     return status;
 }
 
-/* Given points that may not be used are left out, with a notice. */
+/* Leaves out given points where no guard may stand, with a notice. */
 static starg_status take_given(const guard_problem *problem, candidate_points *points) {
     starg_status status = STARG_OK;
     const starg_guard_options *options = problem->options;
@@ -89,8 +88,8 @@ static bool needs_proxy(const guard_problem *problem) {
     return problem->options->candidates != STARG_CANDIDATES_GIVEN && proxy_wanted(problem->solid);
 }
 
-/* Levels of detail, for the method or as proxy. Without the time to make them there is the model
- * alone. */
+/* Levels of detail, for the method or as proxy. If time does not suffice for them, the model alone
+ * is used. */
 static starg_status make_levels(const guard_problem *problem, guard_detail *out) {
     const starg_guard_options *options = problem->options;
     starg_progress_begin(problem->context, "levels");
@@ -225,7 +224,7 @@ static bool may_refine(const starg_guard_options *options) {
            options->candidates != STARG_CANDIDATES_GIVEN;
 }
 
-/* To build the whole problem once more, for the bounds, takes seconds. */
+/* Solving the whole problem again, for the bounds, takes seconds. */
 static bool must_end(const guard_problem *problem, const guard_selection *first) {
     return first->lower_bound > 0 && starg_time_is_over(problem->context);
 }
@@ -248,7 +247,7 @@ done:
     return status;
 }
 
-/* May one point be enough, and stand where no candidate does? */
+/* Could a single point suffice that is not a candidate? */
 static bool may_be_star(const guard_problem *problem) {
     const starg_guard_options *o = problem->options;
     bool free = (o->prove && !chooses_exactly(o)) || may_refine(o);
@@ -256,7 +255,7 @@ static bool may_be_star(const guard_problem *problem) {
            !sensor_is_directed(&o->visibility);
 }
 
-/* Does the only candidate see all that anyone could? */
+/* Does the only candidate see everything that any point could see? */
 static bool sees_everything(const guard_pool *pool) {
     const starg_mesh *mesh = pool->solid->mesh;
     if (pool_count(pool) != 1)
@@ -269,7 +268,7 @@ static bool sees_everything(const guard_pool *pool) {
     return true;
 }
 
-/* A star-shaped solid: a point of its kernel sees everything, and nobody needs fewer guards. */
+/* A star-shaped solid: a point of its kernel sees everything, so one guard is optimal. */
 static starg_status find_star_guard(const guard_problem *problem, guard_outcome *out, bool *found) {
     starg_status status = STARG_OK;
     candidate_points points = {0};
@@ -328,7 +327,7 @@ static void outcome_free(starg_context *context, guard_outcome *outcome) {
     pool_free(&outcome->pool);
 }
 
-/* Where the search had nothing to prove: one guard is needed for whatever is to be seen. */
+/* If the search had nothing to prove: one guard is needed if anything must be seen. */
 static starg_status certify_one(const guard_problem *problem, const guard_outcome *outcome) {
     const guard_pool *pool = &outcome->pool;
     uint32_t witness = UINT32_MAX;
@@ -342,8 +341,8 @@ static starg_status certify_one(const guard_problem *problem, const guard_outcom
                               problem->certificate);
 }
 
-/* Under the rule of unions a crate in a room is a part of the room: so one may well be meant to be
- * an obstacle. */
+/* Under the union rule a crate inside a room is part of the room; the user may have meant an
+ * obstacle. */
 static void warn_of_shells(const guard_problem *problem, const starg_guards *guards) {
     bool on_surface;
     size_t count = 0, first = 0;
@@ -504,7 +503,7 @@ starg_status starg_guards_given(starg_context *context, const starg_solid *solid
     used.points = points;
     guard_problem problem = {.context = context, .solid = solid, .options = &used};
     guard_outcome outcome = {0};
-    /* what stands already is measured in full */
+    /* results so far are measured in full */
     starg_time_rule former = starg_time_begin(context, STARG_TIME_IGNORED);
     *out = NULL;
     set_defaults(&used, solid->mesh->vertex_count);

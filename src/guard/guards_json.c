@@ -41,7 +41,7 @@ starg_status starg_guards_write_memory(starg_context *context, const starg_guard
     return starg_json_write_memory(context, STAGE, put, guards, model_file, text, size);
 }
 
-/* What no table knows. */
+/* Checks that the field tables do not express. */
 static starg_status check_targets(starg_context *context, const char *name, const starg_guards *g) {
     for (size_t i = 0; i < g->target_count; i++)
         if (g->targets[i] >= g->face_count || (i > 0 && g->targets[i] <= g->targets[i - 1]))

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The result: what a set of guards sees, counted anew from its positions. */
+/* The result: what a set of guards sees, recomputed from their positions. */
 #include "geometry/vec3.h"
 #include "guard/baseline.h"
 #include "guard/stages.h"
 
 static const char STAGE[] = "guard";
 
-/* By the fastest engine, whichever chose the guards: all give the same bits, and what was found is
- * measured in full after a time limit has struck. */
+/* Uses the fastest engine, whichever chose the guards: all give the same bits, and results are
+ * measured in full even after the time limit. */
 static starg_visibility_options view_of(const guard_problem *problem, starg_target target,
                                         const double *directions, const double *ups) {
     starg_visibility_options view = problem->options->visibility;
@@ -35,7 +35,8 @@ done:
     return status;
 }
 
-/* What the first guards see together, for each number of them; `joined` ends as what all see. */
+/* The faces and the area that the first k guards see together, for each k; `joined` ends as what
+ * all of them see. */
 static starg_status measure_curve(const guard_problem *problem, const starg_bits *seen,
                                   uint64_t *joined, starg_guards *result) {
     starg_status status = STARG_OK;
@@ -61,7 +62,7 @@ done:
     return status;
 }
 
-/* Faces that two guards see that are the baseline apart. */
+/* The number of faces that two guards at least the baseline apart see. */
 static size_t count_paired(const guard_problem *problem, const starg_bits *seen,
                            const starg_guards *result) {
     double cosine = starg_cone_cosine(2 * problem->options->baseline);
@@ -101,7 +102,8 @@ done:
     return status;
 }
 
-/* Bits of the vertices that no face uses: they are nobody's target. *used_count: those that are. */
+/* Bits of the vertices that no face uses: they are not targets. *used_count: number of used
+ * vertices. */
 static starg_status find_unused(const guard_problem *problem, uint64_t **unused,
                                 size_t *used_count) {
     starg_status status = STARG_OK;
@@ -140,7 +142,8 @@ done:
     return status;
 }
 
-/* Faces that some candidate sees; with vertices as the target the rows do not tell. */
+/* The number of faces that some candidate sees; with vertices as the target the rows do not
+ * tell. */
 static starg_status count_coverable_faces(const guard_problem *problem, const guard_pool *pool,
                                           starg_guards *result) {
     starg_status status = STARG_OK;
@@ -173,7 +176,7 @@ done:
     return status;
 }
 
-/* What is up for a candidate, once it is written down. */
+/* The up vector of a candidate, as it is written to the file. */
 static void resolve_up(const starg_visibility_options *view, const double *given, double up[3]) {
     const double y[3] = {0, 1, 0}, none[3] = {0, 0, 0};
     vec3_copy(!vec3_equal(given, none) ? given : !vec3_equal(view->up, none) ? view->up : y, up);
@@ -205,8 +208,8 @@ done:
     return status;
 }
 
-/* Is the weight that was bounded the area that is seen? Not with vertices, nor where a face counts
- * only once it is seen by several. */
+/* Is the bounded weight the visible area? Not with vertices, nor if a face counts only once several
+ * guards see it. */
 static bool bounds_area(const starg_guard_options *o) {
     return o->max_guards > 0 && o->redundancy == 1 && o->visibility.target == STARG_TARGET_FACES;
 }
@@ -237,7 +240,7 @@ static void copy_facts(const guard_problem *problem, const guard_outcome *outcom
     result->prove_work = outcome->search.prove_work;
 }
 
-/* Which faces were to be seen, unless all count alike. */
+/* The faces that had to be seen, unless all count alike. */
 static starg_status list_targets(const guard_problem *problem, starg_guards *result) {
     starg_status status = STARG_OK;
     const double *importance = problem->solid->importance;
@@ -279,7 +282,7 @@ starg_status report_guards(const guard_problem *problem, guard_outcome *outcome,
                            starg_guards **out) {
     starg_status status = STARG_OK;
     starg_guards *result = NULL;
-    /* what was found is measured in full */
+    /* results so far are measured in full */
     starg_time_rule former = starg_time_begin(problem->context, STARG_TIME_IGNORED);
     STARG_NEW_ZERO(problem->context, STAGE, result, 1);
     copy_facts(problem, outcome, result);

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Candidate points from a file: text of three numbers a line, six with the direction in which a
- * camera there looks, or nine with what is up for it, with an optional leading "v" and lines of
- * edges as in OBJ, and comments by #; the nodes of a skeleton (CG, VTK); or the poses in a
- * GUARDS.json. */
+/* Reads candidate points from a file: text with three numbers per line, six with the direction of a
+ * camera there, or nine with its up vector, with an optional leading "v", lines of edges as in OBJ,
+ * and comments after #; the nodes of a skeleton (CG, VTK); or the poses in a GUARDS.json. */
 #include <math.h>
 #include <string.h>
 
@@ -37,10 +36,10 @@ static starg_status take_nodes(const starg_source *source, candidate_points *poi
     return status;
 }
 
-/* How many numbers the lines of a file have: 3, 6 or 9. */
+/* The count of numbers per line: 3, 6 or 9. */
 typedef struct pose_scan {
     candidate_points *points;
-    size_t width; /* of the lines before; 0: there are none */
+    size_t width; /* of the lines before; 0: none yet */
 } pose_scan;
 
 static starg_status check_count(const starg_scan *scan, size_t line, size_t count,
@@ -58,7 +57,7 @@ static starg_status check_count(const starg_scan *scan, size_t line, size_t coun
     return STARG_OK;
 }
 
-/* A direction, and what is up: neither is zero, nor is up along the direction. */
+/* Checks that direction and up are nonzero and not parallel. */
 static starg_status check_direction(const starg_scan *scan, size_t line, size_t count,
                                     const double *d) {
     double across[3];
@@ -82,7 +81,7 @@ static bool is_passed_over(starg_word word) {
            starg_word_is(word, "g");
 }
 
-/* One line: nothing, a keyword of OBJ that stands for no vertex, or a point. */
+/* One line: empty, an OBJ keyword other than a vertex, or a point. */
 static starg_status scan_line(starg_scan *scan, pose_scan *poses) {
     starg_status status = STARG_OK;
     starg_word word;

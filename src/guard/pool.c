@@ -35,8 +35,8 @@ static const double *up_of(const candidate_points *points, size_t index) {
     return points->ups.count > 0 ? points->ups.data + 3 * index : NULL;
 }
 
-/* Moves the finished rows together and appends their points, but for those that are empty unless
- * these may be. */
+/* Compacts the finished rows and appends their points; drops empty rows unless these are
+ * allowed. */
 static starg_status keep_finished(guard_pool *pool, const candidate_points *points, bool empty,
                                   const uint8_t *finished, starg_bits *rows) {
     starg_status status = STARG_OK;
@@ -56,7 +56,7 @@ done:
     return status;
 }
 
-/* Appends the rows of `added`, which is consumed in any case. */
+/* Appends the rows of `added`, which is always consumed. */
 static starg_status append_rows(guard_pool *pool, starg_bits *added) {
     starg_status status = STARG_OK;
     starg_bits *all = NULL;
@@ -79,7 +79,7 @@ done:
     return status;
 }
 
-/* The rows of points that have all they need. */
+/* Adds the rows of points whose poses are complete. */
 static starg_status add_rows(guard_pool *pool, const candidate_points *points, bool empty) {
     starg_status status = STARG_OK;
     starg_visibility_options view = pool->options->visibility;
@@ -108,7 +108,7 @@ starg_status pool_add(guard_pool *pool, const candidate_points *points) {
         return add_rows(pool, points, true);
     STARG_TRY(
         candidates_turn(pool->context, pool->solid, &pool->options->visibility, points, &turned));
-    STARG_TRY(add_rows(pool, &turned, false)); /* most directions of a point see nothing whole */
+    STARG_TRY(add_rows(pool, &turned, false)); /* most directions of a point see no whole face */
 done:
     candidates_free(pool->context, &turned);
     return status;
@@ -155,7 +155,7 @@ done:
 }
 
 /* Marks the faces that are wanted but not coverable; with vertices or corners as the target, the
- * faces around one that is not. */
+ * faces around each one that is not. */
 static void mark_unseen(const guard_pool *pool, uint8_t *unseen) {
     const starg_mesh *mesh = pool->solid->mesh;
     starg_target target = pool->options->visibility.target;
@@ -177,8 +177,8 @@ uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *wei
     return sum;
 }
 
-/* Candidates in the last crevices of a large model are thousands, for faces that need not be seen.
- */
+/* The last crevices of a large model would take thousands of candidates, for faces that need not be
+ * seen. */
 static bool sees_enough(const guard_pool *pool, const column_weights *weights) {
     const starg_guard_options *o = pool->options;
     if (o->coverage == 1 || o->redundancy > 1 || o->max_guards > 0)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A pool: the candidates of one job and what each of them sees. */
+/* A pool: the candidates of one job and what each sees. */
 #ifndef STARG_GUARD_POOL_H
 #define STARG_GUARD_POOL_H
 
@@ -12,12 +12,12 @@ typedef struct guard_pool {
     const starg_solid *solid;
     const starg_guard_options *options; /* visibility, clearance, where guards may stand */
     candidate_points points;
-    size_t first_count;  /* candidates before augmentation, from pool_augment on */
+    size_t first_count;  /* candidates before augmentation, set by pool_augment */
     starg_bits *rows;    /* by candidate; columns are faces or vertices; NULL before the first */
     size_t columns;      /* of the rows */
     uint64_t *coverable; /* bits of the columns that some row holds */
-    bool curtailed;      /* augmentation ended before all faces were tried: enough can be seen */
-    bool time_limited;   /* candidates were left out because the time was over */
+    bool curtailed;      /* augmentation stopped before all faces were tried: enough can be seen */
+    bool time_limited;   /* candidates were left out because time ran out */
 } guard_pool;
 
 /* An empty pool. Errors: MEMORY. */
@@ -33,7 +33,7 @@ static inline const double *pool_point(const guard_pool *pool, size_t candidate)
     return pool->points.data.data + 3 * candidate;
 }
 
-/* The direction of a candidate, and what is up for it, or NULL where views are not directed. */
+/* The direction of a candidate and its up vector, or NULL if views are not directed. */
 static inline const double *pool_direction(const guard_pool *pool, size_t candidate) {
     return pool->points.directions.count > 0 ? pool->points.directions.data + 3 * candidate : NULL;
 }
@@ -42,29 +42,29 @@ static inline const double *pool_up(const guard_pool *pool, size_t candidate) {
     return pool->points.ups.count > 0 ? pool->points.ups.data + 3 * candidate : NULL;
 }
 
-/* Adds points and their rows. Where views are directed, points without directions look in all of
- * them (guard/directions.c). Those that the time limit leaves unfinished are left out. Errors:
- * MEMORY, CANCELLED. */
+/* Adds points and their rows. If views are directed, points without directions get several
+ * (guard/directions.c). Points that the time limit leaves unfinished are dropped. Errors: MEMORY,
+ * CANCELLED. */
 starg_status pool_add(guard_pool *pool, const candidate_points *points);
 
-/* The candidates from before augmentation, with the same indices, and what they see of another
- * solid: one level of detail. Rows that the time limit leaves unfinished are empty. Errors: MEMORY,
+/* The candidates before augmentation, with the same indices, and what they see of another solid:
+ * one level of detail. Rows that the time limit leaves unfinished are empty. Errors: MEMORY,
  * CANCELLED. */
 starg_status pool_on_level(const guard_pool *finest, const starg_solid *level, guard_pool *out);
 
-/* Adds candidates for faces that none sees yet, until every face that can be seen is seen by one
- * (guard/augment.c), or, where a part of the area is enough, until what none sees is at most half
- * of what may be left; given candidates are left as they are. Errors: MEMORY, CANCELLED. */
+/* Adds candidates for unseen faces until one sees every face that can be seen (guard/augment.c) or,
+ * if a part of the area suffices, until the unseen weight is at most half of what may be left over;
+ * given candidates stay as they are. Errors: MEMORY, CANCELLED. */
 starg_status pool_augment(guard_pool *pool, const column_weights *weights);
 
-/* The weight of the columns that some candidate holds. */
+/* The weight of the columns that some candidate covers. */
 uint64_t pool_coverable_weight(const guard_pool *pool, const column_weights *weights);
 
-/* Forgets all candidates but the first `count`. */
+/* Removes all candidates but the first `count`. */
 void pool_truncate(guard_pool *pool, size_t count);
 
-/* Joins the rows of a matrix: a bit set per column that one of them holds; starg_release frees it.
- * Errors: MEMORY. */
+/* The union of the rows of a matrix: the bit of each column that one of them holds; starg_release
+ * frees it. Errors: MEMORY. */
 starg_status pool_join_rows(starg_context *context, const starg_bits *rows, uint64_t **joined);
 
 #endif

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Poses of guards for other programs: CSV, with a line for each, or JSON. The rotation takes a
- * camera that looks along -z with y up, as those of OpenGL, glTF and Blender do, to where the guard
- * looks. */
+/* Poses of guards for other programs: CSV, one line per guard, or JSON. The rotation maps a camera
+ * that looks along -z with y up, as in OpenGL, glTF and Blender, to the guard's view. */
 #include <math.h>
 
 #include "core/file.h"
@@ -12,7 +11,7 @@
 
 static const char STAGE[] = "poses";
 
-/* Of a rotation matrix by its columns, by the largest of the four [Shepperd 1978]. */
+/* From a rotation matrix given by columns, by the largest of four components [Shepperd 1978]. */
 static void quaternion_of(const double right[3], const double above[3], const double back[3],
                           double q[4]) {
     const double m[3][3] = {{right[0], above[0], back[0]},
@@ -47,7 +46,7 @@ bool starg_guards_rotation(const starg_guards *guards, size_t index, double rota
     return true;
 }
 
-/* The point of a direction at a distance of 1. */
+/* The point at distance 1 in the guard's direction. */
 static void look_at_point(const starg_guards *g, size_t i, double at[3]) {
     double length = vec3_length(g->directions + 3 * i);
     vec3_along(g->positions + 3 * i, 1 / length, g->directions + 3 * i, at);

@@ -2,18 +2,18 @@
 /* Prices of witnesses: the linear program max sum w, sum of w over each row <= 1, w >= 0, and its
  * dual, the fractional cover min sum x, sum of x over the rows of each witness >= 1, x >= 0.
  *
- * A primal-dual interior-point method. It ends near the centre of the optimal prices, where the
- * simplex method ends in a corner: prices that are spread over all faces that matter are worth more
- * in the space between the points that are known. Both programs have inner points that are known
- * from the start, and all steps stay feasible, so that only the products of each variable with its
- * slack are to be made equal and small:
+ * A primal-dual interior-point method. It ends near the centre of the optimal prices, while the
+ * simplex method ends at a vertex: prices spread over all faces that matter give better bounds in
+ * the space between the known points. Both programs have known interior points to start from, and
+ * all steps stay feasible, so the only task is to make the products of each variable with its slack
+ * equal and small:
  *
  *     s = 1 - A'w,  t = A x - 1,  x s = mu,  w t = mu.
  *
- * Each step solves (A X S^-1 A' + T W^-1) dw = r by Cholesky's method; the products are predicted
- * first, then corrected [Mehrotra 1992]. Witnesses that rows hold together are numbered close to
- * one another, so that the factor is 0 left of where a line of the matrix begins. Cost of a step:
- * the squares of the rows' sizes and of the lines' lengths; some 15 steps. */
+ * Each step solves (A X S^-1 A' + T W^-1) dw = r by Cholesky factorization, with a predictor and a
+ * corrector [Mehrotra 1992]. Witnesses that share rows get nearby numbers, so that the factor has a
+ * small envelope. Cost of a step: the squares of the rows' sizes and of the envelope's row lengths;
+ * about 15 steps. */
 #include "guard/prices.h"
 
 #include <math.h>
@@ -22,17 +22,17 @@ static const char STAGE[] = "search";
 
 enum { MOST_STEPS = 60 };
 
-static const double GAP = 1e-3; /* of the two programs' values, where the steps end */
+static const double GAP = 1e-3; /* between the two objective values, where the iteration stops */
 
 typedef struct program {
     const witness_row *const *rows;
-    size_t n, m;                  /* rows, witnesses that are wanted */
-    uint32_t *index;              /* the ones of all rows, one row after the other */
-    size_t *start;                /* by row, and one more */
+    size_t n, m;                  /* rows, wanted witnesses */
+    uint32_t *index;              /* column indices of all rows, one row after the other */
+    size_t *start;                /* by row, and the end */
     double *x, *s, *dx, *ds, *rx; /* by row */
     double *w, *t, *dw, *dt, *rw; /* by witness */
-    double *matrix;               /* m x m, of which the lower half is used */
-    size_t *first;                /* by line of the matrix: where it begins not to be 0 */
+    double *matrix;               /* m x m; only the lower half is used */
+    size_t *first;                /* by matrix row: its first nonzero column */
     uint64_t work;
 } program;
 
@@ -68,11 +68,11 @@ static void list_ones(program *p, const uint32_t *number, const witness_row *wan
 /* ---- the order of the witnesses ---- */
 
 typedef struct ordering {
-    witness_row beside[MOST_WITNESSES]; /* by witness: those that some row holds together with it */
+    witness_row beside[MOST_WITNESSES]; /* by witness: those that share a row with it */
     uint32_t degree[MOST_WITNESSES];
     uint32_t queue[MOST_WITNESSES];
     witness_row left;
-    size_t count; /* of the queue */
+    size_t count; /* length of the queue */
 } ordering;
 
 static void find_beside(const program *p, const witness_row *wanted, ordering *o) {
@@ -85,7 +85,7 @@ static void find_beside(const program *p, const witness_row *wanted, ordering *o
         o->degree[j] = (uint32_t)starg_bit_count(o->beside[j].bits, WITNESS_WORDS);
 }
 
-/* Of the witnesses in `among` that are left, the one with the fewest beside it joins the queue. */
+/* Appends to the queue the remaining witness in `among` with the fewest neighbours. */
 static bool take_least(ordering *o, const witness_row *among) {
     size_t best = MOST_WITNESSES;
     for (size_t k = 0; k < WITNESS_WORDS; k++)
@@ -99,8 +99,8 @@ static bool take_least(ordering *o, const witness_row *among) {
     return true;
 }
 
-/* Numbers the witnesses so that those that rows hold together are close to one another [Cuthill,
- * McKee 1969]: lines of the matrix begin late. */
+/* Numbers the witnesses so that those that share rows are close to each other [Cuthill, McKee
+ * 1969], which keeps the envelope small. */
 static starg_status number_witnesses(starg_context *context, program *p, const witness_row *wanted,
                                      uint32_t *number) {
     starg_status status = STARG_OK;
@@ -165,7 +165,7 @@ static double sum_row(const program *p, size_t i, const double *of) {
     return sum;
 }
 
-/* Every row twice; prices that no row of half the sum lets exceed. */
+/* Covers every row twice; sets prices that keep each row's sum at most one half. */
 static void begin(program *p) {
     for (size_t f = 0; f < p->m; f++)
         p->w[f] = 0.5;
@@ -188,7 +188,7 @@ static void fill_matrix(program *p) {
         for (size_t a = p->start[i]; a < p->start[i + 1]; a++) {
             double *line = p->matrix + p->index[a] * m;
             for (size_t b = p->start[i]; b < p->start[i + 1]; b++)
-                line[p->index[b]] += d; /* above the diagonal nobody reads it */
+                line[p->index[b]] += d; /* nothing reads it above the diagonal */
         }
         p->work += (p->start[i + 1] - p->start[i]) * (p->start[i + 1] - p->start[i]) / 2;
     }
@@ -198,7 +198,8 @@ static void fill_matrix(program *p) {
         p->work += (f - p->first[f]) * (f - p->first[f]) / 3;
 }
 
-/* Cholesky's L in place of the lower half. False: rounding has made it indefinite. */
+/* Overwrites the lower half by the Cholesky factor L. False: rounding has made the matrix
+ * indefinite. */
 static bool factor(program *p) {
     size_t m = p->m;
     for (size_t i = 0; i < m; i++) {
@@ -238,7 +239,7 @@ static void solve(const program *p, double *v) {
     }
 }
 
-/* The step for which x s changes by rx and w t by rw. */
+/* The step that changes x s by rx and w t by rw. */
 static void find_step(program *p) {
     for (size_t i = 0; i < p->n; i++)
         p->dx[i] = p->rx[i] / p->s[i];
@@ -253,7 +254,7 @@ static void find_step(program *p) {
     sum_rows(p, p->dx, 0, p->dt);
 }
 
-/* How far v + a dv stays positive, at most 1. */
+/* The largest a, at most 1, for which v + a dv stays positive. */
 static double longest(const double *v, const double *dv, size_t count) {
     double a = 1;
     for (size_t k = 0; k < count; k++)
@@ -314,7 +315,7 @@ static void run(program *p) {
     }
 }
 
-/* Rounding may have left a row a little above 1. */
+/* Rounding may leave a row's sum a little above 1. */
 static void read_prices(const program *p, const uint32_t *number, witness_prices *out) {
     double most = 1;
     out->sum = 0;

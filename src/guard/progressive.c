@@ -2,22 +2,22 @@
 /* Progressive guarding: from a coarse level of detail to the model itself [YL11, section 3.3].
  *
  * Stages, for each level from the coarsest on:
- *   1. what the candidates, which are those of the model without those added for single faces of
- *      it, see of the level;
- *   2. guards of the coarser level are kept if they are significant: if they see at least the
- *      fraction `significance` of the level's area; what they see needs no further guard;
- *   3. an ILP, with the reductions and blocks of cover/, chooses guards for the rest;
- *   4. guards that the others make needless are dropped.
- * The guards of the last level are those of the model. A guard's level is the one that first asked
- * for it and from which on it was chosen at every level.
+ *   1. compute what the model's candidates, without those added for single faces of it, see of the
+ *      level;
+ *   2. keep the guards of the coarser level that are significant: they see at least the fraction
+ *      `significance` of the level's area; what they see needs no further guard;
+ *   3. choose guards for the rest by an ILP, with the reductions and blocks of cover/;
+ *   4. drop guards that the others make redundant.
+ * The guards of the last level are those of the model. A guard's level is the one that first chose
+ * it and from which on every level kept it.
  *
- * A bound for the model is another matter: bound_guards solves the whole problem without branching.
- * Where that comes upon fewer guards than the levels did, they are taken instead.
+ * The bound for the model is separate: bound_guards solves the whole problem without branching. If
+ * that finds fewer guards than the levels did, they replace them.
  *
  * Invariant: the guards of every level see all of it that one of these candidates sees (or as much
- * as asked).
- * Cost: visibility of all candidates on all levels, which is a third more than that of the model
- * where each level is a quarter of the next; an ILP per level on what is left of it. */
+ * as required).
+ * Cost: visibility of all candidates on all levels, a third more than that of the model if each
+ * level is a quarter of the next; an ILP per level on what is left of it. */
 #include "guard/stages.h"
 #include "mesh/solid.h"
 
@@ -48,7 +48,7 @@ static starg_status keep_significant(level_work *work, const guard_selection *be
     for (size_t i = 0; i < before->chosen.count; i++) {
         uint32_t candidate = before->chosen.data[i];
         if (limit > 0 && work->kept.count + 1 == limit)
-            break; /* one at least is free, that the choice has a limit to keep */
+            break; /* at least one slot stays free, so that the choice can respect the limit */
         if (is_significant(work, candidate))
             STARG_PUSH(work->problem->context, STAGE, &work->kept, candidate);
     }
@@ -74,8 +74,8 @@ done:
     return status;
 }
 
-/* Of `all` candidates the fewest that see as much as they do together, or `weight` where a part is
- * enough. */
+/* The fewest candidates of `all` that see as much as all of them together, or `weight` if a part
+ * suffices. */
 static starg_status cover_by(const level_work *work, const uint32_t *all, size_t count,
                              uint64_t weight, starg_cover **out) {
     starg_status status = STARG_OK;
@@ -99,8 +99,8 @@ done:
     return status;
 }
 
-/* Of the kept and the added candidates the fewest that see as much as all of them, in the order of
- * what they add. The bounds are those of the whole problem where nothing was kept. */
+/* The fewest of the kept and added candidates that see as much as all of them, ordered by what each
+ * adds. The bounds are those of the whole problem if no guard was kept. */
 static starg_status take_needed(const level_work *work, const starg_cover *added,
                                 const guard_selection *before, guard_selection *out) {
     starg_status status = STARG_OK;
@@ -171,8 +171,8 @@ done:
     return status;
 }
 
-/* The choice for a coarse level takes the place of the one before, and is written down. Without the
- * time for a level, it is skipped. */
+/* The choice for a coarse level replaces the previous one and is recorded. A level is skipped if
+ * time does not suffice. */
 static starg_status guard_coarse_level(const guard_problem *problem, const guard_pool *finest,
                                        const starg_mesh *mesh, guard_records *records,
                                        guard_selection *chosen) {
@@ -230,7 +230,7 @@ starg_status progressive_guards(const guard_problem *problem, const guard_detail
     guard_selection chosen = {.time_limited = detail->time_limited || pool->time_limited};
     for (size_t i = 0; i < coarse && !chosen.time_limited; i++)
         STARG_TRY(guard_coarse_level(problem, pool, levels->levels[i].mesh, records, &chosen));
-    /* levels that were skipped have no number */
+    /* skipped levels have no number */
     STARG_TRY(guard_level(problem, pool, (int)records->count, &chosen, out));
 done:
     selection_free(problem->context, &chosen);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Proxy level: a large model takes its medial axis from a level of detail, the coarsest that has
- * enough vertices: for some thousand points more tell nothing new. Cost: that of the levels. */
+ * enough vertices, because more than a few thousand points add nothing. Cost: that of the
+ * levels. */
 #include "guard/proxy.h"
 
 enum { STEP = 10000, LARGE = 40000, MANY = 100000, ENOUGH = 25000, COARSEST = 5000 };

@@ -1,33 +1,33 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The fewest guards over every point of the free space, and how few could do.
+/* The fewest guards over every point of the free space, and a lower bound on their number.
  *
- * Problem. Guards may stand anywhere; a lower bound that holds for all of them, and guards that
- * come as close to it as can be [after exact solvers for the art gallery problem in the plane:
- * Tozoni, de Rezende, de Souza 2016].
+ * Problem. Guards may stand anywhere; find a lower bound that holds for all of them, and guards as
+ * close to it as possible [after exact solvers for the art gallery problem in the plane: Tozoni, de
+ * Rezende, de Souza 2016].
  *
- * Witnesses are some of the faces: guards that see everything see these, so that a bound for them
- * is a bound. Cells (guard/cells.h) hold every point of the space, and each knows the witnesses
- * that it may see. Points are candidates, moved points, centres of cells and points at random. A
- * first loop looks for guards only (guard/search_improve.c). A second one improves both ends:
- *   1. prices of the witnesses from the points that are known (guard/prices.c): no point is worth
- *      more than 1;
- *   2. where the prices leave room for fewer guards than there are, an integer program over the
- *      points looks for them. What it finds is held against all faces: better guards, or faces that
- *      they do not see, which become witnesses;
- *   3. cells that may be worth too much for the bound that is aimed at are split, those first that
- *      are worth most and are large; their points join the others, and it goes on with 1;
- *   4. when there are none, the prices prove the bound (guard/bound.c). Is that not the number of
- *      guards, faces that the fractional cover does not see enough become witnesses;
- *   5. where there are no such faces either, an integer program over cells and points: cells that
- *      could do with fewer guards than there are, are split, with more points; where no cells
- *      could, branching proves it, each branch by prices of its own.
+ * Witnesses are a subset of the faces: guards that see everything see these, so a bound for them is
+ * a bound for all. Cells (guard/cells.h) cover the whole space, and each stores the witnesses that
+ * it may see. Points are candidates, moved points, centres of cells and random points. A first loop
+ * only looks for guards (guard/search_improve.c). A second one improves both ends:
+ *   1. find prices of the witnesses from the known points (guard/prices.c): no point exceeds 1;
+ *   2. if the prices leave room for fewer guards, an integer program over the points looks for
+ *      them. Its solution is tested against all faces: it gives better guards, or the faces that
+ *      they miss become witnesses;
+ *   3. split the cells whose total price may be too high for the target bound, starting with those
+ *      of high price and large size; add their points and return to 1;
+ *   4. if there are no such cells, the prices prove the bound (guard/bound.c). If the bound is
+ *      below the number of guards, faces that the fractional cover does not see enough become
+ *      witnesses;
+ *   5. if there are no such faces either, solve an integer program over cells and points: cells
+ *      that would allow fewer guards are split, with more points; if no cells would, branching
+ *      proves it, with separate prices in each branch.
  *
- * Where faces are to be seen by several guards, those that enough guards see are witnesses, and k
- * guards hold at most k times what one of them does. Where guards look in one direction points do,
- * and cells look in all of them: the bound holds for both.
+ * If several guards must see each face, the witnesses are faces that enough guards see, and k
+ * guards cover at most k times what one of them covers. If views are directed, points have a
+ * direction and cells look in all directions: the bound holds for both.
  *
- * Invariant: the bound holds for guards anywhere in the free space; the guards see all that was to
- * be seen. Everything is counted in operations, nothing depends on threads. */
+ * Invariant: the bound holds for guards anywhere in the free space; the guards see everything
+ * required. All budgets count operations, so nothing depends on threads. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -43,7 +43,7 @@ static const double ROUNDING = 1e-6;
 
 /* ---- points ---- */
 
-/* Those of the pool stay: they may be worth more with other witnesses. */
+/* Points of the pool stay: other witnesses may raise their value. */
 void search_prune_points(search *s, size_t first) {
     search_point *points = s->points.data;
     size_t kept = first;
@@ -74,8 +74,8 @@ done:
     return status;
 }
 
-/* The medial axis, unless guards stand there already. None where the time does not last for it, or
- * views are cones. */
+/* Adds the medial axis as places, unless guards stand there already. Adds none if time does not
+ * suffice or views are cones. */
 static starg_status begin_places(search *s, const guard_detail *detail) {
     starg_status status = STARG_OK;
     const guard_problem *p = s->problem;
@@ -99,7 +99,7 @@ done:
 
 /* ---- prices ---- */
 
-/* Points that are worth at least `least` join the list, and those that see what none of it does. */
+/* Adds points worth at least `least` to the list, with those that see a witness none of it sees. */
 static void list_worthy(const search *s, const double *price, double least, const uint8_t *listed,
                         row_list *list) {
     witness_row held = {{0}};
@@ -122,9 +122,8 @@ double search_largest_value(const search *s) {
     return most;
 }
 
-/* Prices by which no point is worth more than 1, of as large a sum as can be. The program is made
- * of the points that were worth much by the prices before; what it leaves out joins it where it
- * turns out to be worth more than 1. */
+/* Prices of maximal sum by which no point exceeds 1. The program starts with points of high value
+ * at the previous prices; a point left out is added once it exceeds 1. */
 starg_status search_find_prices(search *s, row_list *list) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
@@ -239,7 +238,7 @@ bool search_has_room(const search *s) {
     return search_value(s) <= (double)s->count - 1 + SEARCH_GAP;
 }
 
-/* Better guards or more witnesses, where the prices leave room. */
+/* If the prices leave room for fewer guards: finds better guards or more witnesses. */
 static starg_status look_for_guards(search *s, bool last, bool *changed) {
     *changed = false;
     bool grown = s->cells.count > s->asked_at + s->asked_at / (last ? 10 : 3) ||
@@ -249,16 +248,16 @@ static starg_status look_for_guards(search *s, bool last, bool *changed) {
     return search_ask_points(s, changed);
 }
 
-/* The next bound to be proven: a third of the way to what the prices allow. Cells that stand in the
- * way of a lower bound stand in that of a higher one too, so that no work is lost, and where the
- * work ends before the highest bound is proven, another one is. */
+/* The next bound to prove: a third of the way to what the prices allow. Cells that block a lower
+ * bound also block a higher one, so no work is lost; and if the budget ends before the highest
+ * bound is proven, a lower one is. */
 static size_t next_aim(const search *s) {
     double allowed = fmin((double)s->count, ceil(search_value(s) - ROUNDING));
     size_t most = allowed > 1 ? (size_t)allowed : 1;
     return s->bound < most ? s->bound + (most - s->bound + 2) / 3 : most;
 }
 
-/* Splits leaves that stand in the way of the next bound. *changed: there are some. */
+/* Splits leaves that block the next bound. *changed: there are some. */
 static starg_status split_costly(search *s, bool *changed) {
     starg_status status = STARG_OK;
     scored_leaf *leaves = NULL;
@@ -273,8 +272,8 @@ done:
     return status;
 }
 
-/* The prices stand in no leaf's way and prove no more: better guards, more witnesses, or cells that
- * an integer program chooses. */
+/* No leaf blocks the bound of the prices: looks for better guards, more witnesses, or cells chosen
+ * by an integer program. */
 static starg_status ask_further(search *s, const row_list *list, bool *changed) {
     starg_status status = STARG_OK;
     STARG_TRY(look_for_guards(s, true, changed));
@@ -287,8 +286,8 @@ done:
     return status;
 }
 
-/* Every round ends with the bound that its prices prove of the cells as they are then: what less
- * work proves, more work proves too. */
+/* Every round ends with the bound that its prices prove for the current cells, so that more work
+ * never proves less. */
 static starg_status prove_round(search *s, row_list *list) {
     starg_status status = STARG_OK;
     size_t before = s->bound;
@@ -349,7 +348,8 @@ done:
     return status;
 }
 
-/* How often each column is to be seen: as often as the guards see it, but no more than is asked. */
+/* How often each column must be seen: as often as the guards see it, but at most as often as
+ * required. */
 static starg_status find_need(search *s, const guard_selection *selection) {
     starg_status status = STARG_OK;
     const starg_bits *rows = s->pool->rows;
@@ -402,7 +402,7 @@ static void count_columns(const starg_bits *rows, size_t row, uint32_t *counts) 
             counts[64 * w + bit]++;
 }
 
-/* The guards that were found, the one that adds most first. */
+/* The guards found, ordered by what each adds, descending. */
 static starg_status order_guards(const search *s, starg_cover **out) {
     starg_status status = STARG_OK;
     starg_cover_problem problem;
@@ -426,8 +426,8 @@ done:
     return status;
 }
 
-/* Are the rows still enough? Candidates that were added may see what none did before, or what too
- * few did for the redundancy. */
+/* Do the rows still suffice? Added candidates may see faces that none saw before, or that too few
+ * saw for the redundancy. */
 static starg_status check_enough(const search *s, const uint32_t *chosen, size_t count,
                                  bool *enough) {
     starg_status status = STARG_OK;
@@ -449,8 +449,8 @@ done:
     return status;
 }
 
-/* What was found takes the place of the choice, with its bound. Where candidates were added that
- * see what none did before, all of them are asked again. */
+/* Replaces the choice and its bound by the result. If added candidates see faces that none saw
+ * before, the choice is made again over all candidates. */
 static starg_status choose_again(search *s, guard_selection *selection) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);
@@ -471,7 +471,7 @@ static starg_status choose_again(search *s, guard_selection *selection) {
         next = (guard_selection){0};
     }
     if (!enough || pool_count(s->pool) > s->first_count)
-        selection->lower_bound = 0; /* it was that of fewer candidates */
+        selection->lower_bound = 0; /* it was a bound for fewer candidates */
     size_t bound = enough ? s->known : cover_bound;
     bound = bound > s->bound ? bound : s->bound;
     if (bound > selection->lower_bound)
@@ -506,7 +506,7 @@ starg_status search_guards(const guard_problem *problem, const guard_detail *det
     } else
         STARG_TRY(choose_again(&s, selection));
     if (!problem->options->prove && s.bound < 2)
-        s.bound = 0; /* that is no news */
+        s.bound = 0; /* no improvement */
     *out = (search_record){s.bound,
                            s.cells.count,
                            s.scene.witnesses.count,

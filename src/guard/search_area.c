@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* How much could guards anywhere see, and how few could see a part of everything?
+/* How much can guards anywhere see, and how few can see a part of everything?
  *
- * With a part of the area as the goal every face counts, so that each cell has a row over all of
- * them: what it may see. k guards stand in k cells or fewer, and see no more than the rows of these
- * cells hold together. So a bound for choosing rows of cells is one for guards anywhere: of the
- * weight that max_guards rows hold, or of how few rows hold the weight that is wanted; it comes
- * from the integer bounds of the cover (starguard/cover.h). Where faces are to be seen by several
- * guards, what is seen often enough is seen once, and the bound holds as well.
+ * If the goal is a part of the area, every face counts, so each cell has a row over all faces:
+ * those it may see. k guards stand in at most k cells, and see no more than the union of these
+ * cells' rows. So a bound for choosing rows of cells is a bound for guards anywhere: on the weight
+ * that max_guards rows cover, or on the number of rows that cover the required weight; both come
+ * from the integer bounds of the cover (starguard/cover.h). If several guards must see each face,
+ * what is seen often enough is also seen once, so the bound holds as well.
  *
  * Cells are split in the middle of their longest sides: first those of the best choice, then those
- * that may see most. The cover is asked whenever there are half as many more.
+ * that may see most. The cover is solved again whenever the number of cells has grown by half.
  *
- * Invariant: the rows' cells hold all of the free space. Cost: a box test for each face that the
- * cell before may see; it ends with the budget. Independent of the number of threads. */
+ * Invariant: the cells of the rows cover all of the free space. Cost: a box test for each face that
+ * the parent cell may see; stops when the budget is used up. Independent of the number of
+ * threads. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -26,22 +27,22 @@ enum { LEAST_BATCH = 8 };
 
 typedef struct area_cell {
     bvh_box box;
-    uint64_t *open; /* bits by column: what any point of the box sees, and perhaps more */
+    uint64_t *open; /* superset of the columns that points of the box see */
     uint64_t weight, work;
-    bool chosen; /* by the best choice of cells */
+    bool chosen; /* in the best choice of cells */
 } area_cell;
 
 typedef struct area_search {
-    const search_scene *scene; /* first: as cells_worker_make wants it */
+    const search_scene *scene; /* first member, as cells_worker_make requires */
     const guard_problem *problem;
     const guard_pool *pool;
     STARG_ARRAY(area_cell) cells; /* leaves only */
-    size_t asked_at;              /* cells when the cover was asked */
-    size_t bound;                 /* how few could see what is wanted   */
-    uint64_t weight_bound;        /* how much max_guards could see      */
-    uint64_t seen;                /* how much the guards see            */
+    size_t asked_at;              /* number of cells when the cover was last solved */
+    size_t bound;                 /* lower bound on the guards for the required weight */
+    uint64_t weight_bound;        /* upper bound on the weight that max_guards see */
+    uint64_t seen;                /* weight that the guards see */
     uint64_t work;
-    scored_leaf *list; /* cells that are being split, each followed by its other half */
+    scored_leaf *list; /* cells being split, each followed by its other half */
     area_cell *parts;
 } area_search;
 
@@ -76,7 +77,7 @@ static void free_parts(area_search *a, size_t count) {
     a->parts = NULL;
 }
 
-/* One half takes the place of the cell, the other one comes last. */
+/* One half replaces the cell, the other is appended. */
 static starg_status take_parts(area_search *a, size_t count) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < 2 * count; i++) {
@@ -136,7 +137,7 @@ done:
     return status;
 }
 
-/* How few rows of cells, or how much they hold. */
+/* The bound from the cover of the cells' rows: on their number, or on the weight they cover. */
 static starg_status ask_cover(area_search *a) {
     starg_status status = STARG_OK;
     starg_context *context = a->scene->context;

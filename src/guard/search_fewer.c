@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Local search of a search: do all witnesses need as many guards as there are?
+/* Local search of a search: can fewer guards see all witnesses?
  *
- * Problem. One guard less than there are is to see all witnesses often enough, from any points.
+ * Problem. Find points, anywhere, one fewer than the guards, that see all witnesses often enough.
  *
- * The guards without one of them begin. In each step, after Gao, Weise and Li (EJOR 246, 2015; as
- * in cover/local.c, but over points that are not all known):
- *   1. the guard goes whose witnesses weigh least, of those that it is needed for;
- *   2. a witness that lacks guards is drawn. Of all known points that see it the one comes in that
- *      adds most weight. Before that it climbs: points about it, in front of the witness, and
- *      towards the other guards take its place where they add as much or more. If the climb ends
- *      higher, its point is known from then on;
- *   3. each witness that still lacks guards weighs one more.
- * When none lacks any, the guards are held against all faces: they are better ones, or what they do
- * not see becomes witnesses, of weight 1, and it goes on with these and a guard less.
+ * It starts from the guards without one of them. Each step follows Gao, Weise and Li (EJOR 246,
+ * 2015), as in cover/local.c, but the set of points is not fixed:
+ *   1. remove the guard whose loss leaves the least weight of witnesses short of guards;
+ *   2. draw a witness that lacks guards. Of all known points that see it, add the one with the
+ *      largest gain. Before that the point climbs: points around it, in front of the witness, and
+ *      towards the other guards replace it if they gain as much or more. If the climb ends higher,
+ *      its point joins the known ones;
+ *   3. add one to the weight of each witness that still lacks guards.
+ * When no witness lacks guards, the points are tested against all faces: they are better guards, or
+ * the faces that they miss become witnesses, of weight 1, and the search continues with these and
+ * one guard fewer.
  *
- * A climb looks at the witnesses that lack guards only, which are few: it costs less than one
- * point that is held against all witnesses. The linear program's prices tell where points are
- * missing for a fractional cover (guard/search_moves.c), weights where for a whole one.
+ * A climb tests only the few witnesses that lack guards, so it costs less than testing one point
+ * against all witnesses. The prices of the linear program show where a fractional cover lacks
+ * points (guard/search_moves.c), the weights where an integral one does.
  *
- * Cost of a step: a row of each known point; CLIMB points, each held against a few witnesses. It
+ * Cost of a step: a row of each known point; CLIMB points, each tested against a few witnesses. It
  * ends after PATIENCE steps without better guards, or with the budget. */
 #include <math.h>
 
@@ -35,14 +36,14 @@ static const double FIRST_STEP = 0.5, STEP_FACTOR = 0.9;
 typedef struct local_search {
     search *s;
     uint32_t *chosen; /* points of the search */
-    size_t *moved;    /* by chosen point: the step in which it came in */
+    size_t *moved;    /* by chosen point: the step that added it */
     size_t count;
-    size_t step, last; /* this one; the one that found better guards   */
+    size_t step, last; /* the current one; the one that found better guards */
     uint32_t held[MOST_WITNESSES];
     double weight[MOST_WITNESSES];
     witness_row open; /* witnesses that lack guards */
-    size_t fewest;    /* of them after a step: as few as there have been */
-    size_t known;     /* witnesses that `held` has counted */
+    size_t fewest;    /* fewest that a step has left so far */
+    size_t known;     /* number of witnesses already counted in `held` */
     starg_rng rng;
 } local_search;
 
@@ -79,7 +80,7 @@ static uint32_t remove_point(local_search *l, size_t at) {
     return point;
 }
 
-/* Counts witnesses that are new. */
+/* Counts new witnesses. */
 static void take_witnesses(local_search *l) {
     for (; l->known < l->s->scene.witnesses.count; l->known++) {
         size_t held = 0;
@@ -90,7 +91,7 @@ static void take_witnesses(local_search *l) {
     }
 }
 
-/* What the witnesses weigh that would lack the guard. */
+/* The weight of the witnesses that would lack guards without this guard. */
 static double loss_of(const local_search *l, size_t at) {
     const witness_row *row = row_of(l, l->chosen[at]);
     double loss = 0;
@@ -101,7 +102,7 @@ static double loss_of(const local_search *l, size_t at) {
     return loss;
 }
 
-/* The guard of least loss, the one that has stood longest among equals; not the last to come. */
+/* The guard of least loss, the oldest among equals; not the one just added. */
 static size_t choose_to_remove(const local_search *l) {
     size_t best = SIZE_MAX;
     double least = INFINITY;
@@ -134,7 +135,7 @@ static size_t draw_open(local_search *l) {
     return 0;
 }
 
-/* How many witnesses lack guards after the point has come in. */
+/* How many witnesses lack guards once the point is added? */
 static size_t count_left(const local_search *l, uint32_t point) {
     size_t left = 0;
     for (size_t w = 0; w < WITNESS_WORDS; w++)
@@ -149,8 +150,8 @@ static bool is_chosen(const local_search *l, size_t point) {
     return false;
 }
 
-/* Of the known points that see a witness the one of the largest gain, the latest among equals, but
- * not the one that has gone. */
+/* Of the known points that see a witness, the one of largest gain, the latest among equals; not the
+ * point just removed. */
 static uint32_t choose_to_add(local_search *l, size_t witness, uint32_t gone, double *most) {
     uint32_t best = gone;
     *most = 0;
@@ -168,7 +169,7 @@ static uint32_t choose_to_add(local_search *l, size_t witness, uint32_t gone, do
     return best;
 }
 
-/* What a point adds; 0 as soon as that is less than `least`. */
+/* The gain of a point; 0 as soon as it falls below `least`. */
 static double look_from(local_search *l, search_point *point, size_t witness, double least) {
     search_scene *scene = &l->s->scene;
     double left = gain_of(l, &l->open);
@@ -192,7 +193,7 @@ static double look_from(local_search *l, search_point *point, size_t witness, do
     return sees && left >= least ? left : 0;
 }
 
-/* A point that adds more than `point` does joins the known ones; or `point`. */
+/* Looks for a point of larger gain than `point`, which then joins the known points. */
 static starg_status climb(local_search *l, uint32_t *point, size_t witness, double gain) {
     starg_status status = STARG_OK;
     search *s = l->s;
@@ -249,7 +250,7 @@ static bool is_open(const local_search *l) {
     return starg_bit_count(l->open.bits, WITNESS_WORDS) > 0;
 }
 
-/* The guards as points of the search, all but one. */
+/* Starts from the guards without one of them. */
 static starg_status begin(local_search *l) {
     starg_status status = STARG_OK;
     const search *s = l->s;
@@ -266,7 +267,7 @@ done:
     return status;
 }
 
-/* The guards see all witnesses. */
+/* The points see all witnesses: tests them against all faces. */
 static starg_status try_guards(local_search *l, bool *changed) {
     starg_status status = STARG_OK;
     size_t before = l->s->count;

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Better guards, without a bound: what `guard` does with its candidates unless told otherwise.
+/* Better guards, without a bound: what `guard` does with its candidates by default.
  *
- * A round finds prices, and does the first of these that finds something, by turns:
- *   1. points that are worth more than 1, by moving known ones (guard/search_moves.c);
- *   2. local search for a guard less among known points and others (guard/search_fewer.c): better
+ * A round finds prices, and then takes the first of these steps that succeeds, in rotation:
+ *   1. points worth more than 1, by moving known ones (guard/search_moves.c);
+ *   2. local search for one guard fewer among known and new points (guard/search_fewer.c): better
  *      guards, or witnesses that these miss;
  *   3. faces that the fractional cover sees too little become witnesses;
- *   4. cells that may be worth more than 1 are split, each with two more points.
- * It ends when local search has found no better guards PATIENCE times, or a third as often where
- * the prices leave no room for them, or with the budget. At last the points are asked by integer
- * programs, for a bound of them and for what local search has missed: over the witnesses where
- * these are few; and where that comes to no end, over all faces and the candidates that fewer
- * guards could be among, which the most valuable points have joined. */
+ *   4. cells that may be worth more than 1 are split, with two new points in each part.
+ * It ends when local search has failed PATIENCE times, or a third as often if the prices leave no
+ * room for better guards, or with the budget. Finally integer programs over the points give a bound
+ * for them and what local search has missed: over the witnesses if these are few; if that does not
+ * finish, over all faces and the candidates that may be among fewer guards, extended by the most
+ * valuable points. */
 #include <stdlib.h>
 
 #include "guard/search_parts.h"
@@ -20,7 +20,7 @@ enum { TRIES = 2, PATIENCE = 8, HOPELESS = 3, MOST_HELD = 250, ASKED = 4, MOST_A
 
 static const char STAGE[] = "search";
 
-/* Programs grow with the guards, and what each point is held against with the faces. */
+/* Programs grow with the guards, and the cost of testing a point grows with the faces. */
 static uint64_t default_work(const search *s) {
     return 400000 + 45 * s->pool->columns + 30000 * s->count + 8 * s->count * s->pool->columns;
 }
@@ -61,13 +61,13 @@ done:
     return status;
 }
 
-/* Asks for fewer guards among the points that are known. *open: there may be some. Of many
- * witnesses nobody is asked: a program over all faces tells more, and takes no longer. */
+/* Looks for fewer guards among the known points. *open: there may be some. Skips the program if
+ * there are many witnesses: one over all faces tells more and is as fast. */
 static starg_status ask_again(search *s, bool *open) {
     starg_status status = STARG_OK;
     row_list list = {0};
     *open = true;
-    s->known = 0; /* it was that of fewer points */
+    s->known = 0; /* it was a bound for fewer points */
     STARG_TRY(row_list_make(context_of(s), 2 * s->points.count, &list));
     bool few = s->scene.witnesses.count <= MOST_ASKED_OF;
     for (int k = 0; k < (few ? ASKED : 1) && *open; k++) {

@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Column generation for a search: which points are worth more than 1 by the prices?
+/* Column generation for a search: which points are worth more than 1 at the current prices?
  *
- * Each priced witness, a source, remembers the most valuable point known that sees it, and lets it
- * move:
- *   - about where it stands, by a step that shrinks from generation to generation;
- *   - towards the best point of another source nearby, into the space that both could share;
- *   - in front of its own face, where it is seen from.
- * All proposals of a generation are looked at together, and a point that is better for any source
- * replaces that source's point; one that is as good does too, so that sources wander over plateaus.
- * At the end the new points of the sources that are worth 1 or more join the points of the search:
- * with less than 1 a point cannot pay, with just 1 it may, together with others, because the prices
- * of a program with many optima are only some of those that would do.
+ * Each priced witness is a source. It stores the most valuable known point that sees it, and moves
+ * it:
+ *   - around its place, by a step that shrinks from generation to generation;
+ *   - towards the best point of another source nearby, into space that both could share;
+ *   - in front of its own face, where the face is visible.
+ * All proposals of a generation are evaluated together. A proposal replaces the point of any source
+ * for which it is better or as good; ties let sources move across plateaus. At the end the new
+ * points worth 1 or more join the points of the search: a point below 1 cannot help; a point at
+ * exactly 1 may, together with others, because a program with several optima gives only one set of
+ * prices.
  *
- * A proposal is held against the planes of the witnesses first, and then against the witnesses, the
- * dearest first, until it is clear that it is worth less than what its source has.
+ * A proposal is first tested against the planes of the witnesses, then against the witnesses by
+ * decreasing price, until it is clearly worth less than the source's point.
  *
- * Everything depends on the seed, the call and the source only. Cost: O(log n) for each sight line;
- * at most PROPOSALS x GENERATIONS x sources x witnesses of them a call. */
+ * Results depend only on the seed, the call and the source. Cost: O(log n) per sight line; at most
+ * PROPOSALS x GENERATIONS x sources x witnesses sight lines per call. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -43,10 +43,10 @@ static const double LEAST_PRICE = 1e-3, WORTH = 1 - 2e-3, FIRST_STEP = 0.6, TIE 
 typedef struct source {
     uint32_t witness;
     double price;
-    double centre[3];  /* of the face; the vertex */
-    search_point best; /* the most valuable point known that sees it */
+    double centre[3];  /* of the face; or the vertex */
+    search_point best; /* the most valuable known point that sees it */
     double value;
-    bool is_new;               /* `best` is no point of the search yet */
+    bool is_new;               /* `best` is not yet a point of the search */
     uint32_t near[NEIGHBOURS]; /* sources; count in near_count */
     int near_count;
 } source;
@@ -65,7 +65,7 @@ typedef struct moving {
     size_t count;
     proposal *proposals; /* of a generation: `each` a source */
     size_t each;
-    witness_row rest; /* witnesses that are no sources */
+    witness_row rest; /* witnesses that are not sources */
     search_points worthy;
 } moving;
 
@@ -76,7 +76,7 @@ static int by_price(const void *a, const void *b) {
     return (x->witness > y->witness) - (x->witness < y->witness);
 }
 
-/* Sources, the dearest first, and what is left. */
+/* Lists the sources by decreasing price, and the remaining witnesses. */
 static starg_status list_sources(moving *m) {
     starg_status status = STARG_OK;
     const search_scene *scene = &m->s->scene;
@@ -148,7 +148,7 @@ static void random_ball(starg_rng *rng, double out[3]) {
     } while (vec3_dot(out, out) > 1);
 }
 
-/* A direction near the one that is there. */
+/* A random direction near the given one. */
 static void turn(double step, starg_rng *rng, double direction[3]) {
     double shift[3];
     random_ball(rng, shift);
@@ -192,8 +192,8 @@ static bool look_at(const search_scene *scene, proposal *q, uint32_t witness) {
     return sees;
 }
 
-/* Sets what a proposal sees of the sources' witnesses, or gives up as soon as it is worth less than
- * it must. */
+/* Sets which of the sources' witnesses a proposal sees; stops as soon as its value falls below the
+ * required one. */
 static starg_status look_from(starg_context *context, void *shared, void *scratch, size_t item) {
     const moving *m = shared;
     const search_scene *scene = &m->s->scene;
@@ -223,7 +223,7 @@ static starg_status look_from(starg_context *context, void *shared, void *scratc
     return STARG_OK;
 }
 
-/* Every source proposes, and takes what is better. */
+/* Every source makes proposals, and takes better ones. */
 static starg_status move_sources(moving *m, uint64_t call, uint64_t generation, double step) {
     starg_status status = STARG_OK;
     search_scene *scene = &m->s->scene;
@@ -269,7 +269,7 @@ static bool stands_before(const moving *m, size_t index) {
     return false;
 }
 
-/* Points of the sources that are worth it join those of the search. */
+/* Adds the points of the sources that are valuable enough to the points of the search. */
 static starg_status take_best(moving *m, double *most) {
     starg_status status = STARG_OK;
     search *s = m->s;

@@ -8,35 +8,35 @@
 #include "guard/prices.h"
 #include "guard/stages.h"
 
-/* By how much points may be worth more than 1 after all. */
+/* By how much points may exceed 1 all the same. */
 #define SEARCH_GAP 2e-3
 
 typedef struct search {
     const guard_problem *problem;
-    guard_pool *pool; /* takes in the points that were held against all columns */
+    guard_pool *pool; /* receives the points that were tested against all columns */
     search_scene scene;
     search_cells cells;
     search_points points;
     witness_prices prices;
-    size_t redundancy;         /* how many guards are to see a witness                           */
-    uint16_t *need;            /* by column: how often it is to be seen                          */
-    uint32_t *views;           /* by column: how many of the first candidates see it             */
-    uint64_t *viewers;         /* by column: a number for the set of them                        */
-    size_t count, bound;       /* guards, and how few could do */
-    size_t asked_at, asked_of; /* cells and witnesses when the integer program was last asked */
-    uint64_t budget;           /* of the work that the scene counts */
-    size_t nodes;              /* that an integer program may take */
-    uint64_t improve_work;     /* what looking for better guards has taken */
-    uint64_t moves;            /* calls of search_move */
+    size_t redundancy;            /* how many guards must see a witness */
+    uint16_t *need;               /* by column: how often it must be seen */
+    uint32_t *views;              /* by column: how many of the first candidates see it */
+    uint64_t *viewers;            /* by column: an identifier of the set of them */
+    size_t count, bound;          /* number of guards, and its lower bound */
+    size_t asked_at, asked_of;    /* numbers of cells and witnesses at the last integer program */
+    uint64_t budget;              /* of the work that the scene counts */
+    size_t nodes;                 /* that an integer program may take */
+    uint64_t improve_work;        /* work spent on looking for better guards */
+    uint64_t moves;               /* calls of search_move */
     STARG_ARRAY(uint32_t) guards; /* the best ones: candidates of the pool */
-    size_t first_count;           /* candidates of the pool at the beginning */
-    size_t known;                 /* no fewer of the known points do */
-    int idle;                     /* rounds that looked for guards and found nothing */
-    bool better;                  /* there are other guards than at first */
+    size_t first_count;           /* number of candidates in the pool at the start */
+    size_t known;                 /* lower bound for the known points */
+    int idle;                     /* rounds that looked for guards and found none */
+    bool better;                  /* the guards differ from those at the start */
     bool ended;
 } search;
 
-/* How many points could see all witnesses often enough, by the prices. */
+/* Lower bound on the points that see all witnesses often enough, by the prices. */
 static inline double search_value(const search *s) {
     return (double)s->redundancy * s->prices.sum;
 }
@@ -45,7 +45,7 @@ static inline starg_context *context_of(const search *s) {
     return s->problem->context;
 }
 
-/* Rows of points that no other row holds, from the front of `list`. */
+/* Rows of points that no other row contains, from the front of `list`. */
 typedef struct row_list {
     const witness_row **rows;
     uint32_t *points;
@@ -87,24 +87,23 @@ static inline witness_row all_witnesses(const search *s) {
 /* Do the prices leave room for fewer guards than there are? */
 bool search_has_room(const search *s);
 
-/* Sets `known`: no fewer of the known points see all witnesses often enough, by the prices. Errors:
- * MEMORY. */
+/* Sets `known`, the lower bound for the known points, by the prices. Errors: MEMORY. */
 starg_status search_bound_points(search *s);
 
-/* A round of looking for better guards, what rounds may cost together, and the end of them
+/* A round of looking for better guards, the budget of these rounds, and their end
  * (guard/search_improve.c). Errors: MEMORY, CANCELLED. */
 starg_status search_improve(search *s, row_list *list);
 uint64_t search_improve_work(const search *s);
 starg_status search_close(search *s);
 
-/* Leaves out points of the search that see no more than another one does, from `first` on. */
+/* Removes points of the search, from `first` on, that see no more than another does. */
 void search_prune_points(search *s, size_t first);
 
-/* What the most valuable point is worth, or 1. */
+/* The value of the most valuable point, or 1. */
 double search_largest_value(const search *s);
 
-/* Prices by which no point is worth more than 1, of as large a sum as can be; the points of their
- * program, which are some of all, are in the list. Errors: MEMORY. */
+/* Prices of maximal sum by which no point exceeds 1; the list receives the points of their program,
+ * a subset of all. Errors: MEMORY. */
 starg_status search_find_prices(search *s, row_list *list);
 
 /* The faces that the fewest candidates see become witnesses. Errors: MEMORY, CANCELLED. */
@@ -114,46 +113,47 @@ starg_status search_first_witnesses(search *s);
  * MEMORY. */
 starg_status search_count_views(search *s);
 
-/* So do faces that the fractional cover by the points of the list does not see often enough.
- * *changed: there are some. Errors: MEMORY, CANCELLED. */
+/* Turns faces into witnesses that the fractional cover by the points of the list does not see often
+ * enough. *changed: there are some. Errors: MEMORY, CANCELLED. */
 starg_status search_add_short(search *s, const row_list *list, bool *changed);
 
-/* Points of the search that see all witnesses often enough: better guards, or faces that they miss
- * become witnesses. *changed: either. Errors: MEMORY, CANCELLED. */
+/* Tests points of the search that see all witnesses often enough against all faces: they are better
+ * guards, or the faces that they miss become witnesses. *changed: either. Errors: MEMORY,
+ * CANCELLED. */
 starg_status search_try_guards(search *s, const uint32_t *points, size_t count, bool *changed);
 
-/* Points of the search become candidates: all that they see is known from then on. Errors: MEMORY,
+/* Turns points of the search into candidates, with full visibility rows. Errors: MEMORY,
  * CANCELLED. */
 starg_status search_hold(search *s, const uint32_t *points, size_t count);
 
-/* Points that are worth more than known ones join them (guard/search_moves.c). *most: what the best
- * is worth, 0 where there is none. Errors: MEMORY, CANCELLED. */
+/* Adds points that are more valuable than known ones (guard/search_moves.c). *most: the value of
+ * the best, 0 if there is none. Errors: MEMORY, CANCELLED. */
 starg_status search_move(search *s, double *most);
 
-/* A point near `best`, which sees a face about `centre`: by 0 about it, by 1 towards `other` (NULL:
- * none), by 2 in front of the face. Where views are cones it is turned, too. */
+/* Proposes a point near `best`, which sees a face with this centre: around it (0), towards `other`
+ * (1; NULL: none), or in front of the face (2). If views are cones, the direction is turned as
+ * well. */
 void search_propose(const search_point *best, const double centre[3], const double *other, int kind,
                     double step, starg_rng *rng, search_point *out);
 
-/* Local search for a guard less (guard/search_fewer.c). *changed: there are better guards, or more
- * witnesses. Errors: MEMORY, CANCELLED. */
+/* Local search for one guard fewer (guard/search_fewer.c). *changed: there are better guards, or
+ * more witnesses. Errors: MEMORY, CANCELLED. */
 starg_status search_fewer(search *s, bool *changed);
 
-/* A leaf that is to be split, the highest score first. */
+/* A leaf to split, the highest score first. */
 typedef struct scored_leaf {
     double score;
     uint32_t cell;
 } scored_leaf;
 
-/* Sorts the leaves and splits those at the front that can be, a quarter of them or so, with so many
- * points a part. Errors: MEMORY, CANCELLED. */
+/* Sorts the leaves and splits those at the front that can be split, about a quarter of them, with
+ * `tries` points in each part. Errors: MEMORY, CANCELLED. */
 starg_status search_split(search *s, scored_leaf *list, size_t count, int tries);
 
-/* By falling score, then by number. */
+/* By decreasing score, then by number. */
 int search_by_score(const void *a, const void *b);
 
-/* Leaves that may be worth more than `most`, in an array that starg_release frees. Errors: MEMORY.
- */
+/* Leaves whose value may exceed `most`, in an array that starg_release frees. Errors: MEMORY. */
 starg_status search_list_leaves(const search *s, double most, scored_leaf **out, size_t *count);
 
 /* The integer program over the points: do fewer guards see all witnesses? *changed: there are
@@ -161,13 +161,12 @@ starg_status search_list_leaves(const search *s, double most, scored_leaf **out,
 starg_status search_ask_points(search *s, bool *changed);
 
 /* The integer program over all columns and the candidates that may be among fewer guards, by the
- * prices: `known` is raised to its bound. Errors: MEMORY, CANCELLED. */
+ * prices: raises `known` to its bound. Errors: MEMORY, CANCELLED. */
 starg_status search_ask_candidates(search *s);
 
-/* The integer program over cells and points: what holds all witnesses with fewer of them than there
- * are guards is followed, by splitting its cells or trying its points; where nothing does,
- * branching proves it. *changed: there are more cells, more witnesses or better guards. Errors:
- * MEMORY, CANCELLED. */
+/* The integer program over cells and points. If fewer of them than guards cover all witnesses,
+ * splits these cells or tries these points; otherwise branching proves the bound. *changed: there
+ * are more cells, more witnesses or better guards. Errors: MEMORY, CANCELLED. */
 starg_status search_ask_cells(search *s, bool *changed);
 
 #endif

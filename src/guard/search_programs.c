@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The integer programs of a search, over its points and over its cells.
  *
- * A program over points that has fewer rows than there are guards gives better guards or faces that
- * are to become witnesses. One over cells and points tells where such guards could still stand: in
- * those cells, or in others that may see what one of them alone sees. They are split, with more
- * points, until points do as well or no cells could. The solver is believed where it finds
- * something, which is looked at; that there is nothing is proven by branching (guard/bound.c). */
+ * A program over points with a solution smaller than the number of guards gives better guards or
+ * faces that become witnesses. One over cells and points shows where such guards could still stand:
+ * in the chosen cells, or in others that may see what only one of them sees. These are split, with
+ * more points, until points do as well or no cells would suffice. What the solver finds is checked;
+ * that no solution exists is proven by branching (guard/bound.c). */
 #include <math.h>
 #include <stdlib.h>
 
@@ -29,7 +29,7 @@ static starg_status make_program(const search *s, const row_list *list, starg_bi
     return status;
 }
 
-/* Points that are worth at least `least` and see what no other one of them does. */
+/* Points worth at least `least` that see what no other of them does. */
 static void list_needed(const search *s, double least, row_list *list) {
     list->count = 0;
     for (size_t i = 0; i < s->points.count; i++) {
@@ -39,14 +39,14 @@ static void list_needed(const search *s, double least, row_list *list) {
     }
 }
 
-/* Points that may be among fewer guards than there are: together these are worth as much as all
- * witnesses, and none of the others is worth more than the most valuable point. */
+/* Points that may be among fewer guards: together they are worth as much as all witnesses, and none
+ * of the others exceeds the most valuable point. */
 static void list_useful(const search *s, row_list *list) {
     double most = search_largest_value(s);
     list_needed(s, search_value(s) - ((double)s->count - 2) * most - ROUNDING, list);
 }
 
-/* Solves a program of rows: how few see all witnesses often enough? */
+/* Solves the cover problem of the rows: how few see all witnesses often enough? */
 static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) {
     starg_cover_problem problem;
     starg_cover_options options;
@@ -88,8 +88,8 @@ done:
     return status;
 }
 
-/* The candidates that may be among fewer guards than there are, as `list_useful`; but none is left
- * out for another one, which may see less of what is no witness. */
+/* The candidates that may be among fewer guards, as in `list_useful`, but dominated ones stay: a
+ * dominating candidate may see less outside the witnesses. */
 static void list_useful_candidates(const search *s, uint32_t *list, size_t *count) {
     double most = search_largest_value(s);
     double least = search_value(s) - ((double)s->count - 2) * most - ROUNDING;
@@ -139,8 +139,8 @@ done:
 
 /* ---- cells and points ---- */
 
-/* Columns of the program: what no other one holds. Leaves that see no more than a point does are
- * left to the point: that is settled. */
+/* Columns of the program that no other one contains. Leaves that see no more than a point does are
+ * settled, and the point represents them. */
 typedef struct column_list {
     row_list rows;
     uint32_t *cells; /* by column: the leaf, or UINT32_MAX for a point */
@@ -173,7 +173,8 @@ done:
     return status;
 }
 
-/* Unsettled leaves that could stand in for a chosen column: they may see all that it alone sees. */
+/* Unsettled leaves that could replace a chosen column: they may see everything that only it
+ * sees. */
 static starg_status list_stand_ins(const search *s, const column_list *columns,
                                    const starg_cover *cover, scored_leaf **out, size_t *count) {
     starg_status status = STARG_OK;
@@ -201,8 +202,8 @@ done:
     return status;
 }
 
-/* Fewer columns than there are guards hold all witnesses: their leaves are split, or all of them
- * are points, which are tried. */
+/* Fewer columns than guards cover all witnesses: splits their leaves, or tries them if all are
+ * points. */
 static starg_status follow_cover(search *s, const column_list *columns, starg_cover *cover,
                                  bool *changed, bool *again) {
     starg_status status = STARG_OK;
@@ -221,8 +222,8 @@ done:
     return status;
 }
 
-/* The integer program over cells and points: what holds all witnesses with fewer columns than there
- * are guards is followed; where nothing does, branching proves it. */
+/* The integer program over cells and points. If fewer columns than guards cover all witnesses,
+ * follows this solution; otherwise branching proves the bound. */
 static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     starg_status status = STARG_OK;
     starg_context *context = context_of(s);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Witnesses of a search: which faces stand for all of them.
+/* Witnesses of a search: the faces that represent all of them.
  *
  * The first are faces that the fewest candidates see, and those that a fractional cover by
- * candidates sees too little. Later ones are faces that guards which see all witnesses do not see
- * (often enough), or that a fractional cover by all points sees too little. Of faces that the same
- * candidates see one is enough. All points and cells look at what is new.
+ * candidates sees too little. Later ones are faces that some guards miss (or do not see often
+ * enough) although they see all witnesses, or that a fractional cover by all points sees too
+ * little. One face represents all those that the same candidates see. All points and cells are
+ * tested against new witnesses.
  *
- * Invariant: all witnesses are among the faces that the guards at the beginning saw as often as is
- * asked for. */
+ * Invariant: the initial guards see every witness as often as required. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,7 +18,7 @@ static const char STAGE[] = "search";
 
 enum { FIRST_WITNESSES = 30, FIRST_ROUNDS = 8, MORE_WITNESSES = 10, MOST_CONSIDERED = 2000 };
 
-/* Of a fractional cover: what is left out of it, and what is enough for a column. */
+/* Of a fractional cover: the smallest share considered, and what suffices for a column. */
 static const double LEAST_SHARE = 0.003, ENOUGH = 0.95;
 
 /* ---- witnesses ---- */
@@ -69,7 +69,7 @@ static bool is_witness(const search *s, uint32_t column) {
     return false;
 }
 
-/* Marks the candidates that see a column; false: one of them is marked already. */
+/* Marks the candidates that see a column; false: one of them was already marked. */
 static bool mark_viewers(const search *s, uint32_t column, uint8_t *marked) {
     const starg_bits *rows = s->pool->rows;
     for (size_t i = 0; i < rows->rows; i++)
@@ -81,9 +81,9 @@ static bool mark_viewers(const search *s, uint32_t column, uint8_t *marked) {
     return true;
 }
 
-/* Moves at most `most` columns to the front: the least scores first, no two of which the same
- * candidates see. In each pass no candidate sees two of those that are chosen, so that they come
- * from all over the solid, and a guard is needed for each. */
+/* Moves at most `most` columns to the front, by increasing score, no two of which the same
+ * candidates see. Within a pass no candidate sees two of the chosen columns, so they spread over
+ * the whole solid, and each needs its own guard. */
 static starg_status choose_columns(const search *s, scored_column *list, size_t count, size_t most,
                                    size_t *kept) {
     starg_status status = STARG_OK;
@@ -124,7 +124,7 @@ done:
     return status;
 }
 
-/* Columns below `limit` of a score become witnesses, as many as `most`. *added: how many. */
+/* Turns at most `most` columns with a score below `limit` into witnesses. *added: how many. */
 static starg_status add_witnesses(search *s, const double *scores, double limit, size_t most,
                                   size_t *added) {
     starg_status status = STARG_OK;
@@ -149,7 +149,7 @@ done:
     return status;
 }
 
-/* The rarest faces, and then those that the fractional cover by candidates does not see enough. */
+/* The rarest faces, then those that the fractional cover by candidates does not see enough. */
 starg_status search_first_witnesses(search *s) {
     starg_status status = STARG_OK;
     double *scores = NULL;
@@ -208,7 +208,7 @@ static void add_share(const search *s, uint32_t point, double share, double *sum
             sums[64 * w + bit] += share;
 }
 
-/* Takes out of `missing` what the candidate sees that sees most of it; false: none sees any. */
+/* Removes from `missing` what the candidate that sees most of it sees; false: none sees any. */
 static bool see_most(const search *s, uint64_t *missing, uint32_t *candidate) {
     const starg_bits *rows = s->pool->rows;
     size_t most = 0;
@@ -226,8 +226,8 @@ static bool see_most(const search *s, uint64_t *missing, uint32_t *candidate) {
     return most > 0;
 }
 
-/* Takes the points as guards, with candidates that see what they miss, if that is fewer than there
- * are. `seen`: by column, how many of the points see it. */
+/* Takes the points as guards, with candidates for what they miss, if that is an improvement.
+ * `seen`: by column, how many of the points see it. */
 static starg_status take_guards(search *s, const uint32_t *points, size_t count, const double *seen,
                                 bool *complete) {
     starg_status status = STARG_OK;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A result again: its scene, and what each of its guards sees there. */
+/* Restores a result: its scene, and what each guard sees there. */
 #include "guard/stages.h"
 
 static const char STAGE[] = "guards";
 
-/* The weights that a result tells; NULL: all faces are to be seen alike. */
+/* The weights from a result; NULL: all faces count alike. */
 static starg_status spread_weights(starg_context *context, const starg_guards *guards,
                                    double **out) {
     starg_status status = STARG_OK;
@@ -68,7 +68,7 @@ starg_status starg_guards_see(starg_context *context, const starg_solid *scene,
     view.ups = guards->ups;
     STARG_TRY(starg_visibility(context, scene, guards->positions, guards->count, &view, &rows));
     STARG_TRY(starg_bits_create(context, guards->count, faces, &model));
-    for (size_t i = 0; i < guards->count; i++) /* obstacles, which follow, are no targets */
+    for (size_t i = 0; i < guards->count; i++) /* obstacles follow and are not targets */
         memcpy(starg_bits_row_mutable(model, i), starg_bits_row(rows, i),
                model->words * sizeof *model->data);
     *out = model;

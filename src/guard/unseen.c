@@ -1,17 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Faces that nobody sees, wherever in the free space he stands: what a scanner misses, and what a
- * program that draws need not keep.
+/* Faces that are invisible from everywhere in the free space: what a scanner misses, and what a
+ * renderer can drop.
  *
  * Stages:
  *   1. Candidates, and points above the faces that these do not see (guard/augment.c): what one of
  *      them sees is seen.
- *   2. Of the others, the free space is cut into boxes. What is surely hidden from a box is known
- *      (visibility/box.h); a part is asked about what the whole leaves open, and a box with nothing
- *      open needs no parts. From the middle of each part the open faces are looked at as well.
- *   3. A face that no box leaves open is seen by nobody: the boxes hold all places where guards may
- *      stand. What some box still leaves open when the work is used up is undecided.
+ *   2. For the other faces, the free space is cut into boxes. A test finds what is certainly hidden
+ *      from a box (visibility/box.h); a child is tested only for what its parent leaves open, and a
+ *      box with nothing open is not cut. The open faces are also tested from the centre of each
+ *      child.
+ *   3. A face that no box leaves open is invisible: the boxes cover all places where guards may
+ *      stand. Faces still open when the budget is used up are undecided.
  * Boxes are cut in the middle of their longest sides, those with most open faces first, in batches:
- * the result depends on the work alone, not on threads.
+ * the result depends on the budget alone, not on threads.
  *
  * Cost: work is counted in tests of a vertex against a box, as in a search. */
 #include <stdlib.h>
@@ -29,8 +30,8 @@ enum { BATCH = 256, CANDIDATES = 300 };
 
 typedef struct unseen_box {
     bvh_box box;
-    uint64_t *open; /* bits of the list: what some point of the box may see */
-    uint32_t count; /* of them, when it was last counted */
+    uint64_t *open; /* bits of the list: superset of what points of the box see */
+    uint32_t count; /* number of open faces at the last count */
 } unseen_box;
 
 typedef struct unseen_search {
@@ -42,11 +43,11 @@ typedef struct unseen_search {
     box_scene *boxes;
     uint32_t *rank_of;
     STARG_ARRAY(uint32_t) list; /* faces that no candidate sees */
-    uint64_t *open;             /* bits of the list: not seen so far */
+    uint64_t *open;             /* bits of the list: not seen yet */
     STARG_ARRAY(unseen_box) leaves;
     unseen_box *parts; /* of a batch: two for each leaf that is cut */
-    uint32_t *cut;     /* the leaves */
-    uint64_t *looks;   /* of each part: what its middle sees */
+    uint32_t *cut;     /* the leaves being cut */
+    uint64_t *looks;   /* of each part: what its centre sees */
     uint64_t *work;    /* of each part */
     uint64_t spent;
 } unseen_search;
@@ -140,7 +141,7 @@ static int longest_side(const bvh_box *box) {
     return longest;
 }
 
-/* False: the box is as small as doubles go. */
+/* False: the box is as small as doubles allow. */
 static bool halve(const bvh_box *box, bvh_box parts[2]) {
     int k = longest_side(box);
     double at = 0.5 * box->lower[k] + 0.5 * box->upper[k];
@@ -149,7 +150,7 @@ static bool halve(const bvh_box *box, bvh_box parts[2]) {
     return at > box->lower[k] && at < box->upper[k];
 }
 
-/* How many faces are neither seen nor hidden from the box. */
+/* The number of faces neither seen nor hidden from the box. */
 static uint32_t count_open(const unseen_search *s, const unseen_box *leaf) {
     size_t count = 0;
     for (size_t w = 0; w < words_of(s); w++)
@@ -157,7 +158,7 @@ static uint32_t count_open(const unseen_search *s, const unseen_box *leaf) {
     return (uint32_t)count;
 }
 
-/* Forgets the leaves that leave nothing open. */
+/* Removes the leaves with nothing open. */
 static void drop_leaves(unseen_search *s) {
     size_t kept = 0;
     for (size_t i = 0; i < s->leaves.count; i++) {
@@ -176,7 +177,7 @@ static double volume_of(const bvh_box *box) {
            (box->upper[2] - box->lower[2]);
 }
 
-/* Largest first, by faces times volume: what is left undecided are then small boxes. */
+/* By faces times volume, descending, so that only small boxes stay undecided. */
 static int by_size(const void *a, const void *b) {
     const unseen_box *x = a, *y = b;
     double first = x->count * volume_of(&x->box), second = y->count * volume_of(&y->box);
@@ -188,7 +189,7 @@ static int by_size(const void *a, const void *b) {
     return 0;
 }
 
-/* The leaves that are cut, and room for their parts. */
+/* Chooses the leaves to cut, and makes room for their parts. */
 static starg_status choose_cut(unseen_search *s, size_t *count) {
     starg_status status = STARG_OK;
     *count = 0;
@@ -208,7 +209,7 @@ done:
     return status;
 }
 
-/* Parts take the places of what was cut. */
+/* The parts replace the leaves that were cut. */
 static starg_status take_parts(unseen_search *s, size_t count) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < 2 * count; i++) {
@@ -313,7 +314,7 @@ static void end(unseen_search *s) {
     starg_release(context, s->looks);
 }
 
-/* Whether a face of the list is left open by some leaf. */
+/* Reports the faces that some leaf leaves open. */
 static starg_status report(const unseen_search *s, uint8_t **out) {
     starg_status status = STARG_OK;
     size_t faces = starg_space_model_faces(s->solid);

@@ -9,7 +9,7 @@
 
 static const char STAGE[] = "guard";
 
-/* Of the largest coordinate. */
+/* The binary exponent of the largest coordinate. */
 static int find_exponent(const starg_mesh *mesh) {
     double most = 0;
     int exponent = 0;
@@ -19,8 +19,8 @@ static int find_exponent(const starg_mesh *mesh) {
     return exponent;
 }
 
-/* Of the model made as large as 1 by a power of two: shares are the same, and areas of tiny or huge
- * models are numbers. */
+/* Areas of the model scaled to unit size by a power of two: ratios are unchanged, and areas of tiny
+ * or huge models neither underflow nor overflow. */
 static starg_status measure_areas(starg_context *context, const starg_solid *solid,
                                   column_weights *out) {
     starg_status status = STARG_OK;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What the columns of a pool weigh: a coverage below 1 is meant by area, so each face weighs its
- * share of the total area in units of 2^-40, at least one, that the cover works on integers;
- * vertices weigh one unit each. Where faces matter more or less (starg_space_weigh), their areas
- * are meant to be so many times as large; what is no target weighs nothing. */
+/* Weights of a pool's columns: a coverage below 1 refers to area, so each face weighs its share of
+ * the total area in units of 2^-40, at least one, because the cover works on integers; vertices
+ * weigh one unit each. Importance weights of faces (starg_space_weigh) multiply their areas; what
+ * is not a target weighs nothing. */
 #ifndef STARG_GUARD_WEIGHTS_H
 #define STARG_GUARD_WEIGHTS_H
 
@@ -10,11 +10,11 @@
 #include "starguard/visibility.h"
 
 typedef struct column_weights {
-    double *areas; /* by face, in units of their own */
+    double *areas; /* by face, in arbitrary units */
     double area;   /* of all faces */
     uint64_t *weights;
     uint64_t total;
-    size_t faces; /* that are targets */
+    size_t faces; /* number of target faces */
 } column_weights;
 
 /* Errors: MEMORY. */

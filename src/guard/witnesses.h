@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Rows of bits over the witnesses of a search: faces (or vertices) that stand for all of them. */
+/* Rows of bits over the witnesses of a search: faces (or vertices) that represent all of them. */
 #ifndef STARG_GUARD_WITNESSES_H
 #define STARG_GUARD_WITNESSES_H
 

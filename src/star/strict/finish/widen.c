@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Room for the guards of a partition whose number of pieces is final.
  *
- * Problem: a search for few pieces takes whatever kernel is left, however small. A guard close to
- * the plane of a face makes flat tetrahedra. The margin of a piece is the radius of the largest
- * ball in its kernel by the diagonal of its bounding box; the small margins are to grow, without a
- * piece more.
+ * Problem: a search for few pieces accepts any kernel, however small, but a guard close to the
+ * plane of a face makes flat tetrahedra. The margin of a piece is the radius of the largest ball in
+ * its kernel divided by the diagonal of its bounding box. Increase the small margins without adding
+ * a piece.
  *
  * Method: local search, the smallest margin first. The union of the piece with one or two
- * neighbours is cut by other planes into as many parts (star/strict/search/repartition.c), which
- * asks for the margin in advance: that of the goal, or else a multiple of the smallest ball there
- * was. A piece for which nothing is found is left until a neighbour has changed.
+ * neighbours is cut by other planes into as many parts (star/strict/search/repartition.c). That
+ * search requires the margin from the start: the goal, or else a multiple of the smallest ball so
+ * far. A piece without a solution is skipped until a neighbour changes.
  *
- * Invariants: those of the partition; a change makes the smallest ball of the pieces that it
- * touches larger. Cost: that of a trial of the search for each union; all in all `work`. */
+ * Invariants: those of the partition; a change enlarges the smallest ball of the pieces that it
+ * affects. Cost: a trial of the search for each union; `work` in total. */
 #include "star/strict/finish/widen.h"
 
 #include <math.h>
@@ -24,7 +24,7 @@
 #include "star/strict/partition/merge_coplanar.h"
 
 enum {
-    IDLE_MOST = 12, /* rounds in a row that bring nothing: then no more */
+    IDLE_MOST = 12, /* consecutive rounds without a change before it stops */
     RNG_STREAM = 78,
     UNION_MOST = 4,
     TRIPLES = 12,
@@ -32,7 +32,7 @@ enum {
     STEPS = 24
 };
 
-/* The margin that is enough, that to be asked for at once, and by what a ball has to grow. */
+/* The sufficient margin, the margin required at first, and the least growth of a ball. */
 static const double ENOUGH = 2e-3, GOAL = 4e-3, GROWTH = 1.25;
 
 typedef STARG_ARRAY(uint32_t) numbers;
@@ -40,8 +40,8 @@ typedef STARG_ARRAY(uint32_t) numbers;
 typedef struct widener {
     partition *p;
     region_scratch scratch;
-    uint64_t work, unions; /* looked at so far; unions tried */
-    numbers around;        /* of a piece: its neighbours     */
+    uint64_t work, unions; /* work so far; unions tried */
+    numbers around;        /* of a piece: its neighbours */
 } widener;
 
 typedef struct ranked_piece {
@@ -82,7 +82,7 @@ static bool holds(const uint32_t *list, size_t count, uint32_t number) {
     return false;
 }
 
-/* Appends the neighbours of a piece that are not among them yet. */
+/* Appends the neighbours of a piece that are not yet in the list. */
 static starg_status find_around(widener *w, uint32_t number) {
     starg_status status = STARG_OK;
     const partition *p = w->p;
@@ -95,7 +95,7 @@ done:
     return status;
 }
 
-/* Cuts the union anew with this margin. */
+/* Repartitions the union with this margin. */
 static starg_status cut_again(widener *w, const region *r, const uint32_t *pieces, size_t count,
                               double margin, bool *done) {
     starg_status status = STARG_OK;
@@ -139,7 +139,7 @@ static bool is_over(const widener *w) {
     return w->scratch.work >= w->work || starg_time_is_over(w->p->context);
 }
 
-/* With each neighbour, then with two of what is around. */
+/* Tries each neighbour, then two pieces around. */
 static starg_status widen_piece(widener *w, uint32_t number, bool *done) {
     starg_status status = STARG_OK;
     uint32_t set[UNION_MOST] = {number};
@@ -176,7 +176,7 @@ done:
 
 /* ---- rounds ---- */
 
-/* The pieces whose margins are not enough, the smallest first. */
+/* The pieces with insufficient margins, the smallest first. */
 static starg_status rank(const widener *w, ranked_piece *list, size_t *count) {
     *count = 0;
     for (uint32_t i = 0; i < w->p->pieces.count; i++) {

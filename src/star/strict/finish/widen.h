@@ -5,8 +5,8 @@
 
 #include "star/strict/partition/partition.h"
 
-/* Cuts unions of neighbours anew, as many pieces as before, so that the smallest balls in kernels
- * get larger; `work` bounds the vertices, facets and rows looked at. Ends when the time is over.
+/* Repartitions unions of neighbours, into as many pieces as before, so that the smallest balls in
+ * kernels grow; `work` bounds the vertices, facets and rows visited. Stops when time runs out.
  * Errors: MEMORY, CANCELLED. */
 starg_status widen(partition *p, uint64_t work);
 

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Carrying out a plan of cuts, with proof.
+/* Applies a plan of cuts, with proof.
  *
- * Stages: an extract of the partition (star/strict/partition/extract.c); there the pieces are
- * joined, and the union sliced; a guard for each new piece and the exact certificate for it; facets
- * of other pieces that were split on the way must still have the guard of their piece strictly
- * inside; then the extract returns, and numbers without facets are closed up.
+ * Stages: extract the pieces (star/strict/partition/extract.c); join them in the extract and slice
+ * the union; find a guard for each new piece and certify it exactly; check that facets of other
+ * pieces split on the way still have their guard strictly inside; return the extract and close gaps
+ * in the numbering.
  *
- * Invariants: the partition is either untouched or again as its invariants say. Cost: of a plan
+ * Invariants: the partition is either untouched or satisfies its invariants again. Cost: of a plan
  * that fails, linear in the facets of its pieces; of one that succeeds, a pass over all facets. */
 #include "star/strict/partition/apply.h"
 
@@ -23,7 +23,7 @@ enum { PARTS_MOST = FAN_TAKERS_MOST }; /* more than a cut makes */
 /* Pieces have the extract's numbers. */
 typedef struct change {
     partition_extract extract;
-    uint32_t parts[PARTS_MOST]; /* pieces that are new */
+    uint32_t parts[PARTS_MOST]; /* new pieces */
     size_t part_count;
     double margin;
     region_scratch *scratch;
@@ -31,8 +31,8 @@ typedef struct change {
 
 /* ---- numbers ---- */
 
-/* Pieces of the partition that are left without facets: the last numbers take the place of theirs,
- * the highest first, so that what moves is never one of them. The index is built again. */
+/* Removes pieces of the partition without facets: the last pieces take their numbers, the highest
+ * first, so that a removed piece is never moved. Rebuilds the index. */
 static starg_status drop_pieces(partition *p, const uint32_t *unused, size_t count,
                                 apply_effect *effect) {
     bool gone[APPLY_MOST] = {false};
@@ -51,7 +51,7 @@ static starg_status drop_pieces(partition *p, const uint32_t *unused, size_t cou
 
 /* ---- cuts ---- */
 
-/* Of pieces 0 to count - 1 of the extract. */
+/* Cuts the union of pieces 0 to count - 1 of the extract. */
 static starg_status cut(change *c, size_t count, const repartition_plan *plan, bool *done) {
     static const uint32_t numbers[APPLY_MOST] = {0, 1, 2, 3, 4};
     starg_status status = STARG_OK;
@@ -106,7 +106,7 @@ static bool is_new(const change *c, uint32_t number) {
     return false;
 }
 
-/* Split facets of pieces that the plan does not name: do their guards still see them? */
+/* Do the guards of pieces outside the plan still see those of their facets that were split? */
 static bool check_others(const change *c) {
     const partition *p = &c->extract.part;
     size_t old_points = c->extract.points.count;
@@ -160,7 +160,7 @@ done:
     return status;
 }
 
-/* ---- sharing out ---- */
+/* ---- fans ---- */
 
 static uint32_t place_of(const uint32_t *numbers, size_t count, uint32_t number) {
     uint32_t place = 0;
@@ -174,7 +174,7 @@ static int ascending(const void *x, const void *y) {
     return (a > b) - (a < b);
 }
 
-/* The plan with the numbers of the extract. */
+/* The plan in the numbers of the extract. */
 static starg_status translate(const change *c, const fan_plan *plan, fan_plan *out) {
     starg_status status = STARG_OK;
     const partition_extract *e = &c->extract;
@@ -196,7 +196,7 @@ done:
     return status;
 }
 
-/* The pieces of a plan, and those that take from them. */
+/* The pieces of a plan, and the takers. */
 static size_t list_concerned(const fan_plan *plan, uint32_t *out) {
     size_t count = 0;
     for (size_t i = 0; i < plan->piece_count; i++)
@@ -232,7 +232,7 @@ done:
 
 /* ---- joining ---- */
 
-/* The facets of two pieces without those between them. */
+/* The facets of two pieces except those between them. */
 static starg_status gather_union(const partition *p, uint32_t a, uint32_t b,
                                  partition_triangles *out) {
     starg_status status = STARG_OK;
@@ -251,8 +251,8 @@ done:
     return status;
 }
 
-/* The largest ball from which all of two pieces is seen. Most pairs have none, and mostly some of
- * their facets tell. */
+/* The largest ball in the common kernel of two pieces. Most pairs have none, and usually a sample
+ * of their facets already shows this. */
 static starg_status find_common_ball(const partition *p, const uint32_t pair[2], double margin,
                                      region_scratch *scratch, double center[3], double *radius) {
     static const uint32_t most[] = {256, 8192, UINT32_MAX};

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Triangles that fill what plane edges wind around.
+/* Triangulates the region that edges in a plane enclose.
  *
  * Problem: a plane meets the surface of a piece in a planar straight-line graph: loops, perhaps
- * nested, that may meet in vertices, edges and vertices in which the surface only touches the
- * plane. Fill what is inside of the piece with triangles on the vertices of the graph.
+ * nested, that may share vertices, and edges and vertices in which the surface only touches the
+ * plane. Fill the region inside the piece with triangles on the vertices of the graph.
  *
- * Method: all is seen along the axis that the normal is nearest to, where signs are exact. A
- * constrained triangulation of the graph (geometry/constrained.c); the winding number, 0 outside,
- * changes from triangle to triangle only across edges of the graph, by what the surface says; the
+ * Method: project along the axis closest to the normal, where signs are exact. Build a constrained
+ * triangulation of the graph (geometry/constrained.c). The winding number, 0 outside, changes
+ * between triangles only across edges of the graph, by an amount that the surface gives; the
  * triangles of winding number 1 are the cap.
  *
- * Invariants: the triangles' boundary is the chain of the edges, whatever happens. Rounding of the
- * vertices off their plane may make edges cross: then there is no cap. Cost: that of the
+ * Invariants: the boundary of the triangles is always the chain of the edges. If vertices are
+ * rounded off their plane, edges may cross: then there is no cap. Cost: that of the
  * triangulation. */
 #include "star/strict/partition/cap.h"
 
@@ -36,7 +36,7 @@ typedef struct winder {
     cap_indices stack;
 } winder;
 
-/* Gives a triangle the number that it has as seen across one of its edges. */
+/* Sets the winding number of a triangle, as seen across one of its edges; it must be consistent. */
 static starg_status give(winder *w, uint32_t number, int32_t winding, bool *done) {
     starg_status status = STARG_OK;
     if (w->winding[number] != UNKNOWN) {

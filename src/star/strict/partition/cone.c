@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A partition as tetrahedra: every piece is the union of the tetrahedra that its facets span with
  * its guard. They do not overlap, because each ray from the guard leaves the piece once, and they
- * share faces because the facets of all pieces are the same triangles. Cost: linear. */
+ * share faces, because all pieces share the same facets. Cost: linear. */
 #include "star/strict/partition/cone.h"
 
 #include <string.h>
@@ -33,7 +33,7 @@ static void number_points(coner *c) {
         vec3_copy(c->p->pieces.data[i].guard, c->vertices + 3 * c->vertex_count++);
 }
 
-/* The facet is seen from the guard's side clockwise: two corners change places. */
+/* The guard sees the facet clockwise: swaps two corners. */
 static void put(const coner *c, size_t at, uint32_t entry, size_t owner) {
     uint32_t corners[3], *to = c->tetrahedra + 4 * at;
     facet_outward(&c->p->facets.data[entry / 2], (int)(entry % 2), corners);

@@ -5,9 +5,9 @@
 
 #include "star/strict/partition/partition.h"
 
-/* One tetrahedron for each facet of each piece, with the piece's guard as its fourth vertex: all
- * are positive because the guard is strictly inside of the facet. Points come first, in their
- * order, then the guards. `labels` (a block of the context) has the piece of each tetrahedron.
+/* One tetrahedron for each facet of each piece, with the piece's guard as its fourth vertex; all
+ * are positive because the guard is strictly inside the facet's plane. Points come first, in their
+ * order, then the guards. `labels` (a block of the context) holds the piece of each tetrahedron.
  * Errors: MEMORY. */
 starg_status cone_all(const partition *p, starg_tetmesh **mesh, int32_t **labels);
 

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Some pieces of a partition as a partition of their own, on which a change can be tried.
+/* Extracts some pieces as a partition of their own, on which a change can be tried.
  *
- * Problem: a change of a few pieces can fail, in the cut or in the proof, and most do; the rest of
- * the partition should neither be copied nor visited for it.
+ * Problem: most changes of a few pieces fail, in the cut or in the proof; trying one should neither
+ * copy nor visit the rest of the partition.
  *
- * Stages: the facets of the pieces; the facets of other pieces at two of their vertices, for a cut
- * that splits an edge splits them too; then points, planes and pieces get numbers of their own. On
- * the way back facets take the places of those that were taken.
+ * Stages: collect the facets of the pieces; the facets of other pieces at two of their vertices,
+ * because a cut that splits an edge splits these too; then renumber points, planes and pieces. On
+ * return, facets replace those that were extracted.
  *
- * Invariants: facets, and what they refer to, keep their order. Cost: of the extract, linear in its
- * facets and in those at its vertices, but for sorting; of the way back, a pass over the facets of
- * the partition. */
+ * Invariants: facets, and what they refer to, keep their order. Cost: the extract is linear in its
+ * facets and those at its vertices, except for sorting; the return is a pass over the facets of the
+ * partition. */
 #include "star/strict/partition/extract.h"
 
 #include <stdlib.h>
@@ -28,7 +28,7 @@ void extract_free(partition_extract *e) {
 
 typedef struct extractor {
     const partition *p;
-    region_scratch *scratch; /* its tables: 1 + number in the part, 0: not in it */
+    region_scratch *scratch; /* its tables: 1 + number in the part, 0: absent */
     partition_extract *e;
 } extractor;
 
@@ -84,7 +84,8 @@ done:
     return status;
 }
 
-/* Is a facet of none of the pieces, at two of their vertices, of which `corner` is the first? */
+/* Does a facet belong to none of the pieces but have two of their vertices, `corner` being the
+ * first? */
 static bool is_beside(const extractor *x, const facet *f, uint32_t corner) {
     int shared = 0;
     if (is_named(x, f->side[0]) || is_named(x, f->side[1]))
@@ -208,7 +209,7 @@ done:
     return status;
 }
 
-/* ---- the way back ---- */
+/* ---- return ---- */
 
 static starg_status number_new(partition_extract *e, partition *p) {
     starg_status status = STARG_OK;
@@ -244,7 +245,7 @@ static facet in_the_whole(const partition_extract *e, size_t number) {
     return f;
 }
 
-/* Takes out the facets whose numbers are listed from `first` on, and closes up. */
+/* Removes the facets whose numbers are listed from `first` on, and compacts the rest. */
 static void drop_facets(const partition_extract *e, size_t first, partition *p) {
     size_t kept = first < e->facets.count ? e->facets.data[first] : p->facets.count;
     for (size_t i = kept; i < p->facets.count; i++)

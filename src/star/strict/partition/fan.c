@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pieces shared out by a fan of triangles.
+/* Distributes pieces by a fan of triangles.
  *
- * Stages: facets between the pieces go; each facet of their union changes hands; along every edge
- * whose two facets have gone to different takers, a triangle from the edge to the apex comes
- * between these; facets between a piece and its own taker go.
+ * Stages: remove facets between the pieces; assign each facet of their union to its taker; along
+ * every edge whose two facets go to different takers, add a triangle from the edge to the apex
+ * between these; remove facets between a piece and its own taker.
  *
- * Invariants: no facet and no edge is split, so that no other piece is concerned; every surface
+ * Invariants: no facet and no edge is split, so that no other piece is affected; every surface
  * stays closed. Cost: linear in the facets of the partition. */
 #include "star/strict/partition/fan.h"
 
@@ -13,7 +13,7 @@
 
 #include "geometry/vec3.h"
 
-/* An edge of the union, from a to b in the facet that goes to `taker`. */
+/* An edge of the union, from a to b in the facet that `taker` receives. */
 typedef struct fan_edge {
     uint32_t a, b;
     uint8_t taker;
@@ -41,7 +41,7 @@ done:
     return status;
 }
 
-/* Both directions of an edge next to each other. */
+/* Sorts both directions of an edge next to each other. */
 static int compare_edges(const void *left, const void *right) {
     const fan_edge *x = left, *y = right;
     int order = partition_compare_edges(x->a, x->b, y->a, y->b);
@@ -55,7 +55,7 @@ static bool is_piece(const fan_plan *plan, uint32_t number) {
     return false;
 }
 
-/* What lies between two of the pieces is marked by the same number on both sides. */
+/* Facets between two of the pieces get the same number on both sides. */
 static void hand_over(partition *p, const fan_plan *plan) {
     for (size_t i = 0; i < p->facets.count; i++) {
         facet *f = &p->facets.data[i];

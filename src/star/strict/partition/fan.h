@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Pieces shared out by a fan of triangles. */
+/* Distributes pieces by a fan of triangles. */
 #ifndef STARG_STAR_STRICT_PARTITION_FAN_H
 #define STARG_STAR_STRICT_PARTITION_FAN_H
 
@@ -8,21 +8,21 @@
 enum { FAN_PIECES_MOST = 4, FAN_TAKERS_MOST = 24 };
 
 /* Every facet of the pieces' union goes to a taker, together with the tetrahedron between it and
- * the apex. Takers are neighbours, or the first `kept` pieces, which so are made anew. */
+ * the apex. Takers are neighbours, or the first `kept` pieces, which are thereby replaced. */
 typedef struct fan_plan {
     uint32_t pieces[FAN_PIECES_MOST];
     size_t piece_count, kept;
-    uint32_t takers[FAN_TAKERS_MOST]; /* each takes something */
+    uint32_t takers[FAN_TAKERS_MOST]; /* each receives something */
     size_t taker_count;
     double apex[3];                /* in unit coordinates */
     STARG_ARRAY(uint32_t) entries; /* of the union's surface: 2 * facet + side */
-    STARG_ARRAY(uint8_t) takes;    /* for each: which of the takers */
+    STARG_ARRAY(uint8_t) takes;    /* for each: the index of its taker */
 } fan_plan;
 
 void fan_plan_free(starg_context *context, fan_plan *plan);
 
-/* Carries it out on the partition for which it was made. Proves nothing. Pieces that are not kept
- * are left without facets, and the index is out of date. Errors: MEMORY. */
+/* Applies the plan to the partition for which it was made, without proof. Pieces that are not kept
+ * end up without facets, and the index becomes stale. Errors: MEMORY. */
 starg_status partition_fan(partition *p, const fan_plan *plan);
 
 #endif

@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Coplanar merge: undoes splits of facets that no cut needs any more.
+/* Coplanar merge: undoes splits of facets that no cut needs any longer.
  *
  * Problem: a cut splits the facets that it meets, and the splits remain when later cuts replace it.
  * They cost time and cause slivers.
  *
- * Stages: facets of one plane with the same piece on either side form a group; the border of a
- * group are its edges that no other facet of it has the other way round. A vertex that cuts have
- * made is needed unless all borders through it run between the same two neighbours, straight on (it
- * was put on an edge that has become a seam of planes), or no border passes. Each group's border,
- * without the vertices that are not needed, is filled anew (star/strict/partition/cap.c), with the
- * edges and vertices inside of it in which another group's border touches it (seams): they are
- * needed, and stay. A group whose border touches itself, or that cannot be filled, stays as it is
- * and needs all of its vertices. At last the certificate.
+ * Stages: group the coplanar facets with the same piece on either side; the border of a group
+ * consists of its edges that occur in one direction only. A vertex made by cuts is needed unless
+ * all borders through it run straight on between the same two neighbours (it was inserted on an
+ * edge that is now a seam of planes), or no border passes. Each group's border, without the
+ * vertices that are not needed, is triangulated again (star/strict/partition/cap.c), with the inner
+ * edges and vertices that another group's border touches (seams): these are needed, and stay. A
+ * group whose border touches itself, or whose triangulation fails, stays as it is and needs all of
+ * its vertices. Finally, certify.
  *
- * Invariants: a vertex is left out of all facets or of none, so that every surface stays closed.
+ * Invariants: a vertex is removed from all facets or from none, so that every surface stays closed.
  *
- * Cost: n log n for sorting, and that of the fillings. */
+ * Cost: n log n for sorting, plus the triangulations. */
 #include "star/strict/partition/merge_coplanar.h"
 
 #include <stdlib.h>
@@ -34,7 +34,7 @@ typedef struct group {
     uint32_t first, count; /* facets */
     uint32_t border_first, border_count;
     uint32_t seam_first, seam_count;
-    bool kept; /* stays as it is */
+    bool kept; /* keeps its facets */
 } group;
 
 typedef struct tidier {
@@ -44,8 +44,8 @@ typedef struct tidier {
     STARG_ARRAY(border) seams;   /* by group */
     uint32_t (*around)[2];       /* per vertex: its neighbours along borders, or NONE */
     bool *needed;                /* per vertex */
-    STARG_ARRAY(facet) facets;   /* made anew */
-    cap_edges edges;             /* of the filling under way */
+    STARG_ARRAY(facet) facets;   /* the new facets */
+    cap_edges edges;             /* of the current triangulation */
     cap_indices loose, triangles;
     bool *visited; /* per border edge */
 } tidier;
@@ -62,7 +62,7 @@ static int by_group(const void *x, const void *y) {
         return a->side[0] < b->side[0] ? -1 : 1;
     if (a->side[1] != b->side[1])
         return a->side[1] < b->side[1] ? -1 : 1;
-    /* the rest makes the order the same everywhere */
+    /* the remaining keys make the order deterministic */
     return memcmp(a->corners, b->corners, sizeof a->corners);
 }
 
@@ -156,7 +156,7 @@ static int by_edge_and_group(const void *x, const void *y) {
     return a->group != b->group ? (a->group < b->group ? -1 : 1) : by_edge(x, y);
 }
 
-/* Tells the edges of other groups, and of its own, what lies on a border. */
+/* Marks inner edges that lie on a border, of their own group or of another. */
 static void meet_border(inner_edge *inner, size_t count, const border *edge) {
     const inner_edge key = {.edge = *edge};
     inner_edge *at = bsearch(&key, inner, count, sizeof *inner, by_inner_edge),
@@ -170,7 +170,7 @@ static void meet_border(inner_edge *inner, size_t count, const border *edge) {
             at->other = true;
 }
 
-/* Edges inside of one group that are on the border of another one. */
+/* Edges inside one group that are on the border of another. */
 static starg_status find_seams(tidier *t) {
     starg_status status = STARG_OK;
     STARG_ARRAY(inner_edge) inner = {0};
@@ -202,7 +202,7 @@ done:
     return status;
 }
 
-/* ---- vertices that are needed ---- */
+/* ---- needed vertices ---- */
 
 static void meet(tidier *t, uint32_t vertex, uint32_t neighbour) {
     uint32_t *around = t->around[vertex];
@@ -327,7 +327,7 @@ done:
     return status;
 }
 
-/* *again: some group has turned out to need all of its vertices. */
+/* *again: some group turned out to need all of its vertices. */
 static starg_status fill_all(tidier *t, bool *again) {
     starg_status status = STARG_OK;
     *again = false;
@@ -355,7 +355,7 @@ done:
     return status;
 }
 
-/* Planes of cuts that no facet lies in go. */
+/* Removes cut planes that contain no facet. */
 static starg_status drop_planes(partition *p) {
     starg_status status = STARG_OK;
     uint32_t *number = NULL;
@@ -377,7 +377,7 @@ done:
     return status;
 }
 
-/* Points made by cuts that no facet uses go. */
+/* Removes points made by cuts that no facet uses. */
 static starg_status drop_points(partition *p) {
     starg_status status = STARG_OK;
     uint32_t *number = NULL;

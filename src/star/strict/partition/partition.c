@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A solid in pieces: building it, copying it, finding the facets of a piece.
+/* A solid divided into pieces: construction, copies, and the facets of a piece.
  *
  * Why surfaces and not sets of tetrahedra: whether a piece is star-shaped depends on its boundary
- * alone, and a star-shaped piece with its guard is a set of tetrahedra already (each facet with the
- * guard). So inner tetrahedra are needed neither to search nor to write a result; a flat cut is a
- * polygon, not a layer of split tetrahedra.
+ * alone, and a star-shaped piece with its guard already defines a set of tetrahedra (each facet
+ * with the guard). So neither the search nor the output needs inner tetrahedra, and a planar cut is
+ * a polygon instead of a layer of split tetrahedra.
  *
- * Why the pieces are then proven to be a partition: every facet has one piece on its inner side and
- * another one, or the outside, on its outer side. So the winding numbers of all pieces' surfaces
- * add up to that of the outer facets, which is 1 inside the solid and 0 outside. A piece whose
- * guard is strictly inside of all its facets and is wound around once has winding number 1 inside
+ * Why the pieces form a partition: every facet has one piece on its inner side and another one, or
+ * the outside, on its outer side. So the winding numbers of all pieces' surfaces add up to that of
+ * the outer facets, which is 1 inside the solid and 0 outside. A piece whose guard is strictly
+ * inside all its facets, and whose surface winds around the guard once, has winding number 1 inside
  * itself and 0 elsewhere (visibility/kernel.c). Hence every point of the solid off the facets lies
  * in exactly one piece, and no other point in any.
  *
@@ -47,7 +47,7 @@ done:
     return status;
 }
 
-/* Of the points that `count` corners name. */
+/* The frame of the points that `count` corners name. */
 static void find_frame(const double *vertices, const uint32_t *corners, size_t count,
                        partition *p) {
     double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -65,7 +65,7 @@ static void find_frame(const double *vertices, const uint32_t *corners, size_t c
     frexp(extent, &p->exponent);
 }
 
-/* Points for the vertices whose number is not NONE, which gets that of the point. */
+/* Adds points for the vertices whose number is not NONE, and sets that number. */
 static starg_status add_points(partition *p, const double *vertices, size_t count,
                                uint32_t *numbers) {
     starg_status status = STARG_OK;
@@ -282,7 +282,7 @@ starg_status partition_build_index(partition *p) {
     size_t pieces = p->pieces.count;
     FIT_ARRAY(p->context, &p->start, pieces + 2);
     memset(p->start.data, 0, (pieces + 2) * sizeof *p->start.data);
-    /* counted one place further on, so that filling leaves each start where it belongs */
+    /* counted one place ahead, so that filling restores each start */
     uint32_t total = 0, *start = p->start.data;
     for (size_t i = 0; i < 2 * p->facets.count; i++) {
         uint32_t owner = p->facets.data[i / 2].side[i % 2];

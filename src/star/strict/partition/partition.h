@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* A solid in pieces, each given by its closed surface: triangles in space, every one with what lies
- * on either side of it. */
+/* A solid divided into pieces, each given by its closed surface: triangles in space, each with the
+ * pieces on its two sides. */
 #ifndef STARG_STAR_STRICT_PARTITION_PARTITION_H
 #define STARG_STAR_STRICT_PARTITION_PARTITION_H
 
@@ -21,11 +21,11 @@ enum { FACET_INNER = 0, FACET_OUTER = 1 };
 /* The end of a list of corners. */
 #define PARTITION_NO_CORNER UINT32_MAX
 
-/* What lies beyond the surface of the solid. */
+/* The exterior of the solid. */
 #define PARTITION_OUTSIDE UINT32_MAX
 
-/* A triangle, counter-clockwise seen from side[FACET_OUTER]. Facets that a cut has made of one
- * larger facet keep the plane of that. */
+/* A triangle, counter-clockwise seen from side[FACET_OUTER]. Facets split by a cut keep the plane
+ * of their parent. */
 typedef struct facet {
     uint32_t corners[3];
     uint32_t side[2]; /* pieces, or OUTSIDE for the outer one */
@@ -33,24 +33,25 @@ typedef struct facet {
 } facet;
 
 typedef struct piece {
-    double guard[3];  /* in the coordinates of the solid; certified                          */
-    double radius;    /* of the ball about it in the kernel, in unit coordinates; rounded     */
-    double volume;    /* in unit coordinates                                                  */
-    uint64_t stamp;   /* changes whenever the piece does                                      */
+    double guard[3];  /* in the coordinates of the solid; certified */
+    double radius;    /* of the ball around it in the kernel, in unit coordinates; rounded */
+    double volume;    /* in unit coordinates */
+    uint64_t stamp;   /* changes whenever the piece does */
     uint64_t checked; /* partition's stamps when its union with each neighbour was last tried */
 } piece;
 
-/* Invariants between operations: every piece's surface is closed, and its guard is strictly on the
- * inner side of each of its facets and is wound around once, exactly. No piece number is unused. */
+/* Invariants between operations: every piece's surface is closed, its guard is strictly on the
+ * inner side of each of its facets, and the surface winds around it once, exactly. No piece number
+ * is unused. */
 typedef struct partition {
     starg_context *context;
-    /* Unit coordinates are (p - origin) / 2^exponent: the solid about fills [-1/2, 1/2]^3. They
+    /* Unit coordinates are (p - origin) / 2^exponent: the solid roughly fills [-1/2, 1/2]^3. They
      * serve the search; signs are decided on the points. */
     double origin[3];
     int exponent;
     STARG_ARRAY(double) points; /* x 3, in the coordinates of the solid */
-    STARG_ARRAY(double) unit;   /* x 3, the same in unit coordinates    */
-    size_t first_points;        /* those before any cut: the first ones */
+    STARG_ARRAY(double) unit;   /* x 3, the same in unit coordinates */
+    size_t first_points;        /* those that precede any cut */
     STARG_ARRAY(partition_plane) planes;
     size_t first_planes; /* likewise */
     STARG_ARRAY(facet) facets;
@@ -62,8 +63,8 @@ typedef struct partition {
     STARG_ARRAY(uint32_t) start;
     STARG_ARRAY(uint32_t) index;
 
-    /* Corner k of facet f is 3 * f + k. Those at point i are a list: first_at[i], then next_at of
-     * each, until there is none. */
+    /* Corner k of facet f is 3 * f + k. Those at point i form a list: first_at[i], then next_at of
+     * each, to the end. */
     STARG_ARRAY(uint32_t) first_at;
     STARG_ARRAY(uint32_t) next_at;
 } partition;
@@ -96,10 +97,10 @@ starg_status partition_copy(const partition *from, partition *to);
 /* Fills start and index, and the lists of corners. Errors: MEMORY. */
 starg_status partition_build_index(partition *p);
 
-/* Appends a point in the solid's coordinates; its number. Errors: MEMORY. */
+/* Appends a point in the solid's coordinates; returns its number. Errors: MEMORY. */
 starg_status partition_add_point(partition *p, const double point[3], uint32_t *vertex);
 
-/* Order of edges by their ends, whichever of the two comes first: 0 for the same edge. */
+/* Order of edges by their ends, in either direction: 0 for the same edge. */
 static inline int partition_compare_edges(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     uint32_t low[2] = {a < b ? a : b, c < d ? c : d}, high[2] = {a < b ? b : a, c < d ? d : c};
     if (low[0] != low[1])
@@ -107,11 +108,10 @@ static inline int partition_compare_edges(uint32_t a, uint32_t b, uint32_t c, ui
     return (high[0] > high[1]) - (high[0] < high[1]);
 }
 
-/* Of three vertices, counter-clockwise seen from where the normal points. */
+/* The plane of three vertices, which are counter-clockwise seen from where the normal points. */
 void partition_plane_of(const partition *p, const uint32_t corners[3], partition_plane *plane);
 
-/* Corners of a facet of piece side s in the order that is counter-clockwise from outside of that
- * piece. */
+/* Corners of a facet of piece side s, counter-clockwise from outside that piece. */
 static inline void facet_outward(const facet *f, int side, uint32_t corners[3]) {
     corners[0] = f->corners[0];
     corners[1] = f->corners[side == FACET_INNER ? 1 : 2];
@@ -122,10 +122,10 @@ static inline void facet_outward(const facet *f, int side, uint32_t corners[3]) 
 typedef STARG_ARRAY(uint32_t) partition_triangles;
 starg_status partition_gather(const partition *p, uint32_t number, partition_triangles *triangles);
 
-/* Volume inside of closed triangles, in unit coordinates. */
+/* The volume enclosed by closed triangles, in unit coordinates. */
 double partition_volume(const partition *p, const uint32_t *triangles, size_t count);
 
-/* Piece `from`, the last one, takes over the number `to`, which has no facets any more. */
+/* Gives the last piece, `from`, the number `to`, whose piece no longer has facets. */
 void partition_renumber(partition *p, uint32_t from, uint32_t to);
 
 /* Is the guard strictly inside each of the `count` triangles, and do they wind around it once?

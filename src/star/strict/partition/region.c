@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Star-shaped parts of a union of pieces, without touching it.
+/* Star-shaped parts of a union of pieces, without modifying it.
  *
- * Problem: along a direction n, how far up can a plane {n . x = s} move so that the part of a
- * region below it is still strictly star-shaped? The part below is bounded by the plane and by
- * those triangles of the surface that have a vertex below; so its kernel is the set of points
- * inside of the plane and of their planes ("rows"). A row counts from the height of its lowest
- * vertex on.
+ * Problem: along a direction n, what is the highest plane {n . x = s} such that the part of a
+ * region below it is still strictly star-shaped? The part below is bounded by the plane and by the
+ * triangles of the surface that have a vertex below; so its kernel is the set of points inside the
+ * plane and inside the planes of these triangles ("rows"). A row is active above the height of its
+ * lowest vertex.
  *
- * Method: a cutting-plane loop. A few rows are in a linear program for the centre of the largest
- * ball; of all rows that count below the bound on s (at first none), the one that the centre is
- * farthest out of joins them. When the program leaves less room than the margin, its tight rows
- * alone allow no more: the highest of them cannot count, so the bound falls to where it begins, and
- * it leaves. The plane itself is one of the rows and moves with the bound. At the end the centre is
- * inside of all rows that count below the bound.
+ * Method: a cutting-plane loop. A linear program over a few rows finds the centre of the largest
+ * ball; of all rows active below the bound on s (initially unbounded), the one that the centre
+ * violates most is added. If the program leaves less room than the margin, its tight rows alone
+ * allow no more: the highest of them cannot be active, so the bound falls to where it starts, and
+ * the row is removed. The plane itself is one of the rows and moves with the bound. At the end the
+ * centre is inside all rows that are active below the bound.
  *
- * Invariants: rounded throughout; what is found is proven later on the cut mesh. Heights never
- * exceed what the tight rows allow, so the answer is the highest s but for rounding and for sides
+ * Invariants: everything is rounded; results are proven later on the cut mesh. Heights never exceed
+ * what the tight rows allow, so the answer is the highest s, except for rounding and for sides
  * whose kernel is empty at the highest s only.
  *
  * Cost: linear in the rows for each round of the loop; 5 to 20 rounds as a rule. */
@@ -146,7 +146,7 @@ done:
     return status;
 }
 
-/* From one facet of a piece that is looked at to the next. */
+/* The stride between the visited facets of a piece. */
 static uint32_t stride_of(const partition *p, uint32_t number, uint32_t most) {
     uint32_t facets = p->start.data[number + 1] - p->start.data[number];
     return facets > most ? facets / most : 1;
@@ -166,7 +166,7 @@ static void forget(const partition *p, const uint32_t *pieces, size_t count, uin
         }
 }
 
-/* The rows in blocks, the last one filled up with rows that nothing violates. */
+/* The rows in blocks; the last block is padded with rows that nothing violates. */
 static starg_status make_blocks(starg_context *context, region *r) {
     starg_status status = STARG_OK;
     size_t rows = r->rows.count / ROW, blocks = (rows + SCAN_BLOCK - 1) / SCAN_BLOCK;
@@ -364,19 +364,19 @@ done:
 
 static const uint32_t THE_PLANE = UINT32_MAX - 1;
 
-/* The search for a ball among the rows that count below the bound. */
+/* The search for a ball among the rows that are active below the bound. */
 typedef struct ball_search {
     const region *r;
-    const double *normal; /* of the plane; NULL: there is none */
+    const double *normal; /* of the plane; NULL: none */
     const double *lowest; /* of rows along it */
     double bound;
     largest_ball ball;
-    size_t at; /* the block of rows where the last violated one was begins there */
+    size_t at; /* first entry of the block of the last violated row */
     uint64_t *work;
 } ball_search;
 
-/* A row that the ball's centre is less than `room` inside of: the worst of the first block that has
- * one, from where the last one was. False when there is none. */
+/* A row whose plane is closer to the ball's centre than `room`, or violated: the worst of the first
+ * block that has one, starting from the last one found. False if there is none. */
 static bool find_violated(ball_search *w, double room, uint32_t *worst) {
     size_t blocks = w->r->blocks.count / SCAN_SIZE;
     for (size_t seen = 0; seen < blocks; seen++) {
@@ -397,7 +397,7 @@ static bool plane_is_violated(const ball_search *w, double room) {
            w->bound - vec3_dot(w->normal, w->ball.center) < room;
 }
 
-/* Adds what the ball violates by `room`: 1 when something was, 0 when nothing is, -1 on failure. */
+/* Adds the row that the ball violates by `room`: 1 if there was one, 0 if not, -1 on failure. */
 static int add_violated(ball_search *w, double room) {
     if (plane_is_violated(w, room))
         return largest_ball_add(&w->ball, w->normal, w->bound, THE_PLANE) ? 1 : -1;
@@ -408,7 +408,7 @@ static int add_violated(ball_search *w, double room) {
     return largest_ball_add(&w->ball, row, row[3], worst) ? 1 : -1;
 }
 
-/* Where the highest of the rows that hold the ball begins to count. */
+/* The start of the highest row that confines the ball. */
 static double highest_tight(const ball_search *w) {
     double highest = -INFINITY;
     for (int k = 0; k < 4; k++)
@@ -417,7 +417,7 @@ static double highest_tight(const ball_search *w) {
     return highest;
 }
 
-/* Rows that no longer count leave, the plane goes where the bound is. */
+/* Removes rows that are no longer active, and moves the plane to the bound. */
 static void lower_bound_to(ball_search *w, double bound) {
     w->bound = bound;
     for (int k = 0; k < 4; k++) {
@@ -474,7 +474,7 @@ done:
     return status;
 }
 
-/* Distances of vertices from a point in the place of heights. */
+/* Distances of vertices from a point, in place of heights. */
 static starg_status find_distances(const region *r, const double center[3],
                                    region_scratch *scratch) {
     starg_status status = STARG_OK;

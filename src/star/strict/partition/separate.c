@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Connected parts of a piece made pieces of their own.
+/* Splits a piece into its connected parts.
  *
- * Stages: facets with an edge in common are in one part (edges listed by their lower ends,
- * union-find); parts numbered in the order of the facets; their volumes: a negative one is the
- * surface of a cavity; facets change hands. Parts that only touch, at a vertex, are two: nothing
- * inside of both sees all around it, and no plane that leaves the vertex on one side would part
- * them.
+ * Stages: facets that share an edge are in one part (edges listed by their lower ends, union-find);
+ * number the parts in the order of the facets; compute their volumes: a negative one is the surface
+ * of a cavity; reassign the facets. Parts that only touch at a vertex are separate: no point inside
+ * either sees all around the vertex, and no plane with the vertex on one side separates them.
  *
  * Cost: linear in the points of the partition and the facets of the piece. */
 #include "star/strict/partition/separate.h"
@@ -14,7 +13,7 @@
 
 #include "geometry/vec3.h"
 
-/* Of a facet of the piece, which are numbered from 0 in the order of the index. */
+/* An edge of a facet of the piece; facets are numbered from 0 in the order of the index. */
 typedef struct facet_edge {
     uint32_t high, facet; /* the higher of its ends */
 } facet_edge;
@@ -23,8 +22,8 @@ typedef struct separator {
     partition *p;
     uint32_t number;
     size_t count;      /* facets */
-    uint32_t *start;   /* by vertex: where the edges begin whose lower end it is */
-    facet_edge *edges; /* by their lower ends, and then by their higher ones */
+    uint32_t *start;   /* by vertex: its first edge, as the lower end */
+    facet_edge *edges; /* by lower end, then by higher end */
     uint32_t *leader;  /* by facet */
     uint32_t *part;    /* by leading facet: 1 + part, 0: none yet */
     STARG_ARRAY(double) volumes;
@@ -46,7 +45,7 @@ static uint32_t low_end(const uint32_t *c, int k) {
     return c[k] < c[(k + 1) % 3] ? c[k] : c[(k + 1) % 3];
 }
 
-/* Counted by the lower end, which has few as a rule, and sorted among those. */
+/* Counting sort by the lower end, which usually has few edges; these are sorted directly. */
 static starg_status list_edges(separator *s) {
     starg_status status = STARG_OK;
     size_t vertices = s->p->points.count / 3;
@@ -56,7 +55,7 @@ static starg_status list_edges(separator *s) {
         s->start[low_end(corners_of(s, i / 3), (int)(i % 3)) + 2]++;
     for (size_t v = 2; v < vertices + 2; v++)
         s->start[v] += s->start[v - 1];
-    /* one place further on, so that filling leaves each start where it belongs */
+    /* one place ahead, so that filling restores each start */
     for (size_t i = 0; i < 3 * s->count; i++) {
         const uint32_t *c = corners_of(s, i / 3);
         int k = (int)(i % 3);

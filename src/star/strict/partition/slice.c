@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Cutting a piece of a partition by a plane.
+/* Cuts a piece of a partition by a plane.
  *
- * Stages: on which side of the plane each vertex of the piece lies, or whether it is on it; a new
- * vertex on every edge of the piece that the plane crosses; all facets at those edges are split, so
- * that the partition stays conforming; facets of the piece above the plane change hands, those that
- * lie in it by what they bound; the edges and vertices in the plane of all other facets of the
- * piece are a planar straight-line graph, and the edges of the lower part that no other facet of it
- * has the other way round bound its cap (star/strict/partition/cap.c).
+ * Stages: classify each vertex of the piece as above, below or on the plane; put a new vertex on
+ * every edge of the piece that the plane crosses; split all facets at those edges, so that the
+ * partition stays conforming; reassign facets of the piece above the plane, and those in the plane
+ * according to what they bound. The edges and vertices in the plane of all other facets of the
+ * piece form a planar straight-line graph; the edges of the lower part that occur in one direction
+ * only bound its cap (star/strict/partition/cap.c).
  *
- * So there are no cases: the plane may go through vertices, along edges and through facets, loops
- * may meet, and the surface may touch itself in edges and vertices, or the plane.
+ * So there are no special cases: the plane may pass through vertices, along edges and through
+ * facets, loops may meet, and the surface may touch itself or the plane in edges and vertices.
  *
- * Invariants: a split edge is split in all its facets; every new vertex is where the two ends of
- * its edge say, whichever facet asks; every surface stays closed. New vertices are rounded: they
- * lie off their edges, and off the plane, by as much as the numbers allow, which is what may make
- * edges of the graph cross; then there is no cut.
+ * Invariants: a split edge is split in all its facets; the position of a new vertex depends only on
+ * the ends of its edge; every surface stays closed. New vertices are rounded, so they lie off their
+ * edges and off the plane by the rounding error. This may make edges of the graph cross; then there
+ * is no cut.
  *
- * Cost: linear in the facets of the partition, and that of the cap. */
+ * Cost: linear in the facets of the partition, plus the cap. */
 #include "star/strict/partition/slice.h"
 
 #include <float.h>
@@ -60,7 +60,7 @@ typedef struct slicer {
     partition *p;
     uint32_t low, high;
     partition_plane plane;
-    double on;      /* so near to the plane is on it */
+    double on;      /* vertices closer to the plane count as on it */
     double *height; /* per vertex: above the plane; 0: on it, or not a vertex of the piece */
     size_t old_vertices;
     STARG_ARRAY(crossing) crossings;
@@ -80,7 +80,7 @@ static int side_of_piece(const slicer *s, const facet *f) {
     return -1;
 }
 
-/* New vertices are off the planes that they are meant to be on by a rounding of coordinates. */
+/* New vertices deviate from their planes by the rounding of coordinates. */
 static double find_tolerance(const partition *p) {
     double largest = 0;
     for (int k = 0; k < 3; k++)
@@ -97,7 +97,7 @@ static double height_of(const slicer *s, uint32_t vertex) {
     return vertex < s->old_vertices ? s->height[vertex] : 0;
 }
 
-/* 1 when a facet that the plane does not cross is above it, -1 below, 0 in it. */
+/* 1 if a facet that the plane does not cross is above it, -1 below, 0 in it. */
 static int side_of_plane(const slicer *s, const facet *f) {
     for (int k = 0; k < 3; k++) {
         double height = height_of(s, f->corners[k]);
@@ -107,7 +107,7 @@ static int side_of_plane(const slicer *s, const facet *f) {
     return 0;
 }
 
-/* False when all of the piece is on one side. `nodes` is as many as crossings are at most. */
+/* False if all of the piece is on one side. `nodes` bounds the number of crossings. */
 static bool find_heights(slicer *s, size_t *nodes) {
     bool above = false, below = false;
     *nodes = 0;
@@ -201,8 +201,8 @@ static double gap(const slicer *s, uint32_t a, uint32_t b) {
     return vec3_distance_squared(partition_unit(s->p, a), partition_unit(s->p, b));
 }
 
-/* Facet (a, b, c) with new vertices m on ab and n on ca: the corner at a goes, the quadrangle is
- * cut along its shorter diagonal. */
+/* Facet (a, b, c) with new vertices m on ab and n on ca: separates the corner at a, and splits the
+ * quadrangle along its shorter diagonal. */
 static starg_status split_in_three(slicer *s, const facet *f, int k, uint32_t m, uint32_t n) {
     starg_status status = STARG_OK;
     uint32_t a = f->corners[k], b = f->corners[(k + 1) % 3], c = f->corners[(k + 2) % 3];
@@ -244,7 +244,7 @@ done:
     return status;
 }
 
-/* Children stand at the end; their parents are closed up afterwards. */
+/* Appends the children, then removes their parents. */
 static starg_status split_facets(slicer *s) {
     starg_status status = STARG_OK;
     size_t count = s->p->facets.count, kept = 0;
@@ -264,7 +264,7 @@ done:
 
 /* ---- the graph in the plane ---- */
 
-/* Does a facet in the plane have the piece below it? As seen along the axis of the cap. */
+/* Is the piece below a facet in the plane, seen along the axis of the cap? */
 static bool is_lid(const slicer *s, const facet *f, int side) {
     int u, v;
     uint32_t c[3];
@@ -274,7 +274,7 @@ static bool is_lid(const slicer *s, const facet *f, int side) {
                     partition_point(s->p, c[2]), u, v) >= 0;
 }
 
-/* What of a facet of the piece is in the plane. */
+/* Adds the edges of a facet of the piece that lie in the plane. */
 static starg_status add_seams(slicer *s, const facet *f, int side, bool is_low, bool is_flat) {
     starg_status status = STARG_OK;
     uint32_t c[3];
@@ -287,7 +287,7 @@ static starg_status add_seams(slicer *s, const facet *f, int side, bool is_low, 
             STARG_PUSH(s->p->context, PARTITION_STAGE, &s->loose, a);
         if (height_of(s, b) != 0)
             continue;
-        /* the cap runs against the facets of the lower part */
+        /* opposite to the facets of the lower part */
         const seam fresh = {.low = a < b ? a : b,
                             .high = a < b ? b : a,
                             .turns = is_low ? (a < b ? -1 : 1) : 0,
@@ -298,7 +298,7 @@ done:
     return status;
 }
 
-/* Facets above change hands. */
+/* Reassigns the facets above the plane. */
 static starg_status hand_over(slicer *s) {
     starg_status status = STARG_OK;
     for (size_t i = 0; i < s->p->facets.count; i++) {
@@ -321,7 +321,7 @@ static int compare_seams(const void *x, const void *y) {
     return partition_compare_edges(a->low, a->high, b->low, b->high);
 }
 
-/* All seams of an edge together. Inside of what lies in the plane there is nothing to fill. */
+/* Combines all seams of an edge. Inside facets in the plane there is nothing to fill. */
 static starg_status join_seams(slicer *s) {
     starg_status status = STARG_OK;
     size_t count = s->seams.count;
