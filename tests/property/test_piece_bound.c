@@ -281,7 +281,6 @@ static void test_shared(void **state) {
         proof p = {.context = context};
         snprintf(path, sizeof path, "%s/%s.off", data, names[i]);
         starg_decompose_options_default(&options);
-        options.effort = 2000;
         options.prove = true;
         test_ok(context, starg_mesh_read(context, path, &mesh));
         test_ok(context, starg_solid_create(context, mesh, &solid));
