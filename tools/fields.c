@@ -9,6 +9,7 @@
 #include "guard/guards_fields.h"
 #include "morph/map.h"
 #include "shape/descriptor_fields.h"
+#include "star/decomposition.h"
 #include "starguard/starguard.h"
 
 /* ---- all tables: a new table is a new row here ---- */
@@ -48,6 +49,23 @@ static const starg_field RECONSTRUCTION[] = {
 };
 static const starg_fields RECONSTRUCTION_TABLE = {.name = "reconstruction",
                                                   FIELD_ROWS(RECONSTRUCTION)};
+static const starg_field DECOMPOSE_REPORT[] = {
+    {.key = "output", .kind = STARG_FIELD_TEXT, .help = "The file that was written."},
+    {.key = "volume",
+     .kind = STARG_FIELD_REAL,
+     .high = HUGE_VAL,
+     .help = "Of all tetrahedra, in cubic model units; rounded."},
+    {.key = "single_tetrahedra",
+     .kind = STARG_FIELD_COUNT,
+     .most = UINT64_MAX,
+     .help = "Pieces of one tetrahedron."},
+    {.key = "contacts",
+     .kind = STARG_FIELD_COUNT,
+     .most = UINT64_MAX,
+     .help = "Length of adjacency."},
+};
+static const starg_fields DECOMPOSE_REPORT_TABLE = {.name = "report", FIELD_ROWS(DECOMPOSE_REPORT)};
+
 static const starg_field DESCRIBE_REPORT[] = {
     {.key = "output", .kind = STARG_FIELD_TEXT, .help = "The file that was written."},
     {.key = "reconstruction",
@@ -59,6 +77,7 @@ static const starg_fields DESCRIBE_REPORT_TABLE = {.name = "report", FIELD_ROWS(
 
 const document documents[] = {
     {"guards", "GUARDS.json", "guard", &guards_file_fields, &GUARD_REPORT_TABLE},
+    {"pieces", "PIECES.json", "decompose", &decomposition_file_fields, &DECOMPOSE_REPORT_TABLE},
     {"descriptor", "DESCRIPTOR.json", "describe", &descriptor_file_fields, &DESCRIBE_REPORT_TABLE},
     {"map", "MAP.json", "map", &map_file_fields, NULL},
 };
@@ -81,7 +100,8 @@ bool is_required(const starg_field *f) {
     /* A list is present together with the list whose length it has; any other may be missing. So
      * may a number whose default is below its range, and what is not written at its default. */
     bool part = f->kind == STARG_FIELD_LIST || f->kind == STARG_FIELD_RECORD;
-    bool unset = f->kind == STARG_FIELD_COUNT && f->initial < f->least;
+    bool unset = (f->kind == STARG_FIELD_COUNT && f->initial < f->least) ||
+                 (f->kind == STARG_FIELD_REAL && f->standard < f->low);
     bool may_lack = (part || unset || (f->flags & STARG_FIELD_RARE)) &&
                     (f->flags & STARG_FIELD_OPTIONAL) && !(f->flags & STARG_FIELD_MATCHING);
     return f->applies == NULL && !may_lack;
