@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Distributes work among several processes without shared memory. Rank 0 calls the library; the
- * other ranks, its helpers, wait in starg_ranks_serve for visibility rows and files to process. The
- * caller provides the transport: the command line uses MPI. All processes must run the same program
- * on machines of the same kind. Results do not depend on the number of helpers. */
+ * other ranks, its helpers, wait in starg_ranks_serve for visibility rows, boxes and files to
+ * process. The caller provides the transport: the command line uses MPI. All processes must run the
+ * same program on machines of the same kind. Results do not depend on the number of helpers. */
 #ifndef STARGUARD_RANKS_H
 #define STARGUARD_RANKS_H
 
@@ -38,9 +38,9 @@ STARG_API void starg_context_set_ranks(starg_context *context, const starg_ranks
 STARG_API double starg_context_shared_seconds(const starg_context *context);
 STARG_API uint64_t starg_context_helped_items(const starg_context *context);
 
-/* Processes visibility rows for rank 0 until released, on a helper. The context provides memory and
- * threads. Errors: RANK (connection broken), MEMORY (for a message), CANCELLED. Failures of the
- * work itself are reported by rank 0's call. */
+/* Processes visibility rows and boxes for rank 0 until released, on a helper. The context provides
+ * memory and threads. Errors: RANK (connection broken), MEMORY (for a message), CANCELLED. Failures
+ * of the work itself are reported by rank 0's call. */
 STARG_API starg_status starg_ranks_serve(starg_context *context, const starg_ranks *ranks);
 
 /* Releases all helpers and waits until they end, on rank 0; the context provides memory. Do not

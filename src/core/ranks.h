@@ -21,7 +21,8 @@ typedef enum ranks_message_kind {
 typedef enum ranks_work_kind {
     RANKS_VISIBILITY = 0,
     RANKS_DESCRIBE = 1,
-    RANKS_WORKS = 2
+    RANKS_CELLS = 2,
+    RANKS_WORKS = 3
 } ranks_work_kind;
 
 /* Head of a message; the payload belongs to the work. */
@@ -36,7 +37,8 @@ typedef struct ranks_message {
 
 /* One kind of work, on the helper. */
 typedef struct ranks_work {
-    /* Reads a job; `end` frees *state and accepts NULL. */
+    /* Reads a job. *state is that of the last job of this kind, NULL at first, and is replaced or
+     * used again; `end` frees it and accepts NULL. */
     starg_status (*begin)(starg_context *context, starg_bytes_reader *job, void **state);
     /* Computes items and appends their results. With STARG_ERROR_TIME it may append the items that
      * are finished. */

@@ -13,21 +13,21 @@ typedef struct helper {
     const starg_ranks *ranks;
     const ranks_work *const *works;
     const ranks_work *work; /* of the current job, NULL before the first */
-    void *state;
+    void *states[RANKS_WORKS];
+    void **state;       /* of the current job */
     starg_status begun; /* status of its `begin` */
     uint64_t loop;
     bool released;
 } helper;
 
-static void end_job(helper *h) {
-    if (h->work != NULL)
-        h->work->end(h->context, h->state);
-    h->work = NULL;
-    h->state = NULL;
+static void end_jobs(helper *h) {
+    for (int i = 0; i < RANKS_WORKS; i++)
+        if (h->works[i] != NULL)
+            h->works[i]->end(h->context, h->states[i]);
 }
 
 static void begin_job(helper *h, const ranks_message *head, starg_bytes_reader *rest) {
-    end_job(h);
+    h->work = NULL;
     h->loop = head->loop;
     h->begun = STARG_ERROR_RANK;
     if (head->work >= RANKS_WORKS || h->works[head->work] == NULL)
@@ -35,7 +35,8 @@ static void begin_job(helper *h, const ranks_message *head, starg_bytes_reader *
     h->context->seed = head->seed;
     starg_context_set_time_limit(h->context, head->seconds);
     h->work = h->works[head->work];
-    h->begun = h->work->begin(h->context, rest, &h->state);
+    h->state = &h->states[head->work];
+    h->begun = h->work->begin(h->context, rest, h->state);
 }
 
 static starg_status work_on_block(helper *h, const ranks_message *head) {
@@ -45,7 +46,7 @@ static starg_status work_on_block(helper *h, const ranks_message *head) {
     if (head->loop != h->loop || h->work == NULL)
         status = STARG_ERROR_RANK;
     if (status == STARG_OK)
-        status = h->work->run(h->context, h->state, head->first, head->count, &reply);
+        status = h->work->run(h->context, *h->state, head->first, head->count, &reply);
     answer.kind = RANKS_REPLY;
     answer.status = status;
     if (status != STARG_ERROR_CANCELLED)
@@ -90,6 +91,6 @@ starg_status ranks_serve(starg_context *context, const starg_ranks *ranks,
         STARG_TRY(take_message(&h));
     }
 done:
-    end_job(&h);
+    end_jobs(&h);
     return status;
 }

@@ -21,6 +21,7 @@
 #include "core/checksum.h"
 #include "core/file.h"
 #include "core/parallel.h"
+#include "guard/cell_tests.h"
 
 static const char STAGE[] = "certificate";
 

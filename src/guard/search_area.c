@@ -19,6 +19,7 @@
 
 #include "core/parallel.h"
 #include "guard/candidates.h"
+#include "guard/cell_tests.h"
 #include "guard/search_parts.h"
 
 static const char STAGE[] = "search";

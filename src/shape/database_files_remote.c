@@ -4,6 +4,7 @@
  * A job contains the names of all files, which helpers read themselves by the same paths, and the
  * hashes of what is stored. A reply contains the descriptions of a block, file by file. */
 #include "core/memory.h"
+#include "guard/cell_tests.h"
 #include "shape/database.h"
 #include "shape/database_files.h"
 #include "visibility/rows.h"
@@ -92,6 +93,7 @@ static starg_status begin(starg_context *context, starg_bytes_reader *bytes, voi
     remote_files *all = NULL;
     job_head head;
     void *names, *stored;
+    end(context, *state);
     *state = NULL;
     STARG_NEW_ZERO(context, DATABASE_STAGE, all, 1);
     *state = all;
@@ -158,7 +160,8 @@ done:
 static const ranks_work DESCRIBE = {begin, run, end};
 
 starg_status starg_database_ranks_serve(starg_context *context, const starg_ranks *ranks) {
-    const ranks_work *const works[RANKS_WORKS] = {
-        [RANKS_VISIBILITY] = &visibility_ranks_work, [RANKS_DESCRIBE] = &DESCRIBE};
+    const ranks_work *const works[RANKS_WORKS] = {[RANKS_VISIBILITY] = &visibility_ranks_work,
+                                                  [RANKS_CELLS] = &cells_ranks_work,
+                                                  [RANKS_DESCRIBE] = &DESCRIBE};
     return ranks_serve(context, ranks, works);
 }

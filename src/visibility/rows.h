@@ -31,6 +31,15 @@ starg_status visibility_fill(starg_context *context, const visibility_job *job,
 /* Is there enough work to share? */
 bool visibility_is_shared(starg_context *context, const visibility_job *job);
 
+/* Packs what points see in: the solid and the options. Errors: MEMORY. */
+starg_status visibility_pack_scene(starg_context *context, const starg_solid *solid,
+                                   const starg_visibility_options *options, size_t points,
+                                   starg_bytes *out);
+
+/* Reads it; *solid may be set even on failure. Errors: MEMORY, RANK. */
+starg_status visibility_unpack_scene(starg_context *context, starg_bytes_reader *bytes,
+                                     starg_solid **solid, starg_visibility_options *options);
+
 /* Packs the job for helpers. Errors: MEMORY. */
 starg_status visibility_pack(starg_context *context, const visibility_job *job, starg_bytes *out);
 

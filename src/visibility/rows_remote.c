@@ -39,12 +39,12 @@ bool visibility_is_shared(starg_context *context, const visibility_job *job) {
            job->scene->face_count >= LEAST_WORK / job->count;
 }
 
-starg_status visibility_pack(starg_context *context, const visibility_job *job, starg_bytes *out) {
+starg_status visibility_pack_scene(starg_context *context, const starg_solid *solid,
+                                   const starg_visibility_options *o, size_t points,
+                                   starg_bytes *out) {
     starg_status status = STARG_OK;
-    const starg_solid *solid = job->scene->solid;
     const starg_mesh *mesh = solid->mesh;
-    const starg_visibility_options *o = job->options;
-    const job_head head = {.points = job->count,
+    const job_head head = {.points = points,
                            .vertices = mesh->vertex_count,
                            .faces = mesh->face_count,
                            .range = o->range,
@@ -63,10 +63,18 @@ starg_status visibility_pack(starg_context *context, const visibility_job *job, 
     STARG_TRY(starg_bytes_put(context, out, &head, 1, sizeof head));
     STARG_TRY(starg_bytes_put(context, out, mesh->vertices, 3 * mesh->vertex_count, 8));
     STARG_TRY(starg_bytes_put(context, out, mesh->faces, 3 * mesh->face_count, 4));
+done:
+    return status;
+}
+
+starg_status visibility_pack(starg_context *context, const visibility_job *job, starg_bytes *out) {
+    starg_status status = STARG_OK;
+    const starg_visibility_options *o = job->options;
+    STARG_TRY(visibility_pack_scene(context, job->scene->solid, o, job->count, out));
     STARG_TRY(starg_bytes_put(context, out, job->points, 3 * job->count, 8));
     if (sensor_is_directed(o))
         STARG_TRY(starg_bytes_put(context, out, o->directions, 3 * job->count, 8));
-    if (head.has_ups)
+    if (sensor_is_directed(o) && o->ups != NULL)
         STARG_TRY(starg_bytes_put(context, out, o->ups, 3 * job->count, 8));
 done:
     return status;
@@ -131,28 +139,41 @@ static bool is_sound(const job_head *head, size_t left) {
            head->range >= 0;
 }
 
+static starg_status unpack(starg_context *context, starg_bytes_reader *bytes, job_head *head,
+                           starg_solid **solid, starg_visibility_options *options) {
+    if (!starg_bytes_take(bytes, head, 1, sizeof *head) || !is_sound(head, bytes->left))
+        return STARG_ERROR_RANK;
+    starg_status status = take_solid(context, bytes, head, solid);
+    *options = (starg_visibility_options){.engine = (starg_visibility_engine)head->engine,
+                                          .target = (starg_target)head->target,
+                                          .face_rule = (starg_face_rule)head->face_rule,
+                                          .range = head->range,
+                                          .near = head->near,
+                                          .incidence = head->incidence,
+                                          .cone = head->cone,
+                                          .fov = {head->fov[0], head->fov[1]},
+                                          .up = {head->up[0], head->up[1], head->up[2]}};
+    return status;
+}
+
+starg_status visibility_unpack_scene(starg_context *context, starg_bytes_reader *bytes,
+                                     starg_solid **solid, starg_visibility_options *options) {
+    job_head head;
+    return unpack(context, bytes, &head, solid, options);
+}
+
 static starg_status begin(starg_context *context, starg_bytes_reader *bytes, void **state) {
     starg_status status = STARG_OK;
     remote_job *job = NULL;
     job_head head;
     void *points, *directions, *ups;
+    end(context, *state);
     *state = NULL;
     STARG_NEW_ZERO(context, STAGE, job, 1);
     *state = job;
-    if (!starg_bytes_take(bytes, &head, 1, sizeof head) || !is_sound(&head, bytes->left))
-        return STARG_ERROR_RANK;
-    STARG_TRY(take_solid(context, bytes, &head, &job->solid));
+    STARG_TRY(unpack(context, bytes, &head, &job->solid, &job->options));
     STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &points));
     job->points = points;
-    job->options = (starg_visibility_options){.engine = (starg_visibility_engine)head.engine,
-                                              .target = (starg_target)head.target,
-                                              .face_rule = (starg_face_rule)head.face_rule,
-                                              .range = head.range,
-                                              .near = head.near,
-                                              .incidence = head.incidence,
-                                              .cone = head.cone,
-                                              .fov = {head.fov[0], head.fov[1]},
-                                              .up = {head.up[0], head.up[1], head.up[2]}};
     if (sensor_is_directed(&job->options)) {
         STARG_TRY(starg_bytes_take_block(context, bytes, 3 * head.points, 8, &directions));
         job->directions = directions;
@@ -203,8 +224,3 @@ done:
 }
 
 const ranks_work visibility_ranks_work = {begin, run, end};
-
-starg_status starg_ranks_serve(starg_context *context, const starg_ranks *ranks) {
-    const ranks_work *const works[RANKS_WORKS] = {[RANKS_VISIBILITY] = &visibility_ranks_work};
-    return ranks_serve(context, ranks, works);
-}

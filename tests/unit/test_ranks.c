@@ -13,6 +13,7 @@
 #include "models.h"
 #include "network.h"
 #include "starguard/database.h"
+#include "starguard/space.h"
 #include "starguard/visibility.h"
 
 enum { POINTS = 2500 }; /* times the faces below: enough for the rows to be shared */
@@ -82,6 +83,38 @@ static void test_rows(void **state) {
     test_context_free(alone);
 }
 
+/* Open surfaces: faces with two sides. */
+static void test_rows_of_a_soup(void **state) {
+    (void)state;
+    starg_context *alone = test_context(1), *context = test_context(1);
+    starg_solid *solid = solid_with_points(alone), *soup = NULL;
+    const starg_mesh *closed = starg_solid_mesh(solid);
+    starg_mesh *open = NULL;
+    starg_bits *expected = NULL, *rows = NULL;
+    starg_space_options options;
+    network net;
+    starg_space_options_default(&options);
+    options.soup = options.two_sided = true;
+    test_ok(alone, starg_mesh_create(alone, starg_mesh_vertices(closed),
+                                     starg_mesh_vertex_count(closed), starg_mesh_faces(closed),
+                                     starg_mesh_face_count(closed) * 3 / 4, &open));
+    test_ok(alone, starg_space_create(alone, open, NULL, 0, &options, &soup));
+    test_ok(alone, starg_visibility(alone, soup, points, POINTS, NULL, &expected));
+    network_begin(&net, 3, 1);
+    starg_context_set_ranks(context, network_ranks(&net));
+    test_ok(context, starg_visibility(context, soup, points, POINTS, NULL, &rows));
+    assert_true(starg_context_helped_items(context) > 0);
+    assert_true(same_rows(rows, expected));
+    starg_bits_free(rows);
+    starg_bits_free(expected);
+    network_end_all(&net);
+    starg_solid_free(soup);
+    starg_mesh_free(open);
+    starg_solid_free(solid);
+    test_context_free(context);
+    test_context_free(alone);
+}
+
 static starg_guards *guards_of(starg_context *context, starg_guard_method method) {
     starg_guard_options options;
     starg_guards *guards = NULL;
@@ -120,6 +153,86 @@ static void test_guards(void **state) {
         test_context_free(alone);
         network_end_all(&net);
     }
+}
+
+/* The search for guards anywhere, with what each helper holds of the solid. */
+static starg_status prove(starg_context *context, starg_target target, double clearance,
+                          starg_guards **guards) {
+    starg_guard_options options;
+    starg_guard_options_default(&options);
+    options.prove = true;
+    options.prove_work = 120000;
+    options.candidate_count = 200;
+    options.refine = false;
+    options.visibility.target = target;
+    options.clearance = clearance;
+    starg_solid *solid = test_sample(context, "cat", 600);
+    starg_status status = starg_guard(context, solid, &options, guards);
+    starg_solid_free(solid);
+    return status;
+}
+
+static void assert_same_guards(const starg_guards *a, const starg_guards *b) {
+    assert_int_equal(a->count, b->count);
+    assert_int_equal(a->lower_bound_everywhere, b->lower_bound_everywhere);
+    assert_int_equal(a->cells, b->cells);
+    assert_int_equal(a->witnesses, b->witnesses);
+    assert_int_equal(a->prove_work, b->prove_work);
+    assert_memory_equal(a->positions, b->positions, 3 * a->count * sizeof *a->positions);
+}
+
+static void test_cells(void **state) {
+    (void)state;
+    static const starg_target targets[] = {STARG_TARGET_FACES, STARG_TARGET_VERTICES};
+    for (int i = 0; i < 2; i++)
+        for (int count = 2; count <= 4; count += 2) {
+            network net;
+            starg_guards *expected = NULL, *guards = NULL;
+            starg_context *alone = test_context(1), *context = test_context(1);
+            network_begin(&net, count, 1 + i);
+            starg_context_set_ranks(context, network_ranks(&net));
+            test_ok(alone, prove(alone, targets[i], 0.001 * i, &expected));
+            test_ok(context, prove(context, targets[i], 0.001 * i, &guards));
+            assert_true(expected->cells > 300);
+            assert_true(starg_context_helped_items(context) > 100);
+            assert_same_guards(guards, expected);
+            starg_guards_free(context, guards);
+            /* a second search begins anew */
+            test_ok(context, prove(context, targets[i], 0.001 * i, &guards));
+            assert_same_guards(guards, expected);
+            starg_guards_free(context, guards);
+            starg_guards_free(alone, expected);
+            test_context_free(context);
+            test_context_free(alone);
+            network_end_all(&net);
+        }
+}
+
+/* The connection breaks after any number of messages, or a helper has too little memory. */
+static void test_cells_without_helper(void **state) {
+    (void)state;
+    size_t failed = 0;
+    for (size_t n = 1; n < 3000; n += 1 + n) {
+        network net;
+        starg_guards *guards = NULL;
+        size_t left = n + 1;
+        starg_context *context = test_context(1);
+        if (n % 2 == 0) {
+            network_begin(&net, 3, 1);
+            net.messages_left = (long)n / 8;
+        } else {
+            network_begin_failing(&net, 2, &left);
+        }
+        starg_context_set_ranks(context, network_ranks(&net));
+        starg_status status = prove(context, STARG_TARGET_FACES, 0, &guards);
+        assert_true(status == STARG_OK || status == STARG_ERROR_RANK ||
+                    status == STARG_ERROR_MEMORY);
+        failed += status != STARG_OK;
+        starg_guards_free(context, guards);
+        network_end_all(&net);
+        test_context_free(context);
+    }
+    assert_true(failed > 6);
 }
 
 /* ---- a database ---- */
@@ -313,7 +426,7 @@ static void test_nonsense(void **state) {
         for (int i = 0; i < 4; i++) {
             size_t size = (size_t)starg_rng_below(&rng, sizeof bytes);
             ranks_message head = {.kind = 1 + (uint32_t)starg_rng_below(&rng, 2),
-                                  .work = (uint32_t)starg_rng_below(&rng, 3),
+                                  .work = (uint32_t)starg_rng_below(&rng, 4),
                                   .count = starg_rng_below(&rng, 3),
                                   .first = starg_rng_below(&rng, 3)};
             for (size_t k = 0; k < size; k++)
@@ -404,7 +517,10 @@ static void test_no_helpers(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rows),
+        cmocka_unit_test(test_rows_of_a_soup),
         cmocka_unit_test(test_guards),
+        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_cells_without_helper),
         cmocka_unit_test(test_database),
         cmocka_unit_test(test_broken_way),
         cmocka_unit_test(test_garbled_replies),

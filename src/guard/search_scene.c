@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* The scene of a search, and what its points see. */
+#include "guard/search_scene.h"
+
+#include <math.h>
+
+#include "core/parallel.h"
+#include "geometry/predicates.h"
+#include "geometry/vec3.h"
+#include "visibility/columns.h"
+
+static const char STAGE[] = "search";
+
+static void fill_places(search_scene *scene) {
+    const visibility_scene *points = scene->points;
+    const starg_mesh *mesh = scene->solid->mesh;
+    if (scene->view->target == STARG_TARGET_VERTICES)
+        for (size_t v = 0; v < mesh->vertex_count; v++)
+            scene->places[v] = points->slot_of[v];
+    else if (scene->view->target == STARG_TARGET_CORNERS)
+        for (size_t j = 0; j < 3 * mesh->face_count; j++)
+            scene->places[j] = points->slot_of[mesh->faces[j]];
+    else
+        for (size_t rank = 0; rank < points->face_count; rank++)
+            scene->places[points->face_of[rank]] = (uint32_t)rank;
+}
+
+starg_status search_scene_open(starg_context *context, const starg_solid *solid,
+                               const starg_visibility_options *view, double clearance,
+                               search_scene *out) {
+    starg_status status = STARG_OK;
+    *out = (search_scene){.context = context,
+                          .solid = solid,
+                          .view = view,
+                          .clearance = clearance,
+                          .number = ++context->search_scenes};
+    STARG_TRY(scene_create(context, solid, &out->points));
+    STARG_TRY(box_scene_create(context, solid, &out->boxes));
+    STARG_NEW(context, STAGE, out->places, target_columns(solid->mesh, view->target));
+    fill_places(out);
+done:
+    if (status != STARG_OK)
+        search_scene_close(out);
+    return status;
+}
+
+void search_scene_close(search_scene *scene) {
+    if (scene->context == NULL)
+        return;
+    scene_free(scene->points);
+    box_scene_free(scene->boxes);
+    starg_release(scene->context, scene->places);
+    STARG_ARRAY_FREE(scene->context, &scene->witnesses);
+    *scene = (search_scene){0};
+}
+
+/* Half the diagonal and the distance of the centre from the boundary have rounding errors, below a
+ * thousandth of the clearance unless coordinates are huge relative to it. */
+bool search_scene_bars(const search_scene *scene, const bvh_box *box) {
+    double centre[3], reach = 0.5 * vec3_distance(box->lower, box->upper), largest = 0;
+    if (!(scene->clearance > 0) || !(reach < scene->clearance))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        centre[k] = 0.5 * box->lower[k] + 0.5 * box->upper[k];
+        largest = fmax(largest, fmax(fabs(box->lower[k]), fabs(box->upper[k])));
+    }
+    return largest < 1e9 * scene->clearance &&
+           starg_solid_distance(scene->solid, centre) + reach < 0.999 * scene->clearance;
+}
+
+/* ---- points ---- */
+
+void search_scene_centre(const search_scene *scene, size_t j, double centre[3]) {
+    const visibility_scene *points = scene->points;
+    uint32_t column = scene->witnesses.data[j], place = scene->places[column];
+    if (scene->view->target != STARG_TARGET_FACES) {
+        const double at[3] = {points->x[place], points->y[place], points->z[place]};
+        vec3_copy(at, centre);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        centre[k] = scene_corner(points, place, 0)[k] / 3 + scene_corner(points, place, 1)[k] / 3 +
+                    scene_corner(points, place, 2)[k] / 3;
+}
+
+/* Is p strictly on the inner side of the face of a corner? */
+static bool is_before(const search_scene *scene, uint32_t corner, const double p[3]) {
+    const starg_mesh *mesh = scene->solid->mesh;
+    const uint32_t *c = mesh->faces + 3 * (size_t)(corner / 3);
+    return orient3d(mesh->vertices + 3 * (size_t)c[0], mesh->vertices + 3 * (size_t)c[1],
+                    mesh->vertices + 3 * (size_t)c[2], p) > 0;
+}
+
+bool search_scene_sees(const search_scene *scene, const search_point *point, size_t j,
+                       uint64_t *work) {
+    starg_visibility_options view = *scene->view;
+    uint32_t column = scene->witnesses.data[j], place = scene->places[column];
+    bool whole = view.target == STARG_TARGET_FACES;
+    view.directions = point->direction;
+    view.ups = point->up;
+    bool sees =
+        whole ? scene_sees_face(scene->points, point->place, place, &view)
+              : (view.target == STARG_TARGET_VERTICES || is_before(scene, column, point->place)) &&
+                    scene_sees_vertex(scene->points, point->place, place, &view);
+    *work += sees && whole ? 3 : 1;
+    return sees;
+}
+
+bool search_scene_may_see(const search_scene *scene, const double p[3], size_t j) {
+    const visibility_scene *points = scene->points;
+    uint32_t column = scene->witnesses.data[j], place = scene->places[column];
+    if (scene->view->target == STARG_TARGET_CORNERS)
+        return is_before(scene, column, p);
+    return scene->view->target == STARG_TARGET_VERTICES ||
+           scene_back(points, place) != SCENE_NONE ||
+           orient3d(scene_corner(points, place, 0), scene_corner(points, place, 1),
+                    scene_corner(points, place, 2), p) > 0;
+}
+
+uint64_t search_scene_look(const search_scene *scene, search_point *point,
+                           const witness_row *among) {
+    uint64_t work = 0;
+    for (size_t w = 0; w < WITNESS_WORDS; w++)
+        STARG_FOR_BITS (bit, among->bits[w])
+            if (search_scene_sees(scene, point, 64 * w + bit, &work))
+                starg_bit_set(point->seen.bits, 64 * w + bit);
+    return work;
+}
+
+witness_row search_scene_witnesses(const search_scene *scene, size_t first) {
+    witness_row row = {{0}};
+    for (size_t j = first; j < scene->witnesses.count; j++)
+        starg_bit_set(row.bits, j);
+    return row;
+}
+
+typedef struct looking {
+    const search_scene *scene;
+    search_point *points;
+    uint64_t *work; /* by item */
+    witness_row among;
+} looking;
+
+static starg_status look_from_item(starg_context *context, void *shared, void *scratch,
+                                   size_t item) {
+    looking *l = shared;
+    (void)context;
+    (void)scratch;
+    if (l->points[item].candidate == UINT32_MAX)
+        l->work[item] = search_scene_look(l->scene, &l->points[item], &l->among);
+    return STARG_OK;
+}
+
+starg_status points_look_at(search_scene *scene, search_point *points, size_t count,
+                            const witness_row *among) {
+    starg_status status = STARG_OK;
+    starg_context *context = scene->context;
+    looking l = {scene, points, NULL, *among};
+    STARG_NEW_ZERO(context, STAGE, l.work, count);
+    const starg_parallel_loop loop = {
+        .stage = STAGE, .count = count, .shared = &l, .item = look_from_item, .silent = true};
+    STARG_TRY(starg_parallel_for(context, &loop));
+    for (size_t i = 0; i < count; i++)
+        scene->work += l.work[i];
+done:
+    starg_release(context, l.work);
+    return status;
+}
+
+starg_status points_look(search_scene *scene, search_points *points, size_t first) {
+    const witness_row among = search_scene_witnesses(scene, first);
+    return points_look_at(scene, points->data, points->count, &among);
+}
