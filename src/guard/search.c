@@ -241,8 +241,10 @@ bool search_has_room(const search *s) {
 /* If the prices leave room for fewer guards: finds better guards or more witnesses. */
 static starg_status look_for_guards(search *s, bool last, bool *changed) {
     *changed = false;
-    bool grown = s->cells.count > s->asked_at + s->asked_at / (last ? 10 : 3) ||
-                 (last && s->scene.witnesses.count > s->asked_of);
+    bool grown =
+        last ? s->cells.count > s->asked_at + s->asked_at / 10 ||
+                   s->scene.witnesses.count > s->asked_of
+             : s->cells.count > s->asked_at + s->asked_at / 3 && s->scene.work >= s->ask_after;
     if (!search_has_room(s) || !grown)
         return STARG_OK;
     return search_ask_points(s, changed);

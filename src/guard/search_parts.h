@@ -24,6 +24,7 @@ typedef struct search {
     uint64_t *viewers;            /* by column: an identifier of the set of them */
     size_t count, bound;          /* number of guards, and its lower bound */
     size_t asked_at, asked_of;    /* numbers of cells and witnesses at the last integer program */
+    uint64_t ask_after;           /* work at which the next one is due */
     uint64_t budget;              /* of the work that the scene counts */
     size_t nodes;                 /* that an integer program may take */
     uint64_t improve_work;        /* work spent on looking for better guards */

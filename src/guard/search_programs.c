@@ -16,7 +16,7 @@
 
 static const char STAGE[] = "search";
 
-enum { BRANCHES = 300, FOLLOWED = 16 };
+enum { BRANCHES = 300, FOLLOWED = 16, NODE_ROWS = 32, ASKING_SHARE = 4 };
 
 static const double ROUNDING = 1e-6;
 
@@ -46,7 +46,8 @@ static void list_useful(const search *s, row_list *list) {
     list_needed(s, search_value(s) - ((double)s->count - 2) * most - ROUNDING, list);
 }
 
-/* Solves the cover problem of the rows: how few see all witnesses often enough? */
+/* Solves the cover problem of the rows: how few see all witnesses often enough? Counts its work,
+ * as far as rows, witnesses and nodes tell. */
 static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) {
     starg_cover_problem problem;
     starg_cover_options options;
@@ -55,7 +56,10 @@ static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) 
     problem.rows = rows;
     problem.redundancy = (uint32_t)s->redundancy;
     options.max_nodes = s->nodes;
-    return starg_cover_solve(context_of(s), &problem, &options, out);
+    starg_status status = starg_cover_solve(context_of(s), &problem, &options, out);
+    if (status == STARG_OK)
+        s->scene.work += (2 * rows->rows + NODE_ROWS * (*out)->nodes) * rows->columns;
+    return status;
 }
 
 /* The integer program over the points: do fewer guards see all witnesses? *changed: there are
@@ -66,13 +70,14 @@ starg_status search_ask_points(search *s, bool *changed) {
     starg_bits *rows = NULL;
     starg_cover *cover = NULL;
     row_list list = {0};
+    uint64_t before = s->scene.work;
     *changed = false;
     STARG_TRY(row_list_make(context, s->points.count, &list));
     list_useful(s, &list);
     STARG_TRY(make_program(s, &list, &rows));
     STARG_TRY(solve(s, rows, &cover));
-    s->scene.work += list.count * s->scene.witnesses.count * (1 + cover->nodes / 10);
     s->asked_at = s->cells.count;
+    s->ask_after = s->scene.work + ASKING_SHARE * (s->scene.work - before);
     s->asked_of = s->scene.witnesses.count;
     size_t bound = cover->lower_bound < s->count ? cover->lower_bound : s->count;
     s->known = bound > s->known ? bound : s->known;
@@ -237,7 +242,6 @@ static starg_status ask_cells_once(search *s, bool *changed, bool *again) {
     STARG_TRY(list_columns(s, &columns));
     STARG_TRY(make_program(s, &columns.rows, &rows));
     STARG_TRY(solve(s, rows, &cover));
-    s->scene.work += columns.rows.count * s->scene.witnesses.count / 4 * (1 + cover->nodes / 10);
     if (cover->count < s->count)
         STARG_TRY(follow_cover(s, &columns, cover, changed, again));
     else if (s->redundancy == 1)
