@@ -4,7 +4,8 @@
 
 usage: paper.py COMMAND STARGUARD DATA [options]
 
-  table1     guards and seconds of ILP, greedy, PILP and PILP with refinement; --coverage 0.99
+  table1     guards and seconds of ILP, greedy, PILP, PILP with refinement, and guards anywhere;
+             --coverage 0.99
   table2     skeletal against tetrahedral candidates and a lattice, proven optima
   figure1    stability of the guards under noise on the boundary
   figure2    greedy against PILP over many models; --svg FILE draws it
@@ -44,6 +45,7 @@ METHODS = {
     "greedy": ["--method", "greedy"],
     "pilp": ["--method", "pilp", "--no-refine"],
     "refined": ["--method", "pilp"],
+    "anywhere": ["--prove"],
 }
 
 
@@ -73,6 +75,15 @@ class Guards:
     def mark(self):
         """The number of guards, starred if proven the fewest of the candidates."""
         return f"{self.count}{'*' if self.file['optimal'] else ''}"
+
+    def mark_anywhere(self):
+        """The number of guards, and how many are needed wherever they stand."""
+        return f"{self.count} / {self.file['lower_bound_everywhere']}"
+
+
+def anywhere(options, model):
+    """Guards at any point, with the budget of --work."""
+    return Guards(options.starguard, model, METHODS["anywhere"] + ["--prove-work", options.work])
 
 
 def models_of(data, *folders):
@@ -104,8 +115,10 @@ def table1(options):
     whole = options.coverage == "1"
     methods = ["ilp", "greedy", "pilp"] + (["refined"] if whole else [])
     head = [f"{m} | s" for m in methods]
-    print(f"| model | vertices | {' | '.join(head)} | levels s | MB | paper: ILP / greedy / PILP |")
-    print("|---" * (2 * len(methods) + 5) + "|")
+    more = "anywhere: guards / bound | s | " if whole else ""
+    print(f"| model | vertices | {' | '.join(head)} | {more}levels s | MB "
+          "| paper: ILP / greedy / PILP |")
+    print("|---" * (2 * len(methods) + (7 if whole else 5)) + "|")
     counts = []
     for model in models_of(options.data, "tosca_paper", "table1_extra"):
         runs = {}
@@ -116,6 +129,9 @@ def table1(options):
         seconds = runs["pilp"].told["seconds"]
         making = seconds.get("levels", 0) + seconds.get("simplify", 0)
         cells = [f"{runs[m].mark()} | {runs[m].seconds:.1f}" for m in methods]
+        if whole:
+            last = anywhere(options, model)
+            cells.append(f"{last.mark_anywhere()} | {last.seconds:.1f}")
         print(f"| {short(model)} | {vertices_of(runs['ilp']):,} | {' | '.join(cells)} | "
               f"{making:.1f} | {runs['pilp'].megabytes:.0f} | {paper_row(short(model))} |",
               flush=True)
@@ -139,7 +155,8 @@ def tetrahedral_vertices(options, model, wanted):
         grid = os.path.join(folder, "t.vtk")
         for _ in range(8):
             subprocess.run([options.starguard, "decompose", model, "-o", grid, "--mode", "paper",
-                            "--density", f"{density:.3f}", "--quiet"], check=True)
+                            "--generator", "tetgen", "--density", f"{density:.3f}", "--quiet"],
+                           check=True)
             points = read_vtk_points(grid)
             if abs(len(points) - wanted) < 0.03 * wanted:
                 break
@@ -174,9 +191,9 @@ def inside_of(model, points):
 
 def table2(options):
     print("| model | vertices | tetrahedral vertices | of them inside | guards | "
-          "skeletal candidates | guards | lattice | guards | refined | "
+          "skeletal candidates | guards | lattice | guards | refined | anywhere: guards / bound | "
           "paper: tetrahedral vertices | guards: tetrahedral / skeletal |")
-    print("|---" * 12 + "|")
+    print("|---" * 13 + "|")
     for name, paper in PAPER2.items():
         model = os.path.join(options.data, "table2", name + ".off")
         skeletal = Guards(options.starguard, model, ["--method", "ilp"])
@@ -189,7 +206,8 @@ def table2(options):
         print(f"| {name} | {vertices_of(skeletal):,} | {len(every):,} | {len(inside):,} | "
               f"{tetrahedral.mark()} | {skeletal.file['candidates']:,} | {skeletal.mark()} | "
               f"{lattice.file['candidates']:,} | {lattice.mark()} | {refined.mark()} | "
-              f"{paper[0]:,} | {paper[1]} / {paper[2]} |", flush=True)
+              f"{anywhere(options, model).mark_anywhere()} | {paper[0]:,} | {paper[1]} / {paper[2]} |",
+              flush=True)
 
 
 def read_off(path):
@@ -257,7 +275,7 @@ def figure1(options):
 
 
 def draw_bars(path, rows):
-    """Figure 2 as SVG: a pair of bars per model."""
+    """Figure 2 as SVG: bars for each model, and a line for how many are needed anywhere."""
     width, height, left, bottom = 12 * len(rows) + 60, 260, 40, 90
     top = max(r[1] for r in rows)
     scale = (height - 20) / top
@@ -276,10 +294,12 @@ def draw_bars(path, rows):
                 h = counts[k] * scale
                 file.write(f'<rect x="{x + 3 * k}" y="{height - h:.1f}" width="3" '
                            f'height="{h:.1f}" fill="{color}"/>\n')
+            y = height - counts[3] * scale
+            file.write(f'<line x1="{x}" x2="{x + 9}" y1="{y:.1f}" y2="{y:.1f}" stroke="black"/>')
             file.write(f'<text transform="translate({x + 6},{height + 5}) rotate(90)">{name}'
                        '</text>\n')
         for k, (word, color) in enumerate((("greedy", "#c44"), ("PILP", "#46a"),
-                                           ("PILP, refined", "#4a6"))):
+                                           ("anywhere", "#4a6"), ("needed", "black"))):
             file.write(f'<rect x="{left + 10 + 90 * k}" y="6" width="8" height="8" '
                        f'fill="{color}"/><text x="{left + 22 + 90 * k}" y="13">{word}</text>\n')
         file.write("</svg>\n")
@@ -287,17 +307,19 @@ def draw_bars(path, rows):
 
 def figure2(options):
     rows = []
-    print("| model | greedy | PILP | refined |\n|---|---|---|---|")
+    print("| model | greedy | PILP | refined | anywhere | needed |\n|---|---|---|---|---|---|")
     for model in models_of(options.data, "retrieval_tosca", "retrieval_shrec07"):
         counts = [Guards(options.starguard, model, METHODS[m]).count
                   for m in ("greedy", "pilp", "refined")]
-        rows.append((short(model), *counts))
-        print(f"| {short(model)} | " + " | ".join(map(str, counts)) + " |", flush=True)
-    mean = [sum(r[k] / r[1] for r in rows) / len(rows) for k in (2, 3)]
-    print(f"\n{len(rows)} models: PILP / greedy {mean[0]:.3f}, refined / greedy {mean[1]:.3f} in "
-          f"the mean; PILP above greedy on {sum(r[2] > r[1] for r in rows)}.")
+        last = anywhere(options, model)
+        rows.append((short(model), *counts, last.count, last.file["lower_bound_everywhere"]))
+        print(f"| {short(model)} | " + " | ".join(map(str, rows[-1][1:])) + " |", flush=True)
+    mean = [sum(r[k] / r[1] for r in rows) / len(rows) for k in (2, 3, 4)]
+    print(f"\n{len(rows)} models: PILP / greedy {mean[0]:.3f}, refined / greedy {mean[1]:.3f}, "
+          f"anywhere / greedy {mean[2]:.3f} in the mean; PILP above greedy on "
+          f"{sum(r[2] > r[1] for r in rows)}; proven on {sum(r[4] == r[5] for r in rows)}.")
     if options.svg:
-        draw_bars(options.svg, rows)
+        draw_bars(options.svg, [(r[0], r[1], r[2], r[4], r[5]) for r in rows])
 
 
 def figure3(options):
@@ -341,6 +363,7 @@ def main():
     parser.add_argument("starguard")
     parser.add_argument("data")
     parser.add_argument("--coverage", default="1", help="table1: fraction to be seen, 1 or below")
+    parser.add_argument("--work", default="90000000", help="anywhere: as of guard --prove-work")
     parser.add_argument("--svg", help="figure2: where to draw the bars")
     parser.add_argument("--pictures", default="pictures", help="figure3: folder for pictures")
     parser.add_argument("--noise", type=float, default=0.5, help="figure1: per cent of the diagonal")
