@@ -55,6 +55,11 @@ int cell_cut_axis(const bvh_box *box) {
     return longest;
 }
 
+double cell_length(const bvh_box *box) {
+    int k = cell_cut_axis(box);
+    return box->upper[k] - box->lower[k];
+}
+
 bool cell_splits(const bvh_box *box) {
     int k = cell_cut_axis(box);
     double at = middle(box, k);

@@ -22,6 +22,8 @@ starg_status cells_look(search_scene *scene, search_cells *cells, size_t first);
 
 /* The axis along which a cell is cut, in the middle. */
 int cell_cut_axis(const bvh_box *box);
+/* The length of the longest side. */
+double cell_length(const bvh_box *box);
 /* Can the box be cut in half? */
 bool cell_splits(const bvh_box *box);
 bvh_box cell_half(const bvh_box *box, bool upper);

@@ -14,10 +14,11 @@
  *      them. Its solution is tested against all faces: it gives better guards, or the faces that
  *      they miss become witnesses;
  *   3. split the cells whose total price may be too high for the target bound, starting with those
- *      of high price and large size; add their points and return to 1;
+ *      of high price and large size; add their points and return to 1. Small cells are not split,
+ *      but count as points in the prices (guard/search_prices.c);
  *   4. if there are no such cells, the prices prove the bound (guard/bound.c). If the bound is
- *      below the number of guards, faces that the fractional cover does not see enough become
- *      witnesses;
+ *      below the number of guards, smaller cells are split as well; and by turns faces that the
+ *      fractional cover does not see enough become witnesses;
  *   5. if there are no such faces either, solve an integer program over cells and points: cells
  *      that would allow fewer guards are split, with more points; if no cells would, branching
  *      proves it, with separate prices in each branch.
@@ -39,7 +40,7 @@ static const char STAGE[] = "search";
 
 enum { LEAST_BATCH = 32, MOST_BATCH = 2048, TRIES = 2, FEW_NODES = 10, MANY_NODES = 300 };
 
-static const double ROUNDING = 1e-6;
+static const double ROUNDING = 1e-6, FIRST_FINEST = 1.0 / 64;
 
 /* ---- points ---- */
 
@@ -97,62 +98,6 @@ done:
     return status;
 }
 
-/* ---- prices ---- */
-
-/* Adds points worth at least `least` to the list, with those that see a witness none of it sees. */
-static void list_worthy(const search *s, const double *price, double least, const uint8_t *listed,
-                        row_list *list) {
-    witness_row held = {{0}};
-    for (size_t i = 0; i < s->points.count; i++)
-        if (!listed[i] && row_value(&s->points.data[i].seen, price) >= least &&
-            !is_needless(list, &s->points.data[i].seen))
-            row_list_add(s, list, i);
-    for (size_t k = 0; k < list->count; k++)
-        for (int w = 0; w < WITNESS_WORDS; w++)
-            held.bits[w] |= list->rows[k]->bits[w];
-    for (size_t i = 0; i < s->points.count; i++)
-        if (!row_is_within(&s->points.data[i].seen, &held))
-            row_list_add(s, list, i);
-}
-
-double search_largest_value(const search *s) {
-    double most = 1;
-    for (size_t i = 0; i < s->points.count; i++)
-        most = fmax(most, row_value(&s->points.data[i].seen, s->prices.price));
-    return most;
-}
-
-/* Prices of maximal sum by which no point exceeds 1. The program starts with points of high value
- * at the previous prices; a point left out is added once it exceeds 1. */
-starg_status search_find_prices(search *s, row_list *list) {
-    starg_status status = STARG_OK;
-    starg_context *context = context_of(s);
-    uint8_t *listed = NULL;
-    const witness_row all = all_witnesses(s);
-    double most = 1;
-    STARG_NEW_ZERO(context, STAGE, listed, s->points.count);
-    double least = s->prices.sum > 0 ? 0.8 : 0;
-    list->count = 0;
-    for (int k = 0; k < 6; k++) {
-        list_worthy(s, s->prices.price, least, listed, list);
-        for (size_t i = 0; i < list->count; i++)
-            listed[list->points[i]] = 1;
-        prices_free(context, &s->prices);
-        STARG_TRY(prices_find(context, list->rows, list->count, &all, &s->prices));
-        s->scene.work += s->prices.work;
-        most = search_largest_value(s);
-        least = 1 + 1e-9;
-        if (most < 1 + SEARCH_GAP)
-            break;
-    }
-    for (size_t j = 0; j < MOST_WITNESSES; j++)
-        s->prices.price[j] /= most;
-    s->prices.sum /= most;
-done:
-    starg_release(context, listed);
-    return status;
-}
-
 /* ---- cells ---- */
 
 int search_by_score(const void *a, const void *b) {
@@ -168,7 +113,7 @@ starg_status search_list_leaves(const search *s, double most, scored_leaf **out,
     STARG_NEW(context_of(s), STAGE, *out, s->cells.count);
     for (size_t i = 0; i < s->cells.count; i++) {
         const search_cell *cell = &s->cells.data[i];
-        if (cell->children != 0)
+        if (cell->children != 0 || search_is_fine(s, cell))
             continue;
         double value = row_value(&cell->open, s->prices.price);
         if (value <= most)
@@ -283,6 +228,22 @@ static starg_status ask_further(search *s, const row_list *list, bool *changed) 
         STARG_TRY(search_add_short(s, list, changed));
     if (!*changed)
         STARG_TRY(search_ask_cells(s, changed));
+done:
+    return status;
+}
+
+/* No leaf that is not small blocks the bound of the prices. If small ones hold them down, half as
+ * small ones do from now on; every third time, or if nothing else helps, looks further. */
+static starg_status go_on(search *s, const row_list *list, bool *changed) {
+    starg_status status = STARG_OK;
+    bool bind = search_fine_bind(s, list), turn = bind && ++s->refinements % 3 != 0;
+    *changed = false;
+    if (!turn)
+        STARG_TRY(ask_further(s, list, changed));
+    if (!*changed && bind) {
+        s->finest /= 2;
+        *changed = true;
+    }
     s->ended = !*changed;
 done:
     return status;
@@ -300,7 +261,7 @@ static starg_status prove_round(search *s, row_list *list) {
         STARG_TRY(split_costly(s, &changed));
     STARG_TRY(prove(s));
     if (!changed && s->bound < s->count && s->bound == before) {
-        STARG_TRY(ask_further(s, list, &changed));
+        STARG_TRY(go_on(s, list, &changed));
         STARG_TRY(prove(s));
     }
 done:
@@ -320,7 +281,7 @@ static starg_status run_rounds(search *s, round_run *round, uint64_t work) {
         row_list list = {0};
         starg_progress_step(context, s->scene.work - begun, work);
         STARG_TRY(starg_check_cancel(context, STAGE));
-        status = row_list_make(context, 2 * s->points.count, &list);
+        status = row_list_make(context, 2 * s->points.count + s->cells.count, &list);
         if (status == STARG_OK)
             status = round(s, &list);
         row_list_free(context, &list);
@@ -341,6 +302,7 @@ static starg_status run(search *s, bool improves) {
     }
     s->nodes = MANY_NODES;
     if (o->prove) {
+        s->finest = cell_length(&s->cells.data[0].box) * FIRST_FINEST;
         STARG_TRY(run_rounds(s, prove_round, o->prove_work));
         STARG_TRY(search_bound_points(s));
     }

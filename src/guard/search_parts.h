@@ -26,6 +26,8 @@ typedef struct search {
     size_t asked_at, asked_of;    /* numbers of cells and witnesses at the last integer program */
     uint64_t ask_after;           /* work at which the next one is due */
     uint64_t budget;              /* of the work that the scene counts */
+    double finest;                /* leaves no longer than this count as points in the prices */
+    unsigned refinements;         /* rounds in which such leaves held the prices down */
     size_t nodes;                 /* that an integer program may take */
     uint64_t improve_work;        /* work spent on looking for better guards */
     uint64_t moves;               /* calls of search_move */
@@ -46,10 +48,10 @@ static inline starg_context *context_of(const search *s) {
     return s->problem->context;
 }
 
-/* Rows of points that no other row contains, from the front of `list`. */
+/* Rows of points and fine leaves that no other row contains. */
 typedef struct row_list {
     const witness_row **rows;
-    uint32_t *points;
+    uint32_t *points; /* by row: the point, or UINT32_MAX for a leaf */
     size_t count;
 } row_list;
 
@@ -103,9 +105,13 @@ void search_prune_points(search *s, size_t first);
 /* The value of the most valuable point, or 1. */
 double search_largest_value(const search *s);
 
-/* Prices of maximal sum by which no point exceeds 1; the list receives the points of their program,
- * a subset of all. Errors: MEMORY. */
+/* Prices of maximal sum by which no point and no small leaf exceeds 1; the list receives the rows
+ * of their program, a subset of all. Errors: MEMORY. */
 starg_status search_find_prices(search *s, row_list *list);
+
+/* Is a leaf small enough to count as a point? Do such leaves hold the prices down? */
+bool search_is_fine(const search *s, const search_cell *leaf);
+bool search_fine_bind(const search *s, const row_list *list);
 
 /* The faces that the fewest candidates see become witnesses. Errors: MEMORY, CANCELLED. */
 starg_status search_first_witnesses(search *s);

@@ -16,7 +16,11 @@
 
 static const char STAGE[] = "search";
 
-enum { BRANCHES = 300, FOLLOWED = 16, NODE_ROWS = 32, ASKING_SHARE = 4 };
+enum { BRANCHES = 300, FOLLOWED = 16, ASKING_SHARE = 4 };
+
+/* Measured costs of an integer program, in tests of a witness: a row in ROWS_SHARE, the root of
+ * branch and bound, another node. */
+enum { ROWS_SHARE = 8, ROOT_ROWS = 2000, NODE_ROWS = 32 };
 
 static const double ROUNDING = 1e-6;
 
@@ -46,8 +50,13 @@ static void list_useful(const search *s, row_list *list) {
     list_needed(s, search_value(s) - ((double)s->count - 2) * most - ROUNDING, list);
 }
 
-/* Solves the cover problem of the rows: how few see all witnesses often enough? Counts its work,
- * as far as rows, witnesses and nodes tell. */
+/* What an integer program costs, as far as rows, witnesses and nodes tell. */
+static uint64_t cost_of(const starg_bits *rows, const starg_cover *cover) {
+    size_t branching = cover->nodes > 0 ? ROOT_ROWS + NODE_ROWS * cover->nodes : 0;
+    return (rows->rows / ROWS_SHARE + branching) * rows->columns;
+}
+
+/* Solves the cover problem of the rows: how few see all witnesses often enough? */
 static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) {
     starg_cover_problem problem;
     starg_cover_options options;
@@ -58,7 +67,7 @@ static starg_status solve(search *s, const starg_bits *rows, starg_cover **out) 
     options.max_nodes = s->nodes;
     starg_status status = starg_cover_solve(context_of(s), &problem, &options, out);
     if (status == STARG_OK)
-        s->scene.work += (2 * rows->rows + NODE_ROWS * (*out)->nodes) * rows->columns;
+        s->scene.work += cost_of(rows, *out);
     return status;
 }
 

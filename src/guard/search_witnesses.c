@@ -289,12 +289,12 @@ starg_status search_add_short(search *s, const row_list *list, bool *changed) {
     size_t added, count = 0;
     STARG_NEW(context, STAGE, held, list->count);
     for (size_t i = 0; i < list->count; i++)
-        if (s->prices.share[i] >= LEAST_SHARE)
+        if (s->prices.share[i] >= LEAST_SHARE && list->points[i] != UINT32_MAX)
             held[count++] = list->points[i];
     STARG_TRY(search_hold(s, held, count));
     STARG_NEW_ZERO(context, STAGE, sums, 64 * s->pool->rows->words);
     for (size_t i = 0; i < list->count; i++)
-        if (s->prices.share[i] >= LEAST_SHARE)
+        if (s->prices.share[i] >= LEAST_SHARE && list->points[i] != UINT32_MAX)
             add_share(s, list->points[i], s->prices.share[i], sums);
     STARG_TRY(add_witnesses(s, sums, ENOUGH, MORE_WITNESSES + s->count / 2, &added));
     *changed = added > 0;
