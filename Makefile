@@ -9,7 +9,7 @@ CTEST   := ctest --output-on-failure -j $(JOBS)
 
 LONG_PARTS := analysis slow exact memory threads mpi matrix
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
-	coverage mpi lint fuzz bench install package deps deps-check clean
+	coverage mpi lint fuzz bench install package wheel deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
 
 build: deps
@@ -37,7 +37,7 @@ sanitize: sanitize-build
 	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
 # What takes too long for every change, hours in all; each part can be asked for alone.
-check-long: check $(LONG_PARTS:%=check-%) coverage package
+check-long: check $(LONG_PARTS:%=check-%) coverage package wheel
 
 # Static: clang-tidy and cppcheck.
 check-analysis: tests
@@ -109,6 +109,12 @@ install: build
 package: build
 	@scripts/package-test.sh $(BUILD)
 
+# The Python package with all libraries inside, in dist/; installed where there is only Python and NumPy.
+wheel: deps
+	@scripts/install-deps.sh wheel
+	@scripts/wheel.py $(BUILD)-wheel dist
+	@scripts/wheel-test.sh dist/starguard-*.whl $(BUILD)-wheel
+
 deps:
 	@scripts/install-deps.sh build
 
@@ -116,4 +122,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix demo
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel demo dist
