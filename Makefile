@@ -9,7 +9,7 @@ CTEST   := ctest --output-on-failure -j $(JOBS)
 
 LONG_PARTS := analysis slow exact memory threads mpi matrix
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
-	coverage mpi lint fuzz bench install package wheel deps deps-check clean
+	coverage mpi lint fuzz bench install package wheel release deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
 
 build: deps
@@ -114,6 +114,13 @@ wheel: deps
 	@scripts/install-deps.sh wheel
 	@scripts/wheel.py $(BUILD)-wheel dist
 	@scripts/wheel-test.sh dist/starguard-*.whl $(BUILD)-wheel
+
+# All that is published, in dist/ (docs/versions.md); with the web page, where that can be built.
+release:
+	@scripts/release.sh check
+	@$(MAKE) --no-print-directory wheel package
+	@! $(MAKE) -n web >/dev/null 2>&1 || $(MAKE) --no-print-directory web
+	@scripts/release.sh collect $(BUILD) dist
 
 deps:
 	@scripts/install-deps.sh build
