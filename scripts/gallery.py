@@ -5,7 +5,7 @@
     gallery.py [STARGUARD [NAME...]]
 
 Every command runs as it stands on the page; its numbers come from what it prints, and the picture
-from the same run, so that they agree. With NAMEs only those pictures are made and the page is left.
+from the same run, so that they agree. With NAMEs only those are made anew.
 """
 import html
 import os
@@ -37,8 +37,8 @@ ENTRIES = [
      "candidates can see; red is what stays unseen by these."),
     ("horse", "A horse", ["sample horse -o horse.off"],
      "guard horse.off -o guards.json --picture guards.png",
-     "{guards} guards, with a lower bound of {lower bound} for the candidates. They stand in the trunk, the head and the legs; the "
-     "creases at mouth and ears cost more of them than the trunk does."),
+     "{guards} guards, with a lower bound of {lower bound} for the candidates. They stand in the trunk, the head, the tail "
+     "and the legs, two in each bent hind leg."),
     ("skeleton", "The curve skeleton of an octopus", ["sample octopus -o octopus.off"],
      "skeleton octopus.off -o octopus.obj --picture octopus.png",
      "Guards are first sought on this curve. It has a branch for each arm, and its nodes know the radius of the solid "
@@ -54,8 +54,8 @@ ENTRIES = [
      "need more than a few."),
     ("pieces", "Star-shaped pieces of a horse", ["sample horse -o horse.off"],
      "decompose horse.off -o pieces.vtk --picture pieces.png",
-     "{pieces} pieces, {star-shaped} star-shaped: each is seen as a whole by a guard inside it. Cuts follow the creases "
-     "that hide one part from another, so that limbs come off where they begin."),
+     "{pieces} pieces, {star-shaped} star-shaped: each is seen as a whole by a guard inside it, which is proven. Cuts run "
+     "where one part begins to hide from another: at tail, neck and legs."),
     ("plate", "Star-shaped pieces of a plate with holes", ["sample plate -o plate.off"],
      "decompose plate.off -o pieces.vtk --picture pieces.png",
      "{pieces} pieces. No point sees around a hole, so pieces end at the holes and run between them."),
@@ -124,18 +124,26 @@ def shrunk(path):
     return path
 
 
+def sections_of_page(path):
+    """The sections that the page has, by title."""
+    if not os.path.exists(path):
+        return {}
+    with open(path, encoding="utf-8") as file:
+        parts = re.split(r"^## ", file.read(), flags=re.MULTILINE)[1:]
+    return {part.split("\n", 1)[0]: f"## {part.rstrip()}\n" for part in parts}
+
+
 def main(program="build/starguard", *names):
     program = os.path.abspath(program)
-    wanted = [row for row in ENTRIES if not names or row[0] in names]
-    sections = []
-    for row in wanted:
-        print(row[0], flush=True)
-        sections.append(entry(program, *row))
-    if not names:
-        with open(os.path.join(ROOT, "docs", "gallery.md"), "w", encoding="utf-8") as file:
-            file.write("\n".join([HEAD, *sections]))
-    else:
-        print("\n".join(sections))
+    path = os.path.join(ROOT, "docs", "gallery.md")
+    for row in ENTRIES:
+        if not names or row[0] in names:
+            print(row[0], flush=True)
+            made = entry(program, *row)
+            sections = sections_of_page(path)
+            sections[row[1]] = made
+            with open(path, "w", encoding="utf-8") as file:
+                file.write("\n".join([HEAD, *(sections[title] for _, title, *_ in ENTRIES if title in sections)]))
 
 
 if __name__ == "__main__":
