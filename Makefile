@@ -7,9 +7,9 @@ CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 STRICT  := $(CMAKE) -DSTARGUARD_WERROR=ON
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
-LONG_PARTS := analysis slow exact memory threads mpi matrix
+LONG_PARTS := analysis slow exact memory threads mpi matrix aarch64
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
-	coverage mpi lint fuzz bench install package deps deps-check clean
+	coverage mpi lint fuzz bench install package wheel release deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
 
 build: deps
@@ -37,7 +37,7 @@ sanitize: sanitize-build
 	@$(CTEST) --test-dir $(BUILD)-sanitize -LE slow
 
 # What takes too long for every change, hours in all; each part can be asked for alone.
-check-long: check $(LONG_PARTS:%=check-%) coverage package
+check-long: check $(LONG_PARTS:%=check-%) coverage package wheel
 
 # Static: clang-tidy and cppcheck.
 check-analysis: tests
@@ -66,6 +66,12 @@ check-threads: deps-check
 
 check-mpi: mpi
 	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
+
+# With a cross compiler, under emulation (docs/portability.md).
+check-aarch64: deps-check
+	@scripts/install-deps.sh aarch64
+	@scripts/check-aarch64.sh $(BUILD)-aarch64 gcc $(JOBS)
+	@scripts/check-aarch64.sh $(BUILD)-aarch64 clang $(JOBS)
 
 # All results of six builds at four numbers of threads.
 check-matrix: deps-check
@@ -109,6 +115,19 @@ install: build
 package: build
 	@scripts/package-test.sh $(BUILD)
 
+# The Python package with all libraries inside, in dist/; installed where there is only Python and NumPy.
+wheel: deps
+	@scripts/install-deps.sh wheel
+	@scripts/wheel.py $(BUILD)-wheel dist
+	@scripts/wheel-test.sh dist/starguard-*.whl $(BUILD)-wheel
+
+# All that is published, in dist/ (docs/versions.md); with the web page, where that can be built.
+release:
+	@scripts/release.sh check
+	@$(MAKE) --no-print-directory wheel package
+	@! $(MAKE) -n web >/dev/null 2>&1 || $(MAKE) --no-print-directory web
+	@scripts/release.sh collect $(BUILD) dist
+
 deps:
 	@scripts/install-deps.sh build
 
@@ -116,4 +135,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix demo
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-aarch64 demo dist

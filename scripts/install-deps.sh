@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing Debian packages, as root or with sudo.
-# Usage: install-deps.sh build|check|coverage|memory|mpi|bench ...
+# Usage: install-deps.sh build|check|coverage|memory|mpi|wheel|aarch64|bench ...
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 
@@ -14,11 +14,13 @@ viewer_packages() {
 packages=""
 for purpose in "$@"; do
     case $purpose in
-    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libarpack2-dev libsuitesparse-dev python3 python3-cffi python3-numpy $(viewer_packages)" ;;
-    check) packages="$packages libcmocka-dev libgmp-dev cppcheck clang clang-format clang-tidy libclang-rt-14-dev llvm python3-jsonschema jq man-db tetgen chromium python3-setuptools python3-pip python3-wheel mypy python3-vtk9 python3-meshio assimp-utils" ;;
+    build) packages="$packages gcc g++ cmake ninja-build pkg-config coinor-libcbc-dev libjansson-dev zlib1g-dev libsqlite3-dev libarpack2-dev libsuitesparse-dev python3 python3-numpy $(viewer_packages)" ;;
+    check) packages="$packages libcmocka-dev libgmp-dev cppcheck clang clang-format clang-tidy libclang-rt-14-dev llvm python3-jsonschema jq man-db tetgen chromium python3-pip python3-cffi mypy python3-vtk9 python3-meshio assimp-utils" ;;
     coverage) packages="$packages gcovr" ;;
     memory) packages="$packages valgrind" ;;
     mpi) packages="$packages libopenmpi-dev openmpi-bin" ;;
+    wheel) packages="$packages patchelf binutils debootstrap python3-pip" ;;
+    aarch64) packages="$packages gcc-aarch64-linux-gnu g++-aarch64-linux-gnu qemu-user-static debootstrap" ;;
     bench) packages="$packages libembree-dev hyperfine" ;;
     *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;
     esac

@@ -6,7 +6,7 @@
 #include "export.h"
 
 #define STARG_VERSION_MAJOR 0
-#define STARG_VERSION_MINOR 1
+#define STARG_VERSION_MINOR 2
 #define STARG_VERSION_PATCH 0
 
 #ifdef __cplusplus

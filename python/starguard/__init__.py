@@ -12,6 +12,10 @@ PyVista. Arrays are NumPy arrays: vertices (n, 3) float64, faces (m, 3) of any i
 Returned arrays are read-only views of the library's memory, without a copy. Errors are exceptions derived
 from `Error`. Slow calls take `threads`, `seed`, `time_limit` and `progress`; Ctrl-C interrupts them.
 """
+try:
+    import numpy as _numpy  # noqa: F401
+except ImportError as _error:
+    raise ImportError("starguard needs NumPy: pip install numpy, or Debian's python3-numpy") from _error
 from ._library import version as __version__
 from ._session import Defaults, defaults, logger
 from ._types import Progress
@@ -22,7 +26,7 @@ from .descriptors import (NO_CLASS, Descriptor, Reconstruction, Retrieval, Signa
                           signatures)
 from .errors import (ArgumentError, CancelledError, Error, FormatError, MeshError, OutOfMemoryError,
                      RangeError, ReadError, SolverError, TimeLimitError, WriteError)
-from .guards import Guards, GuardLevel, candidate_points, guard, points_from_bytes, read_points, unseen
+from .guards import Guard, Guards, GuardLevel, candidate_points, guard, points_from_bytes, read_points, unseen
 from .kernels import Kernel, kernel
 from .mesh import NO_VERTEX, Check, Finding, Level, Mesh, RepairReport, as_mesh
 from .morphs import (FrameMeasures, Morph, SurfaceMap, animation_from_bytes, map_surface,
@@ -41,7 +45,7 @@ from .visibility import Bits, cone_cosine, visible, visible_from_box
 __all__ = [
     "Added", "ArgumentError", "Bits", "CancelledError", "Certificate", "Check", "Claim", "Cover", "Database",
     "Decomposition", "Defaults", "Descriptor", "Error", "Finding", "FormatError", "FrameMeasures",
-    "GuardLevel", "Guards", "Kernel", "Level", "Mesh", "MeshError", "Models", "Morph", "NO_CLASS",
+    "Guard", "GuardLevel", "Guards", "Kernel", "Level", "Mesh", "MeshError", "Models", "Morph", "NO_CLASS",
     "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",
     "RangeError", "ReadError", "Reconstruction", "RepairReport", "Retrieval", "SampleInfo",
     "Scene", "Signature", "Skeleton", "Solid", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",

@@ -106,18 +106,16 @@ def copy(block: Any, shape: tuple[int, ...], dtype: Any) -> Array:
 
 
 _NAMES = {"double": "f8", "size_t": f"u{ffi.sizeof('size_t')}", "uint32_t": "u4", "int32_t": "i4",
-          "int": "i4", "uint64_t": "u8", "int64_t": "i8", "_Bool": "?"}
+          "int": "i4", "unsigned": "u4", "uint64_t": "u8", "int64_t": "i8", "bool": "?"}
 
 
 def record(kind: str) -> np.dtype[Any]:
     """The NumPy type of a C struct of numbers."""
-    fields = ffi.typeof(kind).fields
     names, formats, offsets = [], [], []
-    for name, field in fields:
-        is_array = field.type.kind == "array"
-        item = field.type.item if is_array else field.type
+    for name, field in ffi.typeof(kind).fields.items():
         names.append(name)
-        formats.append((_NAMES[item.cname], (field.type.length,)) if is_array else _NAMES[item.cname])
+        formats.append((_NAMES[field.type.item.name], (field.type.length,))
+                       if field.type.kind == "array" else _NAMES[field.type.name])
         offsets.append(field.offset)
     return np.dtype({"names": names, "formats": formats, "offsets": offsets,
                      "itemsize": ffi.sizeof(kind)})
@@ -125,7 +123,7 @@ def record(kind: str) -> np.dtype[Any]:
 
 def records(owner: Any, block: Any, count: int) -> Array:
     """A read-only structured view of `count` structs of the library."""
-    return view(owner, block, (count,), record(ffi.typeof(block).item.cname))
+    return view(owner, block, (count,), record(ffi.typeof(block).item.name))
 
 
 def path(value: PathLike) -> bytes:

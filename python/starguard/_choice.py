@@ -2,6 +2,7 @@
 """C options: words for enum values, and fields given by the caller."""
 from __future__ import annotations
 
+import warnings
 from typing import Any, Mapping
 
 from .errors import ArgumentError
@@ -13,6 +14,15 @@ def choose(name: str, word: str, words: Mapping[str, int]) -> int:
     if value is None:
         raise ArgumentError(f"{name} is {word!r}; it must be one of {', '.join(words)}")
     return value
+
+
+def renamed(name: str, value: Any, old: str, old_value: Any) -> Any:
+    """The value of a keyword that was called `old` in the last version."""
+    if old_value is None:
+        return value
+    warnings.warn(f"{old}= is now called {name}=; the next version removes the old name",
+                  DeprecationWarning, stacklevel=3)
+    return old_value
 
 
 def word_of(value: int, words: Mapping[str, int]) -> str:

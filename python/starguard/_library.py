@@ -7,14 +7,15 @@ import importlib
 import os
 from typing import Any
 
+from ._c import Interface, Library
 
-_ffi: Any = importlib.import_module("._ffi", __package__)  # made by make_ffi.py
-ffi: Any = _ffi.ffi
+_declared: Any = importlib.import_module("._declarations", __package__)  # made by make_declarations.py
+ffi: Any = Interface(_declared.STRUCTS, _declared.FUNCTION_TYPES)
 
 
 def _open(name: str) -> Any:
     path, = glob.glob(os.path.join(os.path.dirname(os.path.abspath(__file__)), f"{name}.so.*"))
-    return ffi.dlopen(path)
+    return Library(ffi, path, _declared.FUNCTIONS, _declared.CONSTANTS)
 
 
 _base: Any = _open("libstarguard")  # first, because the other one needs it
@@ -27,6 +28,6 @@ def text(pointer: Any) -> str:
 
 
 version = text(lib.starg_version())
-if version != _ffi.version:
+if version != _declared.VERSION:
     raise ImportError(f"the library is version {version}, but the package was made for "
-                      f"{_ffi.version}; install starguard anew")
+                      f"{_declared.VERSION}; install starguard anew")

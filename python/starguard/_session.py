@@ -5,7 +5,7 @@ Each call has its own context, so that any thread may call anything at any time.
 keep their context alive, because their memory returns there.
 
 Python runs signal handlers on the main thread between instructions, not while a C function runs
-there. So a helper thread runs the C function (cffi releases the interpreter lock), while the main
+there. So a helper thread runs the C function (ctypes releases the interpreter lock), while the main
 thread waits and can receive Ctrl-C. It then cancels the library call, waits until the call has
 returned (its arrays must outlive it), and re-raises the KeyboardInterrupt. The progress callback also
 runs on the waiting thread, so that its exceptions are raised at the call.
@@ -53,7 +53,7 @@ class _Listener:
         self.reports: collections.deque[tuple[str, float]] | None = None
 
 
-@ffi.callback("bool(void *, const char *, double)", error=False)  # type: ignore[misc]
+@ffi.callback("starg_progress_fn")  # type: ignore[misc]
 def _on_progress(user: Any, stage: Any, fraction: float) -> bool:
     reports = ffi.from_handle(user).reports
     if reports is not None:
@@ -61,7 +61,7 @@ def _on_progress(user: Any, stage: Any, fraction: float) -> bool:
     return True
 
 
-@ffi.callback("void(void *, starg_log_level, const char *)")  # type: ignore[misc]
+@ffi.callback("starg_log_fn")  # type: ignore[misc]
 def _on_log(user: Any, level: int, message: Any) -> None:
     logger.log(_LEVELS.get(level, logging.WARNING), "%s", text(message))
 

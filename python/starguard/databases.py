@@ -9,7 +9,7 @@ from typing import Any, Iterable, Sequence
 import numpy as np
 
 from . import _arrays
-from ._choice import choose, word_of
+from ._choice import choose, renamed, word_of
 from ._library import ffi, lib, text
 from ._session import Session
 from ._types import Array, PathLike, Progress
@@ -174,23 +174,28 @@ class Database:
         return self._models(lib.starg_database_list)
 
     def signatures(self, kind: str = "shape-dna") -> Models:
-        """All models with signatures of one kind."""
+        """All models with signatures of one kind: "star", "paper", "shape-dna" or "d2"."""
         return self._models(lib.starg_database_signatures, choose("kind", kind, KINDS))
 
-    def query(self, wanted: Any, count: int = 10, kind: str = "shape-dna", *,
-              progress: Progress | None = None) -> Models:
-        """The models nearest to a model or a Signature, nearest first."""
-        asked = wanted if isinstance(wanted, Signature) else signature(wanted, kind, progress=progress)
+    def query(self, wanted: Any, count: int = 10, distance: str = "shape-dna", *,
+              progress: Progress | None = None, kind: str | None = None) -> Models:
+        """The models nearest to a model or a Signature, nearest first, by the distance "star", "paper",
+        "shape-dna" or "d2" (`kind`: its old name)."""
+        distance = renamed("distance", distance, "kind", kind)
+        asked = wanted if isinstance(wanted, Signature) else signature(wanted, distance, progress=progress)
         return self._models(lib.starg_database_query, asked._handle, count)
 
-    def distances(self, kind: str = "shape-dna") -> Array:
-        """The distance matrix, in the order of `models()`."""
-        return self.signatures(kind)._distances()
+    def distances(self, distance: str = "shape-dna", *, kind: str | None = None) -> Array:
+        """The matrix of one distance ("star", "paper", "shape-dna" or "d2"), in the order of
+        `models()` (`kind`: the old name)."""
+        return self.signatures(renamed("distance", distance, "kind", kind))._distances()
 
     def evaluate(self, classes: PathLike | None = None,
-                 kind: str = "shape-dna") -> tuple[Retrieval, dict[str, Retrieval]]:
-        """Retrieval measures, overall and by class. The class is the file name up to the last '_', or
+                 distance: str = "shape-dna", *,
+                 kind: str | None = None) -> tuple[Retrieval, dict[str, Retrieval]]:
+        """Retrieval measures of a distance ("star", "paper", "shape-dna" or "d2"; `kind` is the old
+        name), overall and by class. The class is the file name up to the last '_', or
         given by the lines "MODEL CLASS" of a file."""
-        models = self.signatures(kind)
+        models = self.signatures(renamed("distance", distance, "kind", kind))
         names, numbers = models._classes(classes)
         return _measure(models._distances(), numbers, names)

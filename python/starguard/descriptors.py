@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _arrays
-from ._choice import choose
+from ._choice import choose, renamed
 from ._fields import fill
 from ._library import ffi, lib, text
 from ._options import Options, takes
@@ -290,12 +290,12 @@ def is_descriptor(path: PathLike) -> bool:
     return bool(lib.starg_descriptor_recognized(ffi.from_buffer(head) if head else ffi.NULL, len(head)))
 
 
-def match(a: Comparable, b: Comparable, kind: str = "star", *, threads: int | None = None,
+def match(a: Comparable, b: Comparable, distance: str = "star", *, threads: int | None = None,
           seed: int | None = None, time_limit: float | None = None,
-          progress: Progress | None = None) -> float:
+          progress: Progress | None = None, kind: str | None = None) -> float:
     """Computes the distance between two shapes, 0 or more. Each is a model, a Descriptor, a
-    Signature, or a file of a model or a descriptor. `kind` is "star" (independent of pose), "paper",
-    "shape-dna" or "d2".
+    Signature, or a file of a model or a descriptor. `distance` is "star" (independent of pose),
+    "paper", "shape-dna" or "d2"; its old name `kind` works for one more version.
 
     >>> import starguard
     >>> star, room = (starguard.sample(name, vertices=500) for name in ("star", "l-room"))
@@ -303,7 +303,8 @@ def match(a: Comparable, b: Comparable, kind: str = "star", *, threads: int | No
     (0.0, True)
     """
     options = {"threads": threads, "seed": seed, "time_limit": time_limit, "progress": progress}
-    first, second = _signature_of(a, kind, options), _signature_of(b, kind, options)
+    wanted = renamed("distance", distance, "kind", kind)
+    first, second = _signature_of(a, wanted, options), _signature_of(b, wanted, options)
     session = Session()
     out = ffi.new("double *")
     session.call(lib.starg_signature_distance, session.context, first._handle, second._handle, out,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays
+from . import _arrays, _others
 from ._choice import choose
 from ._fields import fill
 from ._library import ffi, lib, text
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from ._keywords import GuardOptions
+    from .mesh import Mesh
 
 _OPTIONS = Options("starg_guard_options", old={
     "candidate_count": "count", "engine": "visibility", "face_rule": "faces"})
@@ -42,9 +43,30 @@ class GuardLevel:
 
 
 @dataclass(frozen=True, eq=False)
+class Guard:
+    """One of the guards of a result."""
+
+    #: (3,).
+    position: Array
+    #: Viewing direction and what is up there, (3,); None if it looks all around.
+    direction: Array | None
+    up: Array | None
+    #: Number of faces that it sees.
+    seen_faces: int
+    #: Level of detail at which it was chosen; 0: the coarsest.
+    level: int
+
+
+@dataclass(frozen=True, eq=False)
 class Guards:
-    """A guarding result. Faces are indices into the model. The arrays are read-only views of the
-    library's memory."""
+    """A guarding result: a sequence of Guard, with arrays of all of them. Faces are indices into the
+    model. The arrays are read-only views of the library's memory.
+
+    >>> import starguard
+    >>> guards = starguard.guard(starguard.sample("l-room", vertices=500))
+    >>> [guard.seen_faces for guard in guards], guards[0].position.shape
+    ([1008], (3,))
+    """
 
     #: The model's path as given, or None.
     file: str | None
@@ -95,6 +117,8 @@ class Guards:
     time_limited: bool
     #: The options of `guard` that were used.
     options: dict[str, Any]
+    #: The model that was guarded; None for a result that was read from a file.
+    model: Mesh | None
     _handle: Any = field(repr=False)
     _owner: Any = field(repr=False)
 
@@ -105,8 +129,42 @@ class Guards:
     def __len__(self) -> int:
         return len(self.positions)
 
+    def __getitem__(self, index: Any) -> Any:
+        """A guard, or a list of them."""
+        if isinstance(index, slice):
+            return [self[i] for i in range(*index.indices(len(self)))]
+        return Guard(self.positions[index], None if self.directions is None else self.directions[index],
+                     None if self.ups is None else self.ups[index], int(self.seen_faces[index]),
+                     int(self.levels[index]))
+
+    def __iter__(self) -> Iterator[Guard]:
+        return (self[i] for i in range(len(self)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _unpickled, (self._bytes(), self.model, self.lines_tested, self.options)
+
+    def _bytes(self) -> bytes:
+        """The contents of its file."""
+        session = Session()
+        data, size = ffi.new("char **"), ffi.new("size_t *")
+        session.call(lib.starg_guards_write_memory, session.context, self._handle,
+                     _arrays.path(self.file) if self.file is not None else ffi.NULL, data, size)
+        try:
+            return bytes(ffi.buffer(data[0], size[0]))
+        finally:
+            lib.starg_text_free(session.context, data[0])
+
+    def _repr_html_(self) -> str:
+        from .pictures import distinct_colors
+
+        facts = {"guards": len(self), "lower bound": self.lower_bound,
+                 "coverage": f"{self.coverage_area:.4%} of the area, {self.coverage_faces:.4%} of the faces"}
+        return _others.card(repr(self), self.model, facts, points=self.positions,
+                            point_colors=distinct_colors(len(self)) if len(self) > 0 else None)
+
     @classmethod
-    def _of(cls, g: Any, file: PathLike | None = None, owner: Any = None) -> Guards:
+    def _of(cls, g: Any, file: PathLike | None = None, owner: Any = None,
+            model: Mesh | None = None) -> Guards:
         """Wraps a handle, or an object that `owner` keeps alive."""
         keeper, count = g if owner is None else owner, g.count
         levels = [
@@ -114,7 +172,7 @@ class Guards:
                        _arrays.view(keeper, v.positions, (v.count, 3), np.float64), v.kept)
             for v in (g.level_list[i] for i in range(g.level_count))]
         return fill(
-            cls, g, _handle=g, _owner=keeper, file=text(g.file) if g.file else name_of(file), level_list=levels,
+            cls, g, _handle=g, _owner=keeper, model=model, file=text(g.file) if g.file else name_of(file), level_list=levels,
             positions=_arrays.view(keeper, g.positions, (count, 3), np.float64),
             directions=_arrays.view(keeper, g.directions, (count, 3), np.float64) if g.directions else None,
             ups=_arrays.view(keeper, g.ups, (count, 3), np.float64) if g.ups else None,
@@ -220,7 +278,12 @@ def guard(model: Any, *, candidates: str | ArrayLike | None = None,
         handle = session.make("starg_guards", lib.starg_guards_free, lib.starg_guard,
                               session.context, solid._handle, wanted.pointer, shared=True,
                               progress=progress, time_limit=time_limit)
-    return Guards._of(handle, solid.mesh.file)
+    return Guards._of(handle, solid.mesh.file, model=solid.mesh)
+
+
+def _unpickled(data: bytes, model: Mesh | None, lines_tested: int, options: dict[str, Any]) -> Guards:
+    """The file's contents, and what it does not tell."""
+    return replace(Guards.from_bytes(data, "pickle"), model=model, lines_tested=lines_tested, options=options)
 
 
 def unseen(model: Any, *, clearance: float = 0.0, work: int = 30_000_000, threads: int | None = None,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays
+from . import _arrays, _others
 from ._choice import choose
 from ._fields import fill
 from ._library import ffi, lib, text
@@ -84,7 +84,10 @@ class Mesh:
         return f"Mesh({len(self.vertices)} vertices, {len(self.faces)} faces)"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Mesh, (np.array(self.vertices), np.array(self.faces))
+        return _unpickled, (np.array(self.vertices), np.array(self.faces), self.file)
+
+    def _repr_html_(self) -> str:
+        return _others.card(repr(self), self, {})
 
     # ---- files ----
 
@@ -130,6 +133,25 @@ class Mesh:
         colors = _arrays.colors(face_colors, len(self.faces), "face_colors")
         options.face_colors = colors
         session.call(lib.starg_mesh_write, session.context, self._handle, _arrays.path(path), options)
+
+    # ---- other packages; `as_mesh` is the way back ----
+
+    def to_trimesh(self) -> Any:
+        """A copy as `trimesh.Trimesh`, with the same vertices and faces in the same order."""
+        return _others.trimesh(self.vertices, self.faces)
+
+    def to_pyvista(self) -> Any:
+        """A copy as `pyvista.PolyData`."""
+        return _others.pyvista_surface(self.vertices, self.faces)
+
+    def to_meshio(self) -> Any:
+        """A copy as `meshio.Mesh` of triangles.
+
+        >>> import starguard
+        >>> starguard.sample("l-room", vertices=500).to_meshio().cells_dict["triangle"].shape
+        (1008, 3)
+        """
+        return _others.meshio(self.vertices, "triangle", self.faces, {})
 
     # ---- measures ----
 
@@ -252,6 +274,12 @@ class Mesh:
             result.append(Level(mesh, _arrays.view(handle, level.vertex_map, (finer,), np.uint32)
                                 if level.vertex_map else None))
         return result
+
+
+def _unpickled(vertices: Array, faces: Array, file: PathLike | None) -> Mesh:
+    mesh = Mesh(vertices, faces)
+    mesh.file = file
+    return mesh
 
 
 def as_mesh(model: Any) -> Mesh:

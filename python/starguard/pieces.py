@@ -2,13 +2,15 @@
 """Star decomposition: few pieces, each entirely visible from its guard."""
 from __future__ import annotations
 
+import os
+import tempfile
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Iterator
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays
+from . import _arrays, _others
 from ._fields import fill
 from ._library import ffi, lib, text
 from ._options import Options, takes
@@ -17,7 +19,7 @@ from ._types import Array, PathLike, Progress
 from .errors import ArgumentError, MeshError
 from .guards import name_of
 from .mesh import Mesh
-from .tetra import TetMesh, TetraReport, as_shape
+from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, as_shape
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -29,7 +31,8 @@ OPTIONS = Options("starg_decompose_options")
 
 @dataclass(frozen=True, eq=False)
 class Decomposition:
-    """A partitioned solid. The arrays are read-only views of the library's memory."""
+    """A partitioned solid: a sequence of pieces, which are the rows of `pieces`. The arrays are
+    read-only views of the library's memory."""
 
     #: The model's path as given, or None.
     file: str | None
@@ -77,6 +80,56 @@ class Decomposition:
 
     def __len__(self) -> int:
         return len(self.pieces)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.pieces[index]
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self.pieces)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        with tempfile.TemporaryDirectory(prefix="starguard-") as folder:
+            files = os.path.join(folder, "pieces.vtk"), os.path.join(folder, "pieces.json")
+            self.write(files[0], binary=True)
+            self.write_report(files[1])
+            contents = []
+            for name in files:
+                with open(name, "rb") as file:
+                    contents.append(file.read())
+        return Decomposition.from_bytes, tuple(contents)
+
+    def _repr_html_(self) -> str:
+        from .pictures import distinct_colors
+
+        model, pieces = self._outside()
+        facts = {"pieces": len(self), "proven star-shaped": self.strictly_star,
+                 "lower bound": self.lower_bound or "not sought"}
+        return _others.card(repr(self), model, facts, opacity=1.0,
+                            face_colors=distinct_colors(len(self))[pieces])
+
+    def _outside(self) -> tuple[Mesh, Array]:
+        """The boundary of the solid, and the piece of each of its faces."""
+        around = [(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)]  # outward, opposite each corner
+        faces, pieces = [], []
+        for corner, others in enumerate(around):
+            outer = self.mesh.neighbours[:, corner] == NO_NEIGHBOUR
+            faces.append(self.mesh.tetrahedra[outer][:, others])
+            pieces.append(self.labels[outer])
+        return Mesh(self.mesh.vertices, np.concatenate(faces)), np.concatenate(pieces)
+
+    def to_pyvista(self) -> Any:
+        """A copy as `pyvista.UnstructuredGrid` with the piece of each cell as `piece`."""
+        return _others.pyvista_tetrahedra(self.mesh.vertices, self.mesh.tetrahedra, {"piece": self.labels})
+
+    def to_meshio(self) -> Any:
+        """A copy as `meshio.Mesh` of tetrahedra with the piece of each as `piece`.
+
+        >>> import starguard
+        >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), effort=10)
+        >>> len(set(pieces.to_meshio().cell_data["piece"][0])) == len(pieces)
+        True
+        """
+        return _others.meshio(self.mesh.vertices, "tetra", self.mesh.tetrahedra, {"piece": self.labels})
 
     @property
     def guards(self) -> Array:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _arrays
+from . import _arrays, _others
 from ._fields import fill
 from ._library import ffi, lib
 from ._options import Options, takes
@@ -152,6 +152,17 @@ class TetMesh:
             options.labels = pointer
         session.call(lib.starg_tetmesh_write, session.context, self._handle, _arrays.path(path),
                      options)
+
+    def to_pyvista(self) -> Any:
+        """A copy as `pyvista.UnstructuredGrid`; cell data `region`, if there are regions."""
+        return _others.pyvista_tetrahedra(self.vertices, self.tetrahedra, self._data())
+
+    def to_meshio(self) -> Any:
+        """A copy as `meshio.Mesh` of tetrahedra; cell data `region`, if there are regions."""
+        return _others.meshio(self.vertices, "tetra", self.tetrahedra, self._data())
+
+    def _data(self) -> dict[str, Array]:
+        return {} if self.regions is None else {"region": self.regions}
 
     @property
     def volume(self) -> float:

@@ -91,7 +91,7 @@ class Installed(unittest.TestCase):
 
     def test_find_package_versions(self):
         """Another minor version is refused before 1.0, another patch is not."""
-        for version, fits in [("0.0", False), ("0.1.0", True), ("0.2", False), ("1.0", False)]:
+        for version, fits in [("0.1", False), ("0.2.0", True), ("0.3", False), ("1.0", False)]:
             project = os.path.join(self.folder, f"version {version}")
             os.mkdir(project)
             with open(os.path.join(project, "CMakeLists.txt"), "w", encoding="utf-8") as file:

@@ -19,10 +19,10 @@ INCLUDE = os.path.join(SOURCE, "include")
 PACKAGE = os.path.join(SOURCE, "python", "starguard")
 
 
-def make_ffi():
+def make_declarations():
     """The translator of the headers, as a module."""
-    spec = importlib.util.spec_from_file_location("make_ffi",
-                                                  os.path.join(SOURCE, "python", "tools", "make_ffi.py"))
+    spec = importlib.util.spec_from_file_location("make_declarations",
+                                                  os.path.join(SOURCE, "python", "tools", "make_declarations.py"))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -53,7 +53,7 @@ def has_attribute(owner, name):
 
 class Completeness(Case):
     def test_every_c_function_is_in_the_table(self):
-        declared = make_ffi().functions(os.path.join(INCLUDE, "starguard"))
+        declared = make_declarations().functions(os.path.join(INCLUDE, "starguard"))
         self.assertGreater(len(declared), 150)
         self.assertEqual(sorted(declared), sorted(table()))
 
@@ -92,19 +92,19 @@ class Completeness(Case):
 
 class Declarations(Case):
     def test_declarations_are_those_of_the_headers(self):
-        made = os.path.join(self.folder, "_ffi.py")
-        make_ffi().main(INCLUDE, made)
-        installed = os.path.join(os.path.dirname(starguard.__file__), "_ffi.py")
+        made = os.path.join(self.folder, "_declarations.py")
+        make_declarations().main(INCLUDE, made)
+        installed = os.path.join(os.path.dirname(starguard.__file__), "_declarations.py")
         with open(made, encoding="utf-8") as a, open(installed, encoding="utf-8") as b:
             self.assertEqual(a.read(), b.read())
 
     def structs(self):
         """The names of the structs that have members, with their members."""
         found = {}
-        for kind in _library.ffi.list_types()[0]:
-            struct = getattr(_library.ffi.typeof(f"{kind} *"), "item", None)  # none: a function
-            if struct is not None and struct.kind == "struct" and struct.fields:
-                found[kind] = [name for name, _ in struct.fields]
+        for kind in _library._declared.STRUCTS:
+            fields = _library.ffi.typeof(kind).fields
+            if fields:
+                found[kind] = list(fields)
         return found
 
     @unittest.skipUnless(shutil.which("cc"), "there is no C compiler")
@@ -176,7 +176,7 @@ class Types(Case):
                        "kept: bool = pieces.tetra.surface_kept\n")
         done = subprocess.run(
             ["mypy", "--strict", "--enable-incomplete-feature=Unpack", "--python-executable",
-             sys.executable, "--cache-dir", os.path.join(self.folder, "cache"), "--exclude", "_ffi",
+             sys.executable, "--cache-dir", os.path.join(self.folder, "cache"), "--exclude", "_declarations",
              package, "user.py"],
             capture_output=True, text=True, env={**os.environ, "MYPYPATH": os.path.dirname(package)},
             check=False)
