@@ -7,6 +7,7 @@
 
 typedef struct values {
     const char *output, *landmarks;
+    bool overlay;
 } values;
 
 static const cli_option options[] = {
@@ -15,6 +16,9 @@ static const cli_option options[] = {
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
         "of B; or six coordinates, which select the nearest vertices."),
+    CLI_FLAG_OPTION("overlay", overlay,
+                    "Also write the common refinement of both triangulations: points with their "
+                    "places on A and on B, and triangles, each in one face of both."),
 };
 
 static starg_status prepare(cli_session *session, void *data) {
@@ -30,6 +34,9 @@ static void say_map(cli_session *session, const starg_map *map) {
     cli_say(session, "landmarks     %zu (all met)\n", map->landmark_count);
     cli_say(session, "angles        %.4g (1 is best)\n", map->mean_angle_distortion);
     cli_say(session, "areas         %.4g (1 is best)\n", map->mean_area_distortion);
+    if (map->overlay.face_count > 0)
+        cli_say(session, "overlay       %zu vertices, %zu faces\n", map->overlay.vertex_count,
+                map->overlay.face_count);
 }
 
 /* Reports the file's contents and data about the run. */
@@ -63,6 +70,8 @@ static starg_status run(cli_session *session, void *data) {
                                      &wanted.landmark_count));
     wanted.landmarks = pairs;
     CLI_TRY(starg_map_create(session->context, session->mesh, target, &wanted, &map));
+    if (v->overlay)
+        CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
     CLI_TRY(
         starg_map_write(session->context, map, cli_outputs_place(&session->outputs, v->output)));
     say_map(session, map);
@@ -77,7 +86,7 @@ done:
 
 const cli_command cli_command_map = {
     .name = "map",
-    .usage = "A B [--landmarks FILE] -o MAP.json",
+    .usage = "A B [--landmarks FILE] [--overlay] -o MAP.json",
     .summary = "compute a bijection between two surfaces",
     .description =
         "Maps each vertex of A to a point of B: a face and barycentric coordinates. Surfaces with "
