@@ -16,7 +16,7 @@ typedef struct values {
     starg_morph_options wanted;
     uint64_t frames;
     int up;
-    bool guards, pieces, overlay;
+    bool guards, pieces, overlay, report;
 } values;
 
 enum { SHEET_COLUMNS = 5, TILE_WIDTH = 480, TILE_HEIGHT = 360 };
@@ -35,6 +35,9 @@ static const cli_option options[] = {
     CLI_FLAG_OPTION("overlay", overlay,
                     "Refine A by the faces of B, so that the last frame is B itself: see 'starguard "
                     "map --overlay'."),
+    CLI_FLAG_OPTION("report", report,
+                    "Also write morph.json into DIR: what --json reports, for 'starguard verify A B "
+                    "DIR'."),
     CLI_TEXT_OPTION("glb", glb, "FILE.glb",
                     "Frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
@@ -86,6 +89,8 @@ static starg_status announce_folder(cli_session *session, const values *v) {
     CLI_TRY(cli_announce_folder(session, v->output));
     for (uint64_t i = 0; i < v->frames; i++)
         CLI_TRY(announce_path(session, frame_in_folder(v, i)));
+    if (v->report)
+        CLI_TRY(announce_path(session, in_folder(v, "morph.json")));
     for (int i = 0; v->guards && i < 2; i++)
         CLI_TRY(announce_path(session, in_folder(v, guards[i])));
     for (int i = 0; v->pieces && i < 4; i++)
@@ -201,6 +206,7 @@ done:
 /* Sums over the frames, for the text report. */
 typedef struct totals {
     size_t intersections, most_intersections, inverted;
+    size_t ends[2]; /* pairs of intersecting faces in the first and the last frame */
     double drift;
 } totals;
 
@@ -248,6 +254,7 @@ static starg_status write_frames(cli_session *session, const values *v, const su
         CLI_TRY(write_frame(session, source, positions, frame_in_folder(v, i)));
         cli_append(session, list, frame_json(session, t, &measures));
         sum->intersections += measures.intersections;
+        sum->ends[i > 0] = measures.intersections;
         sum->inverted += measures.inverted;
         if (measures.intersections > sum->most_intersections)
             sum->most_intersections = measures.intersections;
@@ -462,12 +469,19 @@ static json_t *guards_json(cli_session *session, const starg_morph *morph, int e
     return list;
 }
 
-static void report_morph(cli_session *session, const values *v, const starg_morph *morph,
-                         const extras *found, json_t *frames) {
-    json_t *report = session->report;
+static json_t *overlay_json(const subject *s) {
+    return json_pack("{s:I, s:I}", "vertices", (json_int_t)starg_mesh_vertex_count(s->refined),
+                     "faces", (json_int_t)starg_mesh_face_count(s->refined));
+}
+
+static void report_morph(cli_session *session, json_t *report, const values *v,
+                         const subject *s, const starg_morph *morph, const extras *found,
+                         json_t *frames) {
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
     cli_put(session, report, "method", json_string(method_word(v)));
+    if (s->refined != NULL)
+        cli_put(session, report, "overlay", overlay_json(s));
     cli_put(session, report, "guards", guards_json(session, morph, 0));
     cli_put(session, report, "counterparts", guards_json(session, morph, 1));
     cli_put(session, report, "unguarded_faces",
@@ -480,8 +494,22 @@ static void report_morph(cli_session *session, const values *v, const starg_morp
     cli_put(session, report, "frames", json_incref(frames));
 }
 
-static void say_morph(cli_session *session, const values *v, const starg_morph *morph,
-                      const extras *found, const totals *sum) {
+/* morph.json: the report without seconds and memory. */
+static starg_status write_report(cli_session *session, const values *v, const subject *s,
+                                 const starg_morph *morph, const extras *found, json_t *frames) {
+    char *name = in_folder(v, "morph.json");
+    json_t *report = json_object();
+    cli_put_head(session, report, "starguard-morph", session->operands[0], session->mesh);
+    report_morph(session, report, v, s, morph, found, frames);
+    starg_status status =
+        name != NULL ? cli_report_write(session, report, name) : cli_fail_memory(session);
+    json_decref(report);
+    free(name);
+    return status;
+}
+
+static void say_morph(cli_session *session, const values *v, const subject *s,
+                      const starg_morph *morph, const extras *found, const totals *sum) {
     const separate *alone = &found->alone;
     cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
     if (starg_morph_guard_count(morph) > 0)
@@ -496,8 +524,13 @@ static void say_morph(cli_session *session, const values *v, const starg_morph *
     if (v->pieces)
         cli_say(session, "pieces        %zu, star-shaped in both solids (proven)\n",
                 found->pieces[0]->piece_count);
+    if (s->refined != NULL)
+        cli_say(session, "overlay       %zu vertices, %zu faces\n",
+                starg_mesh_vertex_count(s->refined), starg_mesh_face_count(s->refined));
     cli_say(session, "intersecting  %zu pairs of faces, at most %zu in a frame\n",
             sum->intersections, sum->most_intersections);
+    cli_say(session, "at the ends   %zu pairs in the first frame, %zu in the last\n", sum->ends[0],
+            sum->ends[1]);
     cli_say(session, "flipped       %zu faces\n", sum->inverted);
     cli_say(session, "volume drift  at most %.3g %%\n", 100 * sum->drift);
 }
@@ -522,9 +555,11 @@ static starg_status run(cli_session *session, void *data) {
         CLI_TRY(write_animation(session, v, &s, morph));
     if (v->picture != NULL)
         CLI_TRY(write_picture(session, v, &s));
-    say_morph(session, v, morph, &found, &sum);
+    say_morph(session, v, &s, morph, &found, &sum);
     if (session->report != NULL)
-        report_morph(session, v, morph, &found, frames);
+        report_morph(session, session->report, v, &s, morph, &found, frames);
+    if (v->report)
+        CLI_TRY(write_report(session, v, &s, morph, &found, frames));
 done:
     json_decref(frames);
     for (int end = 0; end < 2; end++)
