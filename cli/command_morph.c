@@ -32,12 +32,14 @@ static const cli_option options[] = {
     CLI_INPUT_OPTION("map", map, "FILE",
                      "Map from 'starguard map'. Default: computed as by that command."),
     CLI_INPUT_OPTION("landmarks", landmarks, "FILE", "Landmarks for the computed map."),
-    CLI_FLAG_OPTION("overlay", overlay,
-                    "Refine A by the faces of B, so that the last frame is B itself: see 'starguard "
-                    "map --overlay'."),
-    CLI_FLAG_OPTION("report", report,
-                    "Also write morph.json into DIR: what --json reports, for 'starguard verify A B "
-                    "DIR'."),
+    CLI_FLAG_OPTION(
+        "overlay", overlay,
+        "Refine A by the faces of B, so that the last frame is B itself: see 'starguard "
+        "map --overlay'."),
+    CLI_FLAG_OPTION(
+        "report", report,
+        "Also write morph.json into DIR: what --json reports, for 'starguard verify A B "
+        "DIR'."),
     CLI_TEXT_OPTION("glb", glb, "FILE.glb",
                     "Frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
@@ -474,9 +476,8 @@ static json_t *overlay_json(const subject *s) {
                      "faces", (json_int_t)starg_mesh_face_count(s->refined));
 }
 
-static void report_morph(cli_session *session, json_t *report, const values *v,
-                         const subject *s, const starg_morph *morph, const extras *found,
-                         json_t *frames) {
+static void report_morph(cli_session *session, json_t *report, const values *v, const subject *s,
+                         const starg_morph *morph, const extras *found, json_t *frames) {
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
     cli_put(session, report, "method", json_string(method_word(v)));
@@ -544,8 +545,8 @@ static starg_status run(cli_session *session, void *data) {
     extras found = {0};
     json_t *frames = json_array();
     CLI_TRY(read_subject(session, v, &s));
-    CLI_TRY(starg_morph_create(session->context, source_of(session, &s), s.images, &v->wanted,
-                               &morph));
+    CLI_TRY(
+        starg_morph_create(session->context, source_of(session, &s), s.images, &v->wanted, &morph));
     CLI_TRY(write_frames(session, v, &s, morph, frames, &sum));
     if (v->guards)
         CLI_TRY(write_guards(session, v, &s, morph, &found.alone));

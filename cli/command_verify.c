@@ -148,9 +148,9 @@ static starg_status read_folder(cli_session *session, const char *name, folder *
     if (exists(path))
         CLI_TRY(starg_result_read(session->context, path, &out->report));
     if (out->count < 2)
-        status = cli_fail(session, STARG_ERROR_READ,
-                          "'%.200s' holds no morph: frame_0000.off and frame_0001.off at least",
-                          name);
+        status =
+            cli_fail(session, STARG_ERROR_READ,
+                     "'%.200s' holds no morph: frame_0000.off and frame_0001.off at least", name);
     else if (out->report != NULL && out->report->morph == NULL)
         status = cli_fail(session, STARG_ERROR_READ, "'%.200s' is no report of a morph", path);
 done:
@@ -175,8 +175,7 @@ static starg_status read_inputs(cli_session *session, inputs *given) {
             CLI_TRY(read_folder(session, session->operands[i], &given->folders[i]));
             paired = true;
         } else {
-            CLI_TRY(
-                starg_result_read(session->context, session->operands[i], &given->results[i]));
+            CLI_TRY(starg_result_read(session->context, session->operands[i], &given->results[i]));
             paired = paired || given->results[i]->map != NULL;
             if (given->results[i]->morph != NULL)
                 return cli_fail(session, STARG_ERROR_ARGUMENT,

@@ -154,8 +154,8 @@ starg_status cli_report_write(cli_session *session, const json_t *object, const 
     if (session->report_broken || object == NULL)
         return cli_fail_memory(session);
     FILE *stream = fopen(cli_outputs_place(&session->outputs, name), "w");
-    bool written = stream != NULL && json_dumpf(object, stream, LAYOUT) == 0 &&
-                   putc('\n', stream) != EOF;
+    bool written =
+        stream != NULL && json_dumpf(object, stream, LAYOUT) == 0 && putc('\n', stream) != EOF;
     int error = errno;
     if (stream != NULL && fclose(stream) != 0 && written) {
         written = false;

@@ -66,6 +66,7 @@ typedef struct starg_map {
      * either surface cover the sphere once. Points in the same direction correspond. NULL: not
      * known, or not needed, as vertex i maps to vertex i of the same faces. */
     double *directions, *target_directions;
+    size_t direction_count, target_direction_count; /* as many as vertices, or 0 */
     size_t pair_count;
     uint32_t *pairs; /* pair_count x 2: the satisfied landmarks; NULL: none */
     starg_overlay overlay;

@@ -179,10 +179,10 @@ STARG_API starg_status starg_map_file_read_memory(starg_context *context, const 
                                                   starg_map_file **out);
 STARG_API void starg_map_file_free(starg_map_file *file);
 
-/* Checks a map from A to B: counts, that its directions or its overlay make it a bijection, exactly,
- * that points are where these have them, landmarks, and distortion. What a file without either does
- * not say is listed in `not_checked`. The meshes are the models as read. Errors: MESH (not closed
- * and oriented), MEMORY, CANCELLED; a false claim is not an error. */
+/* Checks a map from A to B: counts, that its directions or its overlay make it a bijection,
+ * exactly, that points are where these have them, landmarks, and distortion. What a file without
+ * either does not say is listed in `not_checked`. The meshes are the models as read. Errors: MESH
+ * (not closed and oriented), MEMORY, CANCELLED; a false claim is not an error. */
 STARG_API starg_status starg_verify_map(starg_context *context, const starg_mesh *a,
                                         const starg_mesh *b, const starg_map_file *file,
                                         starg_verdict **out);

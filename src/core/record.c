@@ -516,7 +516,7 @@ static starg_status read_list(reader *r, json_t *value, const starg_field *f, vo
     if (!json_is_array(value) || count < f->least)
         return reject(r, f, f->least > 0 ? "an array that is not empty" : "an array");
     if ((f->flags & STARG_FIELD_MATCHING) && count != load_size(record, f->length))
-        return reject(r, f, "an array with an item for each that it tells of");
+        return reject(r, f, "an array with an item for each guard");
     if (f->of->columns)
         STARG_TRY(check_numbers(r, value, f->of, record));
     STARG_TRY(make_items(r, f, record, count));

@@ -277,11 +277,14 @@ done:
 /* Keeps what makes the map a bijection. */
 static starg_status keep_directions(starg_context *context, const sphere *from, const sphere *to,
                                     starg_map *map) {
-    starg_status status =
-        copy_doubles(context, from->directions, 3 * from->mesh->vertex_count, &map->directions);
-    return status == STARG_OK ? copy_doubles(context, to->directions, 3 * to->mesh->vertex_count,
-                                             &map->target_directions)
-                              : status;
+    starg_status status = STARG_OK;
+    size_t count = from->mesh->vertex_count, target_count = to->mesh->vertex_count;
+    STARG_TRY(copy_doubles(context, from->directions, 3 * count, &map->directions));
+    map->direction_count = count;
+    STARG_TRY(copy_doubles(context, to->directions, 3 * target_count, &map->target_directions));
+    map->target_direction_count = target_count;
+done:
+    return status;
 }
 
 static starg_status keep_pairs(starg_context *context, const landmark_list *marks, starg_map *map) {

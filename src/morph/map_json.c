@@ -12,8 +12,8 @@
 
 static const char STAGE[] = "map file";
 enum { MARGIN = 2 };
-#define DIRECTION_MOST 1e3 /* of a coordinate */
-#define SUM_ERROR 1e-6 /* tolerance for three coordinates that should sum to 1 */
+#define DIRECTION_MOST 1e3  /* of a coordinate */
+#define SUM_ERROR      1e-6 /* tolerance for three coordinates that should sum to 1 */
 
 /* ---- the table ---- */
 
@@ -106,10 +106,8 @@ static const starg_field TARGET_DIRECTIONS[] = {
     {.key = "y", DIRECTION(target_directions, 1), .help = "Of the same."},
     {.key = "z", DIRECTION(target_directions, 2), .help = "Of the same."},
 };
-static const starg_fields TARGET_DIRECTIONS_TABLE = {.columns = true,
-                                                     .name = "directions",
-                                                     .form = STARG_FORM_TUPLE,
-                                                     FIELD_ROWS(TARGET_DIRECTIONS)};
+static const starg_fields TARGET_DIRECTIONS_TABLE = {
+    .columns = true, .name = "directions", .form = STARG_FORM_TUPLE, FIELD_ROWS(TARGET_DIRECTIONS)};
 
 /* Item K of N indices in a row. */
 #define INDEX(MEMBER, K, N)                                                                        \
@@ -141,8 +139,10 @@ static const starg_field OVERLAY_POINTS[] = {
     {.key = "target_v", OVERLAY_COORDINATE(target_coordinates, 1), .help = "Likewise."},
     {.key = "target_w", OVERLAY_COORDINATE(target_coordinates, 2), .help = "Likewise."},
 };
-static const starg_fields OVERLAY_POINTS_TABLE = {
-    .columns = true, .name = "overlay_points", .form = STARG_FORM_TUPLE, FIELD_ROWS(OVERLAY_POINTS)};
+static const starg_fields OVERLAY_POINTS_TABLE = {.columns = true,
+                                                  .name = "overlay_points",
+                                                  .form = STARG_FORM_TUPLE,
+                                                  FIELD_ROWS(OVERLAY_POINTS)};
 
 static const starg_field OVERLAY_FACES[] = {
     {.key = "a", INDEX(overlay.faces, 0, 3), .help = "A point of the overlay."},
@@ -170,15 +170,15 @@ static const starg_field FILE_ROWS[] = {
      .help = "Satisfied landmarks."},
     {.key = "directions",
      .kind = STARG_FIELD_LIST,
-     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_LINES | STARG_FIELD_MATCHING,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_LINES,
      .of = &DIRECTIONS_TABLE,
-     .length = offsetof(starg_map, vertex_count),
+     .length = offsetof(starg_map, direction_count),
      .help = "Of each vertex of A on the sphere over which both surfaces are mapped."},
     {.key = "target_directions",
      .kind = STARG_FIELD_LIST,
-     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_LINES | STARG_FIELD_MATCHING,
+     .flags = STARG_FIELD_OPTIONAL | STARG_FIELD_LINES,
      .of = &TARGET_DIRECTIONS_TABLE,
-     .length = offsetof(starg_map, target_vertices),
+     .length = offsetof(starg_map, target_direction_count),
      .help = "Of each vertex of B on the same sphere."},
     {.key = "overlay_points",
      .kind = STARG_FIELD_LIST,
@@ -232,14 +232,15 @@ static starg_status check_point(starg_context *context, const starg_map *map, si
 /* The directions are of both surfaces, and landmarks of their vertices. */
 static starg_status check_target(starg_context *context, const starg_mesh *b,
                                  const starg_map *map) {
-    if ((map->directions != NULL) != (map->target_directions != NULL))
+    if ((map->direction_count > 0 || map->target_direction_count > 0) &&
+        (map->direction_count != map->vertex_count ||
+         map->target_direction_count != b->vertex_count))
         return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                          "the map needs both \"directions\" and \"target_directions\", or none");
-    if (map->target_directions != NULL && map->target_vertices != b->vertex_count)
-        return starg_fail(context, STARG_ERROR_FORMAT, STAGE,
-                          "the map has %zu entries in \"target_directions\", but B has %zu "
-                          "vertices; it belongs to another pair of models",
-                          map->target_vertices, b->vertex_count);
+                          "the map has %zu entries in \"directions\" and %zu in "
+                          "\"target_directions\", but A has %zu vertices and B %zu; it belongs to "
+                          "another pair of models",
+                          map->direction_count, map->target_direction_count, map->vertex_count,
+                          b->vertex_count);
     for (size_t i = 0; i < map->pair_count; i++)
         if (map->pairs[2 * i] >= map->vertex_count || map->pairs[2 * i + 1] >= b->vertex_count)
             return starg_fail(context, STARG_ERROR_FORMAT, STAGE,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The overlay of a map: cells of the two triangulations on the sphere (overlay.c), with room between
- * their corners (overlay_room.c), cut into triangles. */
+/* The overlay of a map: cells of the two triangulations on the sphere (overlay.c), with room
+ * between their corners (overlay_room.c), cut into triangles. */
 #include <string.h>
 
 #include "core/memory.h"
@@ -184,9 +184,9 @@ starg_status starg_map_overlay(starg_context *context, const starg_mesh *a, cons
     if (same && has_same_faces(a, b)) {
         STARG_TRY(overlay_same(context, a, b, &found));
     } else {
-        if (map->directions == NULL && same)
+        if (map->direction_count == 0 && same)
             STARG_TRY(map_share_directions(context, a, map));
-        if (map->directions == NULL) {
+        if (map->direction_count == 0) {
             status = starg_fail(context, STARG_ERROR_MESH, STAGE,
                                 "the map says where vertices go, but not what lies between them; "
                                 "an overlay needs its directions, which 'starguard map' writes");

@@ -110,10 +110,10 @@ static void find_signs(const sphere_overlay *own, pair_meeting *pair) {
         const overlay_side *side = &own->side[s], *other = &own->side[1 - s];
         for (int k = 0; k < 3; k++)
             for (int j = 0; j < 3; j++)
-                pair->sign[s][k][j] = orient3d(
-                    direction_at(side, 3 * pair->face[s] + (uint32_t)k),
-                    direction_at(side, 3 * pair->face[s] + (uint32_t)next3(k)),
-                    direction_at(other, 3 * pair->face[1 - s] + (uint32_t)j), ORIGIN);
+                pair->sign[s][k][j] =
+                    orient3d(direction_at(side, 3 * pair->face[s] + (uint32_t)k),
+                             direction_at(side, 3 * pair->face[s] + (uint32_t)next3(k)),
+                             direction_at(other, 3 * pair->face[1 - s] + (uint32_t)j), ORIGIN);
     }
 }
 
@@ -149,9 +149,8 @@ static void add_crossing(pair_meeting *pair, int k, int j) {
     const int *own = pair->sign[0][k];
     int from = pair->sign[1][j][k], to = pair->sign[1][j][next3(k)];
     if (own[j] * own[next3(j)] < 0 && from * to < 0 && from * own[j] < 0)
-        pair->at[pair->count++] = (meeting){.corner = {-1, -1},
-                                            .edge = {k, j},
-                                            .lines = line_bit(0, k) | line_bit(1, j)};
+        pair->at[pair->count++] =
+            (meeting){.corner = {-1, -1}, .edge = {k, j}, .lines = line_bit(0, k) | line_bit(1, j)};
 }
 
 static void find_meetings(const sphere_overlay *own, pair_meeting *pair) {
@@ -257,7 +256,8 @@ static void place_crossing(const sphere_overlay *own, const pair_meeting *pair, 
     normalize(place->weight);
 }
 
-static overlay_node make_node(const sphere_overlay *own, const pair_meeting *pair, const meeting *at) {
+static overlay_node make_node(const sphere_overlay *own, const pair_meeting *pair,
+                              const meeting *at) {
     overlay_node node = {.key = {OVERLAY_NONE, OVERLAY_NONE}};
     for (int s = 0; s < 2; s++) {
         const overlay_side *side = &own->side[s];

@@ -24,7 +24,7 @@ typedef struct overlay_place {
 
 /* A vertex of the overlay: a vertex of either, of both, or a crossing of two edges. `key` are a
  * vertex (or OVERLAY_NONE) or an edge of each side, by its lower halfedge. */
-#define OVERLAY_NONE UINT64_MAX
+#define OVERLAY_NONE   UINT64_MAX
 #define OVERLAY_VERTEX (UINT64_C(1) << 40)
 typedef struct overlay_node {
     uint64_t key[2];

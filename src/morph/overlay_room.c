@@ -3,18 +3,16 @@
  *
  * Problem: corners of cells are computed points. Rounding may order two that nearly coincide the
  * wrong way, and a triangle that is thinner than the rounding of coordinates may pass through its
- * neighbours. Move the corners, each within the face or on the edge of the mesh that it is on, until
- * every cell can be cut into triangles that are positive, exactly in the weights of corners, and
- * some hundred times as high as rounding.
+ * neighbours. Move the corners, each within the face or on the edge of the mesh that it is on,
+ * until every cell can be cut into triangles that are positive, exactly in the weights of corners,
+ * and some hundred times as high as rounding.
  *
- * Corners in a face with a bad cell go half the way to the mean of their neighbours, points on edges
- * to that of their neighbours along it: the embedding of Tutte (1963), to which this tends, has only
- * convex cells. Few faces have bad cells, and a few steps do, so that the overlay stays where it was
- * in all others. Cost: O(cells) for each round. */
+ * Corners in a face with a bad cell go half the way to the mean of their neighbours, points on
+ * edges to that of their neighbours along it: the embedding of Tutte (1963), to which this tends,
+ * has only convex cells. Few faces have bad cells, and a few steps do, so that the overlay stays
+ * where it was in all others. Cost: O(cells) for each round. */
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #include "geometry/predicates.h"
 #include "geometry/vec3.h"
@@ -40,8 +38,8 @@ static void weights_in(const overlay_side *side, const overlay_place *place, uin
     for (size_t k = 0; k < 3; k++) {
         w[k] = 0;
         for (size_t j = 0; j < 3; j++)
-            if (place->weight[j] > 0 && side->faces[3 * (size_t)place->face + j] ==
-                                            side->faces[3 * (size_t)face + k])
+            if (place->weight[j] > 0 &&
+                side->faces[3 * (size_t)place->face + j] == side->faces[3 * (size_t)face + k])
                 w[k] = place->weight[j];
     }
 }
@@ -53,7 +51,8 @@ static void place_node(const room *r, int s, uint32_t node) {
     out[0] = out[1] = out[2] = 0;
     for (size_t k = 0; k < 3; k++)
         vec3_along(out, place->weight[k],
-                   side->mesh->vertices + 3 * (size_t)side->faces[3 * (size_t)place->face + k], out);
+                   side->mesh->vertices + 3 * (size_t)side->faces[3 * (size_t)place->face + k],
+                   out);
 }
 
 /* The least height of a triangle; 0 where it is flat. */
@@ -82,8 +81,8 @@ static double quality_of(const room *r, int s, uint32_t face, double wanted,
     if (orient3d(w[0], w[1], w[2], ORIGIN) <= 0)
         return -1;
     const double *p = r->position[s];
-    double height = height_of(p + 3 * (size_t)node[0], p + 3 * (size_t)node[1],
-                              p + 3 * (size_t)node[2]);
+    double height =
+        height_of(p + 3 * (size_t)node[0], p + 3 * (size_t)node[1], p + 3 * (size_t)node[2]);
     return wanted > 0 ? height / wanted : 1;
 }
 
@@ -220,9 +219,6 @@ starg_status overlay_make_room(sphere_overlay *own) {
     for (int round = 0; round < ROUNDS; round++) {
         STARG_TRY(starg_check_cancel(context, STAGE));
         broken = examine(&r, &bad);
-        if (getenv("OVERLAY_DEBUG"))
-            fprintf(stderr, "round %d: %zu nodes %zu cells, bad %zu broken %zu\n", round,
-                    own->nodes.count, own->cells.count, bad, broken);
         if (bad == 0)
             break;
         for (int i = 0; i < STEPS; i++) {

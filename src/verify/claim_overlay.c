@@ -5,10 +5,11 @@
  * exactly if the determinant of their weights is positive, whatever the face's shape. Let all
  * triangles be positive in a face of the surface, and each edge have two of them that run along it
  * in opposite directions. Within a face the number of triangles that cover a point changes nowhere,
- * and if it is one somewhere, they fill the face once. So triangles correspond one to one with parts
- * of A, and with parts of B: a bijection that is linear on each.
+ * and if it is one somewhere, they fill the face once. So triangles correspond one to one with
+ * parts of A, and with parts of B: a bijection that is linear on each.
  *
  * All exact in the weights. Cost: O(n log n). */
+#include <math.h>
 #include <stdlib.h>
 
 #include "core/memory.h"
@@ -16,7 +17,7 @@
 #include "verify/signs.h"
 
 static const char STAGE[] = "verify";
-static const double ORIGIN[3];
+static const double ORIGIN[3], SUM_ERROR = 1e-12;
 enum { CANCEL_STEP = 1024, NOWHERE = -1 };
 
 bool verify_weights_in(const starg_mesh *mesh, const verify_places *places, size_t i,
@@ -215,8 +216,10 @@ static starg_status claim_fills(const verify_map *own, int s) {
     STARG_TRY(sort_triangles(own, s, &by, &bad, &first));
     uneven = count_uneven(own, s, &by, &first_uneven);
     verify_claim_all(own->verdict, bad, first,
-                     "each triangle of the overlay is in a face of %c, and positive there", 'A' + s);
-    verify_claim_all(own->verdict, uneven, first_uneven, "they cover each face of %c once", 'A' + s);
+                     "each triangle of the overlay is in a face of %c, and positive there",
+                     'A' + s);
+    verify_claim_all(own->verdict, uneven, first_uneven, "they cover each face of %c once",
+                     'A' + s);
 done:
     sorted_free(own->context, &by);
     return status;
@@ -249,8 +252,7 @@ static void claim_images(const verify_map *own, const uint32_t *at) {
     const starg_map_file *file = own->file;
     size_t different = 0, first = 0;
     for (size_t v = file->point_count; v-- > 0;) {
-        const uint32_t *corner =
-            starg_mesh_faces(own->mesh[1]) + 3 * (size_t)file->points.faces[v];
+        const uint32_t *corner = starg_mesh_faces(own->mesh[1]) + 3 * (size_t)file->points.faces[v];
         double w[3];
         bool same = at[v] != UINT32_MAX &&
                     verify_weights_in(own->mesh[1], &file->overlay[1], at[v], corner, w);
@@ -275,7 +277,7 @@ static bool is_in_range(const verify_map *own) {
         for (size_t i = 0; i < file->overlay_points; i++) {
             const double *w = file->overlay[s].weights + 3 * i;
             if (file->overlay[s].faces[i] >= own->surface[s]->face_count ||
-                !(w[0] >= 0 && w[1] >= 0 && w[2] >= 0))
+                !(w[0] >= 0 && w[1] >= 0 && w[2] >= 0 && fabs(w[0] + w[1] + w[2] - 1) <= SUM_ERROR))
                 return false;
         }
     return true;
@@ -289,7 +291,7 @@ starg_status verify_claim_overlay(const verify_map *own) {
     if (!is_in_range(own)) {
         verify_claim(own->verdict, false,
                      "the overlay's points and triangles are of these models: an index is out of "
-                     "range, or a weight negative");
+                     "range, or weights are negative or do not sum to 1");
         return STARG_OK;
     }
     most = most > own->file->point_count ? most : own->file->point_count;

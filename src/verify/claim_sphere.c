@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A map by way of the sphere is a bijection, and its points are where it takes them.
  *
- * Let every face be a positive triangle of directions, det(a, b, c) > 0, and let every edge have two
- * faces that run along it in opposite directions. Then as many triangles cover a direction as cover
- * those across an edge: all directions but finitely many are covered equally often. If one is
+ * Let every face be a positive triangle of directions, det(a, b, c) > 0, and let every edge have
+ * two faces that run along it in opposite directions. Then as many triangles cover a direction as
+ * cover those across an edge: all directions but finitely many are covered equally often. If one is
  * covered once, all are, and the surface is mapped to the sphere one to one. So are both surfaces,
  * and points in the same direction correspond.
  *

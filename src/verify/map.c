@@ -173,8 +173,8 @@ static double squared_length(const double *p, const double *q, int scale) {
     return sum;
 }
 
-/* Energy s^2 + r^2 of the linear map between two triangles: cotangents of the first and edges of the
- * second [Pinkall, Polthier 1993]. */
+/* Energy s^2 + r^2 of the linear map between two triangles: cotangents of the first and edges of
+ * the second [Pinkall, Polthier 1993]. */
 static double energy_of(const double *const t[3], const double *const u[3], double area, int scale,
                         int target_scale) {
     double sum = 0, own[3];
@@ -215,7 +215,8 @@ static void sum_distortion(const verify_map *own, const verify_surface *a, const
         if (!(area > 0))
             continue;
         double grown = ratio * grown_area / area;
-        angles += area * at_most(energy_of(t, u, area, scale, target_scale) * area / (2 * grown_area));
+        angles +=
+            area * at_most(energy_of(t, u, area, scale, target_scale) * area / (2 * grown_area));
         areas += area * at_most((grown + 1 / grown) / 2);
     }
     const starg_map_file *file = own->file;
