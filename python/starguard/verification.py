@@ -214,8 +214,8 @@ def verify_morph(a: Any, b: Any, frames: Sequence[Any], report: MorphReport | Pa
     """
     first, second = as_mesh(a), as_mesh(b)
     meshes = [as_mesh(frame) for frame in frames]
-    told = report if isinstance(report, (MorphReport, type(None))) else read_result(report)
-    if not isinstance(told, (MorphReport, type(None))):
+    told = report if report is None or isinstance(report, MorphReport) else read_result(report)
+    if told is not None and not isinstance(told, MorphReport):
         raise ArgumentError("this is no report of a morph")
     session = Session(threads)
     claims: list[Claim] = []

@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "starguard/database.h"
 #include "starguard/shape.h"
@@ -318,10 +319,12 @@ static void read_claims(void) {
         "{\"t\": 0, \"intersections\": 0, \"volume\": 1, \"area\": 6, \"volume_drift\": 0, "
         "\"area_drift\": 0}, {\"t\": 1, \"intersections\": 0, \"volume\": 1, \"area\": 6, "
         "\"volume_drift\": 0, \"area_drift\": 0}]}";
-    report_text = (input_bytes){strdup(text), sizeof text - 1};
+    report_text = (input_bytes){malloc(sizeof text), sizeof text - 1};
+    assert_non_null(report_text.data);
+    memcpy(report_text.data, text, sizeof text);
     map_text = failing_input_bytes("map.json");
-    test_ok(in.context, starg_map_file_read_memory(in.context, map_text.data, map_text.size, "map",
-                                                   &map_file));
+    test_ok(in.context,
+            starg_map_file_read_memory(in.context, map_text.data, map_text.size, "map", &map_file));
     test_ok(in.context, starg_morph_report_read_memory(in.context, report_text.data,
                                                        report_text.size, "report", &morph_report));
 }

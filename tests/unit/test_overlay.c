@@ -86,7 +86,7 @@ static void flip_some(lattice *l, uint64_t seed) {
                     for (int k = 0; k < 3; k++) {
                         int m = (k + 1) % 3, n = (k + 2) % 3;
                         double cross = p[2][m] * p[3][n] - p[2][n] * p[3][m];
-                        first -= p[0][k] * cross; /* det(a, d, c) */
+                        first -= p[0][k] * cross;  /* det(a, d, c) */
                         second += p[1][k] * cross; /* det(b, c, d) */
                     }
                     if (first <= 0 || second <= 0)
