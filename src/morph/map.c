@@ -17,6 +17,7 @@
 #include "mesh/solid.h"
 #include "morph/compose.h"
 #include "morph/landmarks.h"
+#include "morph/overlay.h"
 
 static const char STAGE[] = "map";
 enum { SAME_SHARE = 20 }; /* fraction of faces that may differ between poses: one in so many */
@@ -364,10 +365,12 @@ done:
     return status;
 }
 
-starg_status map_share_directions(starg_context *context, const starg_mesh *mesh, starg_map *map) {
+starg_status map_share_directions(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                  starg_map *map) {
     starg_status status = STARG_OK;
     spread own = {0};
-    STARG_TRY(spread_surface(context, mesh, "A", &own));
+    STARG_TRY(spread_surface(context, a, "A", &own));
+    STARG_TRY(overlay_share(context, a, b, own.sphere->directions));
     STARG_TRY(keep_directions(context, own.sphere, own.sphere, map));
 done:
     spread_free(&own);

@@ -185,7 +185,7 @@ starg_status starg_map_overlay(starg_context *context, const starg_mesh *a, cons
         STARG_TRY(overlay_same(context, a, b, &found));
     } else {
         if (map->direction_count == 0 && same)
-            STARG_TRY(map_share_directions(context, a, map));
+            STARG_TRY(map_share_directions(context, a, b, map));
         if (map->direction_count == 0) {
             status = starg_fail(context, STARG_ERROR_MESH, STAGE,
                                 "the map says where vertices go, but not what lies between them; "

@@ -49,6 +49,11 @@ starg_status overlay_create(starg_context *context, const starg_mesh *const mesh
                             const double *const directions[2], sphere_overlay **out);
 void overlay_free(sphere_overlay *own);
 
+/* Changes the directions of an embedding of A so that the faces of B, on the same vertices, are
+ * positive as well, as far as it can (overlay_share.c). Errors: MEMORY, CANCELLED. */
+starg_status overlay_share(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                           double *directions);
+
 /* Moves nodes within their faces and along their edges so that the cells can be cut into triangles
  * about their first corners, exactly positive on both sides (overlay_room.c). Errors: SOLVER (too
  * thin for doubles), MEMORY, CANCELLED. */

@@ -329,6 +329,45 @@ static void test_folds(void **state) {
     test_context_free(context);
 }
 
+/* The same vertices, some edges flipped wherever they are: both share directions. */
+static void test_flipped_edges(void **state) {
+    (void)state;
+    starg_context *context = test_context(1);
+    starg_mesh *a = test_sample_mesh(context, "cat", 700), *b = NULL;
+    size_t count = 3 * a->face_count, flipped = 0;
+    uint32_t *faces = malloc(count * sizeof *faces);
+    assert_non_null(faces);
+    memcpy(faces, a->faces, count * sizeof *faces);
+    for (size_t f = 5; f < a->face_count && flipped < 20; f += 61)
+        for (size_t g = 0; g < a->face_count; g++)
+            for (size_t j = 0; j < 3; j++) {
+                uint32_t *s = faces + 3 * f, *t = faces + 3 * g;
+                if (s[0] != t[(j + 1) % 3] || s[1] != t[j])
+                    continue;
+                const uint32_t p = s[0], q = s[1], r = s[2], u = t[(j + 2) % 3];
+                const uint32_t one[3] = {p, u, r}, two[3] = {q, r, u};
+                memcpy(s, one, sizeof one);
+                memcpy(t, two, sizeof two);
+                flipped++;
+                g = a->face_count - 1;
+                break;
+            }
+    assert_true(flipped > 10);
+    test_ok(context,
+            starg_mesh_create(context, a->vertices, a->vertex_count, faces, a->face_count, &b));
+    starg_map *map = NULL;
+    test_ok(context, starg_map_create(context, a, b, NULL, &map));
+    assert_int_equal(map->kind, STARG_MAP_SAME);
+    test_ok(context, starg_map_overlay(context, a, b, map));
+    assert_int_equal(map->overlay.vertex_count, a->vertex_count + flipped);
+    assert_true(passes(context, a, b, map));
+    starg_map_free(context, map);
+    starg_mesh_free(a);
+    starg_mesh_free(b);
+    free(faces);
+    test_context_free(context);
+}
+
 /* Two samples by way of the sphere, with landmarks; then their end frames. */
 static void test_samples(void **state) {
     (void)state;
@@ -352,9 +391,10 @@ static void test_samples(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lattices), cmocka_unit_test(test_near_lattices),
-        cmocka_unit_test(test_inward),   cmocka_unit_test(test_forged),
-        cmocka_unit_test(test_folds),    cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_lattices),      cmocka_unit_test(test_near_lattices),
+        cmocka_unit_test(test_inward),        cmocka_unit_test(test_forged),
+        cmocka_unit_test(test_folds),         cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_flipped_edges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
