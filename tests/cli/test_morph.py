@@ -107,12 +107,20 @@ class Morph(Case):
         report = self.run_json("map", "cat0.off", "ball.off", "--landmarks", "marks.txt", "--overlay",
                                "-o", "map.json")
         self.assertGreater(len(report["overlay_points"]), 1300)
+        report = self.run_json("map", "cat0.off", "ball.off", "--landmarks", "marks.txt", "-o",
+                               "plain.json", "--picture", "map.png")
+        self.assertNotIn("overlay_points", report)
+        self.assertTrue(self.read("map.png").startswith(b"\x89PNG"))
+        self.assertEqual(self.verdict("ball.off", "plain.json"), [[]])
         report = self.run_json("morph", "cat0.off", "ball.off", "--map", "map.json", "--overlay",
                                "--report", "--frames", "3", "-o", "out", "--method", "linear")
         self.assertEqual([report["frames"][i]["intersections"] for i in (0, -1)], [0, 0])
         told = json.loads(self.read("out/morph.json"))
         self.assertEqual({key: report[key] for key in told}, told)
         self.assertEqual(self.verdict("ball.off", "map.json", "out"), [[], []])
+        self.run_text("view", "out", "-o", "page.html")
+        self.assertIn(b"cat0.off to ball.off", self.read("page.html"))
+        self.usage_error("view", "map.json", "-o", "other.html", says="--picture")
         # without a report only the ends
         os.rename(self.path("out/morph.json"), self.path("kept.json"))
         _, err = self.run_text("verify", "cat0.off", "ball.off", "out")
