@@ -1,13 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* starguard map: maps each vertex of one surface to another surface. */
+#include <math.h>
+#include <stdlib.h>
+
 #include "commands.h"
+#include "extensions.h"
 #include "model.h"
 #include "report.h"
 #include "starguard/morph.h"
+#include "starguard/picture.h"
 
 typedef struct values {
-    const char *output, *landmarks;
+    const char *output, *landmarks, *picture;
+    int up;
+    bool overlay;
 } values;
+
+enum { TILE_WIDTH = 900, TILE_HEIGHT = 700 };
+static const double SQUARES = 16; /* of the checker along A's longest side */
+
+/* In the order of starg_picture_options.up. */
+static const char *const axes[] = {"x", "y", "z", NULL};
 
 static const cli_option options[] = {
     CLI_OUTPUT_OPTION("MAP.json", "Map (docs/formats.md); '-' writes to standard output."),
@@ -15,12 +28,100 @@ static const cli_option options[] = {
         "landmarks", landmarks, "FILE",
         "Corresponding vertices, one pair per line: two vertex indices (from 0), first of A, then "
         "of B; or six coordinates, which select the nearest vertices."),
+    CLI_FLAG_OPTION("overlay", overlay,
+                    "Also write the common refinement of both triangulations: points with their "
+                    "places on A and on B, and triangles, each in one face of both."),
+    CLI_TEXT_OPTION("picture", picture, "FILE.png",
+                    "Picture of both surfaces: A with a checker, and B with what the map makes of "
+                    "it."),
+    CLI_CHOICE_OPTION("up", up, axes, 1, "x|y|z", "Axis that points up in --picture."),
 };
 
 static starg_status prepare(cli_session *session, void *data) {
     const values *v = data;
-    return cli_announce_needed(session, v->output, "MAP.json");
+    starg_status status = STARG_OK;
+    CLI_TRY(cli_announce_needed(session, v->output, "MAP.json"));
+    CLI_TRY(cli_announce_with_extension(session, "--picture", v->picture, ".png"));
+done:
+    return status;
 }
+
+/* ---- picture ---- */
+
+/* Both ends with the faces of the overlay, and a colour for each face. */
+typedef struct sheet {
+    double *positions[2];
+    starg_mesh *meshes[2];
+    uint8_t *colors;
+} sheet;
+
+static void sheet_free(sheet *s) {
+    for (int end = 0; end < 2; end++) {
+        free(s->positions[end]);
+        starg_mesh_free(s->meshes[end]);
+    }
+    free(s->colors);
+}
+
+/* Colours of A's faces: by place in its box, darker in every other cube. */
+static void color_faces(const starg_mesh *mesh, uint8_t *colors) {
+    double lower[3], upper[3], size = 0;
+    starg_mesh_bounds(mesh, lower, upper);
+    for (int k = 0; k < 3; k++)
+        size = fmax(size, upper[k] - lower[k]);
+    for (size_t f = 0; f < starg_mesh_face_count(mesh); f++) {
+        double place[3] = {0};
+        int sum = 0;
+        for (size_t i = 0; i < 9; i++)
+            place[i % 3] += (starg_mesh_vertices(
+                                 mesh)[3 * (size_t)starg_mesh_faces(mesh)[3 * f + i / 3] + i % 3] -
+                             lower[i % 3]) /
+                            (3 * size);
+        for (int k = 0; k < 3; k++)
+            sum += (int)(SQUARES * place[k]);
+        for (size_t k = 0; k < 3; k++) {
+            double share = place[k] * size / fmax(upper[k] - lower[k], 1e-3 * size);
+            colors[3 * f + k] = (uint8_t)((sum % 2 != 0 ? 0.6 : 1) * (95 + 160 * fmin(share, 1)));
+        }
+    }
+}
+
+static starg_status write_picture(cli_session *session, const values *v, const starg_mesh *target,
+                                  starg_map *map) {
+    starg_status status = STARG_OK;
+    sheet s = {0};
+    const starg_mesh *const given[2] = {session->mesh, target};
+    starg_picture_options wanted;
+    const starg_overlay *overlay = &map->overlay;
+    if (overlay->face_count == 0)
+        CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
+    s.colors = malloc(3 * overlay->face_count + 1);
+    for (int end = 0; end < 2; end++)
+        s.positions[end] = malloc((3 * overlay->vertex_count + 1) * sizeof(double));
+    if (s.colors == NULL || s.positions[0] == NULL || s.positions[1] == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    for (int end = 0; end < 2; end++) {
+        starg_overlay_positions(overlay, given[end], end, s.positions[end]);
+        CLI_TRY(starg_mesh_create(session->context, s.positions[end], overlay->vertex_count,
+                                  overlay->faces, overlay->face_count, &s.meshes[end]));
+    }
+    color_faces(s.meshes[0], s.colors);
+    starg_picture_options_default(&wanted);
+    wanted.width = TILE_WIDTH;
+    wanted.height = TILE_HEIGHT;
+    wanted.opacity = 1;
+    wanted.up = v->up;
+    wanted.face_colors = s.colors;
+    CLI_TRY(starg_picture_sheet_write(session->context, (const starg_mesh *const *)s.meshes, 1, 2,
+                                      &wanted, cli_outputs_place(&session->outputs, v->picture)));
+done:
+    sheet_free(&s);
+    return status;
+}
+
+/* ---- report ---- */
 
 static void say_map(cli_session *session, const starg_map *map) {
     static const char *const kinds[] = {"the same faces: vertex to vertex", "via the sphere",
@@ -30,6 +131,9 @@ static void say_map(cli_session *session, const starg_map *map) {
     cli_say(session, "landmarks     %zu (all met)\n", map->landmark_count);
     cli_say(session, "angles        %.4g (1 is best)\n", map->mean_angle_distortion);
     cli_say(session, "areas         %.4g (1 is best)\n", map->mean_area_distortion);
+    if (map->overlay.face_count > 0)
+        cli_say(session, "overlay       %zu vertices, %zu faces\n", map->overlay.vertex_count,
+                map->overlay.face_count);
 }
 
 /* Reports the file's contents and data about the run. */
@@ -63,11 +167,15 @@ static starg_status run(cli_session *session, void *data) {
                                      &wanted.landmark_count));
     wanted.landmarks = pairs;
     CLI_TRY(starg_map_create(session->context, session->mesh, target, &wanted, &map));
+    if (v->overlay)
+        CLI_TRY(starg_map_overlay(session->context, session->mesh, target, map));
     CLI_TRY(
         starg_map_write(session->context, map, cli_outputs_place(&session->outputs, v->output)));
     say_map(session, map);
     if (session->report != NULL)
         CLI_TRY(report_map(session, map, v));
+    if (v->picture != NULL)
+        CLI_TRY(write_picture(session, v, target, map));
 done:
     starg_map_free(session->context, map);
     starg_landmarks_free(session->context, pairs);
@@ -77,14 +185,15 @@ done:
 
 const cli_command cli_command_map = {
     .name = "map",
-    .usage = "A B [--landmarks FILE] -o MAP.json",
+    .usage = "A B [--landmarks FILE] [--overlay] -o MAP.json",
     .summary = "compute a bijection between two surfaces",
     .description =
         "Maps each vertex of A to a point of B: a face and barycentric coordinates. Surfaces with "
         "the same faces, such as poses of one model, are mapped vertex to vertex. Other surfaces "
         "must be closed, connected and of genus 0: both are mapped to the sphere, aligned, and "
         "warped until the landmarks coincide exactly. Without landmarks the alignment uses the "
-        "principal axes, which can map a head to a tail; a few landmarks prevent that.",
+        "principal axes, which can map a head to a tail; a few landmarks prevent that. "
+        "'starguard verify A B MAP.json' proves that the map is a bijection.",
     .examples = "# two poses, then two animals with landmarks\n"
                 "starguard map horse_0.off horse_1.off -o poses.json\n"
                 "starguard map cat.off dog.off --landmarks cat_dog.txt -o cat_dog.json",

@@ -16,7 +16,7 @@ typedef struct values {
     starg_morph_options wanted;
     uint64_t frames;
     int up;
-    bool guards, pieces;
+    bool guards, pieces, overlay, report;
 } values;
 
 enum { SHEET_COLUMNS = 5, TILE_WIDTH = 480, TILE_HEIGHT = 360 };
@@ -32,6 +32,14 @@ static const cli_option options[] = {
     CLI_INPUT_OPTION("map", map, "FILE",
                      "Map from 'starguard map'. Default: computed as by that command."),
     CLI_INPUT_OPTION("landmarks", landmarks, "FILE", "Landmarks for the computed map."),
+    CLI_FLAG_OPTION(
+        "overlay", overlay,
+        "Refine A by the faces of B, so that the last frame is B itself: see 'starguard "
+        "map --overlay'."),
+    CLI_FLAG_OPTION(
+        "report", report,
+        "Also write morph.json into DIR: what --json reports, for 'starguard verify A B "
+        "DIR'."),
     CLI_TEXT_OPTION("glb", glb, "FILE.glb",
                     "Frames as one animation of two seconds (glTF, morph targets)."),
     CLI_TEXT_OPTION("picture", picture, "FILE.png",
@@ -83,6 +91,8 @@ static starg_status announce_folder(cli_session *session, const values *v) {
     CLI_TRY(cli_announce_folder(session, v->output));
     for (uint64_t i = 0; i < v->frames; i++)
         CLI_TRY(announce_path(session, frame_in_folder(v, i)));
+    if (v->report)
+        CLI_TRY(announce_path(session, in_folder(v, "morph.json")));
     for (int i = 0; v->guards && i < 2; i++)
         CLI_TRY(announce_path(session, in_folder(v, guards[i])));
     for (int i = 0; v->pieces && i < 4; i++)
@@ -124,12 +134,19 @@ done:
 typedef struct subject {
     starg_mesh *target;
     starg_map *map;
+    starg_mesh *refined; /* A with the overlay's faces; NULL without overlay */
     double *images;
 } subject;
+
+/* The first frame: A, or A refined. */
+static const starg_mesh *source_of(const cli_session *session, const subject *s) {
+    return s->refined != NULL ? s->refined : session->mesh;
+}
 
 static void subject_free(cli_session *session, subject *s) {
     starg_mesh_free(s->target);
     starg_map_free(session->context, s->map);
+    starg_mesh_free(s->refined);
     free(s->images);
 }
 
@@ -150,10 +167,34 @@ done:
     return status;
 }
 
+/* Both ends with the faces of the overlay. */
+static starg_status refine(cli_session *session, subject *s) {
+    starg_status status = STARG_OK;
+    const starg_overlay *overlay = &s->map->overlay;
+    double *positions = NULL;
+    if (overlay->face_count == 0)
+        CLI_TRY(starg_map_overlay(session->context, session->mesh, s->target, s->map));
+    positions = malloc((3 * overlay->vertex_count + 1) * sizeof *positions);
+    s->images = malloc((3 * overlay->vertex_count + 1) * sizeof *s->images);
+    if (positions == NULL || s->images == NULL) {
+        status = cli_fail_memory(session);
+        goto done;
+    }
+    starg_overlay_positions(overlay, session->mesh, 0, positions);
+    starg_overlay_positions(overlay, s->target, 1, s->images);
+    CLI_TRY(starg_mesh_create(session->context, positions, overlay->vertex_count, overlay->faces,
+                              overlay->face_count, &s->refined));
+done:
+    free(positions);
+    return status;
+}
+
 static starg_status read_subject(cli_session *session, const values *v, subject *s) {
     starg_status status = STARG_OK;
     CLI_TRY(starg_mesh_read(session->context, session->operands[1], &s->target));
     CLI_TRY(make_map(session, v, s));
+    if (v->overlay)
+        return refine(session, s);
     s->images = malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *s->images);
     if (s->images == NULL)
         return cli_fail_memory(session);
@@ -167,6 +208,7 @@ done:
 /* Sums over the frames, for the text report. */
 typedef struct totals {
     size_t intersections, most_intersections, inverted;
+    size_t ends[2]; /* pairs of intersecting faces in the first and the last frame */
     double drift;
 } totals;
 
@@ -184,14 +226,14 @@ static json_t *frame_json(cli_session *session, double t, const starg_frame_meas
 }
 
 /* Frees `name`. */
-static starg_status write_frame(cli_session *session, const double *positions, char *name) {
+static starg_status write_frame(cli_session *session, const starg_mesh *source,
+                                const double *positions, char *name) {
     starg_status status = STARG_OK;
     starg_mesh *mesh = NULL;
     if (name == NULL)
         return cli_fail_memory(session);
-    CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(session->mesh),
-                              starg_mesh_faces(session->mesh), starg_mesh_face_count(session->mesh),
-                              &mesh));
+    CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(source),
+                              starg_mesh_faces(source), starg_mesh_face_count(source), &mesh));
     CLI_TRY(cli_mesh_write(session, mesh, STARG_MESH_OFF, NULL, name));
 done:
     starg_mesh_free(mesh);
@@ -199,11 +241,11 @@ done:
     return status;
 }
 
-static starg_status write_frames(cli_session *session, const values *v, const starg_morph *morph,
-                                 json_t *list, totals *sum) {
+static starg_status write_frames(cli_session *session, const values *v, const subject *s,
+                                 const starg_morph *morph, json_t *list, totals *sum) {
     starg_status status = STARG_OK;
-    double *positions =
-        malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *positions);
+    const starg_mesh *source = source_of(session, s);
+    double *positions = malloc((3 * starg_mesh_vertex_count(source) + 1) * sizeof *positions);
     if (positions == NULL)
         return cli_fail_memory(session);
     for (uint64_t i = 0; i < v->frames; i++) {
@@ -211,9 +253,10 @@ static starg_status write_frames(cli_session *session, const values *v, const st
         starg_frame_measures measures;
         CLI_TRY(starg_morph_frame(morph, t, positions));
         CLI_TRY(starg_morph_measure(morph, t, positions, &measures));
-        CLI_TRY(write_frame(session, positions, frame_in_folder(v, i)));
+        CLI_TRY(write_frame(session, source, positions, frame_in_folder(v, i)));
         cli_append(session, list, frame_json(session, t, &measures));
         sum->intersections += measures.intersections;
+        sum->ends[i > 0] = measures.intersections;
         sum->inverted += measures.inverted;
         if (measures.intersections > sum->most_intersections)
             sum->most_intersections = measures.intersections;
@@ -228,10 +271,11 @@ done:
 
 /* ---- animation ---- */
 
-static starg_status write_animation(cli_session *session, const values *v,
+static starg_status write_animation(cli_session *session, const values *v, const subject *s,
                                     const starg_morph *morph) {
     starg_status status = STARG_OK;
-    size_t size = 3 * starg_mesh_vertex_count(session->mesh), count = (size_t)v->frames;
+    const starg_mesh *source = source_of(session, s);
+    size_t size = 3 * starg_mesh_vertex_count(source), count = (size_t)v->frames;
     const double **frames = calloc(count, sizeof *frames);
     double *positions =
         size <= SIZE_MAX / sizeof(double) / count ? malloc(size * count * sizeof *positions) : NULL;
@@ -243,7 +287,7 @@ static starg_status write_animation(cli_session *session, const values *v,
         CLI_TRY(starg_morph_frame(morph, (double)i / (double)(count - 1), positions + i * size));
         frames[i] = positions + i * size;
     }
-    CLI_TRY(starg_animation_write(session->context, session->mesh, frames, count, SECONDS,
+    CLI_TRY(starg_animation_write(session->context, source, frames, count, SECONDS,
                                   cli_outputs_place(&session->outputs, v->glb)));
 done:
     free(positions);
@@ -261,11 +305,13 @@ static bool has_same_faces(const starg_mesh *a, const starg_mesh *b) {
            memcmp(starg_mesh_faces(a), starg_mesh_faces(b), 3 * count * sizeof(uint32_t)) == 0;
 }
 
-/* B is the model itself if it equals the last frame, otherwise that frame. NULL when out of
+/* An end is the model itself if it equals the frame, otherwise that frame. NULL when out of
  * memory. */
 static char *model_of(const cli_session *session, const values *v, const subject *s, int end) {
     bool given = s->map->kind == STARG_MAP_SAME && has_same_faces(session->mesh, s->target);
-    return end == 1 && !given ? frame_in_folder(v, v->frames - 1) : strdup(session->operands[end]);
+    if (end == 0)
+        return s->refined != NULL ? frame_in_folder(v, 0) : strdup(session->operands[0]);
+    return given ? strdup(session->operands[1]) : frame_in_folder(v, v->frames - 1);
 }
 
 /* ---- guards ---- */
@@ -372,12 +418,13 @@ static starg_status draw_row(cli_session *session, const subject *s, starg_morph
                              double *positions, starg_mesh **meshes) {
     starg_status status = STARG_OK;
     starg_morph *morph = NULL;
-    CLI_TRY(starg_morph_create(session->context, session->mesh, s->images, &wanted, &morph));
+    const starg_mesh *source = source_of(session, s);
+    CLI_TRY(starg_morph_create(session->context, source, s->images, &wanted, &morph));
     for (size_t i = 0; i < SHEET_COLUMNS; i++) {
         CLI_TRY(starg_morph_frame(morph, (double)i / (SHEET_COLUMNS - 1), positions));
-        CLI_TRY(starg_mesh_create(
-            session->context, positions, starg_mesh_vertex_count(session->mesh),
-            starg_mesh_faces(session->mesh), starg_mesh_face_count(session->mesh), &meshes[i]));
+        CLI_TRY(starg_mesh_create(session->context, positions, starg_mesh_vertex_count(source),
+                                  starg_mesh_faces(source), starg_mesh_face_count(source),
+                                  &meshes[i]));
     }
 done:
     starg_morph_free(morph);
@@ -393,7 +440,7 @@ static starg_status write_picture(cli_session *session, const values *v, const s
     const starg_mesh *shown[ROWS * SHEET_COLUMNS];
     starg_picture_options picture;
     double *positions =
-        malloc((3 * starg_mesh_vertex_count(session->mesh) + 1) * sizeof *positions);
+        malloc((3 * starg_mesh_vertex_count(source_of(session, s)) + 1) * sizeof *positions);
     if (positions == NULL)
         return cli_fail_memory(session);
     for (size_t i = 0; i < ROWS; i++)
@@ -424,12 +471,18 @@ static json_t *guards_json(cli_session *session, const starg_morph *morph, int e
     return list;
 }
 
-static void report_morph(cli_session *session, const values *v, const starg_morph *morph,
-                         const extras *found, json_t *frames) {
-    json_t *report = session->report;
+static json_t *overlay_json(const subject *s) {
+    return json_pack("{s:I, s:I}", "vertices", (json_int_t)starg_mesh_vertex_count(s->refined),
+                     "faces", (json_int_t)starg_mesh_face_count(s->refined));
+}
+
+static void report_morph(cli_session *session, json_t *report, const values *v, const subject *s,
+                         const starg_morph *morph, const extras *found, json_t *frames) {
     cli_put(session, report, "output", cli_json_text(v->output));
     cli_put(session, report, "target", cli_json_text(session->operands[1]));
     cli_put(session, report, "method", json_string(method_word(v)));
+    if (s->refined != NULL)
+        cli_put(session, report, "overlay", overlay_json(s));
     cli_put(session, report, "guards", guards_json(session, morph, 0));
     cli_put(session, report, "counterparts", guards_json(session, morph, 1));
     cli_put(session, report, "unguarded_faces",
@@ -442,8 +495,22 @@ static void report_morph(cli_session *session, const values *v, const starg_morp
     cli_put(session, report, "frames", json_incref(frames));
 }
 
-static void say_morph(cli_session *session, const values *v, const starg_morph *morph,
-                      const extras *found, const totals *sum) {
+/* morph.json: the report without seconds and memory. */
+static starg_status write_report(cli_session *session, const values *v, const subject *s,
+                                 const starg_morph *morph, const extras *found, json_t *frames) {
+    char *name = in_folder(v, "morph.json");
+    json_t *report = json_object();
+    cli_put_head(session, report, "starguard-morph", session->operands[0], session->mesh);
+    report_morph(session, report, v, s, morph, found, frames);
+    starg_status status =
+        name != NULL ? cli_report_write(session, report, name) : cli_fail_memory(session);
+    json_decref(report);
+    free(name);
+    return status;
+}
+
+static void say_morph(cli_session *session, const values *v, const subject *s,
+                      const starg_morph *morph, const extras *found, const totals *sum) {
     const separate *alone = &found->alone;
     cli_say(session, "frames        %llu\n", (unsigned long long)v->frames);
     if (starg_morph_guard_count(morph) > 0)
@@ -458,8 +525,13 @@ static void say_morph(cli_session *session, const values *v, const starg_morph *
     if (v->pieces)
         cli_say(session, "pieces        %zu, star-shaped in both solids (proven)\n",
                 found->pieces[0]->piece_count);
+    if (s->refined != NULL)
+        cli_say(session, "overlay       %zu vertices, %zu faces\n",
+                starg_mesh_vertex_count(s->refined), starg_mesh_face_count(s->refined));
     cli_say(session, "intersecting  %zu pairs of faces, at most %zu in a frame\n",
             sum->intersections, sum->most_intersections);
+    cli_say(session, "at the ends   %zu pairs in the first frame, %zu in the last\n", sum->ends[0],
+            sum->ends[1]);
     cli_say(session, "flipped       %zu faces\n", sum->inverted);
     cli_say(session, "volume drift  at most %.3g %%\n", 100 * sum->drift);
 }
@@ -473,19 +545,22 @@ static starg_status run(cli_session *session, void *data) {
     extras found = {0};
     json_t *frames = json_array();
     CLI_TRY(read_subject(session, v, &s));
-    CLI_TRY(starg_morph_create(session->context, session->mesh, s.images, &v->wanted, &morph));
-    CLI_TRY(write_frames(session, v, morph, frames, &sum));
+    CLI_TRY(
+        starg_morph_create(session->context, source_of(session, &s), s.images, &v->wanted, &morph));
+    CLI_TRY(write_frames(session, v, &s, morph, frames, &sum));
     if (v->guards)
         CLI_TRY(write_guards(session, v, &s, morph, &found.alone));
     if (v->pieces)
         CLI_TRY(write_pieces(session, v, &s, morph, found.pieces));
     if (v->glb != NULL)
-        CLI_TRY(write_animation(session, v, morph));
+        CLI_TRY(write_animation(session, v, &s, morph));
     if (v->picture != NULL)
         CLI_TRY(write_picture(session, v, &s));
-    say_morph(session, v, morph, &found, &sum);
+    say_morph(session, v, &s, morph, &found, &sum);
     if (session->report != NULL)
-        report_morph(session, v, morph, &found, frames);
+        report_morph(session, session->report, v, &s, morph, &found, frames);
+    if (v->report)
+        CLI_TRY(write_report(session, v, &s, morph, &found, frames));
 done:
     json_decref(frames);
     for (int end = 0; end < 2; end++)

@@ -2,6 +2,7 @@
 /* starguard verify: checks results independently of the code that made them. */
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "commands.h"
 #include "model.h"
@@ -62,18 +63,139 @@ static starg_status read_model(cli_session *session, model *out) {
     return status;
 }
 
-/* Reads all results before verifying the first, so that a bad name is reported at once. */
-static starg_status read_results(cli_session *session, starg_result **results) {
+/* The frames of a morph, and its report if there is one. */
+typedef struct folder {
+    starg_mesh **frames;
+    size_t count;
+    starg_result *report;
+} folder;
+
+/* What the operands name, by operand; the first is the model. */
+typedef struct inputs {
+    starg_result **results; /* NULL: a folder, or B */
+    folder *folders;
+    starg_mesh *target; /* B, if the results are of two models: the second operand */
+} inputs;
+
+static void inputs_free(cli_session *session, inputs *given) {
+    for (size_t i = 1; i < session->operand_count; i++) {
+        if (given->results != NULL)
+            starg_result_free(session->context, given->results[i]);
+        folder *own = given->folders != NULL ? &given->folders[i] : NULL;
+        for (size_t k = 0; own != NULL && k < own->count; k++)
+            starg_mesh_free(own->frames[k]);
+        if (own != NULL) {
+            starg_result_free(session->context, own->report);
+            free(own->frames);
+        }
+    }
+    free(given->results);
+    free(given->folders);
+    starg_mesh_free(given->target);
+}
+
+static bool is_folder(const char *name) {
+    struct stat about;
+    return stat(name, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+static bool exists(const char *name) {
+    struct stat about;
+    return stat(name, &about) == 0;
+}
+
+/* The name of a file in a folder, to be freed; NULL when out of memory. */
+static char *name_in(const char *folder_name, const char *file) {
+    size_t size = strlen(folder_name) + strlen(file) + 2;
+    char *name = malloc(size);
+    if (name != NULL)
+        snprintf(name, size, "%s/%s", folder_name, file);
+    return name;
+}
+
+static starg_status read_frame(cli_session *session, const char *name, folder *out, bool *found) {
     starg_status status = STARG_OK;
-    for (size_t i = 1; i < session->operand_count && status == STARG_OK; i++)
-        status = starg_result_read(session->context, session->operands[i], &results[i]);
+    *found = exists(name);
+    if (!*found)
+        return STARG_OK;
+    starg_mesh **longer = realloc(out->frames, (out->count + 1) * sizeof(starg_mesh *));
+    if (longer == NULL)
+        return cli_fail_memory(session);
+    out->frames = longer;
+    status = starg_mesh_read(session->context, name, &out->frames[out->count]);
+    out->count += status == STARG_OK;
+    return status;
+}
+
+/* frame_0000.off and so on, and morph.json. */
+static starg_status read_folder(cli_session *session, const char *name, folder *out) {
+    starg_status status = STARG_OK;
+    bool found = true;
+    char *path = NULL;
+    while (found) {
+        char file[32];
+        snprintf(file, sizeof file, "frame_%04zu.off", out->count);
+        free(path);
+        path = name_in(name, file);
+        if (path == NULL)
+            return cli_fail_memory(session);
+        CLI_TRY(read_frame(session, path, out, &found));
+    }
+    free(path);
+    path = name_in(name, "morph.json");
+    if (path == NULL)
+        return cli_fail_memory(session);
+    if (exists(path))
+        CLI_TRY(starg_result_read(session->context, path, &out->report));
+    if (out->count < 2)
+        status =
+            cli_fail(session, STARG_ERROR_READ,
+                     "'%.200s' holds no morph: frame_0000.off and frame_0001.off at least", name);
+    else if (out->report != NULL && out->report->morph == NULL)
+        status = cli_fail(session, STARG_ERROR_READ, "'%.200s' is no report of a morph", path);
+done:
+    free(path);
+    return status;
+}
+
+/* Reads all results before verifying the first, so that a bad name is reported at once. Results of
+ * two models show that the second operand is one of these. */
+static starg_status read_inputs(cli_session *session, inputs *given) {
+    starg_status status = STARG_OK;
+    size_t count = session->operand_count, last = count - 1;
+    given->results = calloc(count, sizeof(starg_result *));
+    given->folders = calloc(count, sizeof *given->folders);
+    if (given->results == NULL || given->folders == NULL)
+        return cli_fail_memory(session);
+    bool paired = false;
+    for (size_t i = last; i > 0; i--) {
+        if (i == 1 && paired) {
+            CLI_TRY(starg_mesh_read(session->context, session->operands[1], &given->target));
+        } else if (is_folder(session->operands[i])) {
+            CLI_TRY(read_folder(session, session->operands[i], &given->folders[i]));
+            paired = true;
+        } else {
+            CLI_TRY(starg_result_read(session->context, session->operands[i], &given->results[i]));
+            paired = paired || given->results[i]->map != NULL;
+            if (given->results[i]->morph != NULL)
+                return cli_fail(session, STARG_ERROR_ARGUMENT,
+                                "'%.200s' is the report of a morph; name the folder that it is in",
+                                session->operands[i]);
+        }
+    }
+    if (paired && given->target == NULL)
+        return cli_fail(session, STARG_ERROR_ARGUMENT,
+                        "maps and morphs are of two models: verify A B %.200s",
+                        session->operands[last]);
+done:
     return status;
 }
 
 /* A certificate must follow the guards or pieces that it belongs to. */
 static starg_status check_certificates(cli_session *session, starg_result *const *results) {
     for (size_t i = 1; i < session->operand_count; i++)
-        if (results[i]->certificate != NULL && (i == 1 || results[i - 1]->certificate != NULL))
+        if (results[i] != NULL && results[i]->certificate != NULL &&
+            (i == 1 || results[i - 1] == NULL || results[i - 1]->certificate != NULL))
             return cli_fail(session, STARG_ERROR_ARGUMENT,
                             "'%.200s' is a certificate; it belongs behind its GUARDS.json, or "
                             "behind PIECES.json and PIECES.vtk",
@@ -85,7 +207,7 @@ static starg_status check_certificates(cli_session *session, starg_result *const
 static size_t certificate_behind(const cli_session *session, starg_result *const *results,
                                  size_t operand) {
     bool certified = operand != 0 && operand + 1 < session->operand_count &&
-                     results[operand + 1]->certificate != NULL;
+                     results[operand + 1] != NULL && results[operand + 1]->certificate != NULL;
     return certified ? operand + 1 : 0;
 }
 
@@ -98,7 +220,8 @@ static starg_status find_decomposition(cli_session *session, starg_result *const
                                        decomposition *found) {
     *found = (decomposition){0};
     for (size_t i = 1; i < session->operand_count; i++) {
-        size_t *place = results[i]->pieces != NULL   ? &found->pieces
+        size_t *place = results[i] == NULL           ? NULL
+                        : results[i]->pieces != NULL ? &found->pieces
                         : results[i]->report != NULL ? &found->report
                                                      : NULL;
         if (place == NULL)
@@ -188,6 +311,41 @@ static starg_status verify_pieces(cli_session *session, const model *given, deco
     return STARG_OK;
 }
 
+static starg_status verify_map(cli_session *session, const model *given, const inputs *from,
+                               size_t operand, json_t *list) {
+    starg_status status = STARG_OK;
+    starg_verdict *verdict = NULL;
+    CLI_TRY(starg_verify_map(session->context, given->mesh, from->target,
+                             from->results[operand]->map, &verdict));
+    json_t *entry = json_object();
+    cli_put(session, entry, "target", cli_json_text(session->operands[1]));
+    tell_verdict(session, session->operands[operand], verdict, entry, list);
+done:
+    starg_verdict_free(session->context, verdict);
+    return status;
+}
+
+static starg_status verify_morph(cli_session *session, const model *given, const inputs *from,
+                                 size_t operand, json_t *list) {
+    starg_status status = STARG_OK;
+    starg_verdict *verdict = NULL;
+    const folder *own = &from->folders[operand];
+    if (own->report == NULL)
+        cli_warn(session,
+                 "'%.200s' has no morph.json (morph --report): checking only the frames' ends",
+                 session->operands[operand]);
+    CLI_TRY(starg_verify_morph(session->context, given->mesh, from->target,
+                               (const starg_mesh *const *)own->frames, own->count,
+                               own->report != NULL ? own->report->morph : NULL, &verdict));
+    json_t *entry = json_object();
+    cli_put(session, entry, "target", cli_json_text(session->operands[1]));
+    cli_put(session, entry, "frames", json_integer((json_int_t)own->count));
+    tell_verdict(session, session->operands[operand], verdict, entry, list);
+done:
+    starg_verdict_free(session->context, verdict);
+    return status;
+}
+
 static void report(cli_session *session, const starg_mesh *mesh, json_t *results) {
     cli_report_head(session, "starguard-verify", session->operands[0], mesh);
     cli_put(session, session->report, "passed", json_boolean(session->outcome == CLI_EXIT_DONE));
@@ -200,17 +358,20 @@ static starg_status run(cli_session *session, void *data) {
     model given = {0};
     decomposition found;
     json_t *list = json_array();
-    starg_result **results = calloc(session->operand_count, sizeof(starg_result *));
-    if (results == NULL || list == NULL) {
-        status = cli_fail_memory(session);
-        goto done;
-    }
+    inputs from = {0};
     CLI_TRY(read_model(session, &given));
-    CLI_TRY(read_results(session, results));
-    CLI_TRY(check_certificates(session, results));
-    CLI_TRY(find_decomposition(session, results, &found));
+    CLI_TRY(read_inputs(session, &from));
+    CLI_TRY(check_certificates(session, from.results));
+    CLI_TRY(find_decomposition(session, from.results, &found));
+    starg_result *const *results = from.results;
     for (size_t i = 1; i < session->operand_count; i++) {
-        if (results[i]->guards != NULL)
+        if (from.folders[i].count > 0)
+            CLI_TRY(verify_morph(session, &given, &from, i, list));
+        else if (results[i] == NULL)
+            continue;
+        else if (results[i]->map != NULL)
+            CLI_TRY(verify_map(session, &given, &from, i, list));
+        else if (results[i]->guards != NULL)
             CLI_TRY(verify_guards(session, &given, i, results, list));
         else if (i == found.pieces)
             CLI_TRY(verify_pieces(session, &given, found, results, list));
@@ -218,9 +379,7 @@ static starg_status run(cli_session *session, void *data) {
     if (session->report != NULL)
         report(session, given.mesh, list);
 done:
-    for (size_t i = 1; results != NULL && i < session->operand_count; i++)
-        starg_result_free(session->context, results[i]);
-    free(results);
+    inputs_free(session, &from);
     json_decref(list);
     starg_mesh_free(given.mesh);
     starg_tetmesh_free(given.tetmesh);
@@ -229,7 +388,7 @@ done:
 
 const cli_command cli_command_verify = {
     .name = "verify",
-    .usage = "MODEL RESULT... [options]",
+    .usage = "MODEL [B] RESULT... [options]",
     .summary = "check results independently",
     .description =
         "Checks the claims of result files with independent geometry and exact signs; "
@@ -245,7 +404,11 @@ const cli_command cli_command_verify = {
         "piece is connected, has the stated size and contacts, and is star-shaped about "
         "its guard where this is stated. MODEL may also be a tetrahedral mesh. For "
         "PIECES.vtk alone, guards are not checked. With the certificate of 'starguard decompose "
-        "--prove --certificate' behind them, it is checked that no fewer pieces are possible.",
+        "--prove --certificate' behind them, it is checked that no fewer pieces are possible.\n"
+        "Results of two models A and B: MAP.json of 'starguard map', which must be a bijection by "
+        "its directions or its overlay, exactly, and meet its landmarks; and the folder of "
+        "'starguard morph', whose first and last frames must be A and B. With 'morph --report' "
+        "crossings, volumes and areas of all frames are checked as well.",
     .examples = "# check one result\n"
                 "starguard verify model.off guards.json\n"
                 "# and that no fewer guards would do, wherever they stand\n"
@@ -254,7 +417,11 @@ const cli_command cli_command_verify = {
                 "# several at once, for a script\n"
                 "starguard verify model.off ilp.json greedy.json --quiet && echo verified\n"
                 "# a star decomposition\n"
-                "starguard verify model.off pieces.json pieces.vtk",
+                "starguard verify model.off pieces.json pieces.vtk\n"
+                "# a map and a morph\n"
+                "starguard map cat.off dog.off --overlay -o cat_dog.json\n"
+                "starguard morph cat.off dog.off --map cat_dog.json --frames 5 -o frames --report\n"
+                "starguard verify cat.off dog.off cat_dog.json frames",
     CLI_OPERANDS(2, SIZE_MAX),
     .run = run,
 };

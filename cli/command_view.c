@@ -83,7 +83,8 @@ const cli_command cli_command_view = {
         "share of them.\n"
         "PIECES.vtk and PIECES.json: coloured pieces, which can be exploded.\n"
         "A skeleton (.obj, .cg, .vtk of 'starguard skeleton') with its radii.\n"
-        "A morph (the folder of 'starguard morph', or its .glb) with a time slider.\n"
+        "A morph (the folder of 'starguard morph', or its .glb) with a time slider; with its "
+        "report (--report) the page names both shapes.\n"
         "A database, or a table of 'starguard db matrix': distances, names and thumbnails.\n"
         "A model alone. In the page, press ? for the keys.",
     .examples = "# guards and what they see\n"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "report.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,9 +74,12 @@ json_t *cli_json_point(const double point[3]) {
 
 void cli_report_head(cli_session *session, const char *format, const char *file,
                      const starg_mesh *mesh) {
-    json_t *report = session->report;
-    if (report == NULL)
-        return;
+    if (session->report != NULL)
+        cli_put_head(session, session->report, format, file, mesh);
+}
+
+void cli_put_head(cli_session *session, json_t *report, const char *format, const char *file,
+                  const starg_mesh *mesh) {
     cli_put(session, report, "format", json_string(format));
     cli_put(session, report, "version", json_integer(1));
     if (mesh == NULL)
@@ -144,6 +148,22 @@ static json_t *shared(cli_session *session) {
     cli_put(session, object, "helped_items",
             json_integer((json_int_t)starg_context_helped_items(session->context)));
     return object;
+}
+
+starg_status cli_report_write(cli_session *session, const json_t *object, const char *name) {
+    if (session->report_broken || object == NULL)
+        return cli_fail_memory(session);
+    FILE *stream = fopen(cli_outputs_place(&session->outputs, name), "w");
+    bool written =
+        stream != NULL && json_dumpf(object, stream, LAYOUT) == 0 && putc('\n', stream) != EOF;
+    int error = errno;
+    if (stream != NULL && fclose(stream) != 0 && written) {
+        written = false;
+        error = errno;
+    }
+    return written ? STARG_OK
+                   : cli_fail(session, STARG_ERROR_WRITE, "cannot write '%.200s': %s", name,
+                              strerror(error));
 }
 
 /* Prints an object and releases it. */

@@ -24,6 +24,13 @@ json_t *cli_json_point(const double point[3]);
 void cli_report_head(cli_session *session, const char *format, const char *file,
                      const starg_mesh *mesh);
 
+/* The same in any object. */
+void cli_put_head(cli_session *session, json_t *object, const char *format, const char *file,
+                  const starg_mesh *mesh);
+
+/* Writes an object as the output announced as `name`. Errors: WRITE, MEMORY. */
+starg_status cli_report_write(cli_session *session, const json_t *object, const char *name);
+
 /* Takes over the members of the object in a text of the library; frees the text. */
 void cli_report_take(cli_session *session, char *text, size_t size);
 

@@ -105,6 +105,10 @@ static starg_status take_result(cli_session *session, size_t operand, cli_show *
         if (page->pieces != NULL)
             return fail_twice(session, "pieces file", file);
         page->pieces = result->pieces;
+    } else if (result->map != NULL || result->morph != NULL) {
+        return cli_fail(session, STARG_ERROR_ARGUMENT, "'%.300s' has no page; %s", file,
+                        result->map != NULL ? "'starguard map --picture' draws a map"
+                                            : "give the folder of the morph");
     } else {
         if (page->report != NULL)
             return fail_twice(session, "pieces report", file);
@@ -308,8 +312,9 @@ static void fill_page(const cli_session *session, const char *model, cli_show *s
     page->shape_count = show->shape_count;
     page->distances = show->distances != NULL ? show->distances : show->table.distances;
     const char *result, *named = model != NULL ? model : named_model(show, &result);
-    page->title = base_of(named != NULL ? named : session->operands[0]);
-    page->model_name = show->model != NULL ? page->title : NULL;
+    page->title =
+        show->title != NULL ? show->title : base_of(named != NULL ? named : session->operands[0]);
+    page->model_name = show->model != NULL ? base_of(named) : NULL;
 }
 
 starg_status cli_show_read(cli_session *session, const char *model, int distance, cli_show *show) {
@@ -346,6 +351,7 @@ void cli_show_free(cli_session *session, cli_show *show) {
     free_frames(context, show);
     cli_show_free_shapes(session, show);
     free(show->radii);
+    free(show->title);
     starg_skeleton_free(context, show->skeleton);
     starg_bits_free(show->seen);
     starg_certificate_outline_free(context, show->proof);

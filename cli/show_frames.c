@@ -67,6 +67,35 @@ static starg_status list_frames(cli_session *session, const char *folder, name_l
     return STARG_OK;
 }
 
+/* ---- title ---- */
+
+static const char *base_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+/* "A to B", as morph.json names them; without it none. Returns whether there was memory. */
+static bool title_morph(const char *folder, cli_show *show) {
+    size_t size = strlen(folder) + sizeof "/morph.json";
+    char *path = malloc(size);
+    if (path == NULL)
+        return false;
+    snprintf(path, size, "%s/morph.json", folder);
+    json_t *root = json_load_file(path, 0, NULL);
+    free(path);
+    const char *a = json_string_value(json_object_get(json_object_get(root, "model"), "file"));
+    const char *b = json_string_value(json_object_get(root, "target"));
+    bool known = a != NULL && b != NULL;
+    if (known) {
+        size = strlen(base_of(a)) + strlen(base_of(b)) + sizeof " to ";
+        show->title = malloc(size);
+        if (show->title != NULL)
+            snprintf(show->title, size, "%s to %s", base_of(a), base_of(b));
+    }
+    json_decref(root);
+    return !known || show->title != NULL;
+}
+
 starg_status cli_show_frames(cli_session *session, const char *folder, cli_show *show) {
     starg_status status = STARG_OK;
     name_list list = {0};
@@ -81,6 +110,8 @@ starg_status cli_show_frames(cli_session *session, const char *folder, cli_show 
         CLI_TRY(starg_mesh_read(session->context, list.items[i], &show->frames[i]));
         show->frame_count++;
     }
+    if (!title_morph(folder, show))
+        status = cli_fail_memory(session);
 done:
     for (size_t i = 0; i < list.count; i++)
         free(list.items[i]);

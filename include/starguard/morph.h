@@ -36,6 +36,17 @@ typedef enum starg_map_kind {
     STARG_MAP_GIVEN = 2   /* read from a file                                             */
 } starg_map_kind;
 
+/* The common refinement of the triangulations of two surfaces: each face lies in one face of A and
+ * one of B. All zero: there is none. */
+typedef struct starg_overlay {
+    size_t vertex_count, face_count;
+    uint32_t *faces; /* face_count x 3, oriented as A */
+    /* Per vertex its places, on A and on B: a face, and vertex_count x 3 barycentric coordinates in
+     * it, sum 1. Vertices of A and of B have one coordinate of 1, points on edges one of 0. */
+    uint32_t *own_faces, *target_faces;
+    double *own_coordinates, *target_coordinates;
+} starg_overlay;
+
 /* The image of each vertex of A on B. Distortion is computed from the singular values s >= r of the
  * linear map between a face of A and its image, both surfaces scaled to equal area, averaged over
  * A's area. */
@@ -50,6 +61,15 @@ typedef struct starg_map {
     double mean_angle_distortion; /* mean of (s/r + r/s) / 2, each at most 1000; 1 is best */
     double mean_area_distortion;  /* mean of (sr + 1/(sr)) / 2, each at most 1000; 1 is best */
     size_t collapsed;             /* faces of A with a degenerate image */
+    /* What makes it a bijection of the whole surfaces, if that is known: directions of the vertices
+     * of A (vertex_count x 3) and of B (target_vertices x 3), for which the spherical triangles of
+     * either surface cover the sphere once. Points in the same direction correspond. NULL: not
+     * known, or not needed, as vertex i maps to vertex i of the same faces. */
+    double *directions, *target_directions;
+    size_t direction_count, target_direction_count; /* as many as vertices, or 0 */
+    size_t pair_count;
+    uint32_t *pairs; /* pair_count x 2: the satisfied landmarks; NULL: none */
+    starg_overlay overlay;
 } starg_map;
 
 /* Maps A onto B. If both have the same faces in the same order (up to one in twenty may differ,
@@ -64,6 +84,18 @@ STARG_API starg_status starg_map_create(starg_context *context, const starg_mesh
                                         const starg_mesh *b, const starg_map_options *options,
                                         starg_map **out);
 STARG_API void starg_map_free(starg_context *context, starg_map *map);
+
+/* Adds the overlay to a map from A to B, and moves the images of A's vertices to where it has them,
+ * which is near. Points are rounded; exactly in barycentric coordinates, its triangles are positive
+ * in their faces of A and of B, which they fill. Errors: MESH (the map has no directions, or they
+ * fold: the face), SOLVER (points too close for doubles), MEMORY, CANCELLED. */
+STARG_API starg_status starg_map_overlay(starg_context *context, const starg_mesh *a,
+                                         const starg_mesh *b, starg_map *map);
+
+/* Computes the places of the overlay's vertices on A (end 0) or B (end 1) in the caller's array of
+ * vertex_count x 3 doubles. Vertices of that mesh are at their exact coordinates. */
+STARG_API void starg_overlay_positions(const starg_overlay *overlay, const starg_mesh *mesh,
+                                       int end, double *positions);
 
 /* Writes MAP.json; path "-" is standard output. Errors: WRITE, MEMORY. */
 STARG_API starg_status starg_map_write(starg_context *context, const starg_map *map,

@@ -168,6 +168,43 @@ STARG_API starg_status starg_verify_pieces_of_tetmesh(starg_context *context,
                                                       const starg_pieces_report *report,
                                                       starg_verdict **out);
 
+/* ---- maps and morphs ---- */
+
+/* MAP.json as read, without any guarantee (docs/formats.md). */
+typedef struct starg_map_file starg_map_file;
+
+/* Reads MAP.json with a separate reader; `name` is used in messages. Errors: FORMAT, MEMORY. */
+STARG_API starg_status starg_map_file_read_memory(starg_context *context, const void *bytes,
+                                                  size_t size, const char *name,
+                                                  starg_map_file **out);
+STARG_API void starg_map_file_free(starg_map_file *file);
+
+/* Checks a map from A to B: counts, that its directions or its overlay make it a bijection,
+ * exactly, that points are where these have them, landmarks, and distortion. What a file without
+ * either does not say is listed in `not_checked`. The meshes are the models as read. Errors: MESH
+ * (not closed and oriented), MEMORY, CANCELLED; a false claim is not an error. */
+STARG_API starg_status starg_verify_map(starg_context *context, const starg_mesh *a,
+                                        const starg_mesh *b, const starg_map_file *file,
+                                        starg_verdict **out);
+
+/* The report of a morph as read, without any guarantee (docs/formats.md). */
+typedef struct starg_morph_report starg_morph_report;
+
+/* Errors: FORMAT, MEMORY. */
+STARG_API starg_status starg_morph_report_read_memory(starg_context *context, const void *bytes,
+                                                      size_t size, const char *name,
+                                                      starg_morph_report **out);
+STARG_API void starg_morph_report_free(starg_morph_report *report);
+
+/* Checks the frames of a morph, at least two: they have the same faces; the first is A, or A
+ * subdivided in its faces; the last is B, or B subdivided, or has its vertices on B if the first is
+ * A itself; and, with a report (may be NULL), each frame has the crossings, volume, area and drifts
+ * that are reported. Errors: ARGUMENT, MESH, MEMORY, CANCELLED; a false claim is not an error. */
+STARG_API starg_status starg_verify_morph(starg_context *context, const starg_mesh *a,
+                                          const starg_mesh *b, const starg_mesh *const *frames,
+                                          size_t frame_count, const starg_morph_report *report,
+                                          starg_verdict **out);
+
 /* ---- files of results ---- */
 
 /* One of these is set. */
@@ -176,9 +213,12 @@ typedef struct starg_result {
     starg_pieces_mesh *pieces;
     starg_pieces_report *report;
     starg_certificate *certificate;
+    starg_map_file *map;
+    starg_morph_report *morph;
 } starg_result;
 
-/* Reads GUARDS.json, a certificate, PIECES.vtk or PIECES.json, recognized by content. "-" is
+/* Reads GUARDS.json, a certificate, PIECES.vtk, PIECES.json, MAP.json or the report of a morph,
+ * recognized by content. "-" is
  * standard input. Errors: READ, and those of the readers. */
 STARG_API starg_status starg_result_read(starg_context *context, const char *path,
                                          starg_result **out);

@@ -38,14 +38,16 @@ from .catalogue import SampleInfo, sample, samples
 from .skeletons import Skeleton, skeleton
 from .solid import Scene, Solid
 from .tetra import NO_NEIGHBOUR, TetMesh, TetraReport, is_tetrahedral, tetrahedralize
-from .verification import Certificate, Claim, PiecesMesh, PiecesReport, Verdict, read_result, verify
+from .verification import (Certificate, Claim, MapFile, MorphReport, PiecesMesh, PiecesReport, Verdict,
+                           read_result, verify, verify_map, verify_morph)
 from .views import page_available, write_page, write_scene
 from .visibility import Bits, cone_cosine, visible, visible_from_box
 
 __all__ = [
     "Added", "ArgumentError", "Bits", "CancelledError", "Certificate", "Check", "Claim", "Cover", "Database",
     "Decomposition", "Defaults", "Descriptor", "Error", "Finding", "FormatError", "FrameMeasures",
-    "Guard", "GuardLevel", "Guards", "Kernel", "Level", "Mesh", "MeshError", "Models", "Morph", "NO_CLASS",
+    "Guard", "GuardLevel", "Guards", "Kernel", "Level", "MapFile", "Mesh", "MeshError", "Models", "Morph",
+    "MorphReport", "NO_CLASS",
     "NO_NEIGHBOUR", "NO_VERTEX", "OutOfMemoryError", "PiecesMesh", "PiecesReport", "Progress",
     "RangeError", "ReadError", "Reconstruction", "RepairReport", "Retrieval", "SampleInfo",
     "Scene", "Signature", "Skeleton", "Solid", "SolverError", "StoredModel", "SurfaceMap", "TetMesh",
@@ -55,6 +57,6 @@ __all__ = [
     "describe", "directions", "distances", "distinct_colors", "guard", "is_descriptor",
     "is_tetrahedral", "kernel", "logger", "map_surface", "match", "page_available", "picture",
     "points_from_bytes", "read_animation", "read_landmarks", "read_points", "read_result", "retrieval", "sample", "samples", "signature",
-    "signatures", "skeleton", "tetrahedralize", "unseen", "verify", "visible", "visible_from_box",
+    "signatures", "skeleton", "tetrahedralize", "unseen", "verify", "verify_map", "verify_morph", "visible", "visible_from_box",
     "write_animation", "write_chart", "write_matrix_picture", "write_page", "write_picture", "write_picture_sheet",
     "write_scene"]

@@ -45,13 +45,26 @@ class SurfaceMap:
     mean_angle_distortion: float
     mean_area_distortion: float
     collapsed: int
+    #: Pairs of vertices, of A and of B, that the map meets exactly, (k, 2).
+    landmarks: Array
+    #: Directions of A's and of B's vertices on the common sphere, which make the map a bijection of
+    #: the whole surfaces; None if they are not known.
+    directions: tuple[Array, Array] | None
+    #: A.
+    source: Mesh = field(repr=False)
     #: B.
     target: Mesh = field(repr=False)
     _handle: Any = field(repr=False)
 
     @classmethod
-    def _of(cls, m: Any, target: Mesh) -> SurfaceMap:
-        return fill(cls, m, _handle=m, target=target, kind=word_of(m.kind, _MAP_KINDS),
+    def _of(cls, m: Any, source: Mesh, target: Mesh) -> SurfaceMap:
+        directions = None
+        if m.direction_count:
+            directions = (
+                _arrays.view(m, m.directions, (m.direction_count, 3), np.float64),
+                _arrays.view(m, m.target_directions, (m.target_direction_count, 3), np.float64))
+        return fill(cls, m, _handle=m, source=source, target=target, directions=directions,
+                    landmarks=_arrays.view(m, m.pairs, (m.pair_count, 2), np.uint32), kind=word_of(m.kind, _MAP_KINDS),
                     faces=_arrays.view(m, m.faces, (m.vertex_count,), np.uint32),
                     coordinates=_arrays.view(m, m.coordinates, (m.vertex_count, 3), np.float64))
 
@@ -60,6 +73,29 @@ class SurfaceMap:
         rows = np.empty((len(self.faces), 3))
         lib.starg_map_positions(self._handle, self.target._handle, _arrays.pointer("double[]", rows))
         return rows
+
+    def overlay(self) -> tuple[Mesh, Mesh]:
+        """A and B, both with the faces of their overlay: every face lies in one of A and one of B.
+
+        >>> import starguard
+        >>> ball, star = (starguard.sample(name, vertices=500) for name in ("sphere", "star"))
+        >>> first, second = starguard.map_surface(ball, star).overlay()
+        >>> (first.faces == second.faces).all(), len(first.vertices) > 1000
+        (True, True)
+        """
+        session = Session()
+        if not self._handle.overlay.face_count:
+            session.call(lib.starg_map_overlay, session.context, self.source._handle,
+                         self.target._handle, self._handle)
+        overlay = self._handle.overlay
+        faces = _arrays.view(self._handle, overlay.faces, (overlay.face_count, 3), np.uint32)
+        ends = []
+        for end, mesh in enumerate((self.source, self.target)):
+            rows = np.empty((overlay.vertex_count, 3))
+            lib.starg_overlay_positions(ffi.addressof(self._handle, "overlay"), mesh._handle, end,
+                                        _arrays.pointer("double[]", rows))
+            ends.append(Mesh(rows, faces))
+        return ends[0], ends[1]
 
     def write(self, path: PathLike) -> None:
         """Writes MAP.json (docs/formats.md)."""
@@ -73,7 +109,7 @@ class SurfaceMap:
         session = Session()
         return cls._of(session.make("starg_map", lib.starg_map_free, lib.starg_map_read,
                                     session.context, _arrays.path(path), first._handle,
-                                    second._handle, shared=True), second)
+                                    second._handle, shared=True), first, second)
 
 
 def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *,
@@ -100,7 +136,8 @@ def map_surface(a: Any, b: Any, landmarks: ArrayLike | PathLike | None = None, *
         options.landmark_count = len(pairs)
     return SurfaceMap._of(session.make(
         "starg_map", lib.starg_map_free, lib.starg_map_create, session.context, first._handle,
-        second._handle, options, shared=True, progress=progress, time_limit=time_limit), second)
+        second._handle, options, shared=True, progress=progress, time_limit=time_limit), first,
+        second)
 
 
 def read_landmarks(path: PathLike, a: Any, b: Any) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Union
+from typing import Any, Sequence, Union
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from ._session import Session
 from ._types import Array, PathLike, Progress
 from .errors import ArgumentError
 from .guards import Guards
+from .mesh import as_mesh
 from .pieces import OPTIONS, Decomposition
 from .solid import Scene
 from .tetra import TetMesh, as_shape
@@ -132,11 +133,29 @@ def _read(data: bytes, name: str, kind: str, free: Any, function: Any) -> Any:
                         shared=True)
 
 
+@dataclass(frozen=True, eq=False)
+class MapFile:
+    """MAP.json as read for `verify_map`, without any guarantee."""
+
+    _handle: Any = field(repr=False)
+    _owner: Any = field(repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class MorphReport:
+    """The morph.json of `starguard morph --report` as read for `verify_morph`."""
+
+    _handle: Any = field(repr=False)
+    _owner: Any = field(repr=False)
+
+
 Result = Union[Guards, Certificate, Decomposition, PiecesMesh, PiecesReport]
 
 
-def read_result(path: PathLike) -> Guards | Certificate | PiecesMesh | PiecesReport:
-    """Reads GUARDS.json, a certificate, PIECES.vtk or PIECES.json, recognized by content.
+def read_result(path: PathLike) -> (Guards | Certificate | PiecesMesh | PiecesReport | MapFile
+                                    | MorphReport):
+    """Reads GUARDS.json, a certificate, PIECES.vtk, PIECES.json, MAP.json or morph.json, recognized
+    by content.
 
     >>> import starguard
     >>> pieces = starguard.decompose(starguard.sample("l-room", vertices=500), time_limit=5)
@@ -153,7 +172,59 @@ def read_result(path: PathLike) -> Guards | Certificate | PiecesMesh | PiecesRep
         return Certificate(result.certificate, result)
     if result.pieces:
         return PiecesMesh._of(result.pieces, result)
+    if result.map:
+        return MapFile(result.map, result)
+    if result.morph:
+        return MorphReport(result.morph, result)
     return PiecesReport._of(result.report, result)
+
+
+def verify_map(a: Any, b: Any, path: PathLike | MapFile, *, threads: int | None = None,
+               progress: Progress | None = None) -> Verdict:
+    """Checks MAP.json, a map from A to B: that it is a bijection, exactly, and meets its landmarks.
+
+    >>> import starguard
+    >>> ball, star = (starguard.sample(name, vertices=500) for name in ("sphere", "star"))
+    >>> starguard.map_surface(ball, star).write("ball_star.json")
+    >>> starguard.verify_map(ball, star, "ball_star.json").passed
+    True
+    """
+    first, second = as_mesh(a), as_mesh(b)
+    file = path if isinstance(path, MapFile) else read_result(path)
+    if not isinstance(file, MapFile):
+        raise ArgumentError("this is no map of two models")
+    session = Session(threads)
+    claims: list[Claim] = []
+    rest: list[str] = []
+    _judge(session, lib.starg_verify_map, first, second._handle, file._handle, claims=claims,
+           rest=rest, progress=progress)
+    return Verdict(all(claim.holds for claim in claims), claims, rest)
+
+
+def verify_morph(a: Any, b: Any, frames: Sequence[Any], report: MorphReport | PathLike | None = None,
+                 *, threads: int | None = None, progress: Progress | None = None) -> Verdict:
+    """Checks the frames of a morph (meshes or files): the first is A, the last is B, or B with the
+    faces of A; and what a `report` says of each.
+
+    >>> import starguard
+    >>> a, b = (starguard.sample("dog", pose=pose, vertices=500) for pose in (0, 1))
+    >>> morph = starguard.Morph(a, b, method="linear")
+    >>> starguard.verify_morph(a, b, [morph.frame(t) for t in (0, 0.5, 1)]).passed
+    True
+    """
+    first, second = as_mesh(a), as_mesh(b)
+    meshes = [as_mesh(frame) for frame in frames]
+    told = report if report is None or isinstance(report, MorphReport) else read_result(report)
+    if told is not None and not isinstance(told, MorphReport):
+        raise ArgumentError("this is no report of a morph")
+    session = Session(threads)
+    claims: list[Claim] = []
+    rest: list[str] = []
+    _judge(session, lib.starg_verify_morph, first, second._handle,
+           ffi.new("starg_mesh *[]", [mesh._handle for mesh in meshes]), len(meshes),
+           told._handle if told is not None else ffi.NULL, claims=claims, rest=rest,
+           progress=progress)
+    return Verdict(all(claim.holds for claim in claims), claims, rest)
 
 
 def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
@@ -173,6 +244,8 @@ def verify(model: Any, *results: Result | PathLike, threads: int | None = None,
     given = [read_result(r) if isinstance(r, (str, bytes, os.PathLike)) else r for r in results]
     if not given:
         raise ArgumentError("give a result to verify")
+    if any(isinstance(result, (MapFile, MorphReport)) for result in given):
+        raise ArgumentError("maps and morphs are of two models: see verify_map and verify_morph")
     session = Session(threads, seed)
     claims: list[Claim] = []
     rest: list[str] = []

@@ -17,6 +17,7 @@
 #include "mesh/solid.h"
 #include "morph/compose.h"
 #include "morph/landmarks.h"
+#include "morph/overlay.h"
 
 static const char STAGE[] = "map";
 enum { SAME_SHARE = 20 }; /* fraction of faces that may differ between poses: one in so many */
@@ -52,6 +53,10 @@ void starg_map_free(starg_context *context, starg_map *map) {
         return;
     starg_release(context, map->faces);
     starg_release(context, map->coordinates);
+    starg_release(context, map->directions);
+    starg_release(context, map->target_directions);
+    starg_release(context, map->pairs);
+    map_free_overlay(context, &map->overlay);
     starg_release(context, map);
 }
 
@@ -107,15 +112,20 @@ done:
     return status;
 }
 
-void starg_map_positions(const starg_map *map, const starg_mesh *b, double *positions) {
-    for (size_t v = 0; v < map->vertex_count; v++) {
-        const uint32_t *corner = b->faces + 3 * (size_t)map->faces[v];
-        const double *w = map->coordinates + 3 * v;
+void map_place(const starg_mesh *mesh, size_t count, const uint32_t *faces,
+               const double *coordinates, double *positions) {
+    for (size_t v = 0; v < count; v++) {
+        const uint32_t *corner = mesh->faces + 3 * (size_t)faces[v];
+        const double *w = coordinates + 3 * v;
         for (size_t k = 0; k < 3; k++)
-            positions[3 * v + k] = w[0] * b->vertices[3 * (size_t)corner[0] + k] +
-                                   w[1] * b->vertices[3 * (size_t)corner[1] + k] +
-                                   w[2] * b->vertices[3 * (size_t)corner[2] + k];
+            positions[3 * v + k] = w[0] * mesh->vertices[3 * (size_t)corner[0] + k] +
+                                   w[1] * mesh->vertices[3 * (size_t)corner[1] + k] +
+                                   w[2] * mesh->vertices[3 * (size_t)corner[2] + k];
     }
+}
+
+void starg_map_positions(const starg_map *map, const starg_mesh *b, double *positions) {
+    map_place(b, map->vertex_count, map->faces, map->coordinates, positions);
 }
 
 /* ---- checks ---- */
@@ -256,6 +266,42 @@ done:
     return status;
 }
 
+static starg_status copy_doubles(starg_context *context, const double *from, size_t count,
+                                 double **out) {
+    starg_status status = STARG_OK;
+    STARG_NEW(context, STAGE, *out, count);
+    memcpy(*out, from, count * sizeof **out);
+done:
+    return status;
+}
+
+/* Keeps what makes the map a bijection. */
+static starg_status keep_directions(starg_context *context, const sphere *from, const sphere *to,
+                                    starg_map *map) {
+    starg_status status = STARG_OK;
+    size_t count = from->mesh->vertex_count, target_count = to->mesh->vertex_count;
+    STARG_TRY(copy_doubles(context, from->directions, 3 * count, &map->directions));
+    map->direction_count = count;
+    STARG_TRY(copy_doubles(context, to->directions, 3 * target_count, &map->target_directions));
+    map->target_direction_count = target_count;
+done:
+    return status;
+}
+
+static starg_status keep_pairs(starg_context *context, const landmark_list *marks, starg_map *map) {
+    starg_status status = STARG_OK;
+    if (marks->count == 0)
+        return STARG_OK;
+    STARG_NEW(context, STAGE, map->pairs, 2 * marks->count);
+    map->pair_count = marks->count;
+    for (size_t i = 0; i < marks->count; i++) {
+        map->pairs[2 * i] = marks->from[i];
+        map->pairs[2 * i + 1] = marks->to[i];
+    }
+done:
+    return status;
+}
+
 /* Splits the pairs into two lists. */
 static starg_status split_landmarks(starg_context *context, const starg_map_options *options,
                                     uint32_t **lists, landmark_list *out) {
@@ -309,11 +355,25 @@ static starg_status map_by_sphere(starg_context *context, const starg_mesh *a, c
     STARG_TRY(compose(from.sphere, &where, &marks, &features));
     STARG_TRY(make_map(context, a, b, STARG_MAP_SPHERE, out));
     STARG_TRY(place_vertices(from.sphere, &where, b, &marks, *out));
+    STARG_TRY(keep_directions(context, from.sphere, to.sphere, *out));
+    STARG_TRY(keep_pairs(context, &marks, *out));
 done:
     starg_release(context, lists);
     locator_free(&where);
     spread_free(&from);
     spread_free(&to);
+    return status;
+}
+
+starg_status map_share_directions(starg_context *context, const starg_mesh *a, const starg_mesh *b,
+                                  starg_map *map) {
+    starg_status status = STARG_OK;
+    spread own = {0};
+    STARG_TRY(spread_surface(context, a, "A", &own));
+    STARG_TRY(overlay_share(context, a, b, own.sphere->directions));
+    STARG_TRY(keep_directions(context, own.sphere, own.sphere, map));
+done:
+    spread_free(&own);
     return status;
 }
 

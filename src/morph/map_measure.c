@@ -44,6 +44,7 @@ starg_status map_measure(starg_context *context, const starg_mesh *a, const star
     STARG_TRY(map_unit_copy(context, b, &to));
     STARG_NEW(context, STAGE, images, 3 * map->vertex_count);
     starg_map_positions(map, to, images);
+    map->collapsed = 0;
     double area = starg_mesh_area(from), scale = area / starg_mesh_area(to);
     for (size_t f = 0; f < from->face_count; f++) {
         form own = form_of(from->vertices, from->faces + 3 * f);

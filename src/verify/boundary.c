@@ -158,12 +158,12 @@ static void record_face(const matcher *own, const shells *all, double rounding,
         under->slack += ldexp(rounding, own->scale) * extent_of(s, own->scale);
 }
 
-starg_status verify_match_boundary(const verify_pieces *pieces, const verify_surface *model,
+starg_status verify_match_surfaces(const verify_surface *outer, const verify_surface *model,
                                    verify_match *match) {
     starg_status status = STARG_OK;
-    starg_context *context = pieces->context;
+    starg_context *context = outer->context;
     double rounding = verify_rounding(model);
-    matcher own = {.outer = pieces->outer, .model = model, .scale = pieces->scale};
+    matcher own = {.outer = outer, .model = model, .scale = verify_scale(outer)};
     verify_tree *tree = NULL;
     shells all = {0};
     *match = (verify_match){0};

@@ -133,7 +133,7 @@ static starg_status claim_nearness(const verify_context *own) {
 
 static starg_status claim_match(const verify_context *own) {
     verify_match match;
-    starg_status status = verify_match_boundary(own->pieces, own->model, &match);
+    starg_status status = verify_match_surfaces(own->pieces->outer, own->model, &match);
     if (status != STARG_OK)
         return status;
     claim_on_model(own, &match);

@@ -32,6 +32,18 @@ void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...) {
     verdict->passed = verdict->passed && holds;
 }
 
+void verify_claim_all(starg_verdict *verdict, size_t bad, size_t first, const char *format, ...) {
+    char text[sizeof verdict->claims->text];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (bad == 0)
+        verify_claim(verdict, true, "%s", text);
+    else
+        verify_claim(verdict, false, "%.180s (not: %zu, the first is %zu)", text, bad, first);
+}
+
 void verify_leave(starg_verdict *verdict, const char *format, ...) {
     if (verdict->not_checked_count == VERIFY_UNCHECKED)
         return;

@@ -15,6 +15,11 @@ starg_status verify_verdict_create(starg_context *context, starg_verdict **out);
 void verify_claim(starg_verdict *verdict, bool holds, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Adds a claim that holds of all but `bad` elements, the first of which is named if there are any:
+ * "text (not: 3, the first is 17)". */
+void verify_claim_all(starg_verdict *verdict, size_t bad, size_t first, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
 /* Adds a statement of the result that is not checked. */
 void verify_leave(starg_verdict *verdict, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

@@ -69,8 +69,8 @@ typedef struct verify_match {
     double area, model_area;          /* of all, in scaled units                      */
 } verify_match;
 
-/* Lays the outer faces on those of the model. Errors: MEMORY, CANCELLED. */
-starg_status verify_match_boundary(const verify_pieces *pieces, const verify_surface *model,
+/* Lays the faces of a closed surface on those of the model. Errors: MEMORY, CANCELLED. */
+starg_status verify_match_surfaces(const verify_surface *outer, const verify_surface *model,
                                    verify_match *match);
 
 /* From one surface to another. */

@@ -31,6 +31,10 @@ static starg_status read_bytes(starg_context *context, const char *bytes, size_t
         return starg_pieces_mesh_read_memory(context, bytes, size, name, &result->pieces);
     if (has_format(bytes, size, "starguard-pieces"))
         return starg_pieces_report_read_memory(context, bytes, size, name, &result->report);
+    if (has_format(bytes, size, "starguard-map"))
+        return starg_map_file_read_memory(context, bytes, size, name, &result->map);
+    if (has_format(bytes, size, "starguard-morph"))
+        return starg_morph_report_read_memory(context, bytes, size, name, &result->morph);
     return starg_guards_read_memory(context, bytes, size, name, &result->guards);
 }
 
@@ -58,5 +62,7 @@ void starg_result_free(starg_context *context, starg_result *result) {
     starg_pieces_mesh_free(context, result->pieces);
     starg_pieces_report_free(context, result->report);
     starg_certificate_free(result->certificate);
+    starg_map_file_free(result->map);
+    starg_morph_report_free(result->morph);
     starg_release(context, result);
 }

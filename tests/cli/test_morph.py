@@ -95,6 +95,77 @@ class Morph(Case):
         for a, b in (3, 5), (100, 200):
             self.assertEqual(last[1][3 * a:3 * a + 3], target[1][3 * b:3 * b + 3])
 
+    def verdict(self, *words, status=0):
+        """The claims that do not hold, by result."""
+        out, _ = self.run_text("verify", "cat0.off", *words, "--json", status=status)
+        return [[c["claim"] for c in r["claims"] if not c["holds"]]
+                for r in json.loads(out)["results"]]
+
+    def test_overlay(self):
+        """Both ends are the models, and everything verifies; what is spoilt does not."""
+        self.write("marks.txt", "3 5\n100 200\n321 411\n")
+        report = self.run_json("map", "cat0.off", "ball.off", "--landmarks", "marks.txt", "--overlay",
+                               "-o", "map.json")
+        self.assertGreater(len(report["overlay_points"]), 1300)
+        report = self.run_json("map", "cat0.off", "ball.off", "--landmarks", "marks.txt", "-o",
+                               "plain.json", "--picture", "map.png")
+        self.assertNotIn("overlay_points", report)
+        self.assertTrue(self.read("map.png").startswith(b"\x89PNG"))
+        self.assertEqual(self.verdict("ball.off", "plain.json"), [[]])
+        report = self.run_json("morph", "cat0.off", "ball.off", "--map", "map.json", "--overlay",
+                               "--report", "--frames", "3", "-o", "out", "--method", "linear")
+        self.assertEqual([report["frames"][i]["intersections"] for i in (0, -1)], [0, 0])
+        told = json.loads(self.read("out/morph.json"))
+        self.assertEqual({key: report[key] for key in told}, told)
+        self.assertEqual(self.verdict("ball.off", "map.json", "out"), [[], []])
+        self.run_text("view", "out", "-o", "page.html")
+        self.assertIn(b"cat0.off to ball.off", self.read("page.html"))
+        self.usage_error("view", "map.json", "-o", "other.html", says="--picture")
+        # without a report only the ends
+        os.rename(self.path("out/morph.json"), self.path("kept.json"))
+        _, err = self.run_text("verify", "cat0.off", "ball.off", "out")
+        self.assertIn("no morph.json", err)
+        told["frames"][1]["intersections"] += 1
+        told["frames"][2]["volume"] *= 1.0001
+        self.write("out/morph.json", json.dumps(told))
+        failed = self.verdict("ball.off", "out", status=4)[0]
+        self.assertTrue(any("crossings" in text and "frame 1" in text for text in failed))
+        self.assertTrue(any("volume" in text for text in failed))
+        self.assertTrue(self.verdict("cat0.off", "out", status=4)[0])
+        file = json.loads(self.read("map.json"))
+        for key, at in ("overlay_points", 5), ("directions", 0), ("overlay_faces", 1):
+            spoilt = json.loads(self.read("map.json"))
+            spoilt[key][0][at] = 1 - spoilt[key][0][at]
+            self.write("spoilt.json", json.dumps(spoilt))
+            failed = (self.run_text("verify", "cat0.off", "ball.off", "spoilt.json", status=2)
+                      if key == "overlay_faces" and spoilt[key][0][at] < 0
+                      else self.verdict("ball.off", "spoilt.json", status=4)[0])
+            self.assertTrue(failed)
+        # without what lies between vertices there is no overlay, and not all is checked
+        for key in "directions", "target_directions", "overlay_points", "overlay_faces":
+            del file[key]
+        self.write("points.json", json.dumps(file))
+        out, _ = self.run_text("verify", "cat0.off", "ball.off", "points.json")
+        self.assertIn("not checked: where the map takes what lies between", out)
+        _, err = self.run_text("morph", "cat0.off", "ball.off", "--map", "points.json", "--overlay",
+                               "--frames", "2", "-o", "none", status=2)
+        self.assertIn("directions", err)
+        self.assertNotIn("none", os.listdir(self.path(".")))
+
+    def test_verified_poses(self):
+        self.run_text("map", "cat0.off", "cat1.off", "-o", "map.json")
+        self.run_text("morph", "cat0.off", "cat1.off", "--frames", "3", "-o", "out", "--report",
+                      "--method", "linear", "--overlay")
+        self.assertEqual(self.read("out/frame_0002.off"), self.read("cat1.off"))
+        self.assertEqual(self.verdict("cat1.off", "map.json", "out"), [[], []])
+        _, err = self.run_text("verify", "cat0.off", "map.json", status=1)
+        self.assertIn("two models", err)
+        _, err = self.run_text("verify", "cat0.off", "cat1.off", "out/morph.json", status=1)
+        self.assertIn("folder", err)
+        os.mkdir(self.path("empty"))
+        _, err = self.run_text("verify", "cat0.off", "cat1.off", "empty", status=2)
+        self.assertIn("frame_0000.off", err)
+
     def test_animation_and_picture(self):
         self.run_text("morph", "cat0.off", "cat1.off", "--frames", "4", "-o", "out", "--glb",
                       "cat.glb", "--picture", "cat.png")

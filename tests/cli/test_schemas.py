@@ -110,7 +110,8 @@ class Schemas(support.Case):
     OPTIONAL = {"levels", "flattest_given", "direction", "area_bound", "coarsest", "step",
                 "significance", "refine",
                 "peak_resident_bytes", "report", "map", "letter", "separate", "cells", "witnesses",
-                "work", "lower_bound_everywhere", "optimal_everywhere",
+                "work", "landmark_pairs", "directions", "target_directions", "overlay_points",
+                "overlay_faces", "overlay", "lower_bound_everywhere", "optimal_everywhere",
                 "area_bound_everywhere"}
 
     def required(self, name, path):
@@ -128,7 +129,8 @@ class Schemas(support.Case):
             return False
         if name == "report-morph" and path == ("pieces",): # has them where it is asked to
             return False
-        if path[0] == "results" and path[-1] in ("tetrahedra", "pieces", "strictly_star"):
+        if path[0] == "results" and path[-1] in ("tetrahedra", "pieces", "strictly_star", "target",
+                                                 "frames"):
             return False
         return not (path[0] == "coverage" and path[-1].endswith("vertices"))
 
@@ -219,6 +221,15 @@ class Schemas(support.Case):
                           f"horse_{pose}.off")
         self.report("map", "map", "horse_0.off", "horse_1.off", "-o", "map.json")
         self.file("map", "map.json")
+        self.write("marks.txt", "0 5\n240 134\n380 303\n")
+        self.run_text("sample", "sphere", "--vertices", "500", "-o", "ball.off")
+        self.run_text("sample", "star", "--vertices", "500", "-o", "star.off")
+        self.report("map", "map", "ball.off", "star.off", "--landmarks", "marks.txt", "--overlay",
+                    "-o", "overlay.json")
+        self.file("map", "overlay.json")
+        self.report("morph", "morph", "ball.off", "star.off", "--map", "overlay.json", "--overlay",
+                    "--frames", "3", "-o", "overlaid", "--method", "linear", "--report")
+        self.report("verify", "verify", "ball.off", "star.off", "overlay.json", "overlaid")
         for method, *more in [["star"], ["star", "--guards", "--pieces"], ["linear"]]:
             self.report("morph", "morph", "horse_0.off", "horse_1.off", "--frames", "3", "-o", "frames",
                         "--method", method, *more)

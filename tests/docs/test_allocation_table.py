@@ -40,6 +40,7 @@ WITHOUT = {
     "starg_cone_cosine": ARITHMETIC, "starg_frustum": ARITHMETIC,
     "starg_guards_rotation": ARITHMETIC, "starg_incidence_cosine": ARITHMETIC, "starg_descriptor_direction": ARITHMETIC,
     "starg_distinct_color": ARITHMETIC, "starg_map_positions": ARITHMETIC,
+    "starg_overlay_positions": ARITHMETIC,
     "starg_descriptor_recognized": ARITHMETIC, "starg_tetmesh_recognized": ARITHMETIC,
     "starg_mesh_vertex_count": NUMBER, "starg_mesh_face_count": NUMBER,
     "starg_mesh_vertices": NUMBER, "starg_mesh_faces": NUMBER, "starg_mesh_bounds": ARITHMETIC,

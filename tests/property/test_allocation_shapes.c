@@ -6,12 +6,15 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "starguard/database.h"
 #include "starguard/shape.h"
 
 static failing_inputs in;
-static input_bytes descriptor_text, database_file;
+static input_bytes descriptor_text, database_file, map_text, report_text;
+static starg_map_file *map_file;
+static starg_morph_report *morph_report;
 
 /* ---- signatures ---- */
 
@@ -188,15 +191,34 @@ static starg_status landmarks_read(starg_context *context) {
 #define MAP(NAME, VARIANT, ...)                                                                    \
     FAILING_MAKES(NAME, VARIANT, starg_map, starg_map_free(context, out), __VA_ARGS__)
 
+/* A map with working memory; memory fails when its overlay is made. */
+static starg_status map_overlay(starg_context *context) {
+    starg_map *map = NULL;
+    failing_pause();
+    test_ok(context, starg_map_create(context, in.blob, in.other_blob, NULL, &map));
+    failing_resume();
+    starg_status status = starg_map_overlay(context, in.blob, in.other_blob, map);
+    assert_true((status == STARG_OK) == (map->overlay.face_count > 0));
+    starg_map_free(context, map);
+    return status;
+}
+
+#define VERDICT(NAME, VARIANT, ...)                                                                \
+    FAILING_MAKES(NAME, VARIANT, starg_verdict, starg_verdict_free(context, out), __VA_ARGS__)
+
 static starg_status maps(starg_context *context) {
     static const uint32_t pairs[] = {0, 0, 2, 2, 4, 4};
     const starg_map_options landmarks = {pairs, 3};
     MAP(starg_map_create, "same faces", in.cube, in.box, NULL);
     MAP(starg_map_create, "sphere", in.blob, in.other_blob, NULL);
     MAP(starg_map_create, "sphere, landmarks", in.blob, in.other_blob, &landmarks);
+    FAILING_BY(starg_map_overlay, "", map_overlay(context));
     FAILING(starg_map_write, "", in.map, failing_output("m.json"));
     FAILING_TEXT(starg_map_write_memory, "", in.map);
     MAP(starg_map_read, "", failing_input("map.json"), in.blob, in.other_blob);
+    FAILING_MAKES(starg_map_file_read_memory, "", starg_map_file, starg_map_file_free(out),
+                  map_text.data, map_text.size, "m");
+    VERDICT(starg_verify_map, "", in.blob, in.other_blob, map_file);
     FAILING_BY(starg_landmarks_read, "", landmarks_read(context));
     return STARG_OK;
 }
@@ -249,6 +271,15 @@ static starg_status morph_solids(starg_context *context) {
         }                                                                                          \
     while (0)
 
+static starg_status verified_morphs(starg_context *context) {
+    const starg_mesh *const frames[] = {in.cube, in.box}, *const refined[] = {in.blob, in.blob};
+    FAILING_MAKES(starg_morph_report_read_memory, "", starg_morph_report,
+                  starg_morph_report_free(out), report_text.data, report_text.size, "m");
+    VERDICT(starg_verify_morph, "", in.cube, in.blob, frames, 2, morph_report);
+    VERDICT(starg_verify_morph, "refined", in.other_blob, in.other_blob, refined, 2, NULL);
+    return STARG_OK;
+}
+
 static starg_status morphs(starg_context *context) {
     double positions[24];
     starg_frame_measures measures;
@@ -274,15 +305,34 @@ FAILING_TEST(descriptors)
 FAILING_TEST(databases)
 FAILING_TEST(maps)
 FAILING_TEST(morphs)
+FAILING_TEST(verified_morphs)
 
 static void test_tetgen(void **state) {
     (void)state;
     failing_run_with_tetgen(by_tetgen);
 }
 
+/* What tests with failing memory verify. */
+static void read_claims(void) {
+    static const char text[] =
+        "{\"format\": \"starguard-morph\", \"version\": 1, \"frames\": ["
+        "{\"t\": 0, \"intersections\": 0, \"volume\": 1, \"area\": 6, \"volume_drift\": 0, "
+        "\"area_drift\": 0}, {\"t\": 1, \"intersections\": 0, \"volume\": 1, \"area\": 6, "
+        "\"volume_drift\": 0, \"area_drift\": 0}]}";
+    report_text = (input_bytes){malloc(sizeof text), sizeof text - 1};
+    assert_non_null(report_text.data);
+    memcpy(report_text.data, text, sizeof text);
+    map_text = failing_input_bytes("map.json");
+    test_ok(in.context,
+            starg_map_file_read_memory(in.context, map_text.data, map_text.size, "map", &map_file));
+    test_ok(in.context, starg_morph_report_read_memory(in.context, report_text.data,
+                                                       report_text.size, "report", &morph_report));
+}
+
 static int set_up(void **state) {
     (void)state;
     failing_inputs_make(&in);
+    read_claims();
     descriptor_text = failing_input_bytes("descriptor.json");
     database_file = failing_input_bytes("shapes.db");
     return 0;
@@ -292,6 +342,10 @@ static int tear_down(void **state) {
     (void)state;
     free(descriptor_text.data);
     free(database_file.data);
+    free(map_text.data);
+    free(report_text.data);
+    starg_map_file_free(map_file);
+    starg_morph_report_free(morph_report);
     failing_inputs_free(&in);
     return 0;
 }
@@ -300,7 +354,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_signatures), cmocka_unit_test(test_descriptors),
         cmocka_unit_test(test_databases),  cmocka_unit_test(test_maps),
-        cmocka_unit_test(test_morphs),     cmocka_unit_test(test_tetgen),
+        cmocka_unit_test(test_morphs),     cmocka_unit_test(test_verified_morphs),
+        cmocka_unit_test(test_tetgen),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -109,6 +109,7 @@ static void make_shapes(failing_inputs *in) {
     }
     starg_descriptor_free(in->context, other);
     test_ok(in->context, starg_map_create(in->context, in->blob, in->other_blob, NULL, &in->map));
+    test_ok(in->context, starg_map_overlay(in->context, in->blob, in->other_blob, in->map));
 }
 
 /* ---- files ---- */
