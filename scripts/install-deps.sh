@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing Debian packages, as root or with sudo.
-# Usage: install-deps.sh build|check|coverage|memory|mpi|bench ...
+# Usage: install-deps.sh build|check|coverage|memory|mpi|web|bench ...
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 
@@ -19,6 +19,7 @@ for purpose in "$@"; do
     coverage) packages="$packages gcovr" ;;
     memory) packages="$packages valgrind" ;;
     mpi) packages="$packages libopenmpi-dev openmpi-bin" ;;
+    web) packages="$packages emscripten dpkg-dev" ;;
     bench) packages="$packages libembree-dev hyperfine" ;;
     *) echo "install-deps.sh: unknown purpose '$purpose'" >&2; exit 1 ;;
     esac
