@@ -9,7 +9,7 @@ CTEST   := ctest --output-on-failure -j $(JOBS)
 
 LONG_PARTS := analysis slow exact memory threads mpi matrix aarch64
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
-	coverage mpi lint fuzz bench install package wheel release deps deps-check clean
+	coverage mpi web lint fuzz bench install package wheel release deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
 
 build: deps
@@ -25,6 +25,7 @@ tests: deps-check
 	@cmake --build $(BUILD) -j $(JOBS)
 
 check: lint tests
+	@if command -v emcc > /dev/null; then scripts/web.sh $(BUILD) $(BUILD)-web $(JOBS); fi
 	@$(CTEST) --test-dir $(BUILD) -LE slow
 	@$(MAKE) --no-print-directory sanitize
 
@@ -93,6 +94,11 @@ mpi: deps
 	@$(CMAKE) -S . -B $(BUILD)-mpi -DSTARGUARD_MPI=ON > /dev/null
 	@cmake --build $(BUILD)-mpi -j $(JOBS) --target starguard_cli
 
+# The browser version, one page without a server (docs/web.md): build-web/starguard.html.
+web: build
+	@scripts/install-deps.sh web
+	@scripts/web.sh $(BUILD) $(BUILD)-web $(JOBS)
+
 lint: deps-check
 	@scripts/lint.sh
 
@@ -135,4 +141,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-aarch64 demo dist
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-aarch64 $(BUILD)-web demo dist

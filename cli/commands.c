@@ -4,12 +4,16 @@
 #include <string.h>
 
 const cli_command *const cli_commands[] = {
-    &cli_command_sample,   &cli_command_check,      &cli_command_repair,
-    &cli_command_skeleton, &cli_command_visible,    &cli_command_kernel,
-    &cli_command_guard,    &cli_command_decompose,  &cli_command_describe,
-    &cli_command_match,    &cli_command_verify,     &cli_command_map,
-    &cli_command_morph,    &cli_command_db,         &cli_command_view,
-    &cli_command_export,   &cli_command_completion, NULL,
+    &cli_command_sample,   &cli_command_check,  &cli_command_repair,     &cli_command_skeleton,
+    &cli_command_visible,  &cli_command_kernel, &cli_command_guard,      &cli_command_decompose,
+#ifndef STARGUARD_WITHOUT_SHAPES /* what the library starguard-shapes does */
+    &cli_command_describe, &cli_command_match,
+#endif
+    &cli_command_verify,
+#ifndef STARGUARD_WITHOUT_SHAPES
+    &cli_command_map,      &cli_command_morph,  &cli_command_db,
+#endif
+    &cli_command_view,     &cli_command_export, &cli_command_completion, NULL,
 };
 
 const char *cli_command_word(const cli_command *command) {

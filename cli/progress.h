@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Progress of the library's stages: a bar on a terminal, and the seconds of each stage. */
+/* Progress of the library's stages: a bar, and the seconds of each stage. The bar is drawn on a
+ * terminal (progress_terminal.c), or by the page that runs this program (web/progress_page.c). */
 #ifndef STARGUARD_CLI_PROGRESS_H
 #define STARGUARD_CLI_PROGRESS_H
 
@@ -16,7 +17,7 @@ typedef struct cli_stage {
 } cli_stage;
 
 typedef struct cli_progress {
-    bool bar;   /* draw a bar on stderr */
+    bool bar;   /* draw a bar */
     bool drawn; /* a bar is visible now */
     double drawn_at;
     cli_stage stages[CLI_STAGES]; /* in the order of their first run */
@@ -28,6 +29,13 @@ double cli_clock(void);
 
 /* A starg_progress_fn; `user` is a cli_progress. Never cancels: signals do. */
 bool cli_progress_report(void *user, const char *stage, double fraction);
+
+/* Can anybody see a bar? */
+bool cli_progress_visible(void);
+
+/* Draws the bar of a stage that has run for `elapsed` seconds; 0 < fraction < 1. */
+void cli_progress_draw(cli_progress *progress, const cli_stage *stage, double fraction,
+                       double elapsed);
 
 /* Erases the bar, so that a line can be written. */
 void cli_progress_erase(cli_progress *progress);

@@ -87,7 +87,7 @@ starg_status cli_session_start(cli_session *session) {
     options.log_user = session;
     options.progress = cli_progress_report;
     options.progress_user = &session->progress;
-    session->progress.bar = !common->quiet && cli_terminal(stderr);
+    session->progress.bar = !common->quiet && cli_progress_visible();
     if (common->json)
         cli_report_begin(session);
 

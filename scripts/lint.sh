@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 
-sources=$( (find include src cli tools tests bench examples -name '*.[ch]'; find src -name '*.cpp') 2>/dev/null | sort)
+sources=$( (find include src cli tools tests bench examples web -name '*.[ch]'; find src -name '*.cpp') 2>/dev/null | sort)
 # shellcheck disable=SC2086
 clang-format --dry-run -Werror $sources
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Guards: points inside the glass model; paints what a picked guard sees, or what the first few see
 // when the slider moves.
-import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments } from "three";
+import { BufferAttribute, BufferGeometry, Color, LineBasicMaterial, LineSegments } from "three";
 import page, { bytes, floats, indices } from "./data.js";
 import { coverageCurve } from "./curve.js";
-import { element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
+import { Labels } from "./labels.js";
+import { check, element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
 import { PickPoints } from "./points.js";
 import { Proof } from "./proof.js";
 import { amount, count, percent, point } from "./text.js";
@@ -12,11 +13,13 @@ import { themeColor } from "./theme.js";
 import { following, View } from "./view.js";
 
 const POINTER = 0.14; // length of the line in a guard's viewing direction
+const CONE_RIM = 24; // points of a cone's rim
 const NONE = new Set();
 const METHODS = { pilp: "progressive", ilp: "integer program", greedy: "greedy" };
 
 export class GuardsView extends View {
     name = "Guards";
+    trial = "Click a guard to see what it sees";
     withSurface = true;
 
     constructor(stage, surface) {
@@ -31,8 +34,10 @@ export class GuardsView extends View {
         this.unseen = new Set(told.uncovered);
         this.picked = -1;
         this.first = told.list.length;
+        this.labels = new Labels(stage, this.points);
         this.objects = [this.points.object];
         if (told.list[0]?.direction) this.objects.push((this.pointers = this.makePointers()));
+        if (told.list[0]?.corners || told.cone) this.objects.push((this.cones = this.makeCones()));
         if (told.proof) {
             this.proof = new Proof(told.proof, indices("model-faces"), () => this.update());
             this.objects.push(this.proof.object);
@@ -68,15 +73,28 @@ export class GuardsView extends View {
                 direction.map((d, k) => points[3 * i + k] + (end * POINTER * d) / length),
             );
         });
-        const geometry = new BufferGeometry();
-        geometry.setAttribute("position", new BufferAttribute(Float32Array.from(ends), 3));
-        const lines = new LineSegments(
-            geometry,
-            new LineBasicMaterial({ color: themeColor("text"), depthTest: false }),
-        );
-        lines.frustumCulled = false;
-        lines.renderOrder = 9;
-        return lines;
+        return lineObject(ends, null, themeColor("text"));
+    }
+
+    /** What limits the view of each: rays from the guard, and the rim that joins their ends. */
+    makeCones() {
+        const { points } = this.points;
+        const ends = [],
+            tints = [];
+        this.told.list.forEach(({ direction, corners }, i) => {
+            const guard = [0, 1, 2].map((k) => points[3 * i + k]);
+            const rays = corners ?? coneRays(direction, this.told.cone);
+            const rim = rays.map((ray) => guard.map((x, k) => x + POINTER * ray[k]));
+            const step = corners ? 1 : CONE_RIM / 4; // a cone shows four of its rays
+            rim.forEach((end, r) => {
+                ends.push(...end, ...rim[(r + 1) % rim.length]);
+                if (r % step === 0) ends.push(...guard, ...end);
+            });
+            const lines = ends.length / 3 - tints.length / 3;
+            const tint = new Color(page.colors[i]).toArray();
+            for (let k = 0; k < lines; k++) tints.push(...tint);
+        });
+        return lineObject(ends, tints, "#ffffff");
     }
 
     applyTheme() {
@@ -101,6 +119,15 @@ export class GuardsView extends View {
         const node = element("div", {}, this.makeFacts());
         if (number > 0 && told.list[0].covered) node.append(...this.makeCurve());
         if (this.proof) node.append(this.proof.node);
+        if (number > 0)
+            node.append(
+                check({
+                    name: "Numbers",
+                    id: "numbers",
+                    value: true,
+                    change: (on) => this.labels.want(on),
+                }),
+            );
         node.append(heading("Pick a guard to see what it sees"), this.list.node);
         this.place = note("");
         node.append(this.place);
@@ -242,6 +269,45 @@ export class GuardsView extends View {
     }
 
     enter() {
+        this.labels.enter();
         this.paint();
     }
+
+    leave() {
+        this.labels.leave();
+    }
+}
+
+/** Line segments between pairs of ends that nothing hides, in one colour or `tints` of the ends. */
+function lineObject(ends, tints, color) {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(Float32Array.from(ends), 3));
+    if (tints) geometry.setAttribute("color", new BufferAttribute(Float32Array.from(tints), 3));
+    const lines = new LineSegments(
+        geometry,
+        new LineBasicMaterial({ color, vertexColors: tints !== null, depthTest: false }),
+    );
+    lines.frustumCulled = false;
+    lines.renderOrder = 9;
+    return lines;
+}
+
+/** Unit vectors on the rim of a cone about a direction, of an opening angle in degrees. */
+function coneRays(direction, angle) {
+    const length = Math.hypot(...direction) || 1;
+    const d = direction.map((x) => x / length);
+    const least = d.map(Math.abs).indexOf(Math.min(...d.map(Math.abs)));
+    const axis = [0, 1, 2].map((k) => Number(k === least));
+    const cross = (a, b) => [0, 1, 2].map((k) => a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    const side = cross(d, axis);
+    const size = Math.hypot(...side);
+    const u = side.map((x) => x / size),
+        v = cross(d, u);
+    const half = (angle * Math.PI) / 360;
+    return Array.from({ length: CONE_RIM }, (_, r) => {
+        const t = (2 * Math.PI * r) / CONE_RIM;
+        return d.map(
+            (x, k) => Math.cos(half) * x + Math.sin(half) * (Math.cos(t) * u[k] + Math.sin(t) * v[k]),
+        );
+    });
 }

@@ -95,6 +95,12 @@ class App {
         at("common").hidden = view.flat;
         at("tag").hidden = true;
         at("hint").textContent = view.flat ? "" : "Drag to turn, scroll to zoom, ? for keys";
+        at("trial").textContent = view.flat ? "" : view.trial;
+    }
+
+    /** What to try first goes away with the first press or key. */
+    endTrial() {
+        at("trial").hidden = true;
     }
 
     /** Fits the camera to the view's contents, unless it already is. */
@@ -115,6 +121,8 @@ class App {
                 this.showTag();
             },
         );
+        for (const kind of ["pointerdown", "keydown"])
+            document.addEventListener(kind, () => this.endTrial(), { once: true });
         stage.beforeDraw.push(() => {
             stage.camera.updateMatrixWorld();
             this.showTag();

@@ -5,6 +5,7 @@ import page, { floats, indices } from "./data.js";
 import { ballOf, shadedSurface } from "./geometry.js";
 import { setCutOpen, shared, surfaceMaterial } from "./materials.js";
 import { check, element, facts, heading, note, pickList, say, slider, swatch } from "./panel.js";
+import { Labels } from "./labels.js";
 import { PickPoints } from "./points.js";
 import { normalAttribute } from "./surface.js";
 import { amount, count, percent, real } from "./text.js";
@@ -12,6 +13,7 @@ import { following, View } from "./view.js";
 
 export class PiecesView extends View {
     name = "Pieces";
+    trial = "Click a piece for its share of the volume; the slider moves pieces apart";
 
     constructor(stage) {
         super();
@@ -21,8 +23,17 @@ export class PiecesView extends View {
         this.build();
         const guards = floats("piece-guards");
         this.points = guards && new PickPoints(guards, page.colors, this.away);
+        this.labels = this.points && new Labels(stage, this.points);
         this.objects = this.points ? [this.object, this.points.object] : [this.object];
         this.node = this.makePanel();
+    }
+
+    enter() {
+        this.labels?.enter();
+    }
+
+    leave() {
+        this.labels?.leave();
     }
 
     // ---- geometry ----

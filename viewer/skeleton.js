@@ -133,7 +133,7 @@ export class SkeletonView extends View {
     applyTheme() {
         const line = themeColor("accent"),
             joint = themeColor("warn"),
-            end = themeColor("good");
+            end = themeColor("text"); // green is for what is proven
         this.rods.material.uniforms.base.value.set(line);
         this.degrees.forEach((d, i) =>
             this.knobs.setColorAt(i, new Color(d > 2 ? joint : d === 2 ? line : end)),

@@ -12,6 +12,7 @@ export class View {
     objects = [];
     withSurface = false; // show the glass model as well?
     flat = false; // does it cover the 3D stage?
+    trial = "Drag to turn the model"; // what to try first
 
     enter() {}
     leave() {}

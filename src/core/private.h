@@ -5,7 +5,11 @@
 #define STARG_CORE_PRIVATE_H
 
 /* Follows the declaration of NAME, before other attributes. Protected visibility keeps calls within
- * the library direct. */
+ * the library direct; WebAssembly has none, and no shared libraries here. */
+#ifdef __wasm__
+#define STARG_PRIVATE(NAME)
+#else
 #define STARG_PRIVATE(NAME) __asm__("starg_private_" #NAME) __attribute__((visibility("protected")))
+#endif
 
 #endif

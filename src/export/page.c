@@ -15,6 +15,7 @@
 #include "export/page_data.h"
 #include "export/piece_surfaces.h"
 #include "export/viewer.h"
+#include "geometry/vec3.h"
 #include "starguard/picture.h"
 
 static const char STAGE[] = "page";
@@ -320,6 +321,28 @@ static json_t *uncovered_json(book *b) {
     return list;
 }
 
+/* Unit vectors to the corners of a rectangular view, in turn: the edges in which its sides meet. */
+static json_t *corners_json(book *b, size_t i) {
+    static const int sides[4][2] = {{0, 2}, {2, 1}, {1, 3}, {3, 0}};
+    static const double usual_up[3] = {0, 1, 0};
+    const starg_guards *g = b->page->guards;
+    const double *ahead = g->directions + 3 * i, *up = g->ups + 3 * i;
+    double planes[4][3];
+    json_t *corners = json_array();
+    if (vec3_length(up) == 0)
+        up = usual_up;
+    starg_frustum(ahead, up, g->options.visibility.fov, planes);
+    for (int corner = 0; corner < 4; corner++) {
+        double ray[3];
+        vec3_cross(planes[sides[corner][0]], planes[sides[corner][1]], ray);
+        double length = vec3_length(ray) * (vec3_dot(ray, ahead) < 0 ? -1 : 1);
+        for (int k = 0; k < 3; k++)
+            ray[k] /= length;
+        append(b, corners, point_json(ray));
+    }
+    return corners;
+}
+
 static json_t *guard_json(book *b, size_t i) {
     const starg_guards *g = b->page->guards;
     size_t seen = b->page->seen != NULL ? starg_bits_count(b->page->seen, i) : g->seen_faces[i];
@@ -327,6 +350,8 @@ static json_t *guard_json(book *b, size_t i) {
                               "faces", (json_int_t)seen, "level", g->levels[i]);
     if (g->directions != NULL)
         put(b, guard, "direction", point_json(g->directions + 3 * i));
+    if (g->directions != NULL && g->ups != NULL && g->options.visibility.fov[0] > 0)
+        put(b, guard, "corners", corners_json(b, i));
     if (g->curve_faces != NULL)
         put(b, guard, "covered", json_pack("[f, f]", g->curve_faces[i], g->curve_area[i]));
     return guard;
@@ -356,6 +381,8 @@ static json_t *guards_json(book *b) {
         (int)g->optimal_everywhere, "max_guards", (json_int_t)g->options.max_guards, "area_bound",
         g->area_bound, "area_bound_everywhere", g->area_bound_everywhere, "seen",
         (int)(b->page->seen != NULL), "uncovered", uncovered_json(b));
+    if (g->options.visibility.cone < 360)
+        put(b, guards, "cone", json_real(g->options.visibility.cone));
     if (b->page->proof != NULL)
         put(b, guards, "proof", proof_json(b));
     return guards;

@@ -268,6 +268,7 @@ test("every key of the help does what it says", async () => {
     await look("all.html", {}, async (page) => {
         const pressed = () => page.locator(".list button[aria-pressed=true]:visible").innerText();
         await page.locator("#canvas").focus();
+        await page.keyboard.press("Escape"); // what to try first goes away with the first key
         const start = await picture(page);
         for (const key of ["ArrowLeft", "ArrowUp", "+", "-"]) {
             const before = await picture(page);
@@ -457,6 +458,51 @@ test("guards with a cone of view point to where they look", async () => {
                 assert.ok(Math.abs((ends[6 * i + 3 + k] - ends[6 * i + k]) / 0.14 - d) < 1e-4),
             ),
         );
+    });
+});
+
+test("cameras show the outline of what they see", async () => {
+    const words = ["guard", "horse.off", "-o", "fov.json", "--fov", "100,70", "--method", "greedy"];
+    starguard(...words);
+    starguard("view", "fov.json", "-o", "fov.html");
+    const { guards } = JSON.parse(readFileSync(fileOf("fov.json"), "utf8"));
+    const half = [50, 35].map((degrees) => Math.tan((degrees * Math.PI) / 180));
+    const diagonal = 1 / Math.hypot(1, ...half); // cosine between the direction and a corner
+    const dot = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
+    await look("fov.html", {}, async (page) => {
+        const told = await page.evaluate(() => window.starguard.views[0].told.list);
+        told.forEach(({ direction, corners }, i) => {
+            assert.equal(corners.length, 4);
+            for (const corner of corners)
+                assert.ok(Math.abs(dot(corner, guards[i].direction) - diagonal) < 1e-6);
+            // opposite corners are twice the diagonal apart, neighbours lie on one side
+            const across = dot(corners[0], corners[2]);
+            assert.ok(Math.abs(across - (2 * diagonal * diagonal - 1)) < 1e-6);
+            assert.ok(Math.abs(dot(direction, corners[1]) - diagonal) < 1e-6);
+        });
+        const drawn = await page.evaluate(
+            () => window.starguard.views[0].cones.geometry.attributes.position.count,
+        );
+        assert.equal(drawn, guards.length * 16); // four rays and four edges
+    });
+});
+
+test("numbers stand beside the guards, and go with the box", async () => {
+    await look("all.html", {}, async (page) => {
+        await settle(page);
+        const labels = page.locator(".labels:visible span:visible");
+        const shown = await labels.allInnerTexts();
+        assert.ok(shown.length > 0);
+        for (const number of shown) {
+            const spot = await placeOfGuard(page, Number(number));
+            const box = await page
+                .locator(".labels:visible span:visible", { hasText: new RegExp(`^${number}$`) })
+                .boundingBox();
+            assert.ok(Math.hypot(box.x - spot.x, box.y + box.height / 2 - spot.y) < 20, number);
+        }
+        await page.locator("#numbers").uncheck();
+        await settle(page);
+        assert.equal(await labels.count(), 0);
     });
 });
 
