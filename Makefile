@@ -7,7 +7,7 @@ CMAKE   := cmake -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo
 STRICT  := $(CMAKE) -DSTARGUARD_WERROR=ON
 CTEST   := ctest --output-on-failure -j $(JOBS)
 
-LONG_PARTS := analysis slow exact memory threads mpi matrix aarch64
+LONG_PARTS := analysis slow exact memory threads mpi matrix
 .PHONY: build demo tests check sanitize sanitize-build check-long $(LONG_PARTS:%=check-%) \
 	coverage mpi web lint fuzz bench install package wheel release deps deps-check clean
 .NOTPARALLEL: # JOBS of one target at a time
@@ -67,12 +67,6 @@ check-threads: deps-check
 
 check-mpi: mpi
 	@$(CTEST) --test-dir $(BUILD)-mpi -R test_mpi
-
-# With a cross compiler, under emulation (docs/portability.md).
-check-aarch64: deps-check
-	@scripts/install-deps.sh aarch64
-	@scripts/check-aarch64.sh $(BUILD)-aarch64 gcc $(JOBS)
-	@scripts/check-aarch64.sh $(BUILD)-aarch64 clang $(JOBS)
 
 # All results of six builds at four numbers of threads.
 check-matrix: deps-check
@@ -141,4 +135,4 @@ deps-check:
 	@scripts/install-deps.sh build check
 
 clean:
-	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-aarch64 $(BUILD)-web demo dist
+	rm -rf $(BUILD) $(BUILD)-sanitize $(BUILD)-thread $(BUILD)-coverage $(BUILD)-fuzz $(BUILD)-bench $(BUILD)-mpi $(BUILD)-matrix $(BUILD)-wheel $(BUILD)-web demo dist
