@@ -46,6 +46,10 @@ typedef struct candidate_shape {
 starg_status candidates_check(starg_context *context, starg_candidates source, size_t wanted,
                               double clearance);
 
+/* The same where guards are bound to faces (guard/near_candidates.c). */
+starg_status near_candidates(starg_context *context, const candidate_shape *shape, size_t wanted,
+                             candidate_points *points);
+
 /* Adds about `wanted` points of a source, all allowed. Errors: MEMORY, CANCELLED, TIME. */
 starg_status candidates_find(starg_context *context, const candidate_shape *shape,
                              starg_candidates source, size_t wanted, candidate_points *points);
@@ -53,7 +57,8 @@ starg_status candidates_find(starg_context *context, const candidate_shape *shap
 /* Adds candidates for faces that no candidate sees (guard/augment.c): `unseen` marks these faces
  * (by index). Each appended point sees at least one of them; a face stays unseen only if none of
  * the points tried sees it. Handles a bounded number of faces per call: `pending` tells whether
- * more remain. */
+ * more remain. augment_test tries all these faces and sets the bits of those that some point sees,
+ * without keeping the points. Errors: MEMORY, CANCELLED, TIME. */
 typedef struct augmentation {
     const starg_solid *solid;
     const starg_visibility_options *visibility;
@@ -61,6 +66,8 @@ typedef struct augmentation {
     uint8_t *tried; /* per face: points were already tried */
 } augmentation;
 
+starg_status augment_test(starg_context *context, const augmentation *augmentation,
+                          const uint8_t *unseen, uint64_t *seen);
 starg_status augment_candidates(starg_context *context, const augmentation *augmentation,
                                 const uint8_t *unseen, candidate_points *points, bool *pending);
 

@@ -187,16 +187,55 @@ static bool sees_enough(const guard_pool *pool, const column_weights *weights) {
     return missing <= 0.5 * (1 - o->coverage) * (double)weights->total;
 }
 
+/* Of a scene much may be hidden for ever: what lies on something, or behind what cannot be passed.
+ */
+static bool tests_first(const guard_pool *pool) {
+    const starg_guard_options *o = pool->options;
+    return pool->solid->scene && o->coverage < 1 && o->redundancy == 1 && o->max_guards == 0 &&
+           o->candidates != STARG_CANDIDATES_GIVEN && o->visibility.target == STARG_TARGET_FACES;
+}
+
+/* If candidates see enough of all that can be seen at all, nothing is added: `enough`. Faces that
+ * others could see are then coverable, too. */
+static starg_status test_unseen(guard_pool *pool, const column_weights *weights,
+                                const augmentation *all, uint8_t *unseen, bool *enough) {
+    starg_status status = STARG_OK;
+    uint64_t *seen = NULL;
+    double most = 0.5 * (1 - pool->options->coverage);
+    *enough = false;
+    if (!tests_first(pool))
+        return STARG_OK;
+    STARG_NEW_ZERO(pool->context, STAGE, seen, starg_bit_words(pool->columns));
+    mark_unseen(pool, unseen);
+    status = augment_test(pool->context, all, unseen, seen);
+    if (status == STARG_ERROR_TIME) {
+        status = STARG_OK;
+        goto done;
+    }
+    STARG_TRY(status);
+    double whole = (double)pool_coverable_weight(pool, weights), missing = 0;
+    for (size_t w = 0; w < starg_bit_words(pool->columns); w++)
+        STARG_FOR_BITS (bit, seen[w])
+            missing += (double)weights->weights[64 * w + bit];
+    *enough = missing <= most * (whole + missing);
+    for (size_t w = 0; w < starg_bit_words(pool->columns) && *enough; w++)
+        pool->coverable[w] |= seen[w];
+done:
+    starg_release(pool->context, seen);
+    return status;
+}
+
 starg_status pool_augment(guard_pool *pool, const column_weights *weights) {
     starg_status status = STARG_OK;
     uint8_t *unseen = NULL;
     candidate_points found = {0};
     augmentation all = {pool->solid, &pool->options->visibility, pool->options->clearance, NULL};
-    bool pending = pool->options->candidates != STARG_CANDIDATES_GIVEN;
+    bool pending = pool->options->candidates != STARG_CANDIDATES_GIVEN, enough;
     pool->first_count = pool_count(pool);
     STARG_NEW_ZERO(pool->context, STAGE, all.tried, pool->solid->mesh->face_count);
     STARG_NEW(pool->context, STAGE, unseen, pool->solid->mesh->face_count);
-    while (pending && !pool->time_limited) {
+    STARG_TRY(test_unseen(pool, weights, &all, unseen, &enough));
+    while (!enough && pending && !pool->time_limited) {
         pool->curtailed = sees_enough(pool, weights);
         if (pool->curtailed)
             break;
