@@ -126,23 +126,26 @@ done:
     return status;
 }
 
-/* Leaves the kept rows, in place. */
-static starg_status keep_rows(const uint64_t *rows, cover_instance *out) {
+starg_status cover_instance_keep_rows(cover_instance *instance, const uint64_t *rows) {
     starg_status status = STARG_OK;
     uint32_t *kept = NULL;
-    size_t count, words = out->row_words;
-    STARG_TRY(list_kept(out->context, rows, out->rows, &kept, &count));
+    size_t count, words = instance->row_words, used = instance->used_words;
+    STARG_TRY(list_kept(instance->context, rows, instance->rows, &kept, &count));
     for (size_t i = 0; i < count; i++) {
-        if (words != 0)
-            memmove(out->row_bits + i * words, out->row_bits + kept[i] * words,
-                    words * sizeof *out->row_bits);
-        out->row_names[i] = out->row_names[kept[i]];
+        if (words != 0) {
+            memmove(instance->row_bits + i * words, instance->row_bits + kept[i] * words,
+                    words * sizeof *instance->row_bits);
+            memmove(instance->row_used + i * used, instance->row_used + kept[i] * used,
+                    used * sizeof *instance->row_used);
+        }
+        instance->row_names[i] = instance->row_names[kept[i]];
     }
-    out->rows = count;
-    out->column_words = starg_bit_words(count);
-    transpose(out->row_bits, count, out->columns, words, out->column_bits, out->column_words);
+    instance->rows = count;
+    instance->column_words = starg_bit_words(count);
+    transpose(instance->row_bits, count, instance->columns, words, instance->column_bits,
+              instance->column_words);
 done:
-    starg_release(out->context, kept);
+    starg_release(instance->context, kept);
     return status;
 }
 
@@ -152,7 +155,7 @@ starg_status cover_instance_select(const cover_instance *from, const uint64_t *r
     *out = (cover_instance){.context = from->context};
     STARG_TRY(select_columns(from, columns, out));
     if (rows != NULL)
-        STARG_TRY(keep_rows(rows, out));
+        STARG_TRY(cover_instance_keep_rows(out, rows));
     mark_used(out);
 done:
     if (status != STARG_OK)

@@ -77,6 +77,9 @@ starg_status cover_instance_build(starg_context *context, const starg_cover_prob
 starg_status cover_instance_select(const cover_instance *from, const uint64_t *rows,
                                    const uint64_t *columns, cover_instance *out);
 
+/* Leaves the rows set in the mask, in place. Errors: MEMORY, which leaves all. */
+starg_status cover_instance_keep_rows(cover_instance *instance, const uint64_t *rows);
+
 /* Frees the arrays and empties the instance; a zeroed one is allowed. */
 void cover_instance_free(cover_instance *instance);
 

@@ -130,20 +130,13 @@ static starg_status augment_face(starg_context *context, void *shared, void *scr
     return STARG_OK;
 }
 
-/* A scene has many faces that nothing sees, such as what lies on others; each batch prepares all
- * faces. */
-static size_t batch_size(const starg_solid *solid) {
-    size_t share = solid->scene ? solid->mesh->face_count / 200 : 0;
-    return share > BATCH ? share : BATCH;
-}
-
 /* Picks the batch evenly from all unseen faces that have not been tried. */
 static size_t pick_faces(const augmentation *all, const uint8_t *unseen, size_t face_count,
-                         size_t most, uint32_t *faces) {
+                         uint32_t *faces) {
     size_t waiting = 0, picked = 0, index = 0;
     for (size_t f = 0; f < face_count; f++)
         waiting += unseen[f] && !all->tried[f];
-    size_t take = waiting < most ? waiting : most;
+    size_t take = waiting < BATCH ? waiting : BATCH;
     for (size_t f = 0; f < face_count && picked < take; f++) {
         if (!unseen[f] || all->tried[f])
             continue;
@@ -189,9 +182,8 @@ starg_status augment_candidates(starg_context *context, const augmentation *all,
     starg_status status = STARG_OK;
     augmentation_job job;
     bool looks = sensor_is_directed(all->visibility);
-    size_t most = batch_size(all->solid);
-    STARG_TRY(make_job(context, all, most, &job));
-    size_t count = pick_faces(all, unseen, all->solid->mesh->face_count, most, job.faces);
+    STARG_TRY(make_job(context, all, BATCH, &job));
+    size_t count = pick_faces(all, unseen, all->solid->mesh->face_count, job.faces);
     STARG_TRY(try_faces(context, &job, count));
     for (size_t i = 0; i < count; i++)
         for (int k = 0; k < job.found[i].count; k++)
@@ -204,19 +196,31 @@ done:
 }
 
 starg_status augment_test(starg_context *context, const augmentation *all, const uint8_t *unseen,
-                          uint64_t *seen) {
+                          augmentation_finds *out) {
     starg_status status = STARG_OK;
     augmentation_job job;
     size_t face_count = all->solid->mesh->face_count, count = 0;
+    bool looks = sensor_is_directed(all->visibility);
+    *out = (augmentation_finds){0};
     STARG_TRY(make_job(context, all, face_count, &job));
     for (size_t f = 0; f < face_count; f++)
         if (unseen[f])
             job.faces[count++] = (uint32_t)f;
     STARG_TRY(try_faces(context, &job, count));
-    for (size_t i = 0; i < count; i++)
-        if (job.found[i].count > 0)
-            starg_bit_set(seen, job.faces[i]);
+    for (size_t i = 0; i < count; i++) {
+        int last = job.found[i].count - 1; /* the deepest */
+        if (last < 0)
+            continue;
+        STARG_PUSH(context, STAGE, &out->faces, job.faces[i]);
+        STARG_TRY(candidates_push(context, &out->poses, job.found[i].p[last],
+                                  looks ? job.found[i].direction[last] : NULL));
+    }
 done:
     free_job(context, &job);
     return status;
+}
+
+void augment_finds_free(starg_context *context, augmentation_finds *finds) {
+    candidates_free(context, &finds->poses);
+    STARG_ARRAY_FREE(context, &finds->faces);
 }

@@ -57,8 +57,7 @@ starg_status candidates_find(starg_context *context, const candidate_shape *shap
 /* Adds candidates for faces that no candidate sees (guard/augment.c): `unseen` marks these faces
  * (by index). Each appended point sees at least one of them; a face stays unseen only if none of
  * the points tried sees it. Handles a bounded number of faces per call: `pending` tells whether
- * more remain. augment_test tries all these faces and sets the bits of those that some point sees,
- * without keeping the points. Errors: MEMORY, CANCELLED, TIME. */
+ * more remain. */
 typedef struct augmentation {
     const starg_solid *solid;
     const starg_visibility_options *visibility;
@@ -66,8 +65,18 @@ typedef struct augmentation {
     uint8_t *tried; /* per face: points were already tried */
 } augmentation;
 
+/* Tries all these faces at once. Those that some point sees are listed, with the deepest such point
+ * of each, which is not added: `faces` has one face for each pose. Errors: MEMORY, CANCELLED, TIME.
+ */
+typedef struct augmentation_finds {
+    candidate_points poses;
+    STARG_ARRAY(uint32_t) faces;
+} augmentation_finds;
+
 starg_status augment_test(starg_context *context, const augmentation *augmentation,
-                          const uint8_t *unseen, uint64_t *seen);
+                          const uint8_t *unseen, augmentation_finds *out);
+void augment_finds_free(starg_context *context, augmentation_finds *finds);
+
 starg_status augment_candidates(starg_context *context, const augmentation *augmentation,
                                 const uint8_t *unseen, candidate_points *points, bool *pending);
 

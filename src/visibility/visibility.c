@@ -235,18 +235,53 @@ starg_status visibility_scene_for(starg_context *context, const starg_solid *sol
     return status;
 }
 
+/* Directions of one place are for one thread, which finds once what the place sees all around. */
+static starg_status find_rows_of_place(starg_context *context, void *shared, void *scratch,
+                                       size_t place) {
+    const job *all = shared;
+    starg_status status = STARG_OK;
+    for (size_t i = all->starts[place]; i < all->starts[place + 1]; i++)
+        STARG_TRY(find_row(context, shared, scratch, i));
+done:
+    return status;
+}
+
+/* The first item of each place, and the number of all at the end. */
+static starg_status find_starts(starg_context *context, const job *all, size_t **out,
+                                size_t *places) {
+    starg_status status = STARG_OK;
+    *places = 0;
+    STARG_NEW(context, STAGE, *out, all->count + 1);
+    for (size_t i = 0; i < all->count; i++)
+        if (i == 0 || !vec3_equal(all->points + 3 * i, all->points + 3 * (i - 1)))
+            (*out)[(*places)++] = i;
+    (*out)[*places] = all->count;
+done:
+    return status;
+}
+
 starg_status visibility_fill(starg_context *context, const visibility_job *of,
                              const starg_parallel_remote *remote) {
+    starg_status status = STARG_OK;
     job all = *of;
+    size_t *starts = NULL;
     all.engine = choose_engine(of->options);
-    const starg_parallel_loop loop = {.stage = STAGE,
-                                      .count = of->count,
-                                      .shared = &all,
-                                      .item = find_row,
-                                      .make_scratch = make_worker,
-                                      .free_scratch = free_worker,
-                                      .remote = remote};
-    return starg_parallel_in_time(context, &loop);
+    starg_parallel_loop loop = {.stage = STAGE,
+                                .count = of->count,
+                                .shared = &all,
+                                .item = find_row,
+                                .make_scratch = make_worker,
+                                .free_scratch = free_worker,
+                                .remote = remote};
+    if (remote == NULL && sensor_is_directed(of->options)) {
+        STARG_TRY(find_starts(context, &all, &starts, &loop.count));
+        all.starts = starts;
+        loop.item = find_rows_of_place;
+    }
+    status = starg_parallel_in_time(context, &loop);
+done:
+    starg_release(context, starts);
+    return status;
 }
 
 /* With other processes, if there are any and enough work. */

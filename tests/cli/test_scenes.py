@@ -408,6 +408,8 @@ class Scenes(Case):
                 (["room.off", "--soup", "--from", "1,1,0", "--cell", "0.1"], 1, "a face meets"),
                 (["room.off", "--soup", "--from", "50,1,1"], 1, "not in the box"),
                 (["room.off", "--soup", "--from", "1,1,1", "--cell", "1e-5"], 1, "2^30"),
+                (["room.off", "--obstacles", "crate.off", "--from", "4,3,0.7", "--cell", "0.2"], 1,
+                 "within matter"),
                 (["room.off", "--soup", "--outside", "--standoff", "1,2"], 1, "soup"),
                 (["room.off", "--weights", "short.txt"], 2, "3 weights"),
                 (["room.off", "--weights", "negative.txt"], 2, "-1"),

@@ -139,8 +139,10 @@ static starg_status scene_of(starg_context *context, bool soup) {
     options.over = options.mount = faces;
     options.over_count = options.mount_count = soup ? 3 : 0;
     options.height = options.mount_distance = 10;
+    double lower[3], upper[3];
+    starg_mesh_bounds(in.room, lower, upper);
     for (int k = 0; k < 3; k++)
-        options.from[k] = -0.7;
+        options.from[k] = lower[k] - 0.6;
     starg_status status = starg_space_create(context, in.room, obstacles, 1, &options, &scene);
     failing_result(status, scene);
     starg_solid_free(scene);
