@@ -137,7 +137,8 @@ static starg_status scene_of(starg_context *context, bool soup) {
     options.cell = soup ? 0.5 : 0;
     uint32_t faces[] = {0, 1, 3};
     options.over = options.mount = faces;
-    options.over_count = options.mount_count = soup ? 3 : 0;
+    options.over_count = soup ? 0 : 3;
+    options.mount_count = 3;
     options.height = options.mount_distance = 10;
     double lower[3], upper[3];
     starg_mesh_bounds(in.room, lower, upper);
